@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""No floating point where everything is an integer: common/, decoder/parse_*, decoder/recon_*.
+
+Tests are free to use it. Division and shifts of signed numbers are not looked for: text alone
+cannot tell them from those of unsigned numbers, which are exact.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+import cpp_source
+
+_FLOAT = re.compile(
+    r"""\b(?:float|double|float_t|double_t)\b
+      | <(?:cmath|math\.h|cfloat|complex|numbers|random)>
+      | \b(?:std::)?(?:sqrt|cbrt|hypot|pow|exp|exp2|log|log2|log10|sin|cos|tan|atan2?|floor|ceil
+          |round|lround|llround|trunc|fabs|ldexp|fma)f?\s*\(
+      | (?<![\w.])(?:\d[\d']*\.[\d']*|\.\d[\d']*)(?:[eE][+-]?\d+)?[fFlL]?(?![\w.])
+      | (?<![\w.])\d[\d']*[eE][+-]?\d+[fFlL]?(?!\w)""",
+    re.VERBOSE,
+)
+
+
+def covered(root):
+    for path in cpp_source.files(root, ("common", "decoder")):
+        whole_folder = path.relative_to(root).parts[0] == "common"
+        if not cpp_source.is_test(path) and (
+                whole_folder or path.name.startswith(("parse_", "recon_"))):
+            yield path
+
+
+def check(root):
+    paths = list(covered(root))
+    complaints = []
+    for path in paths:
+        text = path.read_text(encoding="utf-8")
+        for match in _FLOAT.finditer(cpp_source.code_only(text)):
+            line = cpp_source.line_of(text, match.start())
+            complaints.append(f"{path.relative_to(root)}:{line}: floating point: "
+                              f"{match.group().rstrip(' (')}")
+    return complaints, f"{len(paths)} files are integer only"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
+    return cpp_source.report("float", *check(parser.parse_args().root))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

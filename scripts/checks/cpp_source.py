@@ -1,0 +1,65 @@
+"""C++ source text, split into code, comments and literals just well enough for the checks."""
+
+import pathlib
+import re
+
+LAYERS = ("common", "decoder", "encoder", "conformance")
+
+_TOKEN = re.compile(
+    r"""(?P<comment>//[^\n]*|/\*.*?\*/)
+      | (?P<raw>\bu?8?R"(?P<delim>[^()\\\s]*)\(.*?\)(?P=delim)")
+      | (?P<string>"(?:\\.|[^"\\\n])*")
+      | (?P<char>(?<![0-9A-Za-z_])'(?:\\.|[^'\\\n])+')""",
+    re.DOTALL | re.VERBOSE,
+)
+
+
+def repository_root():
+    return pathlib.Path(__file__).resolve().parents[2]
+
+
+def files(root, folders, suffixes=(".h", ".cpp")):
+    """The files below `folders` with one of the suffixes, in sorted order."""
+    return sorted(path for folder in folders for path in (root / folder).rglob("*")
+                  if path.suffix in suffixes and path.is_file())
+
+
+def is_test(path):
+    return path.stem.endswith(("_test", "_fuzz", "_bench"))
+
+
+def _blank(text):
+    return re.sub(r"[^\n]", " ", text)
+
+
+def code_only(text):
+    """The text with comments and the contents of literals blanked; positions are kept."""
+    return _TOKEN.sub(lambda m: _blank(m.group()), text)
+
+
+def comments_only(text):
+    """The text with everything but comments blanked; positions are kept."""
+    parts = []
+    end = 0
+    for match in _TOKEN.finditer(text):
+        parts.append(_blank(text[end:match.start()]))
+        parts.append(match.group() if match.group("comment") else _blank(match.group()))
+        end = match.end()
+    return "".join(parts) + _blank(text[end:])
+
+
+def without_comments(text):
+    """The text with comments blanked, literals kept; positions are kept."""
+    return _TOKEN.sub(lambda m: _blank(m.group()) if m.group("comment") else m.group(), text)
+
+
+def line_of(text, position):
+    return text.count("\n", 0, position) + 1
+
+
+def report(name, complaints, summary):
+    """Prints the complaints, or the summary when there are none; returns the exit code."""
+    for complaint in complaints:
+        print(complaint)
+    print(f"{name}: {len(complaints)} complaint(s)" if complaints else f"{name}: {summary}")
+    return 1 if complaints else 0

@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Small bad trees, and the complaint that each must draw."""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import check_clauses  # noqa: E402
+import check_float  # noqa: E402
+import check_layers  # noqa: E402
+import cpp_source  # noqa: E402
+
+
+class TreeTest(unittest.TestCase):
+    """Writes {path: text} into a fresh directory and runs one check over it."""
+
+    def complaints(self, check, tree):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name, text in tree.items():
+                path = root / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            return check(root)[0]
+
+    def assert_clean(self, check, tree):
+        self.assertEqual(self.complaints(check, tree), [])
+
+    def assert_one(self, check, tree, *expected):
+        found = self.complaints(check, tree)
+        self.assertEqual(len(found), 1, found)
+        for words in expected:
+            self.assertIn(words, found[0])
+
+
+class Source(unittest.TestCase):
+    TEXT = 'int a = 1\'000;  // "x" is\n/* b */ const char* s = "// no";\n'
+
+    def test_code_and_comments_are_told_apart(self):
+        code = cpp_source.code_only(self.TEXT)
+        comments = cpp_source.comments_only(self.TEXT)
+        self.assertIn("1'000", code)
+        self.assertNotIn("no", code)
+        self.assertIn('// "x" is', comments)
+        self.assertNotIn("no", comments)
+        self.assertEqual(len(code), len(self.TEXT))
+        self.assertEqual(len(comments), len(self.TEXT))
+
+
+class Layers(TreeTest):
+    def run_on(self, tree, *expected):
+        (self.assert_one if expected else self.assert_clean)(check_layers.check, tree, *expected)
+
+    def test_each_layer_may_use_what_is_below_it(self):
+        self.run_on({
+            "common/a.h": "#include <vector>\n",
+            "common/a_test.cpp": "#include <gtest/gtest.h>\n#include <iostream>\n",
+            "decoder/b.h": '#include "common/a.h"\n',
+            "encoder/c.cpp": '#include <Eigen/Dense>\n#include "common/a.h"\n',
+            "conformance/tools/d.cpp": '#include "decoder/b.h"\n#include "encoder/e.h"\n',
+            "encoder/e.h": "// #include <what/ever.h>\n",
+        })
+
+    def test_decoder_must_not_include_encoder(self):
+        self.run_on({"encoder/e.h": "", "decoder/d.cpp": '#include "encoder/e.h"\n'},
+                    "decoder/d.cpp:1", "decoder/ must not include encoder/")
+
+    def test_encoder_must_not_include_decoder(self):
+        self.run_on({"decoder/d.h": "", "encoder/e.cpp": '\n#  include "decoder/d.h"\n'},
+                    "encoder/e.cpp:2", "encoder/ must not include decoder/")
+
+    def test_conformance_is_no_way_round(self):
+        self.run_on({"conformance/x.h": '#include "encoder/e.h"\n', "encoder/e.h": "",
+                     "decoder/d.cpp": '#include "conformance/x.h"\n'},
+                    "decoder/ must not include conformance/")
+
+    def test_common_must_not_include_a_side(self):
+        self.run_on({"decoder/d.h": "", "common/a.h": '#include "decoder/d.h"\n'},
+                    "common/ must not include decoder/")
+
+    def test_relative_paths_are_no_way_round(self):
+        self.run_on({"decoder/d.cpp": '#include "../encoder/e.h"\n'}, "not spelled from the top")
+        self.run_on({"decoder/d.cpp": '#include "decoder/../encoder/e.h"\n'},
+                    "not spelled from the top")
+        self.run_on({"decoder/d.cpp": "#include <encoder/e.h>\n"}, "is ours")
+
+    def test_macro_include_is_refused(self):
+        self.run_on({"decoder/d.cpp": "#include HEADER\n"}, "cannot be followed")
+
+    def test_eigen_stays_in_the_encoder(self):
+        self.run_on({"decoder/d.cpp": "#include <Eigen/Dense>\n"},
+                    "decoder/ must not use <Eigen/Dense>")
+        self.run_on({"decoder/CMakeLists.txt": "target_link_libraries(d Eigen3::Eigen)\n"},
+                    "decoder/ must not use Eigen")
+
+    def test_common_does_no_input_or_output(self):
+        self.run_on({"common/a.cpp": "#include <fstream>\n"}, "no input or output")
+        self.run_on({"common/a.cpp": "#include <unistd.h>\n"}, "only the standard library")
+
+    def test_parsing_must_not_know_reconstruction(self):
+        self.run_on({"decoder/recon_x.h": "",
+                     "decoder/parse_x.cpp": '#include "decoder/recon_x.h"\n'},
+                    "parsing must not know reconstruction")
+
+    def test_libraries_are_not_linked_across(self):
+        self.run_on({"decoder/CMakeLists.txt": "# not rlpc_encoder\n"})
+        self.run_on({"decoder/CMakeLists.txt": "\ntarget_link_libraries(t rlpc_encoder)\n"},
+                    "decoder/CMakeLists.txt:2", "must not link rlpc_encoder")
+
+    def test_public_header_shows_only_the_standard_library(self):
+        self.run_on({"encoder/rlpc_encoder.h": '#include "encoder/svd.h"\n',
+                     "encoder/svd.h": "#include <Eigen/SVD>\n"},
+                    "encoder/svd.h:1", "encoder/rlpc_encoder.h reaches <Eigen/SVD>")
+
+    def test_specification_interpreter_is_plain_python(self):
+        self.run_on({"conformance/specdec/run.py": "import re\nfrom specdec import blocks\n",
+                     "conformance/specdec/blocks.py": "import json\n"})
+        self.run_on({"conformance/specdec/run.py": "import re\nimport numpy as np\n"},
+                    "run.py:2", "must not import numpy")
+        self.run_on({"conformance/specdec/run.py": "from judge import grade\n",
+                     "conformance/judge/grade.py": ""}, "must not import judge")
+
+
+class Float(TreeTest):
+    def run_on(self, tree, *expected):
+        (self.assert_one if expected else self.assert_clean)(check_float.check, tree, *expected)
+
+    def test_words_in_comments_and_literals_are_free(self):
+        self.run_on({"common/a.h": '// a double, 0.5\nconst char* s = "float 1.5";\n'
+                                   "int isqrt(int); int x = isqrt(1'000) + v[1].x + 0x1e5;\n"})
+
+    def test_tests_and_writers_are_free(self):
+        self.run_on({"common/a_test.cpp": "double x;\n", "decoder/write_obj.cpp": "float y;\n"})
+
+    def test_types_functions_and_literals_are_found(self):
+        for code in ("double x;", "float f();", "int r = std::sqrt(x);", "auto x = 0.5;",
+                     "auto x = 2.f;", "auto x = 1e9;", "#include <cmath>"):
+            with self.subTest(code=code):
+                self.run_on({"common/a.h": "\n" + code + "\n"}, "common/a.h:2")
+
+    def test_parsing_and_reconstruction_are_covered(self):
+        self.run_on({"decoder/parse_x.cpp": "float f;\n"}, "decoder/parse_x.cpp:1")
+        self.run_on({"decoder/recon_x.h": "float f;\n"}, "decoder/recon_x.h:1")
+
+
+SPEC = """# 6 Syntax
+## 6.3 Header
+### 6.3.1 Sequence header syntax
+```rlpc
+def sequence_header():
+    lcf_flag = u(1)  # not a {R-HDR-09}
+    if lcf_flag:
+        step[ i ] = ue()
+```
+Table 6-1 gives the names. It is a requirement of bitstream conformance ... {R-HDR-01}
+**Table 6-2 — Names**
+# 9 Parsing process
+```rlpc
+bin = ae(ctx)
+```
+# Annex B (normative) Levels
+"""
+PARSER = '// 6.3.1 sequence_header( )\nh.a = r.flag("lcf_flag");\nh.b = r.ue("step", {0, 1});\n'
+
+
+class Clauses(TreeTest):
+    def run_on(self, code, *expected, spec=SPEC, parser=PARSER):
+        tree = {"spec/06-syntax.md": spec, "common/a.h": code, "decoder/parse_a.cpp": parser}
+        (self.assert_one if expected else self.assert_clean)(check_clauses.check, tree, *expected)
+
+    def test_empty_spec_is_said_and_passes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            complaints, summary = check_clauses.check(pathlib.Path(folder))
+        self.assertEqual(complaints, [])
+        self.assertIn("empty", summary)
+
+    def test_correct_citations_pass(self):
+        self.run_on("// 6.3.1 Sequence header syntax: why\n// 6.3.1 sequence_header( )\n"
+                    "// 6.3.1, step 3\n// (clause 6.3.1). Clauses 6.3 and 6.3.1; clause 9, Annex B\n"
+                    '// Table 6-2: names; version 1.0\nint x = 7.7;  // 0.5 of it\n'
+                    'fail("R-HDR-01"); f("clause 77");\n')
+
+    def test_missing_clause(self):
+        self.run_on("\n// 6.3.2 Sequence header syntax\n", "common/a.h:2", "no clause 6.3.2")
+        self.run_on("int x;  // see clause 8.4\n", "no clause 8.4")
+        self.run_on("// clauses 6.3 and 8.5\n", "no clause 8.5")
+        self.run_on("// see clause\n// 8.6 there\n", "no clause 8.6")
+        self.run_on("// Annex C\n", "no Annex C")
+
+    def test_wrong_title(self):
+        self.run_on("// 6.3.1 Frame header\n", 'is "Sequence header syntax", not "Frame header"')
+        self.run_on("// 6.3.1 frame_header( )\n", 'not "frame_header( )"')
+
+    def test_missing_table(self):
+        self.run_on("// Table 6-1 is only mentioned\n", "no Table 6-1")
+
+    def test_missing_rule(self):
+        self.run_on('fail("R-HDR-02");\n', "no rule R-HDR-02")
+        self.run_on('fail("R-HDR-09");\n', "no rule R-HDR-09")
+
+    def test_rule_defined_twice(self):
+        self.run_on("", "06-syntax.md:17", "already defined", spec=SPEC + "{R-HDR-01}\n")
+
+    def test_clause_twice(self):
+        self.run_on("", "clause 6.3 is already", spec=SPEC + "## 6.3 Again\n")
+
+    def test_element_without_parser(self):
+        self.run_on("", "06-syntax.md:6", "lcf_flag is read by no",
+                    parser='r.ue("step", {0, 1});  // "lcf_flag"\n')
+
+    def test_element_with_two_parsers(self):
+        found = self.complaints(check_clauses.check, {
+            "spec/06-syntax.md": SPEC, "decoder/parse_a.cpp": PARSER,
+            "decoder/parse_b.h": 'r.flag("lcf_flag");\n',
+            "decoder/parse_b_test.cpp": 'expect("lcf_flag");\n'})
+        self.assertEqual(len(found), 1, found)
+        self.assertIn("2 parsers", found[0])
+
+    def test_parser_without_element(self):
+        self.run_on("", "parse_a.cpp:4: other is in no syntax table",
+                    parser=PARSER + 'r.u(4, "other", {0, 1});\n')
+
+
+if __name__ == "__main__":
+    unittest.main()

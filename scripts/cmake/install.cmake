@@ -1,0 +1,62 @@
+# What `cmake --install` puts where; and the package that find_package(rlpc) and pkg-config find.
+# The parts of the project that do not exist are left out.
+include(CMakePackageConfigHelpers)
+
+set(public_headers "")
+foreach(side decoder encoder)
+  if(TARGET rlpc_${side} AND EXISTS ${PROJECT_SOURCE_DIR}/${side}/rlpc_${side}.h)
+    list(APPEND public_headers ${side}/rlpc_${side}.h)
+  endif()
+endforeach()
+
+foreach(part common decoder encoder)
+  if(NOT TARGET rlpc_${part})
+    continue()
+  endif()
+  add_library(rlpc::${part} ALIAS rlpc_${part})
+  set_target_properties(rlpc_${part} PROPERTIES EXPORT_NAME ${part})
+  target_compile_features(rlpc_${part} PUBLIC cxx_std_20)
+  # Flags and header-only libraries end in the archive: a user of it need not have them.
+  get_target_property(links rlpc_${part} INTERFACE_LINK_LIBRARIES)
+  if(links)
+    list(FILTER links EXCLUDE REGEX
+         "LINK_ONLY:(rlpc_flags|Eigen3::Eigen|CLI11::CLI11|nlohmann_json::nlohmann_json)>")
+    set_target_properties(rlpc_${part} PROPERTIES INTERFACE_LINK_LIBRARIES "${links}")
+  endif()
+  install(TARGETS rlpc_${part} EXPORT rlpcTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endforeach()
+
+foreach(tool rlpcenc rlpcdec rlpcinfo rlpccmp)
+  if(TARGET ${tool})
+    install(TARGETS ${tool} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+
+install(CODE "
+  set(RLPC_SOURCE_DIR \"${PROJECT_SOURCE_DIR}\")
+  set(RLPC_BINARY_DIR \"${PROJECT_BINARY_DIR}\")
+  set(RLPC_INCLUDEDIR \"${CMAKE_INSTALL_INCLUDEDIR}\")
+  set(RLPC_PUBLIC_HEADERS \"${public_headers}\")")
+install(SCRIPT ${PROJECT_SOURCE_DIR}/scripts/cmake/install_headers.cmake)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/rlpc)
+install(EXPORT rlpcTargets NAMESPACE rlpc:: DESTINATION ${package_dir})
+configure_package_config_file(scripts/cmake/rlpcConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/rlpcConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/rlpcConfigVersion.cmake
+                                 COMPATIBILITY SameMajorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/rlpcConfig.cmake ${PROJECT_BINARY_DIR}/rlpcConfigVersion.cmake
+        DESTINATION ${package_dir})
+
+set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH RLPC_PC_TO_INCLUDE ${pc_dir} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+foreach(RLPC_SIDE decoder encoder)
+  if(TARGET rlpc_${RLPC_SIDE})
+    configure_file(scripts/cmake/rlpc.pc.in ${PROJECT_BINARY_DIR}/rlpc-${RLPC_SIDE}.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/rlpc-${RLPC_SIDE}.pc
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  endif()
+endforeach()
