@@ -1,0 +1,28 @@
+// 8.2.2 Physical predictors of a series: order 0 predicts zero, 1 the value before, 2 constant
+// speed, 3 constant acceleration, 4 constant change of acceleration (Vasa and Skala 2009, 4).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace rlpc {
+
+// The first values of a series have fewer predecessors: the order is then their number.
+// series(i) gives the value at i < f. |values| < 2^32, so the prediction is below 2^36.
+template <class Series>
+std::int64_t predict_series(const Series& series, std::uint32_t f, int order) {
+  switch (std::min<std::uint32_t>(f, static_cast<std::uint32_t>(order))) {
+    case 0:
+      return 0;
+    case 1:
+      return series(f - 1);
+    case 2:
+      return 2 * series(f - 1) - series(f - 2);
+    case 3:
+      return 3 * series(f - 1) - 3 * series(f - 2) + series(f - 3);
+    default:
+      return 4 * series(f - 1) - 6 * series(f - 2) + 4 * series(f - 3) - series(f - 4);
+  }
+}
+
+}  // namespace rlpc

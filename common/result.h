@@ -1,0 +1,59 @@
+// Errors and results. A bad stream or a bad file gives an Error; a bad caller is an assert.
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+namespace rlpc {
+
+enum class Errc : std::uint8_t {
+  kTruncated,      // bits ran out inside a syntax structure
+  kInvalid,        // a requirement of bitstream conformance is broken
+  kUnsupported,    // legal, but outside the version, profile or level of this decoder
+  kLimitExceeded,  // legal, but beyond the caller's DecodeLimits
+  kIo,             // the stream could not be read
+};
+
+// Trivially copyable: naming a failure never allocates. Both strings are literals.
+struct Error {
+  Errc code = Errc::kInvalid;
+  const char* rule = "";      // rule id of the specification, for example "R-HDR-03"
+  const char* element = "";   // syntax element, spelled as in the specification
+  std::uint64_t bit_pos = 0;  // first bit of that element, from the start of the stream
+};
+
+template <class T, class E = Error>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  Result(E error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+  explicit operator bool() const { return value_.has_value(); }
+  T& operator*() {
+    assert(value_);
+    return *value_;
+  }
+  const T& operator*() const {
+    assert(value_);
+    return *value_;
+  }
+  T* operator->() {
+    assert(value_);
+    return &*value_;
+  }
+  const T* operator->() const {
+    assert(value_);
+    return &*value_;
+  }
+  const E& error() const {
+    assert(!value_);
+    return error_;
+  }
+
+ private:
+  std::optional<T> value_;
+  E error_{};
+};
+
+}  // namespace rlpc

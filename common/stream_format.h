@@ -1,0 +1,34 @@
+// Outer layer of a stream (clause 6.1 and 6.2): signature, version and units.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace rlpc {
+
+// 6.1: the first byte is no text, and a transfer that rewrites line ends is noticed.
+inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
+                                                        'C',  0x0D, 0x0A, 0x1A};
+
+inline constexpr std::uint32_t kVersionMajor = 1;
+inline constexpr std::uint32_t kVersionMinor = 0;  // the newest that this code knows
+
+inline constexpr std::size_t kStreamHeaderBytes = 10;  // signature and version
+inline constexpr std::size_t kUnitHeaderBytes = 5;     // ancillary_flag, unit_type, unit_size
+inline constexpr std::size_t kUnitCrcBytes = 4;
+
+// Table 7-1. The upper bit of the first byte of a unit is ancillary_flag.
+enum class UnitType : std::uint8_t {
+  kSequenceHeader = 0x01,
+  kConnectivity = 0x02,
+  kVertexOrder = 0x03,
+  kGof = 0x04,
+  kEndOfSequence = 0x05,
+  kGofIndex = 0x81,
+  kGofHash = 0x82,
+  kMetadata = 0x83,
+};
+
+inline constexpr std::uint8_t kAncillaryFlag = 0x80;
+
+}  // namespace rlpc

@@ -1,0 +1,22 @@
+// Receives every syntax element as it is parsed; for traces, coverage and validation.
+#pragma once
+
+#include <cstdint>
+
+namespace rlpc {
+
+class Trace {
+ public:
+  Trace() = default;
+  Trace(const Trace&) = delete;
+  Trace& operator=(const Trace&) = delete;
+  virtual ~Trace() = default;
+
+  // A syntax structure begins, for example "gof".
+  virtual void begin(const char* structure, std::uint64_t bit_pos) = 0;
+  // bit_pos: first bit of the element from the start of the stream; for arithmetic-coded
+  // elements, where the bits spent on the elements before them end.
+  virtual void element(const char* name, std::int64_t value, std::uint64_t bit_pos) = 0;
+};
+
+}  // namespace rlpc
