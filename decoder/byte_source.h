@@ -1,0 +1,32 @@
+// Where a decoder reads from.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/result.h"
+
+namespace rlpc {
+
+class ByteSource {
+ public:
+  ByteSource() = default;
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+  virtual ~ByteSource() = default;
+
+  virtual std::uint64_t size() const = 0;
+  // Fills `out` from `offset`; false if the bytes are not there or cannot be read.
+  virtual bool read(std::uint64_t offset, std::span<std::uint8_t> out) = 0;
+};
+
+// Keeps a copy of the bytes.
+std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
+
+// Reads from a file as needed; Errc::kIo if it cannot be opened.
+Result<std::unique_ptr<ByteSource>> file_source(const std::string& path);
+
+}  // namespace rlpc

@@ -1,0 +1,56 @@
+// Errors of a stream in words, and as exit codes of the tools.
+#pragma once
+
+#include <string>
+
+#include "common/result.h"
+
+namespace rlpc {
+
+// Exit codes of rlpcdec and rlpcinfo; 0 to 3 are those of the conformance contract.
+enum ExitCode : int {
+  kExitDone = 0,
+  kExitInvalid = 1,      // not a conforming stream
+  kExitUnsupported = 2,  // a later version, another profile
+  kExitLimit = 3,        // beyond the caller's limits
+  kExitIo = 4,           // a file could not be read or written
+  kExitUsage = 64,
+};
+
+inline ExitCode exit_code(Errc code) {
+  switch (code) {
+    case Errc::kTruncated:
+    case Errc::kInvalid:
+      return kExitInvalid;
+    case Errc::kUnsupported:
+      return kExitUnsupported;
+    case Errc::kLimitExceeded:
+      return kExitLimit;
+    case Errc::kIo:
+      break;
+  }
+  return kExitIo;
+}
+
+// For example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is damaged or ...".
+inline std::string describe_error(const Error& error) {
+  const std::string where = "bit " + std::to_string(error.bit_pos) + ": " + error.element;
+  const std::string rule =
+      error.rule[0] == '\0' ? "" : " (rule " + std::string(error.rule) + ")";
+  switch (error.code) {
+    case Errc::kTruncated:
+      return where + ": the stream ends too early" + rule + "; the file was cut off";
+    case Errc::kInvalid:
+      return where + ": not a conforming stream" + rule +
+             "; the file is damaged, or its encoder has a bug";
+    case Errc::kUnsupported:
+      return where + ": not supported by this version" + rule + "; get a newer decoder";
+    case Errc::kLimitExceeded:
+      return where + ": more than the limits allow" + rule + "; raise them to decode it";
+    case Errc::kIo:
+      break;
+  }
+  return "cannot read the stream: no such file, or it is not readable";
+}
+
+}  // namespace rlpc

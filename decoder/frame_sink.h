@@ -1,0 +1,76 @@
+// Files that decoded animations are written to.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh.h"
+#include "common/result.h"
+
+namespace rlpc {
+
+// One line for the user: path, what failed, and the system's reason.
+struct OutputError {
+  std::string message;
+};
+template <class T>
+using OutputResult = Result<T, OutputError>;
+
+// Takes the frames in order. Everything is written beside its place under a temporary name and
+// moved there by finish(); a sink destroyed without a successful finish() removes what it wrote
+// and leaves the files that were there before as they were. After an error only destruction
+// makes sense.
+class FrameSink {
+ public:
+  FrameSink() = default;
+  FrameSink(const FrameSink&) = delete;
+  FrameSink& operator=(const FrameSink&) = delete;
+  virtual ~FrameSink() = default;
+
+  // positions[3 * vertex + axis], in grid units; 3 * num_vertices values. At most num_frames
+  // calls.
+  virtual std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) = 0;
+  // After num_frames frames, or fewer if SinkOptions::keep_partial.
+  virtual std::optional<OutputError> finish() = 0;
+};
+
+struct SinkOptions {
+  std::uint32_t num_vertices = 0;
+  std::uint32_t num_frames = 0;
+  FrameRate frame_rate;
+  Grid grid;
+  std::vector<Triangle> triangles;  // every index below num_vertices
+  // .rlpd only: finish() accepts fewer frames, and the file holds exactly those.
+  bool keep_partial = false;
+  // OBJ sequences only: number of the first file.
+  std::uint32_t first_number = 0;
+};
+
+// By the form of `path`:
+//   out/frame_%04d.obj  OBJ sequence (also %d, or another width)
+//   x.rlpd              integer positions and their grid (Annex A)
+//   x.pc2               point cache; x.obj beside it holds triangles and first frame
+//   x.obj               if there is only one frame
+//   anything else       a folder of OBJ files, frame_0000.obj, frame_0001.obj, ...
+// Refuses x.obj for several frames, and extensions of files that it cannot write.
+OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
+                                                         SinkOptions options);
+
+// The formats one by one. A device or pipe (/dev/stdout) as path is written directly.
+OutputResult<std::unique_ptr<FrameSink>> open_rlpd_sink(const std::string& path,
+                                                        SinkOptions options);
+OutputResult<std::unique_ptr<FrameSink>> open_pc2_sink(const std::string& path,
+                                                       SinkOptions options);
+OutputResult<std::unique_ptr<FrameSink>> open_single_obj_sink(const std::string& path,
+                                                              SinkOptions options);
+// `pattern` has one %d or %04d in its last part. If its folder does not exist it appears whole,
+// at the end; if it does, files with the numbers of this sequence are replaced and all others
+// are left alone.
+OutputResult<std::unique_ptr<FrameSink>> open_obj_sink(const std::string& pattern,
+                                                       SinkOptions options);
+
+}  // namespace rlpc

@@ -1,0 +1,320 @@
+#include "decoder/parse_gof.h"
+
+#include <algorithm>
+
+#include "common/gof_models.h"
+#include "common/int_math.h"
+#include "common/range_decoder.h"
+#include "decoder/parse_residual.h"
+
+namespace rlpc {
+namespace {
+
+// Memory of a factor: as a residual, and arranged for reconstruction.
+constexpr std::uint64_t kBytesPerFactor = 10;
+
+// The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
+class GofSectionParser {
+ public:
+  GofSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                   Gof& gof, std::uint64_t max_memory_bytes)
+      : reader_(r),
+        first_bit_(r.bit_pos()),
+        rd_(r.remaining_bytes()),
+        header_(header),
+        topology_(topology),
+        gof_(gof),
+        max_memory_bytes_(max_memory_bytes) {}
+
+  void parse();
+
+ private:
+  std::uint64_t bit_pos() const { return first_bit_ + rd_.bits_spent(); }
+  bool failed() const { return reader_.error().has_value(); }
+  void fail(const char* rule, const char* element) {
+    reader_.fail(Errc::kInvalid, rule, element, bit_pos());
+  }
+  // A section that ran out of bytes long ago is not worth decoding.
+  void check_overrun(const char* element) {
+    if (rd_.overrun()) fail("R-RNG-01", element);
+  }
+  // Position of the element that comes, if anybody wants to know.
+  std::uint64_t mark() const { return reader_.trace() != nullptr ? bit_pos() : 0; }
+  void trace(const char* element, std::int64_t value, std::uint64_t at) {
+    if (reader_.trace() != nullptr) reader_.trace()->element(element, value, at);
+  }
+  std::int32_t residual(ResidualModels& models, std::uint32_t expected, const char* element) {
+    const std::uint64_t at = mark();
+    const std::int32_t value = parse_residual(rd_, models, expected);
+    trace(element, value, at);
+    return value;
+  }
+
+  bool bin(BitModel& model, const char* element);
+  std::int32_t header_delta(HeaderField field, const char* element);
+  int header_value(HeaderField field, int previous, Range range, const char* element,
+                   const char* rule);
+  template <std::size_t N>
+  int truncated_unary(std::array<BitModel, N>& models, const char* element);
+  void cluster_headers();
+  void cluster_seeds(std::size_t cluster_index);
+  void cluster_map();
+  std::uint16_t cluster_idx(const ClusterPrediction& prediction);
+  void seed_tracks();
+  void component_counts();
+  void components();
+  void component(std::size_t coded_vertices, Component& component);
+
+  BitReader& reader_;
+  std::uint64_t first_bit_;
+  RangeDecoder rd_;
+  const SequenceHeader& header_;
+  const Topology& topology_;
+  Gof& gof_;
+  std::uint64_t max_memory_bytes_;
+  GofModels models_;
+  std::vector<std::size_t> coded_vertices_;  // of each cluster
+  std::vector<std::uint32_t> frame_mean_;
+  Component previous_;  // header of the component before
+};
+
+bool GofSectionParser::bin(BitModel& model, const char* element) {
+  const std::uint64_t at = mark();
+  const bool value = rd_.bin(model);
+  trace(element, value ? 1 : 0, at);
+  return value;
+}
+
+// 6.5.2 header_delta( field )
+std::int32_t GofSectionParser::header_delta(HeaderField field, const char* element) {
+  std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
+  const std::int32_t delta = residual(models_.header, mean >> 4, element);
+  mean = update_mean(mean, magnitude_of(delta), 2);
+  return delta;
+}
+
+int GofSectionParser::header_value(HeaderField field, int previous, Range range,
+                                   const char* element, const char* rule) {
+  const std::int64_t value = std::int64_t{previous} + header_delta(field, element);
+  if (value >= range.min && value <= range.max) return static_cast<int>(value);
+  fail(rule, element);
+  return static_cast<int>(range.min);
+}
+
+template <std::size_t N>
+int GofSectionParser::truncated_unary(std::array<BitModel, N>& models, const char* element) {
+  const std::uint64_t at = mark();
+  std::size_t value = 0;
+  while (value < N && rd_.bin(models[value])) ++value;
+  trace(element, static_cast<std::int64_t>(value), at);
+  return static_cast<int>(value);
+}
+
+// 6.5.2 cluster_headers( )
+void GofSectionParser::cluster_headers() {
+  gof_.cluster_of_vertex.assign(header_.num_vertices, 0);
+  for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
+    gof_.clusters[i].lcf_flag = bin(models_.lcf_flag, "lcf_flag");
+    if (gof_.clusters[i].lcf_flag) cluster_seeds(i);
+    check_overrun("lcf_flag");
+  }
+}
+
+void GofSectionParser::cluster_seeds(std::size_t cluster_index) {
+  Cluster& cluster = gof_.clusters[cluster_index];
+  for (std::uint32_t& v : cluster.seed_vertex) {
+    const std::uint64_t at = mark();
+    v = rd_.bypass(ceil_log2(header_.num_vertices));
+    trace("seed_vertex", v, at);
+    if (v >= header_.num_vertices) {
+      fail("R-GOF-06", "seed_vertex");
+      return;
+    }
+  }
+  const auto& s = cluster.seed_vertex;
+  if (s[0] == s[1] || s[1] == s[2] || s[2] == s[0]) {
+    fail("R-GOF-07", "seed_vertex");
+    return;
+  }
+  std::uint32_t anchor = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto known = std::find_if(gof_.seed_tracks.begin(), gof_.seed_tracks.end(),
+                                    [&](const SeedTrack& t) { return t.vertex == s[k]; });
+    const auto index = static_cast<std::uint32_t>(known - gof_.seed_tracks.begin());
+    if (k == 0) anchor = index;
+    if (known != gof_.seed_tracks.end()) continue;
+    gof_.seed_tracks.push_back({s[k], anchor, {}});
+    gof_.cluster_of_vertex[s[k]] = kSeedCluster;
+  }
+}
+
+// 6.5.3 cluster_map( )
+void GofSectionParser::cluster_map() {
+  const int depth = ceil_log2(gof_.clusters.size());
+  models_.cluster_idx.resize(std::size_t{1} << depth);
+  std::uint16_t previous = 0;
+  for (std::uint32_t v = 0; v < header_.num_vertices && !failed(); ++v) {
+    if (gof_.cluster_of_vertex[v] == kSeedCluster) continue;
+    if (gof_.clusters.size() > 1) {
+      previous = cluster_idx(
+          predict_cluster(topology_.earlier_neighbours[v], gof_.cluster_of_vertex, previous));
+    }
+    gof_.cluster_of_vertex[v] = previous;
+  }
+  check_overrun("cluster_idx");
+}
+
+std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction) {
+  if (bin(models_.cluster_predicted_flag[prediction.context], "cluster_predicted_flag")) {
+    return prediction.cluster;
+  }
+  const std::uint64_t at = mark();
+  std::uint32_t node = 1;
+  while (node < models_.cluster_idx.size()) {
+    node = 2 * node + (rd_.bin(models_.cluster_idx[node]) ? 1 : 0);
+  }
+  const std::size_t index = node - models_.cluster_idx.size();
+  trace("cluster_idx", static_cast<std::int64_t>(index), at);
+  if (index < gof_.clusters.size()) return static_cast<std::uint16_t>(index);
+  fail("R-GOF-08", "cluster_idx");
+  return 0;
+}
+
+// 6.5.4 seed_tracks( )
+void GofSectionParser::seed_tracks() {
+  for (SeedTrack& track : gof_.seed_tracks) {
+    if (failed()) return;
+    SeedContext context;
+    track.residual.resize(gof_.num_frames);
+    for (Vec3i& step : track.residual) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        step[c] = residual(models_.seed, context.expected(c), "seed_residual");
+        context.update(c, step[c]);
+      }
+    }
+    check_overrun("seed_residual");
+  }
+}
+
+// 6.5.5 component_counts( )
+void GofSectionParser::component_counts() {
+  int previous = 0;
+  std::uint64_t values = 0;
+  coded_vertices_.assign(gof_.clusters.size(), 0);
+  for (const std::uint16_t i : gof_.cluster_of_vertex) {
+    if (i != kSeedCluster) ++coded_vertices_[i];
+  }
+  for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
+    const Range range{0, header_.level().max_components};
+    previous = header_value(HeaderField::kNumComponents, previous, range,
+                            "num_components_delta", "R-GOF-09");
+    values += static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames);
+    if (values > header_.level().max_gof_factors) fail("R-LVL-05", "num_components_delta");
+    if (values * kBytesPerFactor > max_memory_bytes_) {
+      reader_.fail(Errc::kLimitExceeded, "", "num_components_delta", bit_pos());
+    }
+    if (failed()) return;
+    gof_.clusters[i].components.resize(static_cast<std::size_t>(previous));
+  }
+}
+
+// 6.5.6 components( )
+void GofSectionParser::components() {
+  for (std::size_t i = 0; i < gof_.clusters.size(); ++i) {
+    frame_mean_.assign(gof_.num_frames, 0);
+    for (Component& c : gof_.clusters[i].components) {
+      component(coded_vertices_[i], c);
+      check_overrun("spatial_residual");
+      if (failed()) return;
+    }
+  }
+}
+
+// 6.5.7 component( )
+void GofSectionParser::component(std::size_t coded_vertices, Component& component) {
+  component.scale_idx = header_value(HeaderField::kScaleIdx, previous_.scale_idx,
+                                     {0, kMaxScaleIdx}, "scale_idx_delta", "R-GOF-10");
+  component.spatial_bits = header_value(HeaderField::kSpatialBits, previous_.spatial_bits,
+                                        {1, kMaxSpatialBits}, "spatial_bits_delta", "R-GOF-11");
+  component.temporal_bits =
+      header_value(HeaderField::kTemporalBits, previous_.temporal_bits, {1, kMaxTemporalBits},
+                   "temporal_bits_delta", "R-GOF-12");
+  if (failed()) return;
+  component.temporal_predictor =
+      truncated_unary(models_.temporal_predictor, "temporal_predictor");
+  component.spatial_predictor = static_cast<SpatialPredictor>(
+      truncated_unary(models_.spatial_predictor, "spatial_predictor"));
+  previous_ = component;
+
+  TemporalContext temporal(frame_mean_, component);
+  component.temporal_residual.resize(gof_.num_frames);
+  for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
+    const std::int32_t value =
+        residual(models_.temporal, temporal.expected(f), "temporal_residual");
+    temporal.update(f, value);
+    component.temporal_residual[f] = value;
+  }
+  SpatialContext spatial(component);
+  component.spatial_residual.resize(3 * coded_vertices);
+  for (std::size_t i = 0; i < coded_vertices; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int32_t value =
+          residual(models_.spatial, spatial.expected(c), "spatial_residual");
+      spatial.update(c, value);
+      component.spatial_residual[c * coded_vertices + i] = value;
+    }
+  }
+}
+
+// 6.5.1 gof_section( )
+void GofSectionParser::parse() {
+  if (!rd_.starts_legally()) fail("R-RNG-02", "gof_section");
+  cluster_headers();
+  if (!failed()) cluster_map();
+  if (!failed()) seed_tracks();
+  if (!failed()) component_counts();
+  if (!failed()) components();
+  if (!failed() && !rd_.at_exact_end()) fail("R-RNG-01", "gof_section");
+}
+
+}  // namespace
+
+std::uint32_t parse_gof_frames(BitReader& r, const SequenceHeader& header,
+                               std::uint32_t first_frame) {
+  const Level& level = header.level();
+  r.ue("first_frame", {first_frame, first_frame}, "R-GOF-01");
+  const std::uint64_t at = r.bit_pos();
+  const std::uint32_t frames_left = header.num_frames - first_frame;
+  const std::uint32_t num_frames =
+      r.ue("num_gof_frames_minus1", {0, std::int64_t{frames_left} - 1}, "R-GOF-02") + 1;
+  if (!r.error() && (num_frames > level.max_gof_frames ||
+                     std::uint64_t{num_frames} * header.num_vertices > level.max_gof_values)) {
+    r.fail(Errc::kInvalid, "R-LVL-04", "num_gof_frames_minus1", at);
+  }
+  return num_frames;
+}
+
+// 6.5 gof( )
+Result<Gof> parse_gof(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                      std::uint32_t first_frame, std::uint64_t max_memory_bytes) {
+  const Level& level = header.level();
+  Gof gof;
+  gof.first_frame = first_frame;
+  gof.num_frames = parse_gof_frames(r, header, first_frame);
+  const std::uint32_t num_clusters =
+      r.ue("num_clusters_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
+  gof.fraction_bits =
+      static_cast<int>(r.u(5, "fraction_bits", {0, kMaxFractionBits}, "R-GOF-03"));
+  gof.seed_step = r.ue("seed_step_minus1", {0, kMaxSeedStep - 1}, "R-GOF-04") + 1;
+  gof.seed_predictor =
+      static_cast<int>(r.u(3, "seed_predictor", {0, kMaxPredictorOrder}, "R-GOF-05"));
+  gof.seed_coupling_flag = r.flag("seed_coupling_flag");
+  r.byte_alignment();
+  if (r.error()) return *r.error();
+  gof.clusters.resize(num_clusters);
+  GofSectionParser(r, header, topology, gof, max_memory_bytes).parse();
+  if (r.error()) return *r.error();
+  return gof;
+}
+
+}  // namespace rlpc

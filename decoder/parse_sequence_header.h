@@ -1,0 +1,13 @@
+// 6.3 Sequence header, parsing side.
+#pragma once
+
+#include "common/bit_reader.h"
+#include "common/result.h"
+#include "common/sequence_header.h"
+
+namespace rlpc {
+
+// `r` covers exactly the payload of the unit.
+Result<SequenceHeader> parse_sequence_header(BitReader& r);
+
+}  // namespace rlpc

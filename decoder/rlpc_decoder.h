@@ -1,0 +1,84 @@
+// RLPC decoder: the public interface.
+//
+//   auto source = rlpc::file_source("dance.rlpc");
+//   if (!source) return report(source.error());
+//   auto decoder = rlpc::Decoder::open(std::move(*source));
+//   if (!decoder) return report(decoder.error());
+//   std::vector<std::int32_t> positions(3 * decoder->header().num_vertices);
+//   for (;;) {
+//     const auto more = decoder->next_frame(positions);
+//     if (!more) return report(more.error());   // rule id, element and bit position
+//     if (!*more) break;                        // the stream is complete and was checked whole
+//     use(decoder->triangles(), positions);
+//   }
+//
+// Nothing throws. Memory stays within one GOF and one frame; whatever a stream claims is
+// compared with its level and with DecodeLimits before memory is taken for it. A Decoder is
+// used by one thread at a time; different Decoders are independent.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh.h"
+#include "common/result.h"
+#include "common/sequence_header.h"
+#include "common/trace.h"
+#include "decoder/byte_source.h"
+#include "decoder/float_position.h"
+
+namespace rlpc {
+
+// The most that a caller is ready to spend on one stream. Beyond it: Errc::kLimitExceeded.
+struct DecodeLimits {
+  std::uint32_t max_vertices = 1U << 23;
+  std::uint32_t max_triangles = 1U << 24;
+  std::uint32_t max_frames = kMaxFrames;
+  std::uint64_t max_memory_bytes = std::uint64_t{1} << 40;  // estimated
+};
+
+struct DecoderOptions {
+  DecodeLimits limits;
+  bool verify_hashes = true;  // compare decoded positions with the stream's hash units
+  Trace* trace = nullptr;     // not owned; receives every syntax element
+};
+
+class Decoder {
+ public:
+  // Reads up to the first GOF: sequence header, connectivity, vertex order.
+  static Result<Decoder> open(std::unique_ptr<ByteSource> source,
+                              const DecoderOptions& options = {});
+  Decoder(Decoder&&) noexcept;
+  Decoder& operator=(Decoder&&) noexcept;
+  ~Decoder();
+
+  const SequenceHeader& header() const;
+  // Vertex indices as in the decoded frames; input order if the stream carries it, else that of
+  // the connectivity process.
+  std::span<const Triangle> triangles() const;
+  bool has_vertex_order() const;
+  // JSON text of the last metadata unit so far; empty if there was none.
+  const std::string& metadata() const;
+
+  // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
+  // after the last frame, once the rest of the stream has been checked.
+  Result<bool> next_frame(std::span<std::int32_t> positions);
+  // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
+  Result<bool> seek(std::uint32_t frame);
+  // Parses all that is left of the stream, without reconstructing it: for tools that look at
+  // its syntax. Returns the number of GOFs in the stream; afterwards there is no next frame.
+  Result<std::uint32_t> parse_rest();
+  // Index of the frame that next_frame would decode.
+  std::uint32_t position() const;
+
+ private:
+  class Impl;
+  explicit Decoder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rlpc

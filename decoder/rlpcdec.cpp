@@ -1,0 +1,208 @@
+// rlpcdec: .rlpc streams to animations.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "decoder/describe_error.h"
+#include "decoder/frame_sink.h"
+#include "decoder/rlpc_decoder.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(
+OUT is one of
+  clip.rlpd               integer positions and their grid: exact, what conformance compares
+  clip.pc2                point cache, with clip.obj beside it for the triangles
+  out/frame_%04d.obj      one OBJ file for each frame
+  out                     a folder of OBJ files
+
+Examples
+  rlpcdec walk.rlpc -o walk.pc2
+  rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
+  rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
+
+Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the limits;
+4 input or output failed; 64 usage.)";
+
+struct Options {
+  std::string input;
+  std::string output;
+  std::string frames;
+  bool verify_only = false;
+  bool no_hashes = false;
+  bool json = false;
+  bool quiet = false;
+  rlpc::DecoderOptions decoder;
+};
+
+struct FrameSpan {
+  std::uint32_t first;
+  std::uint32_t last;
+};
+
+int complain(const std::string& message, int code) {
+  std::cerr << "rlpcdec: " << message << "\n";
+  return code;
+}
+
+int complain(const Options& o, const rlpc::Error& error) {
+  return complain(o.input + ": " + rlpc::describe_error(error), rlpc::exit_code(error.code));
+}
+
+rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
+  if (path != "-") return rlpc::file_source(path);
+  std::vector<std::uint8_t> bytes;
+  for (int byte = std::getchar(); byte != EOF; byte = std::getchar()) {
+    bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return rlpc::memory_source(std::move(bytes));
+}
+
+// "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
+std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num_frames) {
+  if (text.empty()) return FrameSpan{0, num_frames - 1};
+  unsigned first = 0;
+  unsigned last = 0;
+  int used = 0;
+  const int length = static_cast<int>(text.size());
+  if (std::sscanf(text.c_str(), "%u-%u%n", &first, &last, &used) != 2 || used != length) {
+    used = 0;
+    if (std::sscanf(text.c_str(), "%u%n", &first, &used) != 1) return std::nullopt;
+    last = used == length ? first : num_frames - 1;
+    if (used != length && text.substr(static_cast<std::size_t>(used)) != "-")
+      return std::nullopt;
+  }
+  if (first > last || last >= num_frames) return std::nullopt;
+  return FrameSpan{first, last};
+}
+
+// Frames as they are decoded; for people who wait at a terminal.
+class FrameCounter {
+ public:
+  FrameCounter(std::uint32_t total, bool wanted)
+      : total_(total), shown_(wanted && isatty(fileno(stderr)) != 0) {}
+  FrameCounter(const FrameCounter&) = delete;
+  FrameCounter& operator=(const FrameCounter&) = delete;
+  ~FrameCounter() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+  }
+  void show(std::uint32_t done) const {
+    if (shown_ && done % 16 == 0) std::fprintf(stderr, "\rframe %u of %u", done, total_);
+  }
+
+ private:
+  std::uint32_t total_;
+  bool shown_;
+};
+
+void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames) {
+  const rlpc::SequenceHeader& h = decoder.header();
+  if (o.json) {
+    const nlohmann::ordered_json json = {{"num_vertices", h.num_vertices},
+                                         {"num_triangles", h.num_triangles},
+                                         {"frames", frames},
+                                         {"hashes_verified", o.decoder.verify_hashes}};
+    std::cout << json.dump(2) << "\n";
+  } else if (!o.quiet) {
+    std::fprintf(stderr, "%s: %u frames of %u vertices and %u triangles decoded%s\n",
+                 o.input.c_str(), frames, h.num_vertices, h.num_triangles,
+                 o.decoder.verify_hashes ? ", hashes agree" : "");
+  }
+}
+
+int decode(const Options& o) {
+  auto source = open_input(o.input);
+  if (!source) return complain(o, source.error());
+  auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
+  if (!decoder) return complain(o, decoder.error());
+  const rlpc::SequenceHeader& header = decoder->header();
+  const auto span = parse_frames(o.frames, header.num_frames);
+  if (!span) {
+    return complain("--frames: expected A-B within 0-" + std::to_string(header.num_frames - 1) +
+                        ", got `" + o.frames + "`",
+                    rlpc::kExitUsage);
+  }
+  const std::uint32_t count = span->last - span->first + 1;
+  std::unique_ptr<rlpc::FrameSink> sink;
+  if (!o.verify_only) {
+    rlpc::SinkOptions options{header.num_vertices,
+                              count,
+                              header.frame_rate,
+                              header.grid,
+                              {decoder->triangles().begin(), decoder->triangles().end()}};
+    options.first_number = span->first;
+    auto opened = rlpc::open_frame_sink(o.output, std::move(options));
+    if (!opened) return complain(opened.error().message, rlpc::kExitIo);
+    sink = std::move(*opened);
+  }
+  if (span->first > 0) {
+    if (const auto ok = decoder->seek(span->first); !ok) return complain(o, ok.error());
+  }
+  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  {
+    const FrameCounter counter(count, !o.quiet);
+    for (std::uint32_t f = 0; f < count; ++f) {
+      const auto more = decoder->next_frame(positions);
+      if (!more) return complain(o, more.error());
+      if (sink) {
+        if (auto error = sink->write_frame(positions)) {
+          return complain(error->message, rlpc::kExitIo);
+        }
+      }
+      counter.show(f + 1);
+    }
+  }
+  if (o.frames.empty()) {
+    if (const auto more = decoder->next_frame(positions); !more)
+      return complain(o, more.error());
+  }
+  if (sink) {
+    if (auto error = sink->finish()) return complain(error->message, rlpc::kExitIo);
+  }
+  report(o, *decoder, count);
+  return rlpc::kExitDone;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("input", o.input, "Stream to decode; - for standard input")->required();
+  auto* output = app.add_option("-o,--output", o.output, "What to write, see below");
+  app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
+      ->excludes(output);
+  app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
+  app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
+  app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
+                 "Give up on streams that need more, for example 500MB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--max-vertices", o.decoder.limits.max_vertices,
+                 "Give up on streams with more vertices");
+  app.add_flag("--json", o.json, "Report as JSON on standard output");
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
+  app.footer(kExamples);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
+  app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+  }
+  if (options.output.empty() && !options.verify_only) {
+    return complain("give -o OUT, or --verify to write nothing", rlpc::kExitUsage);
+  }
+  options.decoder.verify_hashes = !options.no_hashes;
+  return decode(options);
+}

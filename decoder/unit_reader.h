@@ -1,0 +1,64 @@
+// 6.2 Units: finds them, reads them, checks their CRC.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/bit_reader.h"
+#include "common/result.h"
+#include "common/stream_format.h"
+#include "common/trace.h"
+#include "decoder/byte_source.h"
+
+namespace rlpc {
+
+struct UnitHeader {
+  std::uint8_t type_byte = 0;  // ancillary_flag and unit_type
+  std::uint32_t size = 0;      // of the payload, bytes
+  std::uint64_t offset = 0;    // of the unit, bytes from the start of the stream
+
+  UnitType type() const { return static_cast<UnitType>(type_byte); }
+  bool ancillary() const { return (type_byte & kAncillaryFlag) != 0; }
+  std::uint64_t payload_offset() const { return offset + kUnitHeaderBytes; }
+  std::uint64_t end() const { return payload_offset() + size + kUnitCrcBytes; }
+};
+
+class UnitReader {
+ public:
+  UnitReader(std::unique_ptr<ByteSource> source, Trace* trace)
+      : source_(std::move(source)), trace_(trace) {}
+
+  // 6.1: signature and version.
+  Result<bool> stream_header();
+  // Header of the unit at a byte offset; its end lies within the stream.
+  Result<UnitHeader> header_at(std::uint64_t offset);
+  // Payload of a unit whose CRC holds.
+  Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
+  // Up to max_bytes from the beginning of a payload, its CRC not checked.
+  Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
+                                                  std::uint32_t max_bytes);
+  // Reader over a payload, with positions from the start of the stream.
+  BitReader bits(const UnitHeader& unit, const std::vector<std::uint8_t>& payload) const {
+    return BitReader(payload, unit.payload_offset() * 8, trace_);
+  }
+
+  // Traces the unit_crc of the last payload, which follows the payload's elements.
+  void flush_trace();
+
+  std::uint64_t size() const { return source_->size(); }
+  Trace* trace() const { return trace_; }
+
+ private:
+  struct PendingCrc {
+    std::uint32_t value;
+    std::uint64_t bit_pos;
+  };
+
+  std::unique_ptr<ByteSource> source_;
+  Trace* trace_;
+  std::optional<PendingCrc> pending_crc_;
+};
+
+}  // namespace rlpc
