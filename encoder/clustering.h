@@ -1,0 +1,68 @@
+// Clusters by motion in seed-triangle frames (Amjoun and Strasser 2007, 3.1 and 3.2).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/lcf.h"
+#include "common/mesh.h"
+#include "encoder/gof_frames.h"
+
+namespace rlpc {
+
+using Seed = std::array<std::uint32_t, 3>;  // p1, p2, p3 of a seed triangle
+
+struct Clustering {
+  std::vector<Seed> seeds;  // one per cluster; empty: one cluster without a frame
+  std::vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; also set for seed vertices
+};
+
+// Far-distance seeds, and the motion of every vertex in their frames. The seeds of N clusters
+// are the first N of those of more clusters, so one object serves every N.
+//
+// Seeds: the vertex farthest from the centre of frame 0, then each time the vertex farthest
+// from those chosen. Each brings an incident triangle that is degenerate in no frame; vertices
+// without one are passed over.
+class MotionClusters {
+ public:
+  // Everything is kept by reference.
+  MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
+                 int position_bits);
+
+  // Assigns each vertex to the one of the first `count` seeds in whose frame it moves least
+  // over the GOF; ties go to the lower index. Fewer seeds than asked for may exist, even none.
+  Clustering clusters(std::uint32_t count);
+
+ private:
+  bool add_seed();
+  void add_motion(const Seed& seed);
+
+  const GofFrames& frames_;
+  std::span<const Triangle> triangles_;
+  int position_bits_;
+  std::vector<std::vector<std::uint32_t>> incident_;
+  std::vector<double> distance_;  // to the centre at first, then to the nearest seed
+  std::vector<Seed> seeds_;
+  std::vector<std::vector<double>> motion_;  // [seed][num_vertices]
+};
+
+// Local coordinates in grid units of a point; the inverse of 8.4.3 in floating point.
+inline std::array<double, 3> world_to_local(const Lcf& lcf, const double* xyz) {
+  constexpr double kAxisUnit = 1.0 / (1 << kAxisFractionBits);
+  std::array<double, 3> d{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    d[c] = xyz[c] - 0.5 * static_cast<double>(lcf.doubled_origin[c]);
+  }
+  std::array<double, 3> q{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3l& a = lcf.axis[k];
+    q[k] = (static_cast<double>(a[0]) * d[0] + static_cast<double>(a[1]) * d[1] +
+            static_cast<double>(a[2]) * d[2]) *
+           kAxisUnit;
+  }
+  return q;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,38 @@
+// Floating-point functions with the same result on every compiler and machine: only the four
+// operations and sqrt, each correctly rounded. Encoder decisions use these in place of libm.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace rlpc {
+
+// log2(x) for finite x > 0; absolute error below 1e-9.
+inline double det_log2(double x) {
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  auto exponent = static_cast<int>((bits >> 52) & 0x7FF) - 1023;
+  if (exponent == -1023) return det_log2(x * 0x1p60) - 60.0;  // subnormal
+  auto mantissa = std::bit_cast<double>((bits & 0xFFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL);
+  if (mantissa > 1.4142135623730951) {
+    mantissa *= 0.5;
+    ++exponent;
+  }
+  // log2(m) = 2 / ln 2 * artanh((m - 1) / (m + 1)), |argument| < 0.172
+  const double t = (mantissa - 1.0) / (mantissa + 1.0);
+  const double t2 = t * t;
+  double sum = 0.0;
+  for (int k = 13; k >= 1; k -= 2) sum = sum * t2 + 1.0 / k;
+  return exponent + 2.8853900817779268 * t * sum;
+}
+
+// 2^n for |n| < 1000.
+inline double exact_exp2(int n) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+}
+
+// Nearest integer, ties away from zero; |x| < 2^52.
+inline std::int64_t round_to_int(double x) {
+  return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,82 @@
+// Animations as the encoder reads them: the same triangles in every frame, vertices that move.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/mesh.h"
+#include "common/result.h"
+
+namespace rlpc {
+
+// One line for the user: the file, the line, byte or frame in it, what was expected and what to
+// do about it.
+struct InputError {
+  std::string message;
+};
+template <class T>
+using InputResult = Result<T, InputError>;
+
+// Random access to the frames; at most one frame is held. Not thread safe.
+class FrameSource {
+ public:
+  struct Shape {
+    std::uint32_t num_vertices = 0;
+    std::uint32_t num_frames = 0;
+    FrameRate frame_rate;
+    std::vector<Triangle> triangles;
+  };
+
+  FrameSource(const FrameSource&) = delete;
+  FrameSource& operator=(const FrameSource&) = delete;
+  virtual ~FrameSource() = default;
+
+  std::uint32_t num_vertices() const { return shape_.num_vertices; }  // at least 1
+  std::uint32_t num_frames() const { return shape_.num_frames; }      // at least 1
+  FrameRate frame_rate() const { return shape_.frame_rate; }
+  // Every index is below num_vertices(). May be empty: a point cloud.
+  const std::vector<Triangle>& triangles() const { return shape_.triangles; }
+
+  // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
+  // success. frame < num_frames(), in any order.
+  virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
+
+ protected:
+  explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}
+
+ private:
+  Shape shape_;
+};
+
+// What to read:
+//   path                points  meaning
+//   mesh.obj                    one frame
+//   mesh.obj            x.pc2   triangles from the mesh, positions from the point cache
+//   folder                      every .obj file in it, "2" before "10"
+//   walk_*.obj                  the files that match (* ? [ ] in the file name), sorted
+//   likewise walk_%04d.obj               from the lowest number that exists, without gaps
+//   x.rlpd                      decoder output (Annex A)
+//
+// Frame rate: `frame_rate` if given; else that of the .rlpd header, or of a comment
+// "# frame_rate 30000/1001" in the (first) OBJ file, which our own writers leave there;
+// else 30. The sample rate of a point cache is not a frame rate: it counts frames per sample,
+// is 1 in nearly every file whatever the speed of the animation, and is not used.
+struct InputOptions {
+  std::string path;
+  std::string points;  // empty: none
+  std::optional<FrameRate> frame_rate;
+};
+
+// Checks what can be checked without reading every frame; read_frame() checks the rest.
+InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options);
+
+// "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
+InputResult<FrameRate> parse_frame_rate(std::string_view text);
+
+}  // namespace rlpc

@@ -1,0 +1,173 @@
+#include "encoder/gof_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/int_math.h"
+#include "encoder/det_math.h"
+#include "encoder/write_gof.h"
+
+namespace rlpc {
+namespace {
+
+// Numbers of clusters worth comparing; finer ones gain little.
+constexpr std::array<std::uint32_t, 13> kCounts{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
+constexpr std::uint32_t kVerticesPerCluster = 8;  // fewer are not worth a frame of their own
+
+// Seeds are coded this much finer than other values: their error turns whole clusters.
+constexpr double kSeedStepFactor = 0.125;
+// A component with less energy than this many squared steps costs more than it brings.
+constexpr double kMinEnergySteps = 3.0;
+
+// Steps are grouped by half octaves, so that analyses can be shared within a group.
+int scale_of(double step) { return static_cast<int>(std::floor(2.0 * det_log2(step))); }
+double step_of(int scale) {
+  const int octave = scale >= 0 ? scale / 2 : -((1 - scale) / 2);
+  return exact_exp2(octave) * (scale - 2 * octave == 1 ? 1.4142135623730951 : 1.0);
+}
+
+}  // namespace
+
+GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
+                 const GofAnalysis& analysis, const CodingSettings& coding) {
+  GofTrial trial;
+  trial.gof = code_gof(analysis, coding);
+  trial.payload = write_gof(trial.gof, context.header, context.topology);
+  const GofRecon recon(context.header, context.topology, trial.gof);
+  const std::size_t values = std::size_t{frames.num_vertices} * 3;
+  std::vector<std::int32_t> positions(values);
+  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+    recon.frame(f, positions);
+    const double* original = frames.at(f, 0);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values; ++i) {
+      const double d = positions[i] - original[i];
+      sum += d * d;
+    }
+    trial.squared_error += sum;
+  }
+  return trial;
+}
+
+GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
+                     std::uint32_t first_frame, const EncoderSettings& settings)
+    : context_(context),
+      frames_(frames),
+      first_frame_(first_frame),
+      settings_(settings),
+      motion_(frames, context.triangles, context.header.position_bits) {
+  const bool world = settings.frame_mode == FrameMode::kWorld;
+  if (settings.clusters > 0 && settings.frame_mode != FrameMode::kAuto) {
+    choice_ = Choice{settings.clusters, world};
+  }
+}
+
+AnalysisSettings GofSearch::analysis_settings(double step, const Choice& choice) const {
+  AnalysisSettings a;
+  a.world = choice.world;
+  a.max_components = context_.header.level().max_components;
+  const double scale_step = step_of(scale_of(step));
+  const double seed_step =
+      settings_.qdelta > 0
+          ? exact_exp2(std::max(context_.header.position_bits - settings_.qdelta, 0))
+          : scale_step * kSeedStepFactor;
+  a.seed_step = static_cast<std::uint32_t>(
+      std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
+  if (settings_.components > 0) {
+    // With a budget, clusters share: some take more than their mean.
+    a.max_components = std::min<std::size_t>(
+        a.max_components,
+        settings_.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
+  } else if (settings_.qu == 0) {
+    a.min_energy = kMinEnergySteps * scale_step * scale_step;
+  }
+  return a;
+}
+
+CodingSettings GofSearch::coding_settings(double step) const {
+  CodingSettings c;
+  c.step = step;
+  c.components = settings_.components;
+  if (settings_.qu > 0) {
+    c.steps = CodingSettings::Steps::kRanges;
+    c.qu = settings_.qu;
+    c.qc = settings_.qc;
+    c.dead_zone = 0.0;
+  }
+  if (!settings_.rdo) {
+    c.allocation = CodingSettings::Allocation::kFixed;
+  } else if (settings_.components > 0) {
+    c.allocation = settings_.qu > 0 ? CodingSettings::Allocation::kVectorBudget
+                                    : CodingSettings::Allocation::kBitBudget;
+  }
+  return c;
+}
+
+GofAnalysis GofSearch::analyse(double step, const Choice& choice) {
+  return analyse_gof(context_, frames_, first_frame_, motion_.clusters(choice.clusters),
+                     analysis_settings(step, choice));
+}
+
+double GofSearch::cost(double step, const Choice& choice) {
+  const CodingSettings coding = coding_settings(step);
+  const GofTrial trial = try_gof(context_, frames_, analyse(step, choice), coding);
+  const double bits = 8.0 * static_cast<double>(trial.payload.size());
+  return trial.squared_error + coding.lambda_factor * step * step * bits;
+}
+
+// Climbs from a middling number of clusters while the cost falls.
+std::uint32_t GofSearch::choose_count(double step, bool world) {
+  std::size_t last = 0;
+  while (last + 1 < kCounts.size() &&
+         kCounts[last + 1] * kVerticesPerCluster <= frames_.num_vertices) {
+    ++last;
+  }
+  std::array<double, kCounts.size()> known{};
+  const auto cost_at = [&](std::size_t i) {
+    if (known[i] == 0.0) known[i] = cost(step, {kCounts[i], world});
+    return known[i];
+  };
+  std::size_t best = std::min<std::size_t>(last, world ? 0 : 5);
+  const std::size_t stride = settings_.preset == Preset::kSlow ? 1 : 2;
+  for (const bool up : {true, false}) {
+    for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
+      i = up ? i + stride : i - stride;
+      if (cost_at(i) >= cost_at(best)) break;
+      best = i;
+    }
+  }
+  return kCounts[best];
+}
+
+GofSearch::Choice GofSearch::choose(double step) {
+  const bool fast = settings_.preset == Preset::kFast;
+  if (fast) {
+    const auto wanted = static_cast<std::uint32_t>(std::sqrt(frames_.num_vertices) / 3.0);
+    return {
+        std::clamp<std::uint32_t>(settings_.clusters > 0 ? settings_.clusters : wanted, 1, 32),
+        settings_.frame_mode == FrameMode::kWorld};
+  }
+  const auto best_of = [&](bool world) {
+    return Choice{settings_.clusters > 0 ? settings_.clusters : choose_count(step, world),
+                  world};
+  };
+  if (settings_.frame_mode != FrameMode::kAuto) {
+    return best_of(settings_.frame_mode == FrameMode::kWorld);
+  }
+  const Choice local = best_of(false);
+  const Choice world = best_of(true);
+  return cost(step, world) < cost(step, local) ? world : local;
+}
+
+GofTrial GofSearch::encode(double step) {
+  if (!choice_) choice_ = choose(step);
+  const int scale = settings_.qu > 0 ? 0 : scale_of(step);
+  if (!cached_ || cached_->scale != scale) {
+    cached_ = Cached{scale, *choice_, analyse(step, *choice_)};
+  }
+  return try_gof(context_, frames_, cached_->analysis, coding_settings(step));
+}
+
+}  // namespace rlpc

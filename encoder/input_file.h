@@ -1,0 +1,41 @@
+// A regular file that is read at offsets; every failure names it.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "encoder/frame_source.h"
+
+namespace rlpc {
+
+class InputFile {
+ public:
+  static InputResult<InputFile> open(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  // Fills `bytes`; offset + bytes.size() <= size().
+  std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
+
+ private:
+  std::string path_;
+  std::uint64_t size_ = 0;
+  std::ifstream stream_;
+};
+
+// The whole file. Refuses an empty one.
+InputResult<std::string> read_whole_file(const std::string& path);
+
+// Little-endian numbers of a binary file; the caller has checked the length.
+std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset);
+std::int32_t load_i32(std::span<const char> bytes, std::size_t offset);
+float load_f32(std::span<const char> bytes, std::size_t offset);
+
+// Error for the first value of a frame that is NaN or infinite.
+std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
+                                       std::span<const float> xyz);
+
+}  // namespace rlpc

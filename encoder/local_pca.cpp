@@ -1,0 +1,125 @@
+// The heavy products are loops over independent outputs, so that vectorisation changes no sum.
+#define EIGEN_DONT_VECTORIZE
+#define EIGEN_DONT_PARALLELIZE
+
+#include "encoder/local_pca.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace rlpc {
+namespace {
+
+using Square = Eigen::MatrixXd;
+
+// Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
+void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
+
+// rows^T rows of a row-major matrix; each output is summed over the rows in order.
+Square gram(const double* rows, std::size_t num_rows, std::size_t width) {
+  std::vector<double> g(width * width, 0.0);
+  for (std::size_t r = 0; r < num_rows; ++r) {
+    const double* row = rows + r * width;
+    for (std::size_t i = 0; i < width; ++i) {
+      const double x = row[i];
+      double* out = &g[i * width];
+      for (std::size_t j = 0; j <= i; ++j) out[j] += x * row[j];
+    }
+  }
+  Square result(static_cast<Eigen::Index>(width), static_cast<Eigen::Index>(width));
+  for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      result(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = g[i * width + j];
+    }
+  }
+  return result;
+}
+
+std::vector<double> transpose(const TrajectoryMatrix& m) {
+  std::vector<double> t(m.a.size());
+  for (std::size_t i = 0; i < m.num_values; ++i) {
+    for (std::size_t f = 0; f < m.num_frames; ++f) t[f * m.num_values + i] = m.row(i)[f];
+  }
+  return t;
+}
+
+// out[k][row] = sum over i of rows[row][i] * vectors[k][i]
+std::vector<std::vector<double>> project(const double* rows, std::size_t num_rows,
+                                         std::size_t width,
+                                         const std::vector<std::vector<double>>& vectors) {
+  const std::size_t count = vectors.size();
+  std::vector<double> by_element(width * count);  // [width][count]: outputs lie side by side
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < width; ++i) by_element[i * count + k] = vectors[k][i];
+  }
+  std::vector<std::vector<double>> out(count, std::vector<double>(num_rows));
+  std::vector<double> sums(count);
+  for (std::size_t r = 0; r < num_rows; ++r) {
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (std::size_t i = 0; i < width; ++i) {
+      const double x = rows[r * width + i];
+      const double* v = &by_element[i * count];
+      for (std::size_t k = 0; k < count; ++k) sums[k] += x * v[k];
+    }
+    for (std::size_t k = 0; k < count; ++k) out[k][r] = sums[k];
+  }
+  return out;
+}
+
+// An eigenvector's sign is arbitrary: make its largest element positive.
+void fix_sign(std::vector<double>& v) {
+  double largest = 0.0;
+  for (const double x : v) {
+    if (std::abs(x) > std::abs(largest)) largest = x;
+  }
+  if (largest < 0.0) {
+    for (double& x : v) x = -x;
+  }
+}
+
+}  // namespace
+
+PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
+                                         std::size_t max_components, double min_energy) {
+  PrincipalComponents pc;
+  if (matrix.num_values == 0 || matrix.num_frames == 0) return pc;
+  fix_eigen_blocking();
+  for (const double x : matrix.a) pc.total_energy += x * x;
+
+  const bool by_frames = matrix.num_frames <= matrix.num_values;
+  const std::vector<double> transposed = by_frames ? std::vector<double>{} : transpose(matrix);
+  const Square g = by_frames ? gram(matrix.a.data(), matrix.num_values, matrix.num_frames)
+                             : gram(transposed.data(), matrix.num_frames, matrix.num_values);
+  const Eigen::SelfAdjointEigenSolver<Square> solver(g);
+  const Eigen::Index size = g.rows();
+  std::vector<std::vector<double>> vectors;
+  for (Eigen::Index l = size - 1; l >= 0; --l) {
+    const double energy = std::max(solver.eigenvalues()(l), 0.0);
+    pc.energy.push_back(energy);
+    if (vectors.size() >= max_components || energy <= min_energy) continue;
+    std::vector<double> v(static_cast<std::size_t>(size));
+    for (Eigen::Index i = 0; i < size; ++i)
+      v[static_cast<std::size_t>(i)] = solver.eigenvectors()(i, l);
+    fix_sign(v);
+    vectors.push_back(std::move(v));
+  }
+  if (by_frames) {
+    pc.spatial = project(matrix.a.data(), matrix.num_values, matrix.num_frames, vectors);
+    pc.temporal = std::move(vectors);
+    return pc;
+  }
+  // Eigenvectors are spatial here: move sigma from the temporal to the spatial factor.
+  pc.temporal = project(transposed.data(), matrix.num_frames, matrix.num_values, vectors);
+  pc.spatial = std::move(vectors);
+  for (std::size_t l = 0; l < pc.spatial.size(); ++l) {
+    double norm2 = 0.0;
+    for (const double x : pc.temporal[l]) norm2 += x * x;
+    const double sigma = std::sqrt(norm2);
+    for (double& x : pc.temporal[l]) x /= sigma;
+    for (double& x : pc.spatial[l]) x *= sigma;
+  }
+  return pc;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,34 @@
+// Principal components of one cluster over one GOF (Amjoun and Strasser 2007, 3.3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rlpc {
+
+// Trajectories of the coded coordinates of a cluster: [num_values][num_frames], grid units.
+struct TrajectoryMatrix {
+  std::size_t num_values = 0;  // 3 x coded vertices, planes x, y, z
+  std::size_t num_frames = 0;
+  std::vector<double> a;
+
+  double* row(std::size_t i) { return &a[i * num_frames]; }
+  const double* row(std::size_t i) const { return &a[i * num_frames]; }
+};
+
+// The matrix is sum over l of spatial[l] * temporal[l]^T; temporal vectors are orthonormal,
+// spatial ones orthogonal with norm sigma, which falls with l.
+struct PrincipalComponents {
+  std::vector<double> energy;                 // sigma^2 of every component, descending
+  double total_energy = 0.0;                  // squared norm of the matrix
+  std::vector<std::vector<double>> temporal;  // [component][num_frames], for the leading ones
+  std::vector<std::vector<double>> spatial;   // [component][num_values]
+};
+
+// Energies of all components; vectors for those with energy above min_energy, at most
+// max_components.
+PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
+                                         std::size_t max_components, double min_energy);
+
+}  // namespace rlpc

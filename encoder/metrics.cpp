@@ -1,0 +1,153 @@
+#include "encoder/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace rlpc {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double squared_distance(std::span<const float> a, std::span<const float> b,
+                        std::size_t vertex) {
+  double sum = 0;
+  for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
+// Sum of squared distances from the mean vertex. Taken relative to the first vertex, so that it
+// is exactly 0 when all vertices coincide.
+double spread_about_mean(std::span<const float> xyz) {
+  const std::size_t count = xyz.size() / 3;
+  double spread = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double first = xyz[axis];
+    double sum = 0;
+    for (std::size_t v = 0; v < count; ++v) sum += xyz[3 * v + axis] - first;
+    const double mean = sum / static_cast<double>(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      const double d = xyz[3 * v + axis] - first - mean;
+      spread += d * d;
+    }
+  }
+  return spread;
+}
+
+// 100 * part / whole; nothing of nothing is 0.
+double percent(double part, double whole) {
+  if (whole > 0) return 100 * part / whole;
+  return part > 0 ? kInfinity : 0;
+}
+
+}  // namespace
+
+MetricsAccumulator::MetricsAccumulator(std::uint32_t num_vertices)
+    : num_vertices_(num_vertices) {
+  assert(num_vertices > 0);
+}
+
+void MetricsAccumulator::add_frame(std::span<const float> original,
+                                   std::span<const float> decoded) {
+  assert(original.size() == 3 * std::size_t{num_vertices_} &&
+         decoded.size() == original.size());
+  FrameMetrics frame;
+  double max_squared = 0;
+  for (std::uint32_t v = 0; v < num_vertices_; ++v) {
+    const double squared = squared_distance(original, decoded, v);
+    frame.squared_error += squared;
+    if (squared > max_squared) {
+      max_squared = squared;
+      frame.max_error_vertex = v;
+    }
+  }
+  frame.spread = spread_about_mean(original);
+  frame.rms_error = std::sqrt(frame.squared_error / num_vertices_);
+  frame.max_error = std::sqrt(max_squared);
+  for (std::size_t i = 0; i < original.size(); ++i) {
+    const bool first = frames_.empty() && i < 3;
+    box_min_[i % 3] = first ? original[i] : std::min(box_min_[i % 3], original[i]);
+    box_max_[i % 3] = first ? original[i] : std::max(box_max_[i % 3], original[i]);
+  }
+  add_motion(original, frame);
+  frames_.push_back(frame);
+}
+
+void MetricsAccumulator::add_motion(std::span<const float> original, FrameMetrics& frame) {
+  frame.moved_vertices = 0;
+  for (std::uint32_t v = 0; !frames_.empty() && v < num_vertices_; ++v) {
+    const double squared = squared_distance(original, previous_, v);
+    max_squared_displacement_ = std::max(max_squared_displacement_, squared);
+    if (squared > 0) ++frame.moved_vertices;
+  }
+  if (frames_.empty()) frame.moved_vertices = num_vertices_;
+  previous_.assign(original.begin(), original.end());
+}
+
+Metrics MetricsAccumulator::result() const {
+  assert(!frames_.empty());
+  Metrics m;
+  m.num_vertices = num_vertices_;
+  m.frames = frames_;
+  double squared_error = 0;
+  double spread = 0;
+  for (std::size_t f = 0; f < frames_.size(); ++f) {
+    squared_error += frames_[f].squared_error;
+    spread += frames_[f].spread;
+    if (frames_[f].max_error > m.max_error) {
+      m.max_error = frames_[f].max_error;
+      m.max_error_frame = static_cast<std::uint32_t>(f);
+      m.max_error_vertex = frames_[f].max_error_vertex;
+    }
+  }
+  double squared_diagonal = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double side =
+        static_cast<double>(box_max_[axis]) - static_cast<double>(box_min_[axis]);
+    squared_diagonal += side * side;
+  }
+  m.diagonal = std::sqrt(squared_diagonal);
+  m.kg_error_percent = percent(std::sqrt(squared_error), std::sqrt(spread));
+  m.rms_error =
+      std::sqrt(squared_error / (static_cast<double>(frames_.size()) * num_vertices_));
+  m.rms_error_percent = percent(m.rms_error, m.diagonal);
+  m.max_error_percent = percent(m.max_error, m.diagonal);
+  m.max_displacement = std::sqrt(max_squared_displacement_);
+  finish_psnr(m);
+  return m;
+}
+
+void MetricsAccumulator::finish_psnr(Metrics& metrics) const {
+  const double peak =
+      metrics.max_displacement > 0 ? metrics.max_displacement : metrics.diagonal;
+  double sum = 0;
+  std::uint64_t inexact_frames = 0;
+  for (FrameMetrics& frame : metrics.frames) {
+    if (frame.squared_error == 0) {
+      frame.psnr_db = kInfinity;
+      continue;
+    }
+    const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
+    // The quotient is infinite, and PSNR minus infinity, when the peak is 0.
+    frame.psnr_db = -10 * std::log10(frame.squared_error / (3 * vertices * peak * peak));
+    sum += frame.psnr_db;
+    ++inexact_frames;
+  }
+  metrics.mean_psnr_db =
+      inexact_frames > 0 ? sum / static_cast<double>(inexact_frames) : kInfinity;
+}
+
+double bits_per_vertex_per_frame(std::uint64_t file_bytes, std::uint64_t num_vertices,
+                                 std::uint64_t num_frames) {
+  assert(num_vertices > 0 && num_frames > 0);
+  return 8 * static_cast<double>(file_bytes) /
+         (static_cast<double>(num_vertices) * static_cast<double>(num_frames));
+}
+
+}  // namespace rlpc

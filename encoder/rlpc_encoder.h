@@ -1,0 +1,100 @@
+// RLPC encoder: the public interface.
+//
+//   rlpc::EncoderSettings settings;
+//   settings.target = {rlpc::Target::kKg, 0.1};
+//   const auto report = rlpc::encode(source, settings, [&](auto bytes) { return write(bytes);
+//   }); if (!report) return complain(report.error().message);
+//
+// The same input and settings give the same bytes on every compiler and machine. Memory is that
+// of the raw GOFs being searched over; frames are read from the source as often as needed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh.h"
+#include "common/sequence_header.h"
+#include "encoder/frame_source.h"
+#include "encoder/metrics.h"
+
+namespace rlpc {
+
+// In which coordinates clusters are analysed; kAuto compares.
+enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
+
+// How hard the encoder searches. The syntax is the same.
+enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
+
+enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
+
+// What the settings of the quantisers are searched for.
+struct Target {
+  enum Kind : std::uint8_t {
+    kNone,      // quantisers as given
+    kKg,        // KG error in per cent: reached from below, within 2 %
+    kBpvf,      // bits per vertex and frame: likewise
+    kMaxError,  // largest distance of a vertex from its original, in units: likewise
+  };
+  Kind kind = kKg;
+  double value = 0.1;
+};
+
+struct EncoderSettings {
+  static constexpr std::uint32_t kWholeSequence = std::numeric_limits<std::uint32_t>::max();
+
+  Target target;
+  Preset preset = Preset::kMedium;
+  std::uint32_t clusters = 0;  // N of the paper; 0: chosen for each GOF
+  std::uint32_t components =
+      0;            // L of the paper, per cluster; 0: chosen by rate and distortion
+  bool rdo = true;  // distribute components over the clusters by rate and distortion
+  int qu = 0;       // bits of eigenshapes, coefficients and seed positions relative to
+  int qc = 0;       // their ranges, as in the paper; 0: steps of equal distortion
+  int qdelta = 0;
+  FrameMode frame_mode = FrameMode::kAuto;
+  std::uint32_t gof_frames = 0;  // longest GOF; 0: the default; kWholeSequence: one GOF
+  bool keep_order = false;       // restore the vertex order of the input
+  HashMode hash_mode = HashMode::kGof;
+  std::string metadata;  // JSON text for a metadata unit; empty: none
+};
+
+// Bits of the stream by what they are for.
+struct PartBits {
+  std::uint64_t headers = 0;  // signature, unit headers and CRCs, sequence header, end
+  std::uint64_t connectivity = 0;
+  std::uint64_t vertex_order = 0;
+  std::uint64_t gofs = 0;
+  std::uint64_t hashes = 0;
+  std::uint64_t metadata = 0;
+};
+
+struct EncodeReport {
+  SequenceHeader header;
+  Metrics metrics;  // of the decoded float32 positions, in input vertex order
+  std::uint64_t bytes = 0;
+  double bpvf = 0.0;
+  PartBits bits;
+  std::uint32_t num_gofs = 0;
+  std::uint32_t clusters = 0;  // over all GOFs
+  std::uint32_t components = 0;
+  double step = 0.0;         // units; 0 with qu and qc
+  std::uint32_t trials = 0;  // encodings made in search of the target
+  bool target_met = true;
+  std::vector<std::uint32_t> input_vertex;  // per decoded vertex, its index in the input
+};
+
+// Takes the next bytes of the stream; false stops the encoder (disk full, for example).
+using ByteSink = std::function<bool(std::span<const std::uint8_t>)>;
+// Called now and then with the fraction done, 0 to 1, for people who wait.
+using Progress = std::function<void(double)>;
+
+// Encodes a whole sequence. Errors: what the source reports; what no level allows; settings
+// that contradict each other; a sink that failed.
+InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
+                                 const ByteSink& sink, const Progress& progress = {});
+
+}  // namespace rlpc

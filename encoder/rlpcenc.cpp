@@ -1,0 +1,245 @@
+// rlpcenc: animations to .rlpc streams.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "encoder/frame_source.h"
+#include "encoder/progress_bar.h"
+#include "encoder/report_json.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/stream_file.h"
+
+namespace {
+
+enum ExitCode : int { kDone = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };
+
+constexpr const char* kExamples = R"(
+INPUT is one of
+  mesh.obj --points cache.pc2   triangles from the mesh, positions from the point cache
+  folder/                       every .obj in it, in numeric order
+  walk_%04d.obj, 'walk_*.obj'   the files that match, in numeric order
+  mesh.obj                      a single frame
+  clip.rlpd                     decoded positions
+
+Examples
+  rlpcenc cow.obj --points cow.pc2 -o cow.rlpc             good quality (KG error 0.1 %)
+  rlpcenc frames/ -o walk.rlpc --kg 0.3                    smaller, visibly the same
+  rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5    1.5 bits per vertex and frame
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.001   a bound for every vertex
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --gof all --clusters 30 --components 20 \
+      --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf     the RLPCA paper's settings
+
+Exit code: 0 done; 1 input or output failed; 2 written, but the target was out of reach; 64 usage.)";
+
+struct Options {
+  rlpc::InputOptions input;
+  std::string output;
+  std::string fps;
+  std::string gof = "128";
+  std::string metadata_path;
+  std::string order_map;
+  std::string profile = "baseline";
+  double kg = 0.0;
+  double bpvf = 0.0;
+  double max_error = 0.0;
+  bool no_rdo = false;
+  bool json = false;
+  bool quiet = false;
+  rlpc::EncoderSettings settings;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  using rlpc::FrameMode;
+  using rlpc::HashMode;
+  using rlpc::Preset;
+  app.add_option("input", o.input.path, "Animation to encode")->required();
+  app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
+  app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
+  app.add_option("--fps", o.fps,
+                 "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
+  app.add_option("--profile", o.profile, "Profile of the stream")
+      ->check(CLI::IsMember({"baseline"}))
+      ->capture_default_str();
+
+  const std::string quality = "Quality (one of; default --kg 0.1)";
+  auto* kg = app.add_option("--kg", o.kg, "KG error in per cent")->group(quality);
+  auto* bpvf = app.add_option("--bpvf", o.bpvf, "Bits per vertex and frame")->group(quality);
+  auto* max_error =
+      app.add_option("--max-error", o.max_error, "Largest error of a vertex, in units of INPUT")
+          ->group(quality);
+  for (auto* option : {kg, bpvf, max_error}) option->check(CLI::PositiveNumber);
+  kg->excludes(bpvf)->excludes(max_error);
+  bpvf->excludes(max_error);
+  app.add_option("--preset", o.settings.preset, "How hard to search: fast, medium, slow")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Preset>{
+          {"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}}))
+      ->group(quality)
+      ->default_str("medium");
+
+  const std::string paper = "Parameters of the method";
+  app.add_option("--clusters", o.settings.clusters, "Clusters per GOF (N; default: chosen)")
+      ->check(CLI::Range(1, 1024))
+      ->group(paper);
+  app.add_option("--components", o.settings.components,
+                 "Components per cluster (L; default: chosen by rate and distortion)")
+      ->check(CLI::Range(1, 1024))
+      ->group(paper);
+  app.add_option("--qu", o.settings.qu, "Bits of eigenshapes; with --qc, in place of a quality")
+      ->check(CLI::Range(2, 20))
+      ->group(paper);
+  app.add_option("--qc", o.settings.qc, "Bits of coefficients")
+      ->check(CLI::Range(2, 20))
+      ->group(paper);
+  app.add_option("--qdelta", o.settings.qdelta,
+                 "Bits of seed positions (default: from the quality)")
+      ->check(CLI::Range(2, 24))
+      ->group(paper);
+  app.add_flag("--no-rdo", o.no_rdo, "The same number of components in every cluster")
+      ->group(paper);
+  app.add_option("--frame", o.settings.frame_mode,
+                 "Coordinates of clusters: auto, lcf (local frames), world")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, FrameMode>{
+          {"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}}))
+      ->group(paper)
+      ->default_str("auto");
+  app.add_option("--gof", o.gof, "Longest group of frames, or `all` for one group")
+      ->group(paper)
+      ->capture_default_str();
+
+  const std::string extras = "What else goes in or out";
+  app.add_flag("--keep-order", o.settings.keep_order, "Restore the vertex order of INPUT")
+      ->group(extras);
+  app.add_option("--order-map", o.order_map, "Write, per decoded vertex, its index in INPUT")
+      ->group(extras);
+  app.add_option("--hash", o.settings.hash_mode,
+                 "Hashes of decoded positions: gof, frame, none")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, HashMode>{
+          {"gof", HashMode::kGof}, {"frame", HashMode::kFrame}, {"none", HashMode::kNone}}))
+      ->group(extras)
+      ->default_str("gof");
+  app.add_option("--metadata", o.metadata_path, "JSON file to carry along")
+      ->check(CLI::ExistingFile)
+      ->group(extras);
+  app.add_flag("--json", o.json, "Report as JSON on standard output")->group(extras);
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(extras);
+  app.footer(kExamples);
+}
+
+int complain(const std::string& message) {
+  std::cerr << "rlpcenc: " << message << "\n";
+  return kFailed;
+}
+
+// Settings that take more than CLI11's own conversions. False: usage.
+bool finish_settings(Options& o) {
+  rlpc::EncoderSettings& s = o.settings;
+  if (!o.fps.empty()) {
+    const auto rate = rlpc::parse_frame_rate(o.fps);
+    if (!rate) return complain("--fps: " + rate.error().message), false;
+    o.input.frame_rate = *rate;
+  }
+  if (o.gof == "all") {
+    s.gof_frames = rlpc::EncoderSettings::kWholeSequence;
+  } else {
+    std::istringstream in(o.gof);
+    if (!(in >> s.gof_frames) || !in.eof() || s.gof_frames == 0) {
+      return complain("--gof: expected a number of frames or `all`, got `" + o.gof + "`"),
+             false;
+    }
+  }
+  if (o.kg > 0.0) s.target = {rlpc::Target::kKg, o.kg};
+  if (o.bpvf > 0.0) s.target = {rlpc::Target::kBpvf, o.bpvf};
+  if (o.max_error > 0.0) s.target = {rlpc::Target::kMaxError, o.max_error};
+  const bool asked = o.kg > 0.0 || o.bpvf > 0.0 || o.max_error > 0.0;
+  if (s.qu > 0 && !asked) s.target = {rlpc::Target::kNone, 0.0};
+  s.rdo = !o.no_rdo;
+  return true;
+}
+
+std::optional<rlpc::InputError> read_metadata(Options& o) {
+  if (o.metadata_path.empty()) return std::nullopt;
+  std::ifstream in(o.metadata_path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  o.settings.metadata = text.str();
+  if (o.settings.metadata.size() > rlpc::kMaxMetadataBytes) {
+    return rlpc::InputError{o.metadata_path + ": metadata may have at most 1 MiB"};
+  }
+  if (!nlohmann::json::accept(o.settings.metadata)) {
+    return rlpc::InputError{o.metadata_path + ": not valid JSON"};
+  }
+  return std::nullopt;
+}
+
+std::optional<rlpc::InputError> write_order_map(const std::string& path,
+                                                const rlpc::EncodeReport& report) {
+  if (path.empty()) return std::nullopt;
+  std::string text;
+  for (const std::uint32_t v : report.input_vertex) text += std::to_string(v) + "\n";
+  rlpc::StreamFile file(path);
+  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return file.commit();
+}
+
+void print_report(const Options& o, const rlpc::EncodeReport& r) {
+  const rlpc::Metrics& m = r.metrics;
+  std::printf("%s: %u vertices, %u triangles, %u frames, level %u\n", o.output.c_str(),
+              r.header.num_vertices, r.header.num_triangles, r.header.num_frames,
+              r.header.level_idc);
+  std::printf("  %llu bytes, %.4f bits per vertex and frame\n",
+              static_cast<unsigned long long>(r.bytes), r.bpvf);
+  std::printf("  KG error %.4f %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
+              m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
+  std::printf("  %u GOFs, %u clusters, %u components, %u trial%s\n", r.num_gofs, r.clusters,
+              r.components, r.trials, r.trials == 1 ? "" : "s");
+}
+
+int run(Options& o) {
+  if (!finish_settings(o)) return kUsage;
+  if (auto error = read_metadata(o)) return complain(error->message);
+  auto source = rlpc::open_frame_source(o.input);
+  if (!source) return complain(source.error().message);
+  rlpc::StreamFile file(o.output);
+  rlpc::InputResult<rlpc::EncodeReport> report = rlpc::InputError{};
+  {
+    rlpc::ProgressBar bar("encoding", !o.quiet);
+    report = rlpc::encode(
+        **source, o.settings,
+        [&](std::span<const std::uint8_t> bytes) { return file.write(bytes); },
+        [&](double fraction) { bar.show(fraction); });
+  }
+  const auto committed = report ? file.commit() : std::nullopt;
+  if (!report) return complain(report.error().message);
+  if (committed) return complain(committed->message);
+  if (auto error = write_order_map(o.order_map, *report)) return complain(error->message);
+  if (o.json) {
+    std::cout << rlpc::report_json(*report).dump(2) << "\n";
+  } else if (!o.quiet && o.output != "-") {
+    print_report(o, *report);
+  }
+  if (report->target_met) return kDone;
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest. Try a "
+            << (o.bpvf > 0.0 ? "higher --bpvf, or a longer --gof" : "larger error") << ".\n";
+  return kTargetMissed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Encodes an animated triangle mesh as an .rlpc stream.", "rlpcenc");
+  app.set_version_flag("--version", "rlpcenc " RLPC_VERSION);
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsage;
+  }
+  return run(options);
+}

@@ -1,0 +1,39 @@
+// Finds the quantiser step that reaches a target error or rate.
+#pragma once
+
+#include "encoder/rlpc_encoder.h"
+
+namespace rlpc {
+
+// Ask step(), encode, tell report() what was measured; again until finished().
+class TargetSearch {
+ public:
+  // spread: root mean square of the coordinates about their frame's mean; steps_per_unit: of
+  // the grid. Steps are in grid steps.
+  TargetSearch(const Target& target, double spread, double steps_per_unit);
+
+  double step() const { return step_; }
+  double last_step() const { return last_step_; }
+  // True if this is the best encoding so far.
+  bool report(double measured);
+  bool finished() const { return finished_; }
+  // The best encoding does not exceed the target.
+  bool met() const { return target_.kind == Target::kNone || met_; }
+
+ private:
+  void choose_next(double measured);
+
+  Target target_;
+  double step_ = 1.0;
+  double last_step_ = 1.0;
+  double best_ = 0.0;  // measured value of the best encoding
+  double fine_ = 0.0;  // largest step known to be too fine or just right; 0: none
+  double fine_value_ = 0.0;
+  double coarse_ = 0.0;  // smallest step known to be too coarse
+  double coarse_value_ = 0.0;
+  int trials_ = 0;
+  bool met_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,18 @@
+// 6.5 Group of frames, writing side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/gof.h"
+#include "common/sequence_header.h"
+#include "common/topology.h"
+
+namespace rlpc {
+
+// Payload of a GOF unit. All values must be legal (asserted): an encoder that emits an illegal
+// value has a bug.
+std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header,
+                                    const Topology& topology);
+
+}  // namespace rlpc

@@ -1,0 +1,113 @@
+#include "encoder/write_stream.h"
+
+#include <zlib.h>
+
+#include <cassert>
+
+#include "common/bit_writer.h"
+#include "common/crc32.h"
+#include "common/range_encoder.h"
+#include "encoder/write_residual.h"
+
+namespace rlpc {
+
+// 6.1 stream( )
+Bytes write_stream_header() {
+  Bytes bytes(kSignature.begin(), kSignature.end());
+  bytes.push_back(kVersionMajor);
+  bytes.push_back(kVersionMinor);
+  return bytes;
+}
+
+// 6.2 unit( )
+Bytes write_unit(UnitType type, const Bytes& payload) {
+  BitWriter w;
+  w.u(8, static_cast<std::uint32_t>(type));
+  w.u(32, static_cast<std::uint32_t>(payload.size()));
+  w.append(payload);
+  Bytes unit = w.take();
+  BitWriter crc;
+  crc.u(32, crc32_of(unit));
+  const Bytes crc_bytes = crc.take();
+  unit.insert(unit.end(), crc_bytes.begin(), crc_bytes.end());
+  return unit;
+}
+
+// 6.3 sequence_header( )
+Bytes write_sequence_header(const SequenceHeader& h) {
+  BitWriter w;
+  w.u(8, h.profile_idc);
+  w.u(8, h.level_idc);
+  w.ue(h.num_vertices - 1);
+  w.ue(h.num_triangles);
+  w.ue(h.num_frames - 1);
+  w.ue(h.frame_rate.numerator - 1);
+  w.ue(h.frame_rate.denominator - 1);
+  w.se(h.grid.log2_step);
+  for (const std::int32_t origin : h.grid.origin) w.se(origin);
+  w.u(5, static_cast<std::uint32_t>(h.position_bits));
+  w.byte_alignment();
+  return w.take();
+}
+
+// 6.6 vertex_order( )
+Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex) {
+  RangeEncoder re;
+  ResidualModels models;
+  std::uint32_t mean = 0;
+  std::int64_t before = 0;
+  for (const std::uint32_t index : output_vertex) {
+    const auto delta = static_cast<std::int32_t>(index - before);
+    write_residual(re, models, mean >> 4, delta);
+    mean = update_mean(mean, magnitude_of(delta), 3);
+    before = index;
+  }
+  return re.finish();
+}
+
+// 6.7 gof_hash( )
+Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame) {
+  BitWriter w;
+  w.flag(per_frame);
+  w.byte_alignment();
+  for (const std::uint32_t crc : position_crc) w.u(32, crc);
+  return w.take();
+}
+
+// 6.9 gof_index( )
+Bytes write_gof_index(std::uint64_t first_gof_offset, std::span<const GofEntry> gofs) {
+  BitWriter w;
+  w.ue(static_cast<std::uint32_t>(gofs.size() - 1));
+  w.ue(static_cast<std::uint32_t>(first_gof_offset));
+  for (const GofEntry& gof : gofs) {
+    w.ue(gof.num_frames - 1);
+    w.ue(static_cast<std::uint32_t>(gof.bytes));
+  }
+  w.byte_alignment();
+  return w.take();
+}
+
+// 6.8 end_of_sequence( )
+Bytes write_end_of_sequence(std::uint32_t index_distance) {
+  BitWriter w;
+  w.u(32, index_distance);
+  return w.take();
+}
+
+// 6.10 metadata( )
+Bytes write_metadata(std::string_view json) {
+  BitWriter size;
+  size.u(32, static_cast<std::uint32_t>(json.size()));
+  Bytes payload = size.take();
+  uLongf length = compressBound(static_cast<uLong>(json.size()));
+  Bytes deflated(length);
+  [[maybe_unused]] const int status =
+      compress2(deflated.data(), &length, reinterpret_cast<const Bytef*>(json.data()),
+                static_cast<uLong>(json.size()), Z_BEST_COMPRESSION);
+  assert(status == Z_OK);
+  payload.insert(payload.end(), deflated.begin(),
+                 deflated.begin() + static_cast<std::ptrdiff_t>(length));
+  return payload;
+}
+
+}  // namespace rlpc
