@@ -4,10 +4,12 @@
 Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comments of C++ code
              exist in spec/; a title after a number at the start of a comment is that of the
              heading, or names a function of that clause, as in "// 6.3.1 sequence_header( )".
-Rules        every rule id in C++ code, like R-HDR-03, is defined once in spec/, as {R-HDR-03}.
+Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
+             as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
-             is a string literal in exactly one decoder/parse_* file, and no parser reads others.
-             Blocks of the clause of the parsing process describe bins, not elements.
+             is a string literal in exactly one decoder/parse_* file (or the reader of units),
+             or read in exactly one other file of decoder/, and none reads others. Blocks of the
+             clause of the parsing process describe bins, not elements.
 """
 
 import argparse
@@ -20,6 +22,7 @@ import sys
 import cpp_source
 
 PARSING_PROCESS = "9"
+PARSERS = ("parse_", "unit_reader")
 
 _NUMBER = r"(?:\d+|[A-Z])(?:\.\d+)*"
 _DOTTED = r"(?:[1-9]\d*|[A-Z])(?:\.[1-9]\d*)+"
@@ -52,6 +55,7 @@ class Spec:
         self.clauses = {}
         self.tables = set()
         self.rules = collections.defaultdict(list)
+        self.required = {}
         self.elements = {}
         self.complaints = []
         for path in self.files:
@@ -73,6 +77,8 @@ class Spec:
                 for rule in re.findall(r"\{(R-[A-Z]{2,4}-\d{2})\}", line):
                     self.rules[rule].append(place)
             elif fence == "rlpc":
+                for rule in re.findall(rf'"({_RULE.pattern})"', line):
+                    self.required.setdefault(rule, place)
                 element = _ELEMENT.match(line)
                 if element and (number or "").split(".")[0] != PARSING_PROCESS:
                     self.elements.setdefault(element.group(1), place)
@@ -125,9 +131,17 @@ def check_start(spec, relative, text):
         if not match:
             continue
         number, rest = match.groups()
+        if re.fullmatch(r"\d+\.\d+", number) and re.match(r" [a-z]+ (?!\()", rest + " "):
+            if number not in spec.clauses:
+                continue  # "1.5 times it" is prose
+        if number.split(".")[0] not in spec.clauses and not re.match(r"[:\s]\s*\w", rest):
+            continue  # "62.5, up" too
+        more = re.match(rf"(?:,|\s+(?:to|and|or))\s+({_DOTTED})", rest)
+        if more and more.group(1) not in spec.clauses:
+            yield f"{relative}:{line}: there is no clause {more.group(1)}"
         if number not in spec.clauses:
             yield f"{relative}:{line}: there is no clause {number}"
-        elif rest[:1].isspace() and rest.split("\n")[0].strip():
+        elif not more and rest[:1].isspace() and rest.split("\n")[0].strip():
             if not spec.names(number, rest):
                 yield (f'{relative}:{line}: clause {number} is "{spec.clauses[number].title}", '
                        f'not "{rest.splitlines()[0].strip()}"')
@@ -145,8 +159,9 @@ def check_references(spec, relative, text):
     for match in _CITED_TABLE.finditer(comments):
         cited += [(match.start(), f"Table {table}", table in spec.tables)
                   for table in match.groups() if table]
-    for match in _RULE.finditer(text):
-        cited.append((match.start(), f"rule {match.group()}", match.group() in spec.rules))
+    if not cpp_source.is_test(relative):  # tests may make up rules
+        for match in _RULE.finditer(text):
+            cited.append((match.start(), f"rule {match.group()}", match.group() in spec.rules))
     for position, what, exists in cited:
         if not exists:
             yield f"{relative}:{cpp_source.line_of(text, position)}: there is no {what}"
@@ -161,7 +176,7 @@ def check_elements(spec, parsers):
     for element, place in sorted(spec.elements.items()):
         count = len(homes[element])
         if count == 0:
-            yield f"{place}: syntax element {element} is read by no decoder/parse_* file"
+            yield f"{place}: syntax element {element} is read by no parser"
         elif count > 1:
             yield (f"{place}: syntax element {element} is named by {count} parsers: "
                    + ", ".join(sorted(homes[element])))
@@ -181,6 +196,9 @@ def check(root):
     for rule, places in sorted(spec.rules.items()):
         if len(places) > 1:
             complaints.append(f"{places[1]}: rule {rule} is already defined at {places[0]}")
+    for rule, place in sorted(spec.required.items()):
+        if rule not in spec.rules:
+            complaints.append(f"{place}: rule {rule} is defined nowhere")
     parsers = {}
     used = set()
     for path in cpp_source.files(root, cpp_source.LAYERS):
@@ -189,9 +207,10 @@ def check(root):
         complaints += check_start(spec, relative, text)
         complaints += check_references(spec, relative, text)
         used |= set(_RULE.findall(text))
-        if (relative.parts[0] == "decoder" and path.name.startswith("parse_")
-                and not cpp_source.is_test(path)):
-            parsers[str(relative)] = cpp_source.without_comments(text)
+        if relative.parts[0] == "decoder" and not cpp_source.is_test(path):
+            text = cpp_source.without_comments(text)
+            parsers[str(relative)] = (text if path.name.startswith(PARSERS)
+                                      else cpp_source.kept(text, _READ))
     complaints += check_elements(spec, parsers)
     summary = (f"{len(spec.clauses)} clauses, {len(spec.elements)} syntax elements, "
                f"{len(spec.rules)} rules of which {len(used & set(spec.rules))} in code")

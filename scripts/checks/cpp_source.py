@@ -53,6 +53,16 @@ def without_comments(text):
     return _TOKEN.sub(lambda m: _blank(m.group()) if m.group("comment") else m.group(), text)
 
 
+def kept(text, pattern):
+    """The text with everything but matches of the pattern blanked; positions are kept."""
+    parts = []
+    end = 0
+    for match in pattern.finditer(text):
+        parts += [_blank(text[end:match.start()]), match.group()]
+        end = match.end()
+    return "".join(parts) + _blank(text[end:])
+
+
 def line_of(text, position):
     return text.count("\n", 0, position) + 1
 

@@ -11,6 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import check_clauses  # noqa: E402
 import check_float  # noqa: E402
 import check_layers  # noqa: E402
+import check_rules  # noqa: E402
 import cpp_source  # noqa: E402
 
 
@@ -179,7 +180,8 @@ class Clauses(TreeTest):
 
     def test_correct_citations_pass(self):
         self.run_on("// 6.3.1 Sequence header syntax: why\n// 6.3.1 sequence_header( )\n"
-                    "// 6.3.1, step 3\n// (clause 6.3.1). Clauses 6.3 and 6.3.1; clause 9, Annex B\n"
+                    "// 6.3.1, step 3\n// 6.3 to 6.3.1, writing side\n// 1.5 times it\n"
+                    "// (clause 6.3.1). Clauses 6.3 and 6.3.1; clause 9, Annex B\n"
                     '// Table 6-2: names; version 1.0\nint x = 7.7;  // 0.5 of it\n'
                     'fail("R-HDR-01"); f("clause 77");\n')
 
@@ -188,6 +190,7 @@ class Clauses(TreeTest):
         self.run_on("int x;  // see clause 8.4\n", "no clause 8.4")
         self.run_on("// clauses 6.3 and 8.5\n", "no clause 8.5")
         self.run_on("// see clause\n// 8.6 there\n", "no clause 8.6")
+        self.run_on("// 6.3 to 6.4, writing side\n", "no clause 6.4")
         self.run_on("// Annex C\n", "no Annex C")
 
     def test_wrong_title(self):
@@ -203,6 +206,10 @@ class Clauses(TreeTest):
 
     def test_rule_defined_twice(self):
         self.run_on("", "06-syntax.md:17", "already defined", spec=SPEC + "{R-HDR-01}\n")
+
+    def test_required_rule_without_definition(self):
+        self.run_on("", "06-syntax.md:18: rule R-HDR-07 is defined nowhere",
+                    spec=SPEC + '```rlpc\nrequire(x, "R-HDR-07")\n```\n')
 
     def test_clause_twice(self):
         self.run_on("", "clause 6.3 is already", spec=SPEC + "## 6.3 Again\n")
@@ -222,6 +229,34 @@ class Clauses(TreeTest):
     def test_parser_without_element(self):
         self.run_on("", "parse_a.cpp:4: other is in no syntax table",
                     parser=PARSER + 'r.u(4, "other", {0, 1});\n')
+
+
+class Rules(TreeTest):
+    TEXT = ("# 7 Semantics\n**x** is short. It is a requirement of bitstream\n"
+            "conformance that x is 1. {R-ABC-01} A stream is unsupported unless y is 2. {R-ABC-02}\n")
+
+    def tree(self, text, listed=None):
+        sentences = [("R-ABC-01", "invalid",
+                      "It is a requirement of bitstream conformance that x is 1."),
+                     ("R-ABC-02", "unsupported", "A stream is unsupported unless y is 2.")]
+        found = [{"rule": rule, "clause": "7", "effect": effect, "checked_by_pseudo_code": False,
+                  "sentence": sentence} for rule, effect, sentence in sentences]
+        return {"spec/07.md": text, "spec/rules.json": listed or check_rules.text_of(found)}
+
+    def test_sentences_are_listed(self):
+        self.assert_clean(check_rules.check, self.tree(self.TEXT))
+
+    def test_list_that_is_not_up_to_date(self):
+        self.assert_one(check_rules.check, self.tree(self.TEXT, "[]\n"), "not up to date")
+
+    def test_sentence_without_rule(self):
+        self.assert_one(check_rules.check,
+                        self.tree(self.TEXT + "A stream is unsupported unless z is 3.\n"),
+                        "spec/07.md:2", "has no rule id")
+
+    def test_rule_without_sentence(self):
+        self.assert_one(check_rules.check, self.tree(self.TEXT + "\nx should be 1. {R-ABC-03}\n"),
+                        "spec/07.md:5", "R-ABC-03")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""Decodes .rlpc streams by running the pseudo-code of the specification.
+
+  specdec --rlpc-conformance                          what it decodes, as JSON
+  specdec decode IN.rlpc OUT.rlpd [--max-mem BYTES] [--trace] [--check-widths]
+
+  --max-mem BYTES   give up when the process needs more memory than that
+  --trace           print every syntax element: bit position, name, value
+  --check-widths    fail if an intermediate value does not fit 64 bits (slow)
+  --spec FOLDER     the specification (default: spec/ of the project)
+
+OUT.rlpd holds exactly the frames before an error. Exit code: 0 decoded; 1 not a conforming
+stream; 2 not supported; 3 more memory needed than allowed; 4 a file could not be read or
+written; 64 usage; 70 the specification has an error. On 1 to 3, the last line of standard error
+is  rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import sys
+import traceback
+import zlib
+
+sys.dont_write_bytecode = True
+import spec_program  # noqa: E402
+
+DONE, INVALID, UNSUPPORTED, LIMIT, IO, USAGE, SPEC_ERROR = 0, 1, 2, 3, 4, 64, 70
+SPEC = pathlib.Path(__file__).resolve().parents[2] / "spec"
+
+
+class Verdict(Exception):
+    """The stream ended the decoding."""
+
+    def __init__(self, code, rule):
+        super().__init__(rule)
+        self.code = code
+        self.rule = rule
+
+
+class Decoder:
+    """One run of the specification over one stream."""
+
+    def __init__(self, program, data, write, trace=None, widths=False):
+        """write(bytes) takes the output; trace(position, name, value) the syntax elements."""
+        self._data = data
+        self._trace = trace
+        self._begin = 0
+        self.variables = program.compile(
+            {"StreamBytes": data, "require": self._require, "supported": self._supported,
+             "inflates_to": self._inflates_to, "output_bytes": lambda b: write(bytes(b)),
+             "trace_begin": self._trace_begin, "trace_element": self._trace_element,
+             "checked_width": _checked_width},
+            trace=trace is not None, widths=widths)
+
+    def call(self, name):
+        return self.variables[name]()
+
+    def place(self):
+        """(bit position, number of frames output) where decoding has come to."""
+        if "BitPosition" not in self.variables:
+            return 0, 0
+        return self.call("Position"), self.variables.get("NumOutputFrames", 0)
+
+    @staticmethod
+    def _require(condition, rule):
+        if not condition:
+            raise Verdict(INVALID, rule)
+
+    @staticmethod
+    def _supported(condition, rule):
+        if not condition:
+            raise Verdict(UNSUPPORTED, rule)
+
+    def _inflates_to(self, first, end, size):
+        inflater = zlib.decompressobj()
+        try:
+            inflated = inflater.decompress(self._data[first:end], size + 1)
+        except zlib.error:
+            return 0
+        return int(inflater.eof and not inflater.unused_data and len(inflated) == size)
+
+    def _trace_begin(self, range_coded):
+        v = self.variables
+        self._begin = v["Position"]() if range_coded else v["BitPosition"]
+
+    def _trace_element(self, name, value):
+        self._trace(self._begin, name, int(value))
+
+
+def _checked_width(value):
+    if type(value) is int and not -(1 << 63) <= value < 1 << 63:
+        raise OverflowError(f"{value} does not fit 64 bits")
+    return value
+
+
+class Output:
+    """A file that comes into being with the first bytes written to it."""
+
+    def __init__(self, path):
+        self._path = path
+        self._file = None
+
+    def write(self, data):
+        if self._file is None:
+            self._file = open(self._path, "wb")
+        self._file.write(data)
+
+    def close(self):
+        if self._file is not None:
+            self._file.close()
+
+
+def describe(folder):
+    """The answer to --rlpc-conformance, all of it from the specification."""
+    variables = spec_program.Program(folder).compile(
+        {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
+         "output_bytes": None})
+    text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
+    versions = re.findall(r"\bspecifies RLPC version (\d+\.\d+)", text)
+    profiles = re.findall(r"^\|\s*\d+\s*\|\s*(\w+)\s*\|\s*\d+\.\d+\s*\|", text, re.MULTILINE)
+    return {"contract": 1, "name": "specdec", "version": versions[0], "spec": versions,
+            "profiles": [p.lower() for p in profiles],
+            "levels": list(range(1, len(variables["Levels"]) + 1)), "outputs": ["rlpd"]}
+
+
+def print_element(position, name, value):
+    print(f"{position:10d}    {name} = {value}")
+
+
+def limit_memory(size):
+    import resource
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+
+
+def decode(options):
+    try:
+        data = pathlib.Path(options.input).read_bytes()
+    except OSError as error:
+        print(f"specdec: {error}", file=sys.stderr)
+        return IO
+    program = spec_program.Program(options.spec)
+    if options.max_mem is not None:
+        limit_memory(options.max_mem)
+    output = Output(options.output)
+    decoder = Decoder(program, data, output.write, print_element if options.trace else None,
+                      options.check_widths)
+    verdict = {}
+    try:
+        decoder.call("stream")
+        code = DONE
+    except Verdict as error:
+        code = error.code
+        verdict["rule"] = error.rule
+    except MemoryError:
+        code = LIMIT
+    except OSError as error:
+        print(f"specdec: {error}", file=sys.stderr)
+        return IO
+    finally:
+        output.close()
+    if code != DONE:
+        verdict["bit"], verdict["frame"] = decoder.place()
+        sys.stdout.flush()
+        print("rlpc-verdict " + json.dumps(verdict, separators=(",", ":")), file=sys.stderr)
+    return code
+
+
+class _Arguments(argparse.ArgumentParser):
+    def error(self, message):
+        self.print_usage(sys.stderr)
+        print(f"specdec: {message}", file=sys.stderr)
+        sys.exit(USAGE)
+
+
+def arguments(argv):
+    parser = _Arguments(prog="specdec", description=__doc__,
+                        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rlpc-conformance", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--spec", type=pathlib.Path, default=SPEC, help=argparse.SUPPRESS)
+    verbs = parser.add_subparsers(dest="verb", parser_class=_Arguments)
+    verb = verbs.add_parser("decode")
+    verb.add_argument("input")
+    verb.add_argument("output")
+    verb.add_argument("--max-mem", type=int)
+    verb.add_argument("--trace", action="store_true")
+    verb.add_argument("--check-widths", action="store_true")
+    options = parser.parse_args(argv)
+    if options.verb is None and not options.rlpc_conformance:
+        parser.error("give a verb: decode, or --rlpc-conformance")
+    return options
+
+
+def main(argv=None):
+    options = arguments(argv)
+    try:
+        if options.rlpc_conformance:
+            print(json.dumps(describe(options.spec)))
+            return DONE
+        return decode(options)
+    except spec_program.SpecError as error:
+        print(f"specdec: {error}", file=sys.stderr)
+    except MemoryError:  # before decoding began
+        print("rlpc-verdict {}", file=sys.stderr)
+        return LIMIT
+    except Exception:  # not the stream's fault: must not look like a verdict
+        traceback.print_exc()
+    return SPEC_ERROR
+
+
+if __name__ == "__main__":
+    sys.exit(main())
