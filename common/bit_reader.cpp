@@ -8,10 +8,10 @@ void BitReader::fail(Errc code, const char* rule, const char* element, std::uint
   if (!error_) error_ = Error{code, rule, element, bit_pos};
 }
 
-std::uint32_t BitReader::take(int n, const char* element) {
+std::uint32_t BitReader::take(int n, const char* element, std::uint64_t at) {
   if (error_) return 0;
   if (pos_ + static_cast<std::uint64_t>(n) > bytes_.size() * 8) {
-    fail(Errc::kTruncated, "R-BIT-01", element, bit_pos());
+    fail(Errc::kTruncated, "R-BIT-01", element, at);
     return 0;
   }
   std::uint32_t value = 0;
@@ -36,7 +36,7 @@ std::int64_t BitReader::check(std::int64_t value, const char* element, Range ran
 std::uint32_t BitReader::u(int n, const char* element, Range range, const char* rule) {
   assert(n >= 1 && n <= 32);
   const std::uint64_t at = bit_pos();
-  return static_cast<std::uint32_t>(check(take(n, element), element, range, rule, at));
+  return static_cast<std::uint32_t>(check(take(n, element, at), element, range, rule, at));
 }
 
 std::uint32_t BitReader::u(int n, const char* element) {
@@ -46,13 +46,13 @@ std::uint32_t BitReader::u(int n, const char* element) {
 std::uint64_t BitReader::take_exp_golomb(const char* element) {
   const std::uint64_t at = bit_pos();
   int zeros = 0;
-  while (!error_ && take(1, element) == 0) {
+  while (!error_ && take(1, element, at) == 0) {
     if (++zeros > 32) {
       fail(Errc::kInvalid, "R-BIT-04", element, at);
     }
   }
   if (error_) return 0;
-  const std::uint64_t tail = zeros == 0 ? 0 : take(zeros, element);
+  const std::uint64_t tail = zeros == 0 ? 0 : take(zeros, element, at);
   return (std::uint64_t{1} << zeros) - 1 + tail;
 }
 
@@ -74,7 +74,7 @@ void BitReader::byte_alignment() {
   const std::uint64_t at = bit_pos();
   const int n = static_cast<int>((8 - pos_ % 8) % 8);
   if (n == 0) return;
-  if (take(n, "alignment_zero_bits") != 0) {
+  if (take(n, "alignment_zero_bits", at) != 0) {
     fail(Errc::kInvalid, "R-BIT-02", "alignment_zero_bits", at);
   }
 }

@@ -44,7 +44,7 @@ class BitReader {
   Trace* trace() const { return trace_; }
 
  private:
-  std::uint32_t take(int n, const char* element);
+  std::uint32_t take(int n, const char* element, std::uint64_t at);
   std::uint64_t take_exp_golomb(const char* element);
   std::int64_t check(std::int64_t value, const char* element, Range range, const char* rule,
                      std::uint64_t at);

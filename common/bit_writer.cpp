@@ -1,6 +1,7 @@
 #include "common/bit_writer.h"
 
 #include <cassert>
+#include <utility>
 
 #include "common/int_math.h"
 

@@ -1,4 +1,4 @@
-// Models and contexts of the connectivity unit (clause 8.2.7). The parser and the writer drive
+// Models and contexts of the connectivity unit (clause 8.7.7). The parser and the writer drive
 // them in the same way.
 #pragma once
 
@@ -29,7 +29,7 @@ struct ConnectivityModels {
   std::array<BitModel, kMaxJoinPrefix + 1> join_top_bit;                 // by prefix
 };
 
-// 8.2.7 SetContexts( ): indices into the arrays of the same names.
+// 8.7.7 SetContexts( ): indices into the arrays of the same names.
 struct GateContexts {
   std::size_t boundary_flag = 0;
   std::size_t close_flag = 0;

@@ -5,19 +5,19 @@
 
 namespace rlpc {
 
-// 8.2.2 NewNode( v )
+// 8.7.2 NewNode( v )
 std::uint32_t CutBorder::new_node(std::uint32_t v) {
   nodes_.push_back({.vertex = v});
   return num_nodes() - 1;
 }
 
-// 8.2.2 Link( n, m )
+// 8.7.2 Link( n, m )
 void CutBorder::link(std::uint32_t node, std::uint32_t next_node) {
   nodes_[node].next = next_node;
   nodes_[next_node].previous = node;
 }
 
-// 8.2.2 CountTriangle( v0, v1, v2 )
+// 8.7.2 CountTriangle( a, b, c )
 Triangle CutBorder::count_triangle(std::uint32_t v0, std::uint32_t v1, std::uint32_t v2) {
   const std::size_t needed = std::size_t{std::max({v0, v1, v2})} + 1;
   if (degree_.size() < needed) degree_.resize(needed);
@@ -25,14 +25,14 @@ Triangle CutBorder::count_triangle(std::uint32_t v0, std::uint32_t v1, std::uint
   return {v0, v1, v2};
 }
 
-// 8.2.3 Touch( n )
+// 8.7.3 Touch( n )
 void CutBorder::touch(std::uint32_t node) {
   if (nodes_[node].urgent || degree(node) < urgent_degree_) return;
   nodes_[node].urgent = true;
   urgent_.push_back(node);
 }
 
-// 8.2.3 SelectGate( )
+// 8.7.3 SelectGate( )
 bool CutBorder::select_gate() {
   while (first_urgent_ < urgent_.size()) {
     gate_ = urgent_[first_urgent_];
@@ -47,7 +47,7 @@ bool CutBorder::select_gate() {
   return false;
 }
 
-// 8.2.4 StartComponent( v0, v1, v2 )
+// 8.7.4 StartComponent( v0, v1, v2 )
 Triangle CutBorder::start_component(std::uint32_t v0, std::uint32_t v1, std::uint32_t v2) {
   const std::uint32_t n0 = new_node(v0);
   const std::uint32_t n2 = new_node(v2);
@@ -60,7 +60,7 @@ Triangle CutBorder::start_component(std::uint32_t v0, std::uint32_t v1, std::uin
   return triangle;
 }
 
-// 8.2.5 AddVertex( v )
+// 8.7.5 AddVertex( v )
 Triangle CutBorder::add_vertex(std::uint32_t v) {
   const std::uint32_t to = next(gate_);
   const std::uint32_t added = new_node(v);
@@ -71,7 +71,7 @@ Triangle CutBorder::add_vertex(std::uint32_t v) {
   return triangle;
 }
 
-// 8.2.5 CloseLoop( )
+// 8.7.5 CloseLoop( )
 Triangle CutBorder::close_loop() {
   assert(can_close());
   const std::uint32_t to = next(gate_);
@@ -80,7 +80,7 @@ Triangle CutBorder::close_loop() {
   return count_triangle(vertex(gate_), vertex(to), vertex(third));
 }
 
-// 8.2.5 GluePrevious( )
+// 8.7.5 GluePrevious( )
 Triangle CutBorder::glue_previous() {
   assert(can_glue_previous());
   const std::uint32_t to = next(gate_);
@@ -92,7 +92,7 @@ Triangle CutBorder::glue_previous() {
   return triangle;
 }
 
-// 8.2.5 GlueNext( )
+// 8.7.5 GlueNext( )
 Triangle CutBorder::glue_next() {
   assert(can_glue_next());
   const std::uint32_t to = next(gate_);
@@ -104,7 +104,7 @@ Triangle CutBorder::glue_next() {
   return triangle;
 }
 
-// 8.2.5 Join( t )
+// 8.7.5 Join( t )
 Triangle CutBorder::join(std::uint32_t target) {
   assert(is_join_target(target));
   const std::uint32_t to = next(gate_);
@@ -118,14 +118,14 @@ Triangle CutBorder::join(std::uint32_t target) {
   return triangle;
 }
 
-// 8.2.6 Walk( forward, distance )
+// 8.7.6 Walk( forward, distance )
 std::uint32_t CutBorder::walk(bool forward, std::uint32_t distance) const {
   std::uint32_t node = forward ? next(gate_) : gate_;
   for (; distance > 0; --distance) node = forward ? next(node) : previous(node);
   return node;
 }
 
-// 8.2.5 HasLength( n )
+// 8.7.5 HasLength( n )
 bool CutBorder::has_length(int n) const {
   std::uint32_t node = gate_;
   for (int i = 0; i < n; ++i) node = next(node);

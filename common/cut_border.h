@@ -1,4 +1,4 @@
-// The cut-border machine of clause 8.2: the border between the triangles decoded so far and the
+// The cut-border machine of clause 8.7: the border between the triangles decoded so far and the
 // rest. Parser and writer drive the same machine, so that both see the same states and
 // contexts.
 //
@@ -22,14 +22,14 @@ class CutBorder {
 
   explicit CutBorder(std::uint32_t urgent_degree) : urgent_degree_(urgent_degree) {}
 
-  // 8.2.3 SelectGate( ): false if no edge is left, so that a new component has to start.
+  // 8.7.3 SelectGate( ): false if no edge is left, so that a new component has to start.
   bool select_gate();
 
-  // 8.2.4 StartComponent( v0, v1, v2 ): three nodes, for the edges (v0, v2), (v2, v1), (v1,
+  // 8.7.4 StartComponent( v0, v1, v2 ): three nodes, for the edges (v0, v2), (v2, v1), (v1,
   // v0).
   Triangle start_component(std::uint32_t v0, std::uint32_t v1, std::uint32_t v2);
 
-  // 8.2.5 Operations on the gate; all but the first return the triangle that they decode.
+  // 8.7.5 Operations on the gate; all but the first return the triangle that they decode.
   void mark_boundary() { nodes_[gate_].boundary = true; }
   Triangle add_vertex(std::uint32_t v);  // the last node is new, on the edge (v, to)
   Triangle close_loop();                 // requires can_close( )
@@ -37,7 +37,7 @@ class CutBorder {
   Triangle glue_next();                  // requires can_glue_next( )
   Triangle join(std::uint32_t target);   // requires is_join_target( target ); as add_vertex( )
 
-  // 8.2.6 Walk( forward, distance ): the node so many steps after the gate's end, or before the
+  // 8.7.6 Walk( forward, distance ): the node so many steps after the gate's end, or before the
   // gate; distance >= 1.
   std::uint32_t walk(bool forward, std::uint32_t distance) const;
   bool is_join_target(std::uint32_t node) const {

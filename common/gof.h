@@ -39,7 +39,7 @@ struct Cluster {
 };
 
 // Residuals of the track of one seed vertex, in steps. Tracks stand in the order of
-// clause 6.5.3: clusters in order, their seeds in order, each vertex once.
+// clause 6.5.2: clusters in order, their seeds in order, each vertex once.
 struct SeedTrack {
   std::uint32_t vertex = 0;
   std::uint32_t anchor = 0;  // index of the track of seed 0 of the cluster; itself for seed 0

@@ -16,7 +16,7 @@
 
 namespace rlpc {
 
-// 9.6.1 Running magnitude of a residual: a quickly and a slowly adapting mean, 8 fractional
+// 9.6.1: running magnitude of a residual, a quickly and a slowly adapting mean, 8 fractional
 // bits.
 struct RunningMagnitude {
   std::uint32_t fast = 0;
@@ -50,7 +50,7 @@ struct GofModels {
   std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
 };
 
-// 9.6.2 Prediction of cluster_idx from the neighbours decoded before.
+// 9.6.2 Predicted cluster, from the neighbours decoded before.
 struct ClusterPrediction {
   std::uint16_t cluster = 0;
   std::size_t context = 0;  // of cluster_predicted_flag: no neighbour, all agree, they differ
@@ -73,18 +73,20 @@ inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_
 // 9.6.3 Expected magnitude of a seed residual.
 class SeedContext {
  public:
-  std::uint32_t expected(std::size_t c) const {
-    return (2 * mean_[c].fast + mean_[c].slow + before_) >> 6;
+  // frame_mean [num_gof_frames]: mean of the tracks before, per frame.
+  explicit SeedContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
+  std::uint32_t expected(std::uint32_t f, std::size_t c) const {
+    return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;
   }
-  void update(std::size_t c, std::int32_t residual) {
+  void update(std::uint32_t f, std::size_t c, std::int32_t residual) {
     const std::uint32_t magnitude = magnitude_of(residual);
     mean_[c].update(magnitude);
-    before_ = std::min<std::uint32_t>(magnitude, 0x100000) << 8;
+    frame_mean_[f] = update_mean(frame_mean_[f], magnitude, 3);
   }
 
  private:
+  std::span<std::uint32_t> frame_mean_;
   std::array<RunningMagnitude, 3> mean_;
-  std::uint32_t before_ = 0;
 };
 
 // 9.6.4 Expected magnitude of a temporal residual.

@@ -94,7 +94,7 @@ std::vector<std::int32_t> recon_spatial(const Component& component,
   return values;
 }
 
-// 8.1 General decoding process of a GOF
+// 8.1 Decoding a GOF
 GofRecon::GofRecon(const SequenceHeader& header, const Topology& topology, const Gof& gof)
     : num_frames_(gof.num_frames),
       position_bits_(header.position_bits),

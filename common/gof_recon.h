@@ -1,4 +1,4 @@
-// 8.1 Reconstruction of a GOF: residuals to integer positions, frame by frame. Used by the
+// 8.1 Decoding a GOF: residuals to integer positions, frame by frame. Used by the
 // decoder and, closing its loop, by the encoder.
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// 8.3 Spatial prediction: undoes it in place. `planes` are the x, y and z values [3][n] of the
-// coded vertices of one cluster; on return, values clipped to spatial_bits.
+// 8.3 Spatial prediction process: undoes it in place. `planes` are the x, y and z values [3][n]
+// of the coded vertices of one cluster; on return, values clipped to spatial_bits.
 class SpatialPrediction {
  public:
   // vertices: coded vertices of the cluster, ascending. local_index [num_vertices]: place of a
@@ -25,7 +25,7 @@ class SpatialPrediction {
                     std::span<const std::uint16_t> cluster_of_vertex,
                     std::span<const std::uint32_t> local_index);
 
-  // 8.3.3 Prediction of the value at place i from the values before it.
+  // 8.3.3 Prediction of a spatial value, at place i, from the values before it.
   std::int64_t predict(SpatialPredictor predictor, std::span<const std::int32_t> plane,
                        std::size_t i) const;
 
@@ -43,7 +43,7 @@ ClusterMembers cluster_members(const Gof& gof);
 
 // 8.5.1 Temporal values of a component, predictions undone; [num_gof_frames], 24 bits.
 std::vector<std::int32_t> recon_temporal(const Component& component);
-// 8.3 Spatial values of a component, predictions undone; [3][n], within spatial_bits.
+// 8.3: spatial values of a component, predictions undone; [3][n], within spatial_bits.
 std::vector<std::int32_t> recon_spatial(const Component& component,
                                         const SpatialPrediction& prediction);
 

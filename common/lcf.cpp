@@ -40,7 +40,7 @@ Lcf make_lcf(const Vec3i& p1, const Vec3i& p2, const Vec3i& p3) {
     return lcf;
   }
   const Vec3l x = normalize3(edge);
-  Vec3l normal = cross(edge, side);  // |edge|, |side| < 2^25: exact, below 2^51
+  Vec3l normal = cross(edge, side);  // |edge|, |side| <= 2^24: exact, at most 2^49
   if (is_zero(normal)) normal = direction_across(x);
   const Vec3l z = normalize3(normal);
   Vec3l y = cross(z, x);  // below 2^61

@@ -18,11 +18,11 @@ struct Lcf {
   std::array<Vec3l, 3> axis;  // x, y, z; unit vectors with 30 fractional bits
 };
 
-// 8.4.1 Frame of a seed triangle. |p| < 2^24. Degenerate triangles have the results of 8.4.2.
+// 8.4.1 Frame of a seed triangle. |p| <= 2^23. Degenerate triangles have the results of 8.4.2.
 Lcf make_lcf(const Vec3i& p1, const Vec3i& p2, const Vec3i& p3);
 
 // 8.4.3 World position of local coordinates; |local| <= 2^30.
-// Width: 2^25 * 2^33 + 3 * 2^30 * 2^30 < 2^62.
+// Width: 2^24 * 2^33 + 3 * (2^30 + 32) * 2^30 < 2^62.
 inline Vec3l lcf_to_world(const Lcf& lcf, std::int64_t x, std::int64_t y, std::int64_t z) {
   Vec3l p{};
   for (std::size_t c = 0; c < 3; ++c) {

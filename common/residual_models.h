@@ -11,10 +11,10 @@ namespace rlpc {
 
 inline constexpr int kResidualContexts = 9;
 inline constexpr int kResidualPrefix = 14;     // longest adaptive unary prefix
-inline constexpr int kResidualMaxEscape = 24;  // longest unary part of the escape code
+inline constexpr int kResidualMaxEscape = 27;  // longest unary part of the escape code
 
-// Magnitudes are clipped to this (clause 9.5.1), so that residuals fit 27 bits.
-inline constexpr std::uint64_t kMaxResidual = (1U << 26) - 1;
+// Magnitudes are clipped to this (clause 9.5.1), so that residuals fit 29 bits.
+inline constexpr std::uint64_t kMaxResidual = (1U << 28) - 1;
 
 struct ResidualModels {
   std::array<std::array<BitModel, kResidualPrefix>, kResidualContexts> prefix;
@@ -38,7 +38,7 @@ inline constexpr auto kResidualContextIndex = [] {
   return index;
 }();
 
-// 9.5.2 residual_context( expected ): the expected magnitude has 4 fractional bits.
+// 9.5.2 ResidualContext( expected ): the expected magnitude has 4 fractional bits.
 constexpr ResidualContext residual_context(std::uint32_t expected) {
   int shift = 0;
   while (expected >= 48) {
@@ -53,7 +53,7 @@ constexpr std::uint32_t magnitude_of(std::int32_t residual) {
   return static_cast<std::uint32_t>(residual < 0 ? -residual : residual);
 }
 
-// 9.5.3 update_mean( mean, magnitude, rate ): running mean of magnitudes with 8 fractional
+// 9.5.3 UpdateMean( mean, magnitude, rate ): running mean of magnitudes with 8 fractional
 // bits; 2^rate values is the length of its memory.
 constexpr std::uint32_t update_mean(std::uint32_t mean, std::uint32_t magnitude, int rate) {
   const std::uint32_t target = (magnitude < 0x100000 ? magnitude : 0x100000) << 8;

@@ -1,4 +1,4 @@
-// 8.2 Seed tracks: positions of the seed vertices in all frames of a GOF.
+// 8.2 Seed track process: positions of the seed vertices in all frames of a GOF.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,9 @@ namespace rlpc {
 
 using Track = std::vector<Vec3i>;  // [num_gof_frames], grid units
 
-// 8.2.1 Prediction of one coordinate of track `index` in frame f, from the frames before, from
-// the anchor track and, in frame 0, from the track before. `tracks` holds what is known so far.
+// 8.2.1 Prediction of a seed position: one coordinate of track `index` in frame f, from the
+// frames before, from the anchor track and, in frame 0, from the track before. `tracks` holds
+// what is known so far.
 std::int64_t predict_seed(const Gof& gof, const std::vector<Track>& tracks, std::size_t index,
                           std::uint32_t f, std::size_t c);
 

@@ -20,10 +20,11 @@
 namespace rlpc {
 namespace {
 
-// 7.2: a critical unit where it may not stand, or one that this version does not know.
+// 6.2 CheckUnitType( expected )
+// A unit where it may not stand, or a critical one that this version does not know.
 Error misplaced(const UnitHeader& unit) {
-  const bool known =
-      unit.type() >= UnitType::kSequenceHeader && unit.type() <= UnitType::kEndOfSequence;
+  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
+                                          unit.type() <= UnitType::kEndOfSequence);
   return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
                "unit_type", unit.offset * 8};
 }
@@ -57,8 +58,17 @@ class Decoder::Impl {
   Result<bool> check_end(const UnitHeader& unit);
   Result<bool> load_index();
   Result<std::uint32_t> gof_frames(const UnitHeader& unit);
+  // Of the next GOF unit, which begins with frames_parsed_.
+  void remember_gof(const UnitHeader& unit);
   Result<bool> load_gof();
   Result<bool> load_hashes();
+  Result<bool> decode_frame(std::span<std::int32_t> positions);
+  Result<bool> seek_gof(std::uint32_t frame);
+  // Whatever is loaded may not fit the position any more.
+  void fail(const Error& error) {
+    failure_ = error;
+    recon_.reset();
+  }
   Result<bool> verify_hash(std::span<const std::int32_t> positions);
   void to_output_order(std::span<std::int32_t> positions);
 
@@ -76,6 +86,7 @@ class Decoder::Impl {
   bool index_tried_ = false;
   bool ended_ = false;
 
+  std::optional<Error> failure_;  // stands until a seek
   std::optional<GofRecon> recon_;
   std::uint32_t gof_first_frame_ = 0;
   std::uint32_t position_ = 0;
@@ -247,6 +258,12 @@ Result<std::uint32_t> Decoder::Impl::gof_frames(const UnitHeader& unit) {
   return frames;
 }
 
+void Decoder::Impl::remember_gof(const UnitHeader& unit) {
+  if (gofs_.empty() || gofs_.back().first_frame < frames_parsed_) {
+    gofs_.push_back({unit.offset, frames_parsed_});
+  }
+}
+
 // Parses the GOF unit at offset_ and the hash unit behind it.
 Result<bool> Decoder::Impl::load_gof() {
   UnitHeader unit;
@@ -263,9 +280,7 @@ Result<bool> Decoder::Impl::load_gof() {
       parse_gof(r, header_, topology_, frames_parsed_, options_.limits.max_memory_bytes);
   if (!gof) return gof.error();
   recon_.emplace(header_, topology_, *gof);
-  if (gofs_.empty() || gofs_.back().first_frame < frames_parsed_) {
-    gofs_.push_back({unit.offset, frames_parsed_});
-  }
+  remember_gof(unit);
   gof_first_frame_ = frames_parsed_;
   frames_parsed_ += gof->num_frames;
   offset_ = unit.end();
@@ -319,6 +334,13 @@ void Decoder::Impl::to_output_order(std::span<std::int32_t> positions) {
 
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
   assert(positions.size() == 3 * std::size_t{header_.num_vertices});
+  if (failure_) return *failure_;
+  const auto more = decode_frame(positions);
+  if (!more) fail(more.error());
+  return more;
+}
+
+Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
   const bool loaded = recon_ && position_ < gof_first_frame_ + recon_->num_frames();
   if (!loaded) {
     if (ended_) return false;
@@ -336,47 +358,58 @@ Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
   assert(frame < header_.num_frames);
+  failure_.reset();
   const bool loaded =
       recon_ && frame >= gof_first_frame_ && frame < gof_first_frame_ + recon_->num_frames();
   if (!loaded) {
-    recon_.reset();
-    ended_ = false;
-    const bool met = !gofs_.empty() && frame < frames_parsed_;
-    if (!met && !index_tried_) {
-      if (auto ok = load_index(); !ok) return ok;
+    if (auto ok = seek_gof(frame); !ok) {
+      fail(ok.error());
+      return ok;
     }
-    const auto after = std::upper_bound(
-        gofs_.begin(), gofs_.end(), frame,
-        [](std::uint32_t f, const GofLocation& g) { return f < g.first_frame; });
-    if (after != gofs_.begin()) {
-      offset_ = std::prev(after)->offset;
-      frames_parsed_ = std::prev(after)->first_frame;
-    }
-    // Forward over GOFs that are not wanted: only their headers are read.
-    for (;;) {
-      UnitHeader unit;
-      const auto more = next_gof_unit(unit);
-      if (!more) return more;
-      if (!*more || frames_parsed_ == header_.num_frames) {
-        return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
-      }
-      const auto frames = gof_frames(unit);
-      if (!frames) return frames.error();
-      if (frame < frames_parsed_ + *frames) break;
-      frames_parsed_ += *frames;
-      offset_ = unit.end();
-    }
-    if (auto ok = load_gof(); !ok) return ok;
   }
   position_ = frame;
   return true;
 }
 
-Result<std::uint32_t> Decoder::Impl::parse_rest() {
+Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
+  recon_.reset();
+  ended_ = false;
+  const bool met = !gofs_.empty() && frame < frames_parsed_;
+  if (!met && !index_tried_) {
+    if (auto ok = load_index(); !ok) return ok;
+  }
+  const auto after =
+      std::upper_bound(gofs_.begin(), gofs_.end(), frame,
+                       [](std::uint32_t f, const GofLocation& g) { return f < g.first_frame; });
+  if (after != gofs_.begin()) {
+    offset_ = std::prev(after)->offset;
+    frames_parsed_ = std::prev(after)->first_frame;
+  }
+  // Forward over GOFs that are not wanted: only their headers are read.
   for (;;) {
-    const auto more = load_gof();
-    if (!more) return more.error();
-    if (!*more) break;
+    UnitHeader unit;
+    const auto more = next_gof_unit(unit);
+    if (!more) return more;
+    if (!*more || frames_parsed_ == header_.num_frames) {
+      return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
+    }
+    const auto frames = gof_frames(unit);
+    if (!frames) return frames.error();
+    if (frame < frames_parsed_ + *frames) break;
+    remember_gof(unit);
+    frames_parsed_ += *frames;
+    offset_ = unit.end();
+  }
+  return load_gof();
+}
+
+Result<std::uint32_t> Decoder::Impl::parse_rest() {
+  if (failure_) return *failure_;
+  while (!ended_) {
+    if (const auto more = load_gof(); !more) {
+      fail(more.error());
+      return more.error();
+    }
   }
   position_ = header_.num_frames;
   recon_.reset();

@@ -9,9 +9,9 @@
 
 namespace rlpc {
 
-// float((position + origin) * 2^log2_step). The sum has at most 33 bits and the power of two is
-// exact, so the product is exact in double (its exponent stays within -150 to 160) and is
-// rounded once, to float. -150 <= grid.log2_step <= 127.
+// float((position + origin) * 2^log2_step). The sum has at most 28 bits and the power of two is
+// exact, so the product is exact in double (its exponent stays within -150 to 147) and is
+// rounded once, to float. -150 <= grid.log2_step <= 120.
 inline float float_position(const Grid& grid, std::size_t axis, std::int32_t position) {
   const auto power =
       std::bit_cast<double>(static_cast<std::uint64_t>(1023 + grid.log2_step) << 52);

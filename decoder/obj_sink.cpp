@@ -2,6 +2,7 @@
 #include <cassert>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "decoder/frame_sink.h"
 #include "decoder/obj_text.h"

@@ -1,6 +1,7 @@
 #include "decoder/parse_connectivity.h"
 
 #include <cassert>
+#include <utility>
 
 #include "common/connectivity_models.h"
 #include "common/cut_border.h"
@@ -33,8 +34,10 @@ class ConnectivityParser {
   }
   bool ae(BitModel& model, const char* element);
   std::uint32_t bypass(int n, const char* element);
-  void trace(const char* element, std::uint32_t value) {
-    if (reader_.trace() != nullptr) reader_.trace()->element(element, value, bit_pos());
+  // Position of the element that comes, if anybody wants to know.
+  std::uint64_t mark() const { return reader_.trace() != nullptr ? bit_pos() : 0; }
+  void trace(const char* element, std::uint32_t value, std::uint64_t at) {
+    if (reader_.trace() != nullptr) reader_.trace()->element(element, value, at);
   }
 
   void component_start();
@@ -56,14 +59,16 @@ class ConnectivityParser {
 };
 
 bool ConnectivityParser::ae(BitModel& model, const char* element) {
+  const std::uint64_t at = mark();
   const bool value = rd_.bin(model);
-  trace(element, value ? 1 : 0);
+  trace(element, value ? 1 : 0, at);
   return value;
 }
 
 std::uint32_t ConnectivityParser::bypass(int n, const char* element) {
+  const std::uint64_t at = mark();
   const std::uint32_t value = rd_.bypass(n);
-  trace(element, value);
+  trace(element, value, at);
   return value;
 }
 

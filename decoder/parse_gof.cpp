@@ -85,7 +85,7 @@ bool GofSectionParser::bin(BitModel& model, const char* element) {
   return value;
 }
 
-// 6.5.2 header_delta( field )
+// 9.5.4 ae_header( field )
 std::int32_t GofSectionParser::header_delta(HeaderField field, const char* element) {
   std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
   const std::int32_t delta = residual(models_.header, mean >> 4, element);
@@ -182,14 +182,17 @@ std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction)
 
 // 6.5.4 seed_tracks( )
 void GofSectionParser::seed_tracks() {
+  frame_mean_.assign(gof_.num_frames, 0);
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
-    SeedContext context;
+    SeedContext context(frame_mean_);
     track.residual.resize(gof_.num_frames);
-    for (Vec3i& step : track.residual) {
+    for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) {
-        step[c] = residual(models_.seed, context.expected(c), "seed_residual");
-        context.update(c, step[c]);
+        const std::int32_t value =
+            residual(models_.seed, context.expected(f, c), "seed_residual");
+        context.update(f, c, value);
+        track.residual[f][c] = value;
       }
     }
     check_overrun("seed_residual");

@@ -12,8 +12,8 @@ Result<std::string> parse_metadata(BitReader& r) {
       r.u(32, "metadata_size", {0, std::int64_t{kMaxMetadataBytes}}, "R-MET-01");
   if (r.error()) return *r.error();
   const auto deflated = r.remaining_bytes();
-  std::string json(size, '\0');
-  uLongf inflated = size;
+  std::string json(size + 1, '\0');  // room to notice that there is more
+  uLongf inflated = size + 1;
   uLong used = static_cast<uLong>(deflated.size());
   const int status =
       uncompress2(reinterpret_cast<Bytef*>(json.data()), &inflated, deflated.data(), &used);
@@ -21,6 +21,7 @@ Result<std::string> parse_metadata(BitReader& r) {
     r.fail(Errc::kInvalid, "R-MET-02", "metadata_json", r.bit_pos());
     return *r.error();
   }
+  json.resize(size);
   return json;
 }
 

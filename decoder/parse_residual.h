@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// 9.5.1 residual( models, expected )
+// 9.5.1 ae_residual( models, expected )
 inline std::int32_t parse_residual(RangeDecoder& rd, ResidualModels& models,
                                    std::uint32_t expected) {
   const ResidualContext ctx = residual_context(expected);

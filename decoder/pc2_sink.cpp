@@ -2,6 +2,7 @@
 #include <cassert>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "decoder/float_position.h"
 #include "decoder/frame_sink.h"

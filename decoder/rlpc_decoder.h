@@ -14,7 +14,8 @@
 //
 // Nothing throws. Memory stays within one GOF and one frame; whatever a stream claims is
 // compared with its level and with DecodeLimits before memory is taken for it. A Decoder is
-// used by one thread at a time; different Decoders are independent.
+// used by one thread at a time; different Decoders are independent. After an error the decoder
+// repeats it until seek() succeeds, for example with a frame past the damage.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/mesh.h"
@@ -38,7 +40,7 @@ struct DecodeLimits {
   std::uint32_t max_vertices = 1U << 23;
   std::uint32_t max_triangles = 1U << 24;
   std::uint32_t max_frames = kMaxFrames;
-  std::uint64_t max_memory_bytes = std::uint64_t{1} << 40;  // estimated
+  std::uint64_t max_memory_bytes = std::uint64_t{1} << 32;  // estimated
 };
 
 struct DecoderOptions {

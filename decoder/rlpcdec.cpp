@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -119,6 +121,7 @@ void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames
 }
 
 int decode(const Options& o) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = open_input(o.input);
   if (!source) return complain(o, source.error());
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
@@ -190,7 +193,7 @@ void add_options(CLI::App& app, Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
   app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
   Options options;
@@ -205,4 +208,7 @@ int main(int argc, char** argv) {
   }
   options.decoder.verify_hashes = !options.no_hashes;
   return decode(options);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcdec: %s\n", error.what());  // out of memory, most likely
+  return rlpc::kExitLimit;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -194,7 +195,7 @@ int inform(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Tells what is in an .rlpc stream.", "rlpcinfo");
   app.set_version_flag("--version", "rlpcinfo " RLPC_VERSION);
   Options options;
@@ -208,4 +209,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
   return inform(options);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcinfo: %s\n", error.what());  // out of memory, most likely
+  return rlpc::kExitLimit;
 }

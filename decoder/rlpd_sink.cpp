@@ -1,5 +1,6 @@
 // Annex A: the .rlpd format.
 #include <cassert>
+#include <utility>
 
 #include "decoder/frame_sink.h"
 #include "decoder/output_file.h"

@@ -43,7 +43,7 @@ Result<bool> UnitReader::stream_header() {
   return true;
 }
 
-// 6.2 unit( )
+// 6.2 unit_header( )
 Result<UnitHeader> UnitReader::header_at(std::uint64_t offset) {
   std::array<std::uint8_t, kUnitHeaderBytes> bytes{};
   if (offset + bytes.size() > source_->size()) {

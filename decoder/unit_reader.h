@@ -1,9 +1,10 @@
-// 6.2 Units: finds them, reads them, checks their CRC.
+// 6.2: units; finds them, reads them, checks their CRC.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/bit_reader.h"

@@ -13,8 +13,9 @@ double distance2(const double* a, const double* b) {
 }
 
 // How well a triangle carries a frame: the smallest of its squared doubled areas over the GOF;
-// 0 if it degenerates in some frame.
-double triangle_quality(const GofFrames& frames, const Seed& t, int position_bits) {
+// 0 if it degenerates in some frame. Gives up once it is no better than `enough`.
+double triangle_quality(const GofFrames& frames, const Seed& t, int position_bits,
+                        double enough = 0.0) {
   double worst = std::numeric_limits<double>::infinity();
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     std::array<Vec3i, 3> p{};
@@ -30,7 +31,7 @@ double triangle_quality(const GofFrames& frames, const Seed& t, int position_bit
     const double ny = a[2] * b[0] - a[0] * b[2];
     const double nz = a[0] * b[1] - a[1] * b[0];
     worst = std::min(worst, nx * nx + ny * ny + nz * nz);
-    if (worst == 0.0) break;
+    if (worst <= enough) break;
   }
   return worst;
 }
@@ -74,8 +75,9 @@ MotionClusters::MotionClusters(const GofFrames& frames, std::span<const Triangle
     for (std::size_t c = 0; c < 3; ++c) centre[c] += frames.at(0, v)[c];
   }
   for (double& c : centre) c /= n;
-  for (std::uint32_t v = 0; v < n; ++v)
-    distance_[v] = distance2(frames.at(0, v), centre.data());
+  for (std::uint32_t v = 0; v < n; ++v) {  // a vertex without triangle cannot bring a seed
+    distance_[v] = incident_[v].empty() ? -1.0 : distance2(frames.at(0, v), centre.data());
+  }
 }
 
 // False when every vertex is a seed or was passed over.
@@ -107,7 +109,7 @@ bool MotionClusters::add_seed() {
 }
 
 // Total motion of every vertex between adjacent frames, seen from the frame of a seed (3.2).
-void MotionClusters::add_motion(const Seed& seed) {
+std::vector<double> MotionClusters::motion_in(const Seed& seed) const {
   const std::uint32_t n = frames_.num_vertices;
   std::vector<double> motion(n, 0.0);
   std::vector<std::array<double, 3>> before(n);
@@ -123,23 +125,71 @@ void MotionClusters::add_motion(const Seed& seed) {
       before[v] = q;
     }
   }
-  motion_.push_back(std::move(motion));
+  return motion;
 }
 
 Clustering MotionClusters::clusters(std::uint32_t count) {
-  while (seeds_.size() < count && add_seed()) add_motion(seeds_.back());
+  while (seeds_.size() < count && add_seed()) motion_.push_back(motion_in(seeds_.back()));
   const std::size_t found = std::min<std::size_t>(seeds_.size(), count);
   Clustering clustering;
   clustering.seeds.assign(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(found));
   clustering.cluster_of_vertex.assign(frames_.num_vertices, 0);
-  for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-    for (std::size_t i = 1; i < found; ++i) {
-      if (motion_[i][v] < motion_[clustering.cluster_of_vertex[v]][v]) {
-        clustering.cluster_of_vertex[v] = static_cast<std::uint16_t>(i);
-      }
-    }
+  std::vector<double> least(frames_.num_vertices, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < found; ++i) assign(clustering, i, motion_[i], least);
+  return clustering;
+}
+
+// Gives cluster i the vertices that move less in its frame than in those before.
+void MotionClusters::assign(Clustering& clustering, std::size_t i,
+                            const std::vector<double>& motion, std::vector<double>& least) {
+  for (std::uint32_t v = 0; v < motion.size(); ++v) {
+    if (motion[v] >= least[v]) continue;
+    least[v] = motion[v];
+    clustering.cluster_of_vertex[v] = static_cast<std::uint16_t>(i);
+  }
+}
+
+Clustering MotionClusters::spread_clusters(std::uint32_t count) {
+  Clustering clustering = clusters(count);
+  for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
+    clustering.seeds[i] = spread_seed(clustering, i);
+  }
+  std::vector<double> least(frames_.num_vertices, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
+    assign(clustering, i, motion_in(clustering.seeds[i]), least);
   }
   return clustering;
+}
+
+// Three far-apart vertices of a cluster, out of the half that moves least in the seed's frame.
+Seed MotionClusters::spread_seed(const Clustering& clustering, std::size_t i) const {
+  std::vector<std::uint32_t> calm;
+  for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
+    if (clustering.cluster_of_vertex[v] == i) calm.push_back(v);
+  }
+  std::sort(calm.begin(), calm.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return motion_[i][a] != motion_[i][b] ? motion_[i][a] < motion_[i][b] : a < b;
+  });
+  calm.resize((calm.size() + 1) / 2);
+  if (calm.size() < 3) return clustering.seeds[i];
+  const auto farthest_from = [&](std::uint32_t from) {
+    return *std::max_element(calm.begin(), calm.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return distance2(frames_.at(0, a), frames_.at(0, from)) <
+             distance2(frames_.at(0, b), frames_.at(0, from));
+    });
+  };
+  Seed seed{};
+  seed[0] = farthest_from(clustering.seeds[i][0]);
+  seed[1] = farthest_from(seed[0]);
+  double best = 0.0;
+  for (const std::uint32_t v : calm) {
+    const double quality =
+        triangle_quality(frames_, {seed[0], seed[1], v}, position_bits_, best);
+    if (quality <= best) continue;
+    best = quality;
+    seed[2] = v;
+  }
+  return best > 0.0 ? seed : clustering.seeds[i];
 }
 
 }  // namespace rlpc

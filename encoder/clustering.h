@@ -34,10 +34,17 @@ class MotionClusters {
   // Assigns each vertex to the one of the first `count` seeds in whose frame it moves least
   // over the GOF; ties go to the lower index. Fewer seeds than asked for may exist, even none.
   Clustering clusters(std::uint32_t count);
+  // The same clusters with each seed triangle replaced by three far-apart vertices of its
+  // cluster: noise then turns the frame less, and seeds can be coded coarser. Vertices are
+  // assigned afresh.
+  Clustering spread_clusters(std::uint32_t count);
 
  private:
   bool add_seed();
-  void add_motion(const Seed& seed);
+  std::vector<double> motion_in(const Seed& seed) const;
+  Seed spread_seed(const Clustering& clustering, std::size_t i) const;
+  static void assign(Clustering& clustering, std::size_t i, const std::vector<double>& motion,
+                     std::vector<double>& least);
 
   const GofFrames& frames_;
   std::span<const Triangle> triangles_;

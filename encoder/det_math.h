@@ -3,12 +3,14 @@
 #pragma once
 
 #include <bit>
+#include <cassert>
 #include <cstdint>
 
 namespace rlpc {
 
 // log2(x) for finite x > 0; absolute error below 1e-9.
 inline double det_log2(double x) {
+  assert(x > 0.0);
   const auto bits = std::bit_cast<std::uint64_t>(x);
   auto exponent = static_cast<int>((bits >> 52) & 0x7FF) - 1023;
   if (exponent == -1023) return det_log2(x * 0x1p60) - 60.0;  // subnormal

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <system_error>
+#include <utility>
 
 #include "encoder/obj_sequence.h"
 #include "encoder/pc2_reader.h"

@@ -17,16 +17,9 @@ constexpr std::array<std::uint32_t, 13> kCounts{1, 2, 3, 4, 6, 8, 12, 16, 24, 32
 constexpr std::uint32_t kVerticesPerCluster = 8;  // fewer are not worth a frame of their own
 
 // Seeds are coded this much finer than other values: their error turns whole clusters.
-constexpr double kSeedStepFactor = 0.125;
+constexpr double kSeedStepFactor = 0.18;
 // A component with less energy than this many squared steps costs more than it brings.
-constexpr double kMinEnergySteps = 3.0;
-
-// Steps are grouped by half octaves, so that analyses can be shared within a group.
-int scale_of(double step) { return static_cast<int>(std::floor(2.0 * det_log2(step))); }
-double step_of(int scale) {
-  const int octave = scale >= 0 ? scale / 2 : -((1 - scale) / 2);
-  return exact_exp2(octave) * (scale - 2 * octave == 1 ? 1.4142135623730951 : 1.0);
-}
+constexpr double kMinEnergySteps = 1.2;
 
 }  // namespace
 
@@ -52,27 +45,28 @@ GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
 }
 
 GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
-                     std::uint32_t first_frame, const EncoderSettings& settings)
+                     std::uint32_t first_frame, const EncoderSettings& settings,
+                     std::optional<GofChoice> choice)
     : context_(context),
       frames_(frames),
       first_frame_(first_frame),
       settings_(settings),
-      motion_(frames, context.triangles, context.header.position_bits) {
+      motion_(frames, context.triangles, context.header.position_bits),
+      choice_(choice) {
   const bool world = settings.frame_mode == FrameMode::kWorld;
-  if (settings.clusters > 0 && settings.frame_mode != FrameMode::kAuto) {
-    choice_ = Choice{settings.clusters, world};
+  if (!choice_ && settings.clusters > 0 && settings.frame_mode != FrameMode::kAuto) {
+    choice_ = GofChoice{settings.clusters, world};
   }
 }
 
-AnalysisSettings GofSearch::analysis_settings(double step, const Choice& choice) const {
+AnalysisSettings GofSearch::analysis_settings(double step, const GofChoice& choice) const {
   AnalysisSettings a;
   a.world = choice.world;
   a.max_components = context_.header.level().max_components;
-  const double scale_step = step_of(scale_of(step));
   const double seed_step =
       settings_.qdelta > 0
           ? exact_exp2(std::max(context_.header.position_bits - settings_.qdelta, 0))
-          : scale_step * kSeedStepFactor;
+          : step * kSeedStepFactor;
   a.seed_step = static_cast<std::uint32_t>(
       std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
   if (settings_.components > 0) {
@@ -81,7 +75,7 @@ AnalysisSettings GofSearch::analysis_settings(double step, const Choice& choice)
         a.max_components,
         settings_.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
   } else if (settings_.qu == 0) {
-    a.min_energy = kMinEnergySteps * scale_step * scale_step;
+    a.min_energy = kMinEnergySteps * step * step;
   }
   return a;
 }
@@ -99,18 +93,22 @@ CodingSettings GofSearch::coding_settings(double step) const {
   if (!settings_.rdo) {
     c.allocation = CodingSettings::Allocation::kFixed;
   } else if (settings_.components > 0) {
-    c.allocation = settings_.qu > 0 ? CodingSettings::Allocation::kVectorBudget
-                                    : CodingSettings::Allocation::kBitBudget;
+    c.allocation = settings_.rate_in_vectors ? CodingSettings::Allocation::kVectorBudget
+                                             : CodingSettings::Allocation::kBitBudget;
   }
   return c;
 }
 
-GofAnalysis GofSearch::analyse(double step, const Choice& choice) {
-  return analyse_gof(context_, frames_, first_frame_, motion_.clusters(choice.clusters),
+GofAnalysis GofSearch::analyse(double step, const GofChoice& choice) {
+  const bool spread = settings_.seed_mode == SeedMode::kSpread ||
+                      (settings_.seed_mode == SeedMode::kAuto && settings_.qu == 0);
+  const Clustering clustering =
+      spread ? motion_.spread_clusters(choice.clusters) : motion_.clusters(choice.clusters);
+  return analyse_gof(context_, frames_, first_frame_, clustering,
                      analysis_settings(step, choice));
 }
 
-double GofSearch::cost(double step, const Choice& choice) {
+double GofSearch::cost(double step, const GofChoice& choice) {
   const CodingSettings coding = coding_settings(step);
   const GofTrial trial = try_gof(context_, frames_, analyse(step, choice), coding);
   const double bits = 8.0 * static_cast<double>(trial.payload.size());
@@ -141,7 +139,7 @@ std::uint32_t GofSearch::choose_count(double step, bool world) {
   return kCounts[best];
 }
 
-GofSearch::Choice GofSearch::choose(double step) {
+GofChoice GofSearch::choose(double step) {
   const bool fast = settings_.preset == Preset::kFast;
   if (fast) {
     const auto wanted = static_cast<std::uint32_t>(std::sqrt(frames_.num_vertices) / 3.0);
@@ -150,22 +148,21 @@ GofSearch::Choice GofSearch::choose(double step) {
         settings_.frame_mode == FrameMode::kWorld};
   }
   const auto best_of = [&](bool world) {
-    return Choice{settings_.clusters > 0 ? settings_.clusters : choose_count(step, world),
-                  world};
+    return GofChoice{settings_.clusters > 0 ? settings_.clusters : choose_count(step, world),
+                     world};
   };
   if (settings_.frame_mode != FrameMode::kAuto) {
     return best_of(settings_.frame_mode == FrameMode::kWorld);
   }
-  const Choice local = best_of(false);
-  const Choice world = best_of(true);
+  const GofChoice local = best_of(false);
+  const GofChoice world = best_of(true);
   return cost(step, world) < cost(step, local) ? world : local;
 }
 
-GofTrial GofSearch::encode(double step) {
+GofTrial GofSearch::encode(double step, double analysis_step) {
   if (!choice_) choice_ = choose(step);
-  const int scale = settings_.qu > 0 ? 0 : scale_of(step);
-  if (!cached_ || cached_->scale != scale) {
-    cached_ = Cached{scale, *choice_, analyse(step, *choice_)};
+  if (!cached_ || cached_->step != analysis_step) {
+    cached_ = Cached{analysis_step, analyse(analysis_step, *choice_)};
   }
   return try_gof(context_, frames_, cached_->analysis, coding_settings(step));
 }

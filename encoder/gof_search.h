@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,33 +20,38 @@ struct GofTrial {
 GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
                  const GofAnalysis& analysis, const CodingSettings& coding);
 
-// Encodes one GOF at varying steps. Analyses are kept: those for nearby steps serve again.
+// How a GOF is cut into clusters.
+struct GofChoice {
+  std::uint32_t clusters;
+  bool world;
+};
+
+// Encodes one GOF at varying steps. The last analysis is kept, and serves again for its step.
 class GofSearch {
  public:
-  // context and frames are kept by reference.
+  // context, frames and settings are kept by reference. choice: that of an earlier search of
+  // the same GOF, or none.
   GofSearch(const EncodingContext& context, const GofFrames& frames, std::uint32_t first_frame,
-            const EncoderSettings& settings);
+            const EncoderSettings& settings, std::optional<GofChoice> choice);
 
   // The GOF at the settings' own quantisers (qu, qc, qdelta) or, without them, with the
   // quantiser step that is given, in grid steps.
-  GofTrial encode(double step);
+  // analysis_step: the step that the analysis is made for, near it.
+  GofTrial encode(double step, double analysis_step);
+  // Made by the first encode().
+  std::optional<GofChoice> choice() const { return choice_; }
 
  private:
-  struct Choice {
-    std::uint32_t clusters;
-    bool world;
-  };
   struct Cached {
-    int scale;  // of the step that it was made for
-    Choice choice;
+    double step;  // that it was made for
     GofAnalysis analysis;
   };
 
-  AnalysisSettings analysis_settings(double step, const Choice& choice) const;
+  AnalysisSettings analysis_settings(double step, const GofChoice& choice) const;
   CodingSettings coding_settings(double step) const;
-  GofAnalysis analyse(double step, const Choice& choice);
-  double cost(double step, const Choice& choice);
-  Choice choose(double step);
+  GofAnalysis analyse(double step, const GofChoice& choice);
+  double cost(double step, const GofChoice& choice);
+  GofChoice choose(double step);
   std::uint32_t choose_count(double step, bool world);
 
   const EncodingContext& context_;
@@ -55,7 +59,7 @@ class GofSearch {
   std::uint32_t first_frame_;
   const EncoderSettings& settings_;
   MotionClusters motion_;
-  std::optional<Choice> choice_;
+  std::optional<GofChoice> choice_;
   std::optional<Cached> cached_;
 };
 

@@ -75,7 +75,7 @@ GridChoice choose_grid(const Extent& extent, double finest_error) {
   const double reach = half * kMargin;
   int bits = kDefaultPositionBits;
   if (finest_error > 0.0 && reach > 0.0) {
-    const double steps = 2.0 * reach * kStepsPerError / finest_error;
+    const double steps = std::min(2.0 * reach * kStepsPerError / finest_error, 0x1p40);
     bits = std::clamp(ceil_exponent(steps), kDefaultPositionBits, kMaxPositionBits);
   }
   int log2_step = kMinGridLog2Step;

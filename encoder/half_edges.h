@@ -1,5 +1,5 @@
 // Cuts triangles into an oriented pseudo-manifold: which edges are glued, and which corners
-// are the same vertex instance (see 8.2).
+// are the same vertex instance (see 8.7.1).
 #pragma once
 
 #include <cstdint>

@@ -7,11 +7,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rlpc {
 namespace {
 
 using Square = Eigen::MatrixXd;
+
+constexpr double kRankTolerance = 1e-13;
 
 // Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
 void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
@@ -59,7 +62,7 @@ std::vector<std::vector<double>> project(const double* rows, std::size_t num_row
     std::fill(sums.begin(), sums.end(), 0.0);
     for (std::size_t i = 0; i < width; ++i) {
       const double x = rows[r * width + i];
-      const double* v = &by_element[i * count];
+      const double* v = by_element.data() + i * count;
       for (std::size_t k = 0; k < count; ++k) sums[k] += x * v[k];
     }
     for (std::size_t k = 0; k < count; ++k) out[k][r] = sums[k];
@@ -93,11 +96,13 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                              : gram(transposed.data(), matrix.num_frames, matrix.num_values);
   const Eigen::SelfAdjointEigenSolver<Square> solver(g);
   const Eigen::Index size = g.rows();
+  // What rounding leaves of a matrix of lower rank is no component.
+  const double least = std::max(min_energy, kRankTolerance * pc.total_energy);
   std::vector<std::vector<double>> vectors;
   for (Eigen::Index l = size - 1; l >= 0; --l) {
     const double energy = std::max(solver.eigenvalues()(l), 0.0);
     pc.energy.push_back(energy);
-    if (vectors.size() >= max_components || energy <= min_energy) continue;
+    if (vectors.size() >= max_components || energy <= least) continue;
     std::vector<double> v(static_cast<std::size_t>(size));
     for (Eigen::Index i = 0; i < size; ++i)
       v[static_cast<std::size_t>(i)] = solver.eigenvectors()(i, l);

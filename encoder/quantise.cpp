@@ -49,6 +49,9 @@ std::vector<std::int32_t> spatial_residuals(const std::vector<std::int32_t>& val
   return residuals;
 }
 
+// floor(eighths / 8)
+int floor_octave(int eighths) { return (eighths + 8000) / 8 - 1000; }
+
 // Exponent of a spatial factor's normalisation (8.5.2).
 int norm_shift(const QuantisedComponent& c) {
   const int bits = signed_width(c.spatial);
@@ -62,7 +65,7 @@ StepPair make_steps(double spatial_step, double temporal_step) {
   StepPair steps{spatial_step, temporal_step, 0};
   const double eighths = 8.0 * det_log2(spatial_step * temporal_step * kLocalUnit);
   steps.product_eighths = static_cast<int>(round_to_int(eighths));
-  const int octave = (steps.product_eighths + 8000) / 8 - 1000;  // floor
+  const int octave = floor_octave(steps.product_eighths);
   const auto index = static_cast<std::size_t>(steps.product_eighths - 8 * octave);
   const double product = kScaleMantissa[index] / 32768.0 * exact_exp2(octave);
   steps.spatial = product / (kLocalUnit * temporal_step);
@@ -117,16 +120,19 @@ void choose_predictors(QuantisedComponent& component, const SpatialPrediction& p
 
 int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clusters) {
   // A temporal step should span at least 4 units of the factor, so that rounding the factor
-  // adds little to the error.
+  // adds little to the error; but the factor must fit its width.
   constexpr int kTemporalUnitEighths = 16;
-  int fraction_bits = 0;
+  int wanted = 0;
+  int allowed = kMaxFractionBits;
   for (const auto& components : clusters) {
     for (const QuantisedComponent& c : components) {
-      const int missing = kTemporalUnitEighths - (c.steps.product_eighths - 8 * norm_shift(c));
-      fraction_bits = std::max(fraction_bits, (missing + 7) / 8);
+      const int eighths = c.steps.product_eighths - 8 * norm_shift(c);
+      const int octaves = floor_octave(eighths) + 1;  // the scale without fraction bits is less
+      wanted = std::max(wanted, -floor_octave(eighths - kTemporalUnitEighths));
+      allowed = std::min(allowed, kMaxTemporalBits - signed_width(c.temporal) - octaves);
     }
   }
-  return std::min(fraction_bits, kMaxFractionBits);
+  return std::clamp(wanted, 0, std::max(allowed, 0));
 }
 
 Component make_component(const QuantisedComponent& c, const SpatialPrediction& prediction,

@@ -26,6 +26,10 @@ namespace rlpc {
 // In which coordinates clusters are analysed; kAuto compares.
 enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
 
+// Which three vertices carry a local frame: a triangle of the mesh, as in the paper, or
+// vertices spread over the cluster. kAuto: triangles with qu and qc, else spread.
+enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
+
 // How hard the encoder searches. The syntax is the same.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 
@@ -52,10 +56,12 @@ struct EncoderSettings {
   std::uint32_t components =
       0;            // L of the paper, per cluster; 0: chosen by rate and distortion
   bool rdo = true;  // distribute components over the clusters by rate and distortion
-  int qu = 0;       // bits of eigenshapes, coefficients and seed positions relative to
-  int qc = 0;       // their ranges, as in the paper; 0: steps of equal distortion
+  bool rate_in_vectors = false;  // as the paper counts it; else in estimated bits
+  int qu = 0;  // bits of eigenshapes, coefficients and seed positions relative to
+  int qc = 0;  // their ranges, as in the paper; 0: steps of equal distortion
   int qdelta = 0;
   FrameMode frame_mode = FrameMode::kAuto;
+  SeedMode seed_mode = SeedMode::kAuto;
   std::uint32_t gof_frames = 0;  // longest GOF; 0: the default; kWholeSequence: one GOF
   bool keep_order = false;       // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;

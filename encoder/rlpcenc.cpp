@@ -1,7 +1,9 @@
 // rlpcenc: animations to .rlpc streams.
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -58,6 +60,7 @@ void add_options(CLI::App& app, Options& o) {
   using rlpc::FrameMode;
   using rlpc::HashMode;
   using rlpc::Preset;
+  using rlpc::SeedMode;
   app.add_option("input", o.input.path, "Animation to encode")->required();
   app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
   app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
@@ -102,10 +105,24 @@ void add_options(CLI::App& app, Options& o) {
       ->group(paper);
   app.add_flag("--no-rdo", o.no_rdo, "The same number of components in every cluster")
       ->group(paper);
+  app.add_option("--rdo-rate", o.settings.rate_in_vectors,
+                 "With --components, what the clusters share: bits, or vectors as in the paper")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, bool>{{"bits", false}, {"vectors", true}}))
+      ->group(paper)
+      ->default_str("bits");
   app.add_option("--frame", o.settings.frame_mode,
                  "Coordinates of clusters: auto, lcf (local frames), world")
       ->transform(CLI::CheckedTransformer(std::map<std::string, FrameMode>{
           {"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}}))
+      ->group(paper)
+      ->default_str("auto");
+  app.add_option("--seeds", o.settings.seed_mode,
+                 "Vertices that carry local frames: auto, triangle, spread")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SeedMode>{{"auto", SeedMode::kAuto},
+                                          {"triangle", SeedMode::kTriangle},
+                                          {"spread", SeedMode::kSpread}}))
       ->group(paper)
       ->default_str("auto");
   app.add_option("--gof", o.gof, "Longest group of frames, or `all` for one group")
@@ -139,6 +156,9 @@ int complain(const std::string& message) {
 // Settings that take more than CLI11's own conversions. False: usage.
 bool finish_settings(Options& o) {
   rlpc::EncoderSettings& s = o.settings;
+  if (o.json && o.output == "-") {
+    return complain("--json and the stream cannot both go to standard output"), false;
+  }
   if (!o.fps.empty()) {
     const auto rate = rlpc::parse_frame_rate(o.fps);
     if (!rate) return complain("--fps: " + rate.error().message), false;
@@ -201,11 +221,13 @@ void print_report(const Options& o, const rlpc::EncodeReport& r) {
 }
 
 int run(Options& o) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   if (!finish_settings(o)) return kUsage;
   if (auto error = read_metadata(o)) return complain(error->message);
   auto source = rlpc::open_frame_source(o.input);
   if (!source) return complain(source.error().message);
   rlpc::StreamFile file(o.output);
+  if (!file.write({})) return complain(file.commit()->message);  // known before the work
   rlpc::InputResult<rlpc::EncodeReport> report = rlpc::InputError{};
   {
     rlpc::ProgressBar bar("encoding", !o.quiet);
@@ -214,9 +236,9 @@ int run(Options& o) {
         [&](std::span<const std::uint8_t> bytes) { return file.write(bytes); },
         [&](double fraction) { bar.show(fraction); });
   }
-  const auto committed = report ? file.commit() : std::nullopt;
+  const bool ended = report || !file.write({});
+  if (const auto error = ended ? file.commit() : std::nullopt) return complain(error->message);
   if (!report) return complain(report.error().message);
-  if (committed) return complain(committed->message);
   if (auto error = write_order_map(o.order_map, *report)) return complain(error->message);
   if (o.json) {
     std::cout << rlpc::report_json(*report).dump(2) << "\n";
@@ -231,7 +253,7 @@ int run(Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Encodes an animated triangle mesh as an .rlpc stream.", "rlpcenc");
   app.set_version_flag("--version", "rlpcenc " RLPC_VERSION);
   Options options;
@@ -242,4 +264,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kUsage;
   }
   return run(options);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcenc: %s\n", error.what());  // out of memory, most likely
+  return kFailed;
 }

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -24,6 +24,7 @@ constexpr std::uint32_t kDefaultGofFrames = 128;
 constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;
 // Below this number of GOFs, an index saves nothing.
 constexpr std::size_t kMinIndexedGofs = 16;
+constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // of index_gof_bytes
 
 struct GofSpan {
   std::uint32_t first;
@@ -64,14 +65,15 @@ class SequenceEncoder {
   struct GofState {
     GofFrames frames;
     std::unique_ptr<GofSearch> search;
+    std::optional<GofChoice> choice;
   };
 
   std::optional<InputError> prepare();
   std::optional<InputError> set_level();
   std::optional<InputError> load(std::size_t g);
-  InputResult<SequenceTrial> encode_at(double step);
-  std::optional<InputError> encode_gof(std::size_t g, double step, SequenceTrial& trial,
-                                       MetricsAccumulator& metrics);
+  InputResult<SequenceTrial> encode_at(double step, double analysis_step);
+  std::optional<InputError> encode_gof(std::size_t g, double step, double analysis_step,
+                                       SequenceTrial& trial, MetricsAccumulator& metrics);
   std::optional<InputError> measure(const GofSpan& span, const Gof& gof, SequenceTrial& trial,
                                     MetricsAccumulator& metrics);
   double measured(const SequenceTrial& trial) const;
@@ -101,10 +103,15 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header_.frame_rate = source_.frame_rate();
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
-  const double finest = settings_.target.kind == Target::kKg
-                            ? extent->rms_spread * settings_.target.value / 100.0
-                        : settings_.target.kind == Target::kMaxError ? settings_.target.value
-                                                                     : 0.0;
+  // A rate may allow any error, so that the grid is as fine as it can be.
+  double finest = 0.0;
+  if (settings_.target.kind == Target::kKg) {
+    finest = extent->rms_spread * settings_.target.value / 100.0;
+  } else if (settings_.target.kind == Target::kMaxError) {
+    finest = settings_.target.value;
+  } else if (settings_.target.kind == Target::kBpvf) {
+    finest = std::numeric_limits<double>::min();
+  }
   const auto grid = choose_grid(*extent, finest);
   header_.grid = grid.grid;
   header_.position_bits = grid.position_bits;
@@ -135,6 +142,11 @@ std::optional<InputError> SequenceEncoder::prepare() {
 
 // The lowest level that allows this sequence.
 std::optional<InputError> SequenceEncoder::set_level() {
+  if (header_.num_frames > kMaxFrames) {
+    return InputError{"a sequence has at most " + std::to_string(kMaxFrames) +
+                      " frames (specification, Annex B), not " +
+                      std::to_string(header_.num_frames) + "; split it"};
+  }
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
   for (header_.level_idc = 1; header_.level_idc <= kMaxLevelIdc; ++header_.level_idc) {
@@ -172,8 +184,8 @@ std::optional<InputError> SequenceEncoder::load(std::size_t g) {
       }
     }
   }
-  state.search =
-      std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first, settings_);
+  state.search = std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first,
+                                             settings_, state.choice);
   return std::nullopt;
 }
 
@@ -214,11 +226,17 @@ std::optional<InputError> SequenceEncoder::measure(const GofSpan& span, const Go
 }
 
 std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step,
+                                                      double analysis_step,
                                                       SequenceTrial& trial,
                                                       MetricsAccumulator& metrics) {
   if (auto error = load(g)) return error;
-  const GofTrial encoded = gofs_[g].search->encode(step);
-  if (!keep_gofs_) gofs_[g] = {};
+  const GofTrial encoded = gofs_[g].search->encode(step, analysis_step);
+  GofState& state = gofs_[g];
+  state.choice = state.search->choice();
+  if (!keep_gofs_) {
+    state.search.reset();
+    state.frames = {};
+  }
   trial.gof_units.push_back(write_unit(UnitType::kGof, encoded.payload));
   trial.gof_bytes += trial.gof_units.back().size();
   trial.clusters += static_cast<std::uint32_t>(encoded.gof.clusters.size());
@@ -228,12 +246,12 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
   return measure(spans_[g], encoded.gof, trial, metrics);
 }
 
-InputResult<SequenceTrial> SequenceEncoder::encode_at(double step) {
+InputResult<SequenceTrial> SequenceEncoder::encode_at(double step, double analysis_step) {
   ++trials_;
   SequenceTrial trial;
   MetricsAccumulator metrics(header_.num_vertices);
   for (std::size_t g = 0; g < spans_.size(); ++g) {
-    if (auto error = encode_gof(g, step, trial, metrics)) return *error;
+    if (auto error = encode_gof(g, step, analysis_step, trial, metrics)) return *error;
     if (progress_) {
       // A search converges: each trial is worth half of what is left.
       const double within = static_cast<double>(g + 1) / static_cast<double>(spans_.size());
@@ -284,7 +302,7 @@ InputResult<EncodeReport> SequenceEncoder::write(const SequenceTrial& trial, dou
     index.push_back({spans_[g].count, trial.gof_units[g].size()});
   }
   std::uint32_t index_distance = 0;
-  if (index.size() >= kMinIndexedGofs) {
+  if (index.size() >= kMinIndexedGofs && report.bytes <= kMaxIndexedBytes) {
     const Bytes unit = write_unit(UnitType::kGofIndex, write_gof_index(first_gof, index));
     index_distance = static_cast<std::uint32_t>(unit.size());
     ok = ok && put(unit);
@@ -321,7 +339,7 @@ InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
   std::optional<SequenceTrial> best;
   double best_step = search.step();
   for (;;) {
-    auto trial = encode_at(search.step());
+    auto trial = encode_at(search.step(), search.analysis_step());
     if (!trial) return trial.error();
     const bool better = search.report(measured(*trial));
     if (better || !best) {
@@ -347,8 +365,11 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.qu > 0 && s.components == 0) {
     return InputError{"qu and qc need a number of components per cluster (--components)"};
   }
-  if (s.qu > 20 || s.qc > 20 || s.qdelta > 24) {
+  if (s.qu < 0 || s.qc < 0 || s.qdelta < 0 || s.qu > 20 || s.qc > 20 || s.qdelta > 24) {
     return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
+  }
+  if (s.metadata.size() > kMaxMetadataBytes) {
+    return InputError{"metadata may have at most 1 MiB"};
   }
   if (s.target.kind != Target::kNone && !(s.target.value > 0.0)) {
     return InputError{"a target must be above zero"};

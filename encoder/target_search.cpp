@@ -7,8 +7,9 @@ namespace rlpc {
 namespace {
 
 constexpr int kMaxTrials = 18;
-constexpr double kTolerance = 0.02;  // of the target, below it
-constexpr double kFinestStep = 0.5;  // grid steps
+constexpr double kTolerance = 0.02;     // of the target, below it
+constexpr double kFreezeWithin = 0.35;  // of the target
+constexpr double kFinestStep = 0.5;     // grid steps
 constexpr double kCoarsestStep = 0x1p24;
 
 }  // namespace
@@ -31,6 +32,12 @@ bool TargetSearch::report(double measured) {
     return true;
   }
   const bool within = measured <= target_.value;
+  const double ratio = measured / target_.value;
+  if (frozen_ == 0.0 && ratio > 1.0 - kFreezeWithin && ratio < 1.0 + kFreezeWithin) {
+    // What was measured before belongs to other analyses.
+    frozen_ = step_;
+    fine_ = coarse_ = 0.0;
+  }
   // The rate falls as the step grows, errors rise.
   const bool fine = (target_.kind == Target::kBpvf) != within;
   (fine ? fine_ : coarse_) = step_;

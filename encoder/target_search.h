@@ -13,6 +13,9 @@ class TargetSearch {
   TargetSearch(const Target& target, double spread, double steps_per_unit);
 
   double step() const { return step_; }
+  // The step that the analysis is made for. Close to the target it stays as it is, as the
+  // measured value jumps from one analysis to the next.
+  double analysis_step() const { return frozen_ > 0.0 ? frozen_ : step_; }
   double last_step() const { return last_step_; }
   // True if this is the best encoding so far.
   bool report(double measured);
@@ -25,6 +28,7 @@ class TargetSearch {
 
   Target target_;
   double step_ = 1.0;
+  double frozen_ = 0.0;  // analysis step; 0: not yet
   double last_step_ = 1.0;
   double best_ = 0.0;  // measured value of the best encoding
   double fine_ = 0.0;  // largest step known to be too fine or just right; 0: none

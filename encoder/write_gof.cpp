@@ -40,7 +40,7 @@ class GofSectionWriter {
   int previous_temporal_bits_ = Component{}.temporal_bits;
 };
 
-// 6.5.2 header_delta( field )
+// 9.5.4 ae_header( field )
 void GofSectionWriter::header_delta(HeaderField field, int value, int previous) {
   std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
   write_residual(re_, models_.header, mean >> 4, value - previous);
@@ -97,12 +97,14 @@ void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uin
 
 // 6.5.4 seed_tracks( )
 void GofSectionWriter::seed_tracks() {
+  frame_mean_.assign(gof_.num_frames, 0);
   for (const SeedTrack& track : gof_.seed_tracks) {
-    SeedContext context;
-    for (const Vec3i& residual : track.residual) {
+    SeedContext context(frame_mean_);
+    for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) {
-        write_residual(re_, models_.seed, context.expected(c), residual[c]);
-        context.update(c, residual[c]);
+        const std::int32_t residual = track.residual[f][c];
+        write_residual(re_, models_.seed, context.expected(f, c), residual);
+        context.update(f, c, residual);
       }
     }
   }

@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// 9.5.1 residual( models, expected ); |value| <= kMaxResidual
+// 9.5.1 ae_residual( models, expected ); |value| <= kMaxResidual
 inline void write_residual(RangeEncoder& re, ResidualModels& models, std::uint32_t expected,
                            std::int32_t value) {
   const auto magnitude = static_cast<std::uint32_t>(value < 0 ? -value : value);

@@ -19,7 +19,7 @@ Bytes write_stream_header() {
   return bytes;
 }
 
-// 6.2 unit( )
+// 6.2 unit_header( ), unit_body( )
 Bytes write_unit(UnitType type, const Bytes& payload) {
   BitWriter w;
   w.u(8, static_cast<std::uint32_t>(type));

@@ -1,0 +1,188 @@
+#include "encoder/target_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace rlpc {
+namespace {
+
+constexpr int kEnough = 100;  // no search may take so many trials
+
+struct Outcome {
+  double best = 0.0;  // measured for the encoding that was called the best
+  double best_step = 0.0;
+  double least = std::numeric_limits<double>::infinity();  // of all that were measured
+  int trials = 0;
+  bool met = false;
+};
+
+// measure(step) stands for an encoding.
+Outcome search(const Target& target, const std::function<double(double)>& measure,
+               double spread = 10000.0, double steps_per_unit = 1000.0) {
+  TargetSearch s(target, spread, steps_per_unit);
+  Outcome outcome;
+  while (!s.finished() && outcome.trials < kEnough) {
+    const double step = s.step();
+    EXPECT_GE(step, 0.5);
+    EXPECT_LE(step, 0x1p24);
+    const double measured = measure(step);
+    outcome.least = std::min(outcome.least, measured);
+    ++outcome.trials;
+    if (s.report(measured)) {
+      outcome.best = measured;
+      outcome.best_step = step;
+    }
+    EXPECT_EQ(s.last_step(), step);
+  }
+  outcome.met = s.met();
+  return outcome;
+}
+
+void expect_within_two_per_cent(const Target& target, const Outcome& outcome) {
+  EXPECT_LT(outcome.trials, kEnough);
+  EXPECT_TRUE(outcome.met);
+  EXPECT_LE(outcome.best, target.value);
+  EXPECT_GE(outcome.best, 0.98 * target.value);
+}
+
+TEST(TargetSearch, WithoutTargetTakesOneTrial) {
+  const Outcome outcome = search({Target::kNone, 0.0}, [](double step) { return step; });
+  EXPECT_EQ(outcome.trials, 1);
+  EXPECT_TRUE(outcome.met);
+}
+
+// Errors grow with the step, by powers from a square root to a square.
+TEST(TargetSearch, ReachesAnErrorFromBelow) {
+  for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
+    for (const double value : {0.003, 0.1, 2.0}) {
+      for (const double power : {0.5, 0.8, 1.0, 1.3, 2.0}) {
+        for (const double factor : {0.02, 1.0, 30.0}) {
+          SCOPED_TRACE(testing::Message() << value << " " << power << " " << factor);
+          const Target target{kind, value};
+          // The step where the target is met lies well within the range of steps.
+          const double at = 300.0 * factor;
+          expect_within_two_per_cent(target, search(target, [&](double step) {
+                                       return value * std::pow(step / at, power);
+                                     }));
+        }
+      }
+    }
+  }
+}
+
+// The rate falls as the step grows, down to that of headers and connectivity.
+TEST(TargetSearch, ReachesARateFromBelow) {
+  for (const double value : {0.3, 1.0, 6.0}) {
+    for (const double power : {0.3, 0.5, 1.0}) {
+      for (const double factor : {0.02, 1.0, 30.0}) {
+        SCOPED_TRACE(testing::Message() << value << " " << power << " " << factor);
+        const Target target{Target::kBpvf, value};
+        const double at = 300.0 * factor;
+        expect_within_two_per_cent(target, search(target, [&](double step) {
+                                     return 0.2 * value +
+                                            0.8 * value * std::pow(step / at, -power);
+                                   }));
+      }
+    }
+  }
+}
+
+// Neighbouring steps give values that scatter: whatever the search ends with, it does not lie
+// about it.
+TEST(TargetSearch, OfNoisyMeasurementsEndsWithTheClosestFromBelow) {
+  int within = 0;
+  int all = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const bool rate = seed % 3 == 0;
+    const Target target{rate            ? Target::kBpvf
+                        : seed % 3 == 1 ? Target::kKg
+                                        : Target::kMaxError,
+                        1.0};
+    double closest = 0.0;
+    const Outcome outcome = search(target, [&](double step) {
+      const double noise = 1.0 + 0.005 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
+      const double measured = noise * std::pow(step / 900.0, rate ? -0.5 : 0.9);
+      if (measured <= 1.0) closest = std::max(closest, measured);
+      return measured;
+    });
+    EXPECT_LT(outcome.trials, kEnough);
+    EXPECT_TRUE(outcome.met);
+    EXPECT_LE(outcome.best, 1.0);
+    EXPECT_EQ(outcome.best, closest);
+    within += outcome.best >= 0.98 ? 1 : 0;
+    ++all;
+  }
+  EXPECT_GE(within, all * 95 / 100);
+}
+
+// Measurements in stairs, as maximum errors often are: the last stair below the target.
+TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
+  const Outcome outcome =
+      search({Target::kMaxError, 1.0}, [](double step) { return step < 700.0 ? 0.6 : 1.5; });
+  EXPECT_LT(outcome.trials, kEnough);
+  EXPECT_TRUE(outcome.met);
+  EXPECT_EQ(outcome.best, 0.6);
+}
+
+TEST(TargetSearch, OfAnErrorThatCannotBeReachedEndsWithTheSmallest) {
+  for (const double floor : {0.11, 3.0}) {
+    const Outcome outcome =
+        search({Target::kKg, 0.1}, [&](double step) { return std::max(floor, 0.001 * step); });
+    EXPECT_LT(outcome.trials, kEnough);
+    EXPECT_FALSE(outcome.met);
+    EXPECT_EQ(outcome.best, floor);
+    EXPECT_EQ(outcome.best, outcome.least);
+  }
+}
+
+TEST(TargetSearch, OfARateThatCannotBeReachedEndsWithTheSmallest) {
+  const Outcome outcome =
+      search({Target::kBpvf, 0.1}, [](double step) { return 0.5 + 1.0 / step; });
+  EXPECT_LT(outcome.trials, kEnough);
+  EXPECT_FALSE(outcome.met);
+  EXPECT_EQ(outcome.best, outcome.least);
+}
+
+TEST(TargetSearch, OfWhatIsAlwaysExactEndsMet) {
+  for (const Target::Kind kind : {Target::kKg, Target::kMaxError, Target::kBpvf}) {
+    const Outcome outcome = search({kind, 0.1}, [](double) { return 0.0; });
+    EXPECT_LT(outcome.trials, kEnough);
+    EXPECT_TRUE(outcome.met);
+    EXPECT_EQ(outcome.best, 0.0);
+  }
+}
+
+TEST(TargetSearch, TargetsThatAreEasilyMetEndWithTheCoarsestOrFinestStep) {
+  const Outcome error =
+      search({Target::kKg, 50.0}, [](double step) { return 10.0 * step / 0x1p24; });
+  EXPECT_TRUE(error.met);
+  EXPECT_EQ(error.best_step, 0x1p24);
+  const Outcome rate = search({Target::kBpvf, 90.0}, [](double step) { return 10.0 / step; });
+  EXPECT_TRUE(rate.met);
+  EXPECT_EQ(rate.best_step, 0.5);
+}
+
+TEST(TargetSearch, OfInfiniteAndZeroMeasurementsEnds) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
+    const Outcome outcome = search(
+        {kind, 0.1}, [&](double) { return infinity; }, 0.0);
+    EXPECT_LT(outcome.trials, kEnough);
+    EXPECT_FALSE(outcome.met);
+    const Outcome jump =
+        search({kind, 0.1}, [&](double step) { return step < 100.0 ? 0.0 : infinity; });
+    EXPECT_LT(jump.trials, kEnough);
+    EXPECT_TRUE(jump.met);
+    EXPECT_EQ(jump.best, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace rlpc
