@@ -1,4 +1,4 @@
-// Writer and parser of the connectivity unit against each other (clauses 6.4 and 8.2).
+// Writer and parser of the connectivity unit against each other (clauses 6.4 and 8.7).
 #include <gtest/gtest.h>
 
 #include <algorithm>

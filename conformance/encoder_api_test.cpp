@@ -1,0 +1,208 @@
+// The encoder as an application uses it: what it refuses, and inputs at the edge.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/small_animation.h"
+#include "decoder/rlpc_decoder.h"
+
+namespace rlpc {
+namespace {
+
+bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
+
+// The message of the error, or "" if there is none.
+std::string error_of(FrameSource& source, const EncoderSettings& settings,
+                     const ByteSink& sink = discard) {
+  const auto report = encode(source, settings, sink);
+  return report ? "" : report.error().message;
+}
+std::string error_of(const std::function<void(EncoderSettings&)>& change) {
+  MemoryFrames source = bending_tube(4, 4);
+  EncoderSettings settings;
+  change(settings);
+  return error_of(source, settings);
+}
+
+TEST(Settings, ThatContradictEachOtherAreRefused) {
+  const auto paper = [](EncoderSettings& s) {
+    s.target = {Target::kNone, 0.0};
+    s.qu = s.qc = 10;
+    s.components = 2;
+  };
+  EXPECT_EQ(error_of(paper), "");
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qc = 0; }).find("go together"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qu = 0; }).find("go together"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) {
+              paper(s);
+              s.target = {Target::kKg, 0.1};
+            }).find("target"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.components = 0; }).find("components"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qu = 21; }).find("20 bits"), std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qdelta = 25; }).find("24 bits"),
+            std::string::npos);
+}
+
+TEST(Settings, ATargetIsAboveZero) {
+  for (const auto kind : {Target::kKg, Target::kBpvf, Target::kMaxError}) {
+    for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+      EXPECT_NE(error_of([&](auto& s) {
+                  s.target = {kind, value};
+                }).find("above zero"),
+                std::string::npos)
+          << value;
+    }
+  }
+}
+
+TEST(Settings, NoLevelHasMoreClusters) {
+  EXPECT_NE(error_of([](auto& s) { s.clusters = 1025; }).find("level"), std::string::npos);
+}
+
+TEST(Encoder, RefusesWhatNoLevelAllows) {
+  // 16384 frames are the most of a GOF.
+  std::vector<std::vector<float>> frames(16385, std::vector<float>{0.0F, 1.0F, 2.0F});
+  MemoryFrames source({}, std::move(frames));
+  EncoderSettings settings;
+  settings.gof_frames = EncoderSettings::kWholeSequence;
+  EXPECT_NE(error_of(source, settings).find("smaller --gof"), std::string::npos);
+}
+
+TEST(Encoder, ASinkThatFailsEndsIt) {
+  for (int calls = 0; calls < 3; ++calls) {
+    MemoryFrames source = bending_tube(4, 4);
+    int left = calls;
+    const auto sink = [&](std::span<const std::uint8_t>) { return left-- > 0; };
+    EXPECT_NE(error_of(source, {}, sink).find("could not be written"), std::string::npos);
+    EXPECT_EQ(left, -1) << "asked again after a failure";
+  }
+}
+
+// Fails at one frame, the n-th time that it is read.
+class FailingFrames final : public FrameSource {
+ public:
+  FailingFrames(std::uint32_t frame, int times)
+      : FrameSource({12, 5, {}, {{0, 1, 2}}}), frame_(frame), times_(times) {}
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    if (frame == frame_ && --times_ == 0) return InputError{"disk unplugged"};
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = static_cast<float>((i * i + 3 * frame) % 7);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::uint32_t frame_;
+  int times_;
+};
+
+TEST(Encoder, PassesOnTheErrorOfItsSource) {
+  for (const int times : {1, 2, 3}) {
+    FailingFrames source(3, times);
+    EXPECT_EQ(error_of(source, {}), "disk unplugged");
+  }
+}
+
+TEST(Encoder, RefusesCoordinatesBeyondItsGrid) {
+  MemoryFrames source({}, {{0.0F, 0.0F, 0.0F, 1.0F, 3e38F, 1.0F}});
+  EXPECT_NE(error_of(source, {}).find("scale the animation down"), std::string::npos);
+}
+
+TEST(Encoder, ReportsProgressUpToOne) {
+  MemoryFrames source = bending_tube(4, 8);
+  std::vector<double> seen;
+  ASSERT_TRUE(encode(source, {}, discard, [&](double fraction) { seen.push_back(fraction); }));
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(seen.back(), 1.0);
+  EXPECT_GE(seen.front(), 0.0);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+}
+
+// Inputs at the edge: they encode, decode, and are within the target.
+struct Edge {
+  const char* name;
+  std::vector<Triangle> triangles;
+  std::vector<std::vector<float>> frames;
+};
+
+std::vector<float> repeated(const std::vector<float>& once, std::size_t times) {
+  std::vector<float> all;
+  for (std::size_t i = 0; i < times; ++i) all.insert(all.end(), once.begin(), once.end());
+  return all;
+}
+
+std::vector<Edge> edges() {
+  const std::vector<Triangle> one{{0, 1, 2}};
+  const std::vector<float> corner{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::vector<float> line{0, 0, 0, 1, 0, 0, 2, 0, 0};
+  const std::vector<float> sevens = repeated({7, 7, 7}, 5);
+  std::vector<Edge> list;
+  list.push_back({"one vertex", {}, {{1, 2, 3}}});
+  list.push_back({"one vertex that moves", {}, {{1, 2, 3}, {2, 2, 3}, {4, 2, 3}}});
+  list.push_back({"two vertices", {}, {{1, 2, 3, 3, 2, 1}, {1, 2, 3, 3, 2, 2}}});
+  list.push_back({"one triangle", one, {corner, corner}});
+  list.push_back({"one frame", one, {corner}});
+  list.push_back({"no triangles", {}, {repeated({1, 2, 3, 0, 1, 0, 5, 5, 5}, 7)}});
+  list.push_back(
+      {"equal vertices", {{0, 1, 2}, {2, 3, 4}}, {sevens, sevens, repeated({8, 7, 7}, 5)}});
+  list.push_back({"all at the origin", one, {repeated({0, 0, 0}, 3), repeated({0, 0, 0}, 3)}});
+  list.push_back({"a degenerate triangle", {{0, 0, 1}}, {corner, corner}});
+  list.push_back({"a line, a corner, a point", one, {line, corner, repeated({5, 5, 5}, 3)}});
+  list.push_back({"huge", one, {{0, 0, 0, 1e30F, 0, 0, 0, 1e30F, 0}}});
+  list.push_back({"tiny", one, {{0, 0, 0, 1e-38F, 0, 0, 0, 1e-38F, 0}}});
+  list.push_back({"far away", one, {{1e6F, 0, 0, 1e6F, 1, 0, 1e6F, 1, 1}, corner}});
+  return list;
+}
+
+TEST(Encoder, TakesInputsAtTheEdge) {
+  for (const Edge& edge : edges()) {
+    for (const FrameMode mode : {FrameMode::kAuto, FrameMode::kLcf, FrameMode::kWorld}) {
+      for (const std::uint32_t clusters : {0U, 1U, 3U}) {
+        SCOPED_TRACE(testing::Message() << edge.name << ", " << clusters << " clusters, mode "
+                                        << static_cast<int>(mode));
+        FrameSource::Shape shape;
+        shape.triangles = edge.triangles;
+        MemoryFrames source(std::move(shape), edge.frames);
+        EncoderSettings settings;
+        settings.target = {Target::kKg, 1.0};
+        settings.frame_mode = mode;
+        settings.clusters = clusters;
+        settings.keep_order = true;
+        EncodeReport report;
+        const StreamBytes stream = encode_to_memory(source, settings, &report);
+        ASSERT_FALSE(stream.empty()) << error_of(source, settings);
+        EXPECT_TRUE(!report.target_met || report.metrics.kg_error_percent <= 1.0);
+        auto decoder = Decoder::open(memory_source(StreamBytes(stream)));
+        ASSERT_TRUE(decoder) << decoder.error().rule;
+        std::vector<std::int32_t> positions(3 * std::size_t{source.num_vertices()});
+        std::uint32_t frames = 0;
+        for (auto more = decoder->next_frame(positions);;
+             more = decoder->next_frame(positions)) {
+          ASSERT_TRUE(more) << more.error().rule << " " << more.error().element;
+          if (!*more) break;
+          ++frames;
+        }
+        EXPECT_EQ(frames, source.num_frames());
+      }
+    }
+  }
+}
+
+TEST(Encoder, SameInputAndSettingsGiveTheSameBytes) {
+  EXPECT_EQ(rich_stream(), rich_stream());
+  EXPECT_EQ(indexed_stream(), indexed_stream());
+}
+
+}  // namespace
+}  // namespace rlpc

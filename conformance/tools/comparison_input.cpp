@@ -1,0 +1,141 @@
+#include "conformance/tools/comparison_input.h"
+
+#include <cassert>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "decoder/describe_error.h"
+#include "decoder/float_position.h"
+#include "decoder/rlpc_decoder.h"
+#include "encoder/input_file.h"
+
+namespace rlpc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
+
+// The file of the same stem with another extension, if there is one.
+std::string sibling(const std::string& path, const char* extension) {
+  std::error_code ec;
+  const fs::path other = fs::path(path).replace_extension(extension);
+  return fs::is_regular_file(other, ec) ? other.string() : "";
+}
+
+// A stream as a sequence of float32 frames.
+class StreamSource final : public FrameSource {
+ public:
+  StreamSource(Shape shape, std::string path, Decoder decoder)
+      : FrameSource(std::move(shape)), path_(std::move(path)), decoder_(std::move(decoder)) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    if (frame != decoder_.position()) {
+      if (const auto ok = decoder_.seek(frame); !ok) return complain(ok.error());
+    }
+    positions_.resize(xyz.size());
+    if (const auto ok = decoder_.next_frame(positions_); !ok) return complain(ok.error());
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = float_position(decoder_.header().grid, i % 3, positions_[i]);
+    }
+    if (frame + 1 == num_frames()) {
+      // The rest of the stream must be as it should, too.
+      if (const auto ok = decoder_.next_frame(positions_); !ok) return complain(ok.error());
+    }
+    return check_finite(path_, frame, xyz);
+  }
+
+ private:
+  InputError complain(const Error& error) const {
+    return InputError{path_ + ": " + describe_error(error)};
+  }
+
+  std::string path_;
+  Decoder decoder_;
+  std::vector<std::int32_t> positions_;
+};
+
+InputResult<ComparisonInput> open_stream(const std::string& path) {
+  auto bytes = file_source(path);
+  if (!bytes) return InputError{path + ": " + describe_error(bytes.error())};
+  ComparisonInput input;
+  input.name = path;
+  input.stream_bytes = (*bytes)->size();
+  auto decoder = Decoder::open(std::move(*bytes));
+  if (!decoder) return InputError{path + ": " + describe_error(decoder.error())};
+  input.traversal_order = !decoder->has_vertex_order();
+  FrameSource::Shape shape;
+  shape.num_vertices = decoder->header().num_vertices;
+  shape.num_frames = decoder->header().num_frames;
+  shape.frame_rate = decoder->header().frame_rate;
+  shape.triangles.assign(decoder->triangles().begin(), decoder->triangles().end());
+  input.frames = std::make_unique<StreamSource>(std::move(shape), path, std::move(*decoder));
+  return input;
+}
+
+// With the point cache beside it, if that explains why there are fewer frames than `frames`.
+InputResult<ComparisonInput> add_cache(ComparisonInput input, const std::string& path,
+                                       const std::string& points, std::uint32_t frames) {
+  if (input.frames->num_frames() != 1 || frames == 1) return input;
+  if (!points.empty() || lower_extension(path) != ".obj") return input;
+  const std::string cache = sibling(path, ".pc2");
+  if (cache.empty()) return input;
+  return open_comparison_input(path, cache);
+}
+
+}  // namespace
+
+InputResult<ComparisonInput> open_comparison_input(const std::string& path,
+                                                   const std::string& points) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".rlpc") {
+    if (points.empty()) return open_stream(path);
+    return InputError{path + ": a stream has its own positions; leave out " + points};
+  }
+  InputOptions options{path, points, std::nullopt};
+  if (extension == ".pc2" && points.empty()) {
+    const std::string mesh = sibling(path, ".obj");
+    if (!mesh.empty()) options = {mesh, path, std::nullopt};
+  }
+  auto source = open_frame_source(options);
+  if (!source) return source.error();
+  ComparisonInput input;
+  input.frames = std::move(*source);
+  input.name = options.path;
+  if (!options.points.empty()) input.name += " with " + options.points;
+  return input;
+}
+
+InputResult<ComparisonPair> open_comparison_pair(const ComparisonPaths& paths) {
+  auto a = open_comparison_input(paths.a, paths.points_a);
+  if (!a) return a.error();
+  auto b = open_comparison_input(paths.b, paths.points_b);
+  if (!b) return b.error();
+  a = add_cache(std::move(*a), paths.a, paths.points_a, b->frames->num_frames());
+  if (!a) return a.error();
+  b = add_cache(std::move(*b), paths.b, paths.points_b, a->frames->num_frames());
+  if (!b) return b.error();
+
+  const auto differ = [&](std::uint32_t na, std::uint32_t nb, const std::string& what) {
+    return InputError{a->name + " has " + std::to_string(na) + " " + what + ", but " + b->name +
+                      " has " + std::to_string(nb)};
+  };
+  if (a->frames->num_vertices() != b->frames->num_vertices()) {
+    return differ(a->frames->num_vertices(), b->frames->num_vertices(), "vertices");
+  }
+  if (a->frames->num_frames() != b->frames->num_frames()) {
+    return differ(a->frames->num_frames(), b->frames->num_frames(), "frames");
+  }
+  return ComparisonPair{std::move(*a), std::move(*b)};
+}
+
+}  // namespace rlpc

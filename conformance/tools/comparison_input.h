@@ -1,0 +1,40 @@
+// One side of a comparison: everything that the encoder reads, and streams, decoded on the way.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "encoder/frame_source.h"
+
+namespace rlpc {
+
+struct ComparisonInput {
+  std::unique_ptr<FrameSource> frames;
+  std::string name;                // for people: "cow.obj with cow.pc2"
+  std::uint64_t stream_bytes = 0;  // size of an .rlpc file; 0: it is none
+  // Vertices stand in the order of the connectivity process, not in that of the input of the
+  // encoder.
+  bool traversal_order = false;
+};
+
+// `points` as in InputOptions; empty: none. An .rlpc file is decoded to float32, with its
+// hashes checked; x.pc2 takes its triangles from x.obj beside it.
+InputResult<ComparisonInput> open_comparison_input(const std::string& path,
+                                                   const std::string& points);
+
+// Both sides, with as many vertices and frames. x.obj alone is one frame; if the other side has
+// several and x.pc2 is beside it, the cache is read as well (and the name says so).
+struct ComparisonPair {
+  ComparisonInput a;
+  ComparisonInput b;
+};
+struct ComparisonPaths {
+  std::string a;
+  std::string points_a;
+  std::string b;
+  std::string points_b;
+};
+InputResult<ComparisonPair> open_comparison_pair(const ComparisonPaths& paths);
+
+}  // namespace rlpc

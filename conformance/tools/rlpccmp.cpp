@@ -1,0 +1,233 @@
+// rlpccmp: how far a decoded animation is from the original, and at what rate.
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/tools/comparison_input.h"
+#include "conformance/tools/vertex_matching.h"
+#include "encoder/metrics.h"
+#include "encoder/progress_bar.h"
+#include "encoder/report_json.h"
+#include "encoder/stream_file.h"
+
+namespace {
+
+enum ExitCode : int { kCompared = 0, kExceeded = 1, kFailed = 2, kUsage = 64 };
+
+constexpr const char* kExamples = R"(
+A is the original, B what was decoded. Either is one of
+  clip.rlpc                       a stream: decoded, its hashes checked, its bits counted
+  clip.rlpd                       decoded positions
+  mesh.obj with --points-a/-b     triangles from the mesh, positions from the point cache
+  clip.pc2                        the same, with the triangles of clip.obj beside it
+  folder/, f_%04d.obj, 'f_*.obj'  one OBJ file for each frame, in numeric order
+  mesh.obj                        one frame; if the other side has several and mesh.pc2 is
+                                  beside it, the cache is read as well, and the report says so
+
+Vertices of a stream are in the order of the input only if it was encoded with --keep-order. For
+all others, give --order-map the file that rlpcenc wrote with the option of that name.
+
+Examples
+  rlpcenc cow.obj --points cow.pc2 -o cow.rlpc --order-map cow.order
+  rlpccmp cow.obj cow.rlpc --points-a cow.pc2 --order-map cow.order
+  rlpccmp cow.obj cow.rlpd --points-a cow.pc2 --order-map cow.order --stream cow.rlpc
+  rlpccmp frames/ walk.rlpc --csv errors.csv             encoded with --keep-order
+  rlpccmp old.rlpc new.rlpc --max-kg 0.01 --quiet        a test for scripts
+
+KG error    100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
+RMS         root of the mean squared distance of a vertex, in units
+PSNR        of Ramanathan, Kassim and Tan 2008, 3.2: -10 log10 of the squared error over the
+            vertices that moved, relative to the largest displacement; mean over the frames
+
+Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input or output failed
+or cannot be compared; 64 usage.)";
+
+struct Options {
+  rlpc::ComparisonPaths paths;
+  std::string stream;
+  std::string order_map;
+  std::string csv;
+  std::optional<double> max_kg;
+  std::optional<double> max_error;
+  bool json = false;
+  bool quiet = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("A", o.paths.a, "The original")->required();
+  app.add_option("B", o.paths.b, "The decoded animation")->required();
+  app.add_option("--points-a,--points", o.paths.points_a,
+                 "Point cache (.pc2) with the frames of A");
+  app.add_option("--points-b", o.paths.points_b, "Point cache (.pc2) with the frames of B");
+  app.add_option("--order-map", o.order_map, "Per vertex of B, its index in A, a line each");
+  app.add_option("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
+      ->check(CLI::ExistingFile);
+  app.add_option("--csv", o.csv, "Write the errors of each frame; - for standard output");
+  app.add_option("--max-kg", o.max_kg, "Exit code 1 if the KG error is above, per cent")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--max-error", o.max_error,
+                 "Exit code 1 if a vertex is further off, in units of A")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--json", o.json, "Report as JSON on standard output");
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
+  app.footer(kExamples);
+}
+
+int complain(const std::string& message) {
+  std::cerr << "rlpccmp: " << message << "\n";
+  return kFailed;
+}
+
+// Frames are fed in the vertex order of A, as the encoder feeds its own.
+rlpc::InputResult<rlpc::Metrics> compare(const rlpc::ComparisonPair& pair,
+                                         const std::vector<std::uint32_t>& map, bool progress) {
+  rlpc::FrameSource& a = *pair.a.frames;
+  rlpc::FrameSource& b = *pair.b.frames;
+  const std::size_t values = 3 * std::size_t{a.num_vertices()};
+  std::vector<float> original(values);
+  std::vector<float> decoded(values);
+  std::vector<float> in_order(values);
+  rlpc::MetricsAccumulator metrics(a.num_vertices());
+  rlpc::ProgressBar bar("comparing", progress);
+  for (std::uint32_t f = 0; f < a.num_frames(); ++f) {
+    if (auto error = a.read_frame(f, original)) return *error;
+    if (auto error = b.read_frame(f, decoded)) return *error;
+    for (std::size_t v = 0; v < map.size(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        in_order[3 * std::size_t{map[v]} + c] = decoded[3 * v + c];
+      }
+    }
+    metrics.add_frame(original, in_order);
+    bar.show((f + 1.0) / a.num_frames());
+  }
+  return metrics.result();
+}
+
+// The shortest digits that give the value back.
+std::string digits(double value) {
+  char text[64];
+  const auto [end, ec] = std::to_chars(text, text + sizeof text, value);
+  return {text, ec == std::errc() ? end : text};
+}
+
+// As Metrics::kg_error_percent, of one frame.
+double kg_error_percent(const rlpc::FrameMetrics& frame) {
+  if (frame.spread > 0) return 100 * std::sqrt(frame.squared_error) / std::sqrt(frame.spread);
+  return frame.squared_error > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::Metrics& m) {
+  std::string text = "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db\n";
+  for (std::size_t f = 0; f < m.frames.size(); ++f) {
+    const rlpc::FrameMetrics& frame = m.frames[f];
+    text += std::to_string(f) + "," + digits(kg_error_percent(frame)) + "," +
+            digits(frame.rms_error) + "," + digits(frame.max_error) + "," +
+            std::to_string(frame.max_error_vertex) + "," + digits(frame.psnr_db) + "\n";
+  }
+  rlpc::StreamFile file(path);
+  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return file.commit();
+}
+
+struct Rate {
+  std::uint64_t bytes = 0;  // 0: unknown
+  double bpvf = 0.0;
+};
+
+void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::Metrics& m) {
+  nlohmann::ordered_json json = {{"a", pair.a.name},
+                                 {"b", pair.b.name},
+                                 {"num_vertices", pair.a.frames->num_vertices()},
+                                 {"num_frames", pair.a.frames->num_frames()}};
+  if (rate.bytes > 0) {
+    json["bytes"] = rate.bytes;
+    json["bpvf"] = rate.bpvf;
+  }
+  json["metrics"] = rlpc::metrics_json(m);
+  std::cout << json.dump(2) << "\n";
+}
+
+void print_report(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::Metrics& m) {
+  std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", pair.a.name.c_str(),
+              pair.b.name.c_str(), pair.a.frames->num_vertices(), pair.a.frames->num_frames());
+  if (rate.bytes > 0) {
+    std::printf("  rate      %.4f bits per vertex and frame (%llu bytes)\n", rate.bpvf,
+                static_cast<unsigned long long>(rate.bytes));
+  }
+  std::printf("  KG error  %.4f %%\n", m.kg_error_percent);
+  std::printf("  RMS       %.6g (%.4f %% of the diagonal)\n", m.rms_error, m.rms_error_percent);
+  std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
+              m.max_error_percent, m.max_error_frame, m.max_error_vertex);
+  if (m.max_error > 0) {
+    std::printf("  PSNR      %.2f dB in the mean\n", m.mean_psnr_db);
+  } else {
+    std::printf("  PSNR      infinite: every frame is exact\n");
+  }
+}
+
+int check_gates(const Options& o, const rlpc::Metrics& m) {
+  int code = kCompared;
+  const auto gate = [&](const char* name, double value, const std::optional<double>& limit) {
+    if (!limit || value <= *limit) return;
+    complain(name + digits(value) + " is above " + digits(*limit));
+    code = kExceeded;
+  };
+  gate("KG error ", m.kg_error_percent, o.max_kg);
+  gate("largest error ", m.max_error, o.max_error);
+  return code;
+}
+
+int run(const Options& o) {
+  const auto pair = rlpc::open_comparison_pair(o.paths);
+  if (!pair) return complain(pair.error().message);
+  const auto map = rlpc::match_vertices(*pair, o.order_map);
+  if (!map) return complain(map.error().message);
+  Rate rate{pair->b.stream_bytes, 0.0};
+  if (!o.stream.empty()) {
+    std::error_code ec;
+    rate.bytes = std::filesystem::file_size(o.stream, ec);
+    if (ec) return complain(o.stream + ": " + ec.message());
+  }
+  rate.bpvf = rlpc::bits_per_vertex_per_frame(rate.bytes, pair->a.frames->num_vertices(),
+                                              pair->a.frames->num_frames());
+  const auto metrics = compare(*pair, *map, !o.quiet);
+  if (!metrics) return complain(metrics.error().message);
+  if (!o.csv.empty()) {
+    if (const auto error = write_csv(o.csv, *metrics)) return complain(error->message);
+  }
+  if (o.json) {
+    print_json(*pair, rate, *metrics);
+  } else if (!o.quiet && o.csv != "-") {
+    print_report(*pair, rate, *metrics);
+  }
+  return check_gates(o, *metrics);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Compares a decoded animation with its original.", "rlpccmp");
+  app.set_version_flag("--version", "rlpccmp " RLPC_VERSION);
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kCompared : kUsage;
+  }
+  return run(options);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpccmp: %s\n", error.what());  // out of memory, most likely
+  return kFailed;
+}

@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+"""The tools when something is wrong: with the input, with the output, with a stream.
+
+    tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
+"""
+
+import math
+import resource
+import struct
+
+from tools_testing import INPUTS, ToolsTest, main, run, write_pc2
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+class BadInput(ToolsTest):
+    """An exit code and one line that names the file; nothing is left at the output."""
+
+    def refused(self, words, *arguments):
+        self.path("out.rlpc").unlink(missing_ok=True)
+        self.fails(1, words, "rlpcenc", *arguments, "-o", self.path("out.rlpc"))
+        self.assertFalse(self.path("out.rlpc").exists())
+        self.assertEqual([name for name in self.files() if "partial" in name], [])
+
+    def accepted(self, *arguments):
+        """Encodes, decodes, compares; the report."""
+        report = self.ok("rlpcenc", *arguments, "-o", self.path("out.rlpc"), "--keep-order",
+                         "--json").json()
+        self.ok("rlpcdec", self.path("out.rlpc"), "-o", self.path("decoded.rlpd"))
+        points = ["--points-a", arguments[2]] if len(arguments) > 2 else []
+        compared = self.ok("rlpccmp", arguments[0], *points, self.path("out.rlpc"), "--json").json()
+        self.assertEqual(compared["metrics"], report["metrics"])
+        self.assertTrue(report["target_met"])
+        return report
+
+    def obj(self, text, name="mesh.obj"):
+        path = self.path(name)
+        if isinstance(text, bytes):
+            path.write_bytes(text)
+        else:
+            path.write_text(text)
+        return path
+
+    def test_obj_that_is_none(self):
+        self.refused("none.obj", self.path("none.obj"))
+        self.refused("mesh.obj", self.obj(""))
+        self.refused("mesh.obj", self.obj("# nothing\n"))
+        self.refused("mesh.obj", self.obj(bytes(range(256)) * 40))
+        self.refused("mesh.obj", self.obj(b"v 0 0 0\nv \xff\xfe 0 0\n"))
+        self.refused("mesh.txt", self.obj(TRIANGLE, "mesh.txt"))
+        self.path("empty").mkdir()
+        self.refused("empty", self.path("empty"))
+
+    def test_obj_with_bad_values(self):
+        self.refused(["mesh.obj", "4"], self.obj(TRIANGLE.replace("1 2 3", "1 2 4")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2 0")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2 -4")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2")))
+        for value in ("nan", "inf", "-inf", "1e39", "x", ""):
+            self.refused("mesh.obj", self.obj(TRIANGLE.replace("v 1 0 0", f"v 1 0 {value}")))
+
+    def test_point_cache_that_does_not_fit(self):
+        mesh = self.obj(TRIANGLE)
+        cache = self.path("c.pc2")
+        write_pc2(cache, [[0.0] * 12] * 2)
+        self.refused(["c.pc2", "4 points", "3 vertices"], mesh, "--points", cache)
+        write_pc2(cache, [[0.0] * 9] * 3)
+        whole = cache.read_bytes()
+        for size in (0, 5, 31, 32, 33, len(whole) - 1):
+            cache.write_bytes(whole[:size])
+            self.refused("c.pc2", mesh, "--points", cache)
+        cache.write_bytes(whole + b"\0")
+        self.refused("c.pc2", mesh, "--points", cache)
+        cache.write_bytes(whole[:28] + struct.pack("<i", 0))
+        self.refused("c.pc2", mesh, "--points", cache)
+        for value in (math.nan, math.inf, -math.inf):
+            write_pc2(cache, [[0.0] * 9, [1.0] * 5 + [value] + [1.0] * 3])
+            self.refused(["c.pc2", "frame 1"], mesh, "--points", cache)
+        self.refused("none.pc2", mesh, "--points", self.path("none.pc2"))
+        self.refused("c.pc2", cache)
+
+    def test_sequences_that_change(self):
+        self.obj(TRIANGLE, "f_1.obj")
+        self.obj(TRIANGLE.replace("1 2 3", "1 3 2"), "f_2.obj")
+        self.refused(["f_2.obj", "frame 1"], self.path("f_%d.obj"))
+        self.obj(TRIANGLE + "v 1 1 1\n", "f_2.obj")
+        self.refused(["f_2.obj", "frame 1"], self.path("f_*.obj"))
+        self.path("f_2.obj").unlink()
+        self.obj(TRIANGLE, "f_3.obj")
+        self.refused("f_2.obj", self.path("f_%d.obj"))
+        self.refused("g_%d.obj", self.path("g_%d.obj"))
+
+    def test_unusual_meshes_work(self):
+        quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4\nf 1/1/1 3//2 4/4 5\n"
+        self.assertEqual(self.accepted(self.obj(quad))["num_triangles"], 4)
+        self.assertEqual(self.accepted(self.obj("v 1 2 3\nv 3 2 1\nv 0 0 1\n"))["num_triangles"], 0)
+        self.assertEqual(self.accepted(self.obj("v 1 2 3\n"))["num_vertices"], 1)
+        self.assertEqual(self.accepted(self.obj(TRIANGLE))["num_frames"], 1)
+        self.accepted(self.obj(TRIANGLE.replace("1 0", "0 0").replace("0 1", "0 0")))
+        self.accepted(self.obj(TRIANGLE.replace("f 1 2 3", "f 1 1 1")))
+        self.accepted(self.obj(TRIANGLE.replace("v 1 0 0", "v 1e30 0 0")))
+        self.accepted(self.obj(TRIANGLE.replace("v 1 0 0", "v 1e-30 0 0").replace("1 0", "0 0")))
+        self.refused("scale", self.obj(TRIANGLE.replace("v 1 0 0", "v 3e38 0 0")))
+        mesh, cache = self.obj(TRIANGLE), self.path("c.pc2")
+        write_pc2(cache, [[1.0] * 9] * 5)
+        self.accepted(mesh, "--points", cache)
+        write_pc2(cache, [[0.0, 0, 0, 1, 0, 0, 0, 1, 0], [1e30, 0, 0, 1, 0, 0, 0, -1e30, 0]])
+        self.accepted(mesh, "--points", cache)
+
+    def test_more_than_a_level_allows(self):
+        mesh, cache = self.obj("v 0 0 0\n"), self.path("c.pc2")
+        write_pc2(cache, [[0.0, 1.0, 2.0]] * 16385)
+        self.refused("no level allows", mesh, "--points", cache, "--gof", "all")
+        self.refused("no level allows", mesh, "--points", cache, "--gof", 20000)
+
+    def test_usage(self):
+        mesh = self.obj(TRIANGLE)
+        self.fails(64, "", "rlpcenc", mesh)
+        self.fails(64, "", "rlpcenc", mesh, "-o")
+        for options in ("--kg 0", "--kg -1", "--kg a", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x",
+                        "--fps 0", "--fps a", "--preset best", "--clusters 0", "--qu 1",
+                        "--frame y", "--profile main", "--nonsense"):
+            self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
+        self.assertEqual(self.files(), ["mesh.obj"])
+        for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):
+            self.assertIn(b"Exit code", self.ok(tool, "--help").out)
+            self.assertRegex(self.ok(tool, "--version").out, rb"\d+\.\d+\.\d+")
+            self.fails(64, "", tool)
+
+    def test_settings_that_contradict(self):
+        mesh = self.obj(TRIANGLE)
+        self.refused("both", mesh, "--qu", 12, "--components", 2)
+        self.refused("target", mesh, "--qu", 12, "--qc", 12, "--components", 2, "--kg", 1)
+        self.refused("--components", mesh, "--qu", 12, "--qc", 12)
+        self.refused("m.json", mesh, "--metadata", self.obj("{", "m.json"))
+
+
+def limited(size):
+    """Before the tool starts: files may grow to `size` bytes; beyond, writing fails (EFBIG)."""
+    return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+            "restore_signals": False}
+
+
+class BadOutput(ToolsTest):
+    """What could not be written whole is not there at all, and what was there before stays."""
+
+    def encode_to(self, output, **options):
+        return run("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
+                   output, "--kg", 1,
+                   "--preset", "fast", **options)
+
+    def expect_untouched(self, result, code, *names):
+        self.assertEqual(result.code, code, result.err)
+        self.assertEqual(result.err.count("\n"), 1, result.err)
+        self.assertEqual(self.files(), sorted(names))
+
+    def test_places_that_cannot_be_written(self):
+        self.path("folder").mkdir()
+        for output in (self.path("none/a.rlpc"), self.path("folder"), "/dev/full"):
+            result = self.encode_to(output)
+            self.expect_untouched(result, 1, "folder")
+            self.assertIn(str(output), result.err)
+
+    def test_a_full_disk_while_encoding(self):
+        for before in (None, b"what was there"):
+            if before:
+                self.path("a.rlpc").write_bytes(before)
+            result = self.encode_to(self.path("a.rlpc"), **limited(2000))
+            self.expect_untouched(result, 1, *(["a.rlpc"] if before else []))
+            self.assertIn("a.rlpc", result.err)
+            if before:
+                self.assertEqual(self.path("a.rlpc").read_bytes(), before)
+
+    def test_a_full_disk_while_decoding(self):
+        self.assertEqual(self.encode_to(self.path("a.rlpc")).code, 0)
+        for output in ("b.rlpd", "b.pc2", "folder", "new/f_%d.obj"):
+            result = run("rlpcdec", self.path("a.rlpc"), "-o", self.path(output), **limited(9000))
+            self.expect_untouched(result, 4, "a.rlpc")
+        result = run("rlpcdec", self.path("a.rlpc"), "-o", "/dev/full")
+        self.assertEqual(result.code, 4, result.err)
+        result = run("rlpcdec", self.path("a.rlpc"), "-o", self.path("none/b.rlpd"))
+        self.expect_untouched(result, 4, "a.rlpc")
+
+    def test_other_files(self):
+        result = run("rlpcenc", INPUTS / "elephant.obj", "-o", self.path("b.rlpc"), "--order-map",
+                     self.path("none/x"))
+        self.assertEqual(result.code, 1, result.err)
+        self.assertIn("none/x", result.err)
+        result = run("rlpccmp", INPUTS / "elephant.pc2", INPUTS / "elephant.pc2", "--csv",
+                     self.path("none/x"))
+        self.assertEqual(result.code, 2, result.err)
+        self.assertIn("none/x", result.err)
+
+
+class BadStreams(ToolsTest):
+    """conformance/robustness_test.cpp damages every byte; here, what the tools make of it."""
+
+    def setUp(self):
+        super().setUp()
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--gof", 20)
+        self.stream = self.path("a.rlpc").read_bytes()
+
+    def expect(self, code, words, stream):
+        bad = self.path("bad.rlpc")
+        bad.write_bytes(stream)
+        for output in ("x.rlpd", "x.pc2", "folder"):
+            self.fails(code, ["bad.rlpc", words], "rlpcdec", bad, "-o", self.path(output))
+            self.assertFalse(self.path(output).exists())
+        self.fails(code, ["bad.rlpc", words], "rlpcdec", bad, "--verify")
+        self.fails(code, "bad.rlpc", "rlpcinfo", bad)
+        self.fails(2, "bad.rlpc", "rlpccmp", bad, bad)
+        self.assertEqual(self.files(), ["a.rlpc", "bad.rlpc"])
+
+    def test_damage_is_an_error_and_leaves_no_output(self):
+        middle, last = len(self.stream) // 2, len(self.stream) - 1
+        self.expect(1, "R-", b"")
+        self.expect(1, "R-", b"\x89PNG\r\n\x1a\n" + self.stream[8:])
+        for size in (4, 9, 20, middle, last):
+            self.expect(1, "cut off", self.stream[:size])
+        for at in (30, middle, last):
+            damaged = bytearray(self.stream)
+            damaged[at] ^= 4
+            self.expect(1, "R-UNT-03", bytes(damaged))
+        self.expect(1, "R-END-02", self.stream + b"\0")
+        self.expect(2, "R-STR-02", self.stream[:8] + b"\2" + self.stream[9:])
+
+    def test_limits(self):
+        for option in (["--max-vertices", 500], ["--max-memory", "50KB"]):
+            self.fails(3, "limits", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
+                       *option)
+        self.assertEqual(self.files(), ["a.rlpc"])
+        self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--max-vertices", 538, "--max-memory",
+                "100MB")
+
+    def test_missing(self):
+        for tool, arguments in (("rlpcdec", ["--verify"]), ("rlpcinfo", [])):
+            self.fails(4, "none.rlpc", tool, self.path("none.rlpc"), *arguments)
+        self.fails(64, "-o OUT", "rlpcdec", self.path("a.rlpc"))
+
+
+if __name__ == "__main__":
+    main()
