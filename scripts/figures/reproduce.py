@@ -19,7 +19,7 @@ METHODS = {  # options beside N, L and the quantisers, and a colour (as in figur
     "PCA": (["--frame", "world", "--no-rdo"], "#8a8a8a"),
     "LPCA": (["--frame", "world", "--no-rdo"], "#009e73"),
     "RLPCA": (["--frame", "lcf", "--no-rdo"], "#0072b2"),
-    "ORLPCA": (["--frame", "lcf"], "#d55e00"),
+    "ORLPCA": (["--frame", "lcf", "--rdo-rate", "vectors"], "#d55e00"),
 }
 OURS, OUR_COLOUR = "target KG", "#111111"
 COMPONENTS = (2, 4, 6, 10, 15, 20, 30, 40)
