@@ -18,8 +18,7 @@ inline std::uint32_t crc32_of(std::span<const std::uint8_t> bytes, std::uint32_t
 // 9.7.2 Hash of positions: the CRC of their bytes, 32 bits each, least significant byte first.
 inline std::uint32_t crc32_of_positions(std::span<const std::int32_t> positions,
                                         std::uint32_t crc = 0) {
-  std::array<std::uint8_t, 4096>
-      block;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled
+  std::array<std::uint8_t, 4096> block{};
   while (!positions.empty()) {
     const std::size_t count = std::min(positions.size(), block.size() / 4);
     for (std::size_t i = 0; i < count; ++i) {

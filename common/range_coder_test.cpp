@@ -62,7 +62,7 @@ Decoded decode(const Bytes& section, const Symbols& symbols) {
 }
 
 Bytes expect_round_trip(const Symbols& symbols) {
-  const Bytes section = encode(symbols);
+  Bytes section = encode(symbols);
   const Decoded decoded = decode(section, symbols);
   EXPECT_TRUE(decoded.starts_legally);
   EXPECT_TRUE(decoded.at_exact_end);
@@ -105,8 +105,8 @@ TEST(RangeCoder, RandomSymbolsComeBackAndTheSectionHasExactlyTheirBytes) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const std::array<unsigned, 5> kOnes{3, 100, 500, 930, 998};
-    const std::array<unsigned, 4> kBypass{0, 20, 400, 1000};
+    constexpr std::array<unsigned, 5> kOnes{3, 100, 500, 930, 998};
+    constexpr std::array<unsigned, 4> kBypass{0, 20, 400, 1000};
     expect_round_trip(random_symbols(random, seed % 7 == 0 ? 5000 : seed % 60, kOnes[seed % 5],
                                      kBypass[seed % 4]));
   }

@@ -30,10 +30,11 @@ struct Scene {
 };
 
 std::vector<Point> box_points(const Point& corner, double size) {
-  std::vector<Point> points;
+  std::vector<Point> points(8);
   for (int i = 0; i < 8; ++i) {
-    points.push_back({corner[0] + size * (i & 1), corner[1] + size * ((i >> 1) & 1),
-                      corner[2] + size * (i >> 2)});
+    points[static_cast<std::size_t>(i)] = {corner[0] + size * (i & 1),
+                                           corner[1] + size * ((i >> 1) & 1),
+                                           corner[2] + size * (i >> 2)};
   }
   return points;
 }

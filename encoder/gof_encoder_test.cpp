@@ -35,7 +35,7 @@ struct Strip {
     topology = make_topology(header.num_vertices, triangles);
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < header.num_vertices; ++v) {
-        const double along = v / 2;
+        const double along = v >> 1;
         const double bend = 3000.0 * std::sin(kTurn * (f / 12.0 + along / 30.0));
         frames.xyz.insert(frames.xyz.end(),
                           {1000.0 * along, 900.0 * (v % 2) + 0.1 * bend, bend});

@@ -56,20 +56,23 @@ struct Options {
   rlpc::EncoderSettings settings;
 };
 
-void add_options(CLI::App& app, Options& o) {
-  using rlpc::FrameMode;
-  using rlpc::HashMode;
-  using rlpc::Preset;
-  using rlpc::SeedMode;
-  app.add_option("input", o.input.path, "Animation to encode")->required();
-  app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
-  app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
-  app.add_option("--fps", o.fps,
-                 "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
-  app.add_option("--profile", o.profile, "Profile of the stream")
-      ->check(CLI::IsMember({"baseline"}))
-      ->capture_default_str();
+// An option that takes one of a few words; `first` is its default.
+template <class T>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
+                        const std::string& first, const std::map<std::string, T>& words,
+                        const std::string& what) {
+  std::string list = first;
+  for (const auto& [word, meaning] : words) {
+    if (word != first) list += "|" + word;
+  }
+  return app.add_option(name, value, what)
+      ->transform(CLI::CheckedTransformer(words).description(""))
+      ->type_name(list)
+      ->default_str(first);
+}
 
+void add_quality_options(CLI::App& app, Options& o) {
+  using rlpc::Preset;
   const std::string quality = "Quality (one of; default --kg 0.1)";
   auto* kg = app.add_option("--kg", o.kg, "KG error in per cent")->group(quality);
   auto* bpvf = app.add_option("--bpvf", o.bpvf, "Bits per vertex and frame")->group(quality);
@@ -79,12 +82,16 @@ void add_options(CLI::App& app, Options& o) {
   for (auto* option : {kg, bpvf, max_error}) option->check(CLI::PositiveNumber);
   kg->excludes(bpvf)->excludes(max_error);
   bpvf->excludes(max_error);
-  app.add_option("--preset", o.settings.preset, "How hard to search: fast, medium, slow")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Preset>{
-          {"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}}))
-      ->group(quality)
-      ->default_str("medium");
+  add_choice<Preset>(
+      app, "--preset", o.settings.preset, "medium",
+      {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
+      "How hard to search: fast, medium, slow")
+      ->group(quality);
+}
 
+void add_method_options(CLI::App& app, Options& o) {
+  using rlpc::FrameMode;
+  using rlpc::SeedMode;
   const std::string paper = "Parameters of the method";
   app.add_option("--clusters", o.settings.clusters, "Clusters per GOF (N; default: chosen)")
       ->check(CLI::Range(1, 1024))
@@ -105,46 +112,58 @@ void add_options(CLI::App& app, Options& o) {
       ->group(paper);
   app.add_flag("--no-rdo", o.no_rdo, "The same number of components in every cluster")
       ->group(paper);
-  app.add_option("--rdo-rate", o.settings.rate_in_vectors,
-                 "With --components, what the clusters share: bits, or vectors as in the paper")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, bool>{{"bits", false}, {"vectors", true}}))
-      ->group(paper)
-      ->default_str("bits");
-  app.add_option("--frame", o.settings.frame_mode,
-                 "Coordinates of clusters: auto, lcf (local frames), world")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, FrameMode>{
-          {"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}}))
-      ->group(paper)
-      ->default_str("auto");
-  app.add_option("--seeds", o.settings.seed_mode,
-                 "Vertices that carry local frames: auto, triangle, spread")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SeedMode>{{"auto", SeedMode::kAuto},
-                                          {"triangle", SeedMode::kTriangle},
-                                          {"spread", SeedMode::kSpread}}))
-      ->group(paper)
-      ->default_str("auto");
+  add_choice<bool>(
+      app, "--rdo-rate", o.settings.rate_in_vectors, "bits",
+      {{"bits", false}, {"vectors", true}},
+      "With --components, what the clusters share: bits, or vectors as in the paper")
+      ->group(paper);
+  add_choice<FrameMode>(
+      app, "--frame", o.settings.frame_mode, "auto",
+      {{"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}},
+      "Coordinates of clusters: auto, lcf (local frames), world")
+      ->group(paper);
+  add_choice<SeedMode>(app, "--seeds", o.settings.seed_mode, "auto",
+                       {{"auto", SeedMode::kAuto},
+                        {"triangle", SeedMode::kTriangle},
+                        {"spread", SeedMode::kSpread}},
+                       "Vertices that carry local frames: auto, triangle, spread")
+      ->group(paper);
   app.add_option("--gof", o.gof, "Longest group of frames, or `all` for one group")
       ->group(paper)
       ->capture_default_str();
+}
 
+void add_extra_options(CLI::App& app, Options& o) {
+  using rlpc::HashMode;
   const std::string extras = "What else goes in or out";
   app.add_flag("--keep-order", o.settings.keep_order, "Restore the vertex order of INPUT")
       ->group(extras);
   app.add_option("--order-map", o.order_map, "Write, per decoded vertex, its index in INPUT")
       ->group(extras);
-  app.add_option("--hash", o.settings.hash_mode,
-                 "Hashes of decoded positions: gof, frame, none")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, HashMode>{
-          {"gof", HashMode::kGof}, {"frame", HashMode::kFrame}, {"none", HashMode::kNone}}))
-      ->group(extras)
-      ->default_str("gof");
+  add_choice<HashMode>(
+      app, "--hash", o.settings.hash_mode, "gof",
+      {{"gof", HashMode::kGof}, {"frame", HashMode::kFrame}, {"none", HashMode::kNone}},
+      "Hashes of decoded positions: gof, frame, none")
+      ->group(extras);
   app.add_option("--metadata", o.metadata_path, "JSON file to carry along")
       ->check(CLI::ExistingFile)
       ->group(extras);
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(extras);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(extras);
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("input", o.input.path, "Animation to encode")->required();
+  app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
+  app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
+  app.add_option("--fps", o.fps,
+                 "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
+  app.add_option("--profile", o.profile, "Profile of the stream")
+      ->check(CLI::IsMember({"baseline"}))
+      ->capture_default_str();
+  add_quality_options(app, o);
+  add_method_options(app, o);
+  add_extra_options(app, o);
   app.footer(kExamples);
 }
 
