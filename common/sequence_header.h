@@ -28,13 +28,16 @@ struct Level {
   std::uint32_t max_components;   // of one cluster
   std::uint64_t max_gof_values;   // vertices x frames of a GOF
   std::uint64_t max_gof_factors;  // spatial and temporal values of a GOF
+  std::uint64_t max_unit_bytes;   // of the payload of a critical unit
 };
 
+consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
+
 inline constexpr std::array<Level, 4> kLevels{{
-    {1U << 14, 1U << 15, 512, 256, 512, std::uint64_t{1} << 22, std::uint64_t{1} << 23},
-    {1U << 17, 1U << 18, 1024, 512, 1024, std::uint64_t{1} << 25, std::uint64_t{1} << 26},
-    {1U << 20, 1U << 21, 4096, 1024, 1024, std::uint64_t{1} << 28, std::uint64_t{1} << 29},
-    {1U << 23, 1U << 24, 16384, 1024, 1024, std::uint64_t{1} << 31, std::uint64_t{1} << 32},
+    {1U << 14, 1U << 15, 512, 256, 512, pow2(22), pow2(23), pow2(25)},
+    {1U << 17, 1U << 18, 1024, 512, 1024, pow2(25), pow2(26), pow2(28)},
+    {1U << 20, 1U << 21, 4096, 1024, 1024, pow2(28), pow2(29), pow2(31)},
+    {1U << 23, 1U << 24, 16384, 1024, 1024, pow2(31), pow2(32), pow2(32)},
 }};
 inline constexpr std::uint32_t kMaxLevelIdc = static_cast<std::uint32_t>(kLevels.size());
 

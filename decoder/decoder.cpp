@@ -129,6 +129,7 @@ Result<bool> Decoder::Impl::read_sequence_header() {
   const auto header = parse_sequence_header(r);
   if (!header) return header.error();
   header_ = *header;
+  units_.set_max_unit_bytes(header_.level().max_unit_bytes);
   offset_ = unit->end();
   return check_limits();
 }

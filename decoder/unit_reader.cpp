@@ -51,6 +51,9 @@ Result<UnitHeader> UnitReader::header_at(std::uint64_t offset) {
   }
   if (!source_->read(offset, bytes)) return Error{Errc::kIo, "", "unit_type", offset * 8};
   UnitHeader unit{bytes[0], big_endian(std::span(bytes).subspan(1)), offset};
+  if (!unit.ancillary() && unit.size > max_unit_bytes_) {
+    return Error{Errc::kInvalid, "R-LVL-07", "unit_size", offset * 8 + 8};
+  }
   if (unit.end() > source_->size()) {
     return Error{Errc::kTruncated, "R-UNT-02", "unit_size", offset * 8 + 8};
   }

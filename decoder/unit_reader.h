@@ -33,6 +33,8 @@ class UnitReader {
 
   // 6.1: signature and version.
   Result<bool> stream_header();
+  // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
+  void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
   // Header of the unit at a byte offset; its end lies within the stream.
   Result<UnitHeader> header_at(std::uint64_t offset);
   // Payload of a unit whose CRC holds.
@@ -59,6 +61,7 @@ class UnitReader {
 
   std::unique_ptr<ByteSource> source_;
   Trace* trace_;
+  std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
   std::optional<PendingCrc> pending_crc_;
 };
 

@@ -121,6 +121,23 @@ TEST(UnitReader, TheLargestSizeDoesNotWrapAround) {
   expect_error(reader_of(bytes).header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
 }
 
+TEST(UnitReader, ALevelBoundsCriticalUnitsBeforeTheirEndIsLookedFor) {
+  Bytes bytes = joined({kHeader, kUnit});  // 4 bytes of payload, a critical unit
+  UnitReader reader = reader_of(bytes);
+  reader.set_max_unit_bytes(4);
+  EXPECT_TRUE(reader.header_at(10));
+  reader.set_max_unit_bytes(3);
+  expect_error(reader.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
+  bytes.resize(kHeader.size() + kUnitHeaderBytes);
+  UnitReader cut = reader_of(bytes);
+  cut.set_max_unit_bytes(3);
+  expect_error(cut.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
+  bytes[10] = static_cast<std::uint8_t>(bytes[10] | kAncillaryFlag);
+  UnitReader ancillary = reader_of(bytes);
+  ancillary.set_max_unit_bytes(3);
+  expect_error(ancillary.header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
+}
+
 TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
   const Bytes stream = joined({kHeader, kUnit});
   for (std::size_t bit = 80; bit < 8 * stream.size(); ++bit) {

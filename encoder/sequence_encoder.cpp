@@ -237,6 +237,12 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
     state.search.reset();
     state.frames = {};
   }
+  if (encoded.payload.size() > header_.level().max_unit_bytes) {
+    return InputError{"a GOF of " + std::to_string(spans_[g].count) + " frames has " +
+                      std::to_string(encoded.payload.size()) + " bytes, more than level " +
+                      std::to_string(header_.level_idc) +
+                      " allows (specification, Annex B); use a smaller --gof"};
+  }
   trial.gof_units.push_back(write_unit(UnitType::kGof, encoded.payload));
   trial.gof_bytes += trial.gof_units.back().size();
   trial.clusters += static_cast<std::uint32_t>(encoded.gof.clusters.size());
