@@ -142,6 +142,9 @@ class RoundTrip(ToolsTest):
         for mode in ("none", "gof", "frame"):
             report = self.encode(self.path("a.rlpc"), "--kg", 0.5, "--gof", 20, "--hash", mode)
             bits[mode] = report["bits"]
+            parts = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()["bits"]
+            self.assertEqual(parts["connectivity"], report["bits"]["connectivity"] - 8 * 9)
+            self.assertEqual(parts["vertex order"], 0)
             self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
             self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"))
             decoded[mode] = self.path("a.rlpd").read_bytes()

@@ -52,6 +52,8 @@ const std::array<Part, 11>& parts() {
   return kParts;
 }
 
+constexpr std::size_t kAncillaryPart = 10;
+
 // Adds up the bits from each element to the next.
 class BitCounter final : public rlpc::Trace {
  public:
@@ -69,7 +71,10 @@ class BitCounter final : public rlpc::Trace {
   void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override {
     close(bit_pos);
     if (print_) std::printf("%10" PRIu64 "    %s = %" PRId64 "\n", bit_pos, name, value);
-    if (std::string_view(name) == "unit_type") unit_part_ = part_of_unit(value);
+    if (std::string_view(name) == "ancillary_flag") ancillary_ = value != 0;
+    if (std::string_view(name) == "unit_type") {
+      unit_part_ = ancillary_ ? kAncillaryPart : part_of_unit(value);
+    }
     const auto part = part_of_.find(name);
     open_part_ = part == part_of_.end() ? unit_part_ : part->second;
   }
@@ -93,7 +98,7 @@ class BitCounter final : public rlpc::Trace {
       case 4:
         return 4;
       default:
-        return 10;
+        return kAncillaryPart;
     }
   }
 
@@ -101,6 +106,7 @@ class BitCounter final : public rlpc::Trace {
   std::map<std::string_view, std::size_t> part_of_;
   std::array<std::uint64_t, 11> bits_{};
   std::size_t open_part_ = 0;
+  bool ancillary_ = false;
   std::size_t unit_part_ = 0;
   std::uint64_t last_ = 0;
   std::uint64_t num_units_ = 0;
