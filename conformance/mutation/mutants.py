@@ -1,0 +1,182 @@
+"""Faults for the decoder: reading the list, seeding one, and finding a stream that notices it."""
+
+import dataclasses
+import hashlib
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+_CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(_CONFORMANCE / "judge"))
+import contract  # noqa: E402
+import grading  # noqa: E402
+
+LIST = pathlib.Path(__file__).resolve().with_name("mutants.txt")
+FOLDERS = ("common", "decoder", "scripts/cmake")
+FILES = ("CMakeLists.txt", "conformance/tools/CMakeLists.txt")
+_TIMEOUT = 20  # seconds for a stream; a mutant that hangs is noticed
+_MEMORY = 4 << 30
+
+
+class MutantError(Exception):
+    """A list that does not fit the sources, or sources that do not build."""
+
+
+@dataclasses.dataclass
+class Mutant:
+    name: str
+    what: str
+    file: str
+    old: str
+    new: str
+    equivalent: str  # why no stream can notice it; empty: one has to
+    line: int
+
+
+def read(path=LIST):
+    """All mutants of the list."""
+    mutants = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        mark, text = line[:2], line[2:]
+        if mark == "= ":
+            name, _, what = text.partition(" ")
+            mutants.append(Mutant(name, what.strip(), "", "", "", "", number))
+        elif mark in ("- ", "+ ", "~ ", "-", "+"):
+            field = {"-": "old", "+": "new", "~": "equivalent"}[mark[0]]
+            before = getattr(mutants[-1], field)
+            setattr(mutants[-1], field, before + ("\n" if before else "") + text)
+        elif line and not line.startswith("#"):
+            mutants[-1].file = line.strip()
+    names = [m.name for m in mutants]
+    for mutant in mutants:
+        if not mutant.file or not mutant.old or names.count(mutant.name) > 1:
+            raise MutantError(f"{path}:{mutant.line}: {mutant.name}: a mutant has a name of its "
+                              "own, a file and a text to replace")
+    return mutants
+
+
+def _pattern(text):
+    """The text, with any white space where it has some."""
+    return re.compile(r"\s+".join(re.escape(word) for word in text.split()))
+
+
+def seeded(mutant, source):
+    """The source with the fault in it."""
+    found = list(_pattern(mutant.old).finditer(source))
+    if len(found) != 1:
+        raise MutantError(f"{LIST.name}:{mutant.line}: {mutant.name}: its text occurs "
+                          f"{len(found)} times in {mutant.file}; bring the list up to date")
+    return source[:found[0].start()] + mutant.new + source[found[0].end():]
+
+
+def check(root, mutants):
+    """Complaints about mutants that do not fit the sources."""
+    complaints = []
+    for mutant in mutants:
+        try:
+            seeded(mutant, (root / mutant.file).read_text(encoding="utf-8"))
+        except (MutantError, OSError) as error:
+            complaints.append(str(error))
+    return complaints
+
+
+class _NoReference:
+    """Nobody needs to know where an output is wrong."""
+
+    def output(self, stream):
+        return None, ""
+
+
+class Workshop:
+    """A copy of the decoder's sources, built again for each mutant."""
+
+    def __init__(self, root, folder, streams):
+        self._source = pathlib.Path(folder) / "source"
+        self._build = pathlib.Path(folder) / "build"
+        self._streams = list(streams)
+        shutil.rmtree(self._source, ignore_errors=True)
+        for name in FOLDERS:
+            shutil.copytree(root / name, self._source / name,
+                            ignore=shutil.ignore_patterns("*_test.cpp", "*_fuzz.cpp"))
+        (self._source / "CMakeLists.txt").write_text(_CMAKE, encoding="utf-8")
+        for path in self._source.glob("common/*.h"):
+            # What is wrong must be seen by the streams, not by the compiler.
+            text = re.sub(r"^static_assert\(.*?\);.*$", "", path.read_text(encoding="utf-8"),
+                          flags=re.MULTILINE)
+            path.write_text(text, encoding="utf-8")
+        self._run("cmake", "-S", self._source, "-B", self._build, "-G", "Ninja")
+        self._make()
+        self._right = self._digest()
+
+    def _run(self, *words):
+        done = subprocess.run(list(map(str, words)), capture_output=True, text=True)
+        if done.returncode != 0:
+            raise MutantError(f"{' '.join(map(str, words))}:\n{done.stdout[-3000:]}"
+                              f"{done.stderr[-1000:]}")
+
+    def _make(self):
+        self._run("cmake", "--build", self._build, "-j", "1")
+
+    def _digest(self):
+        return hashlib.sha256((self._build / "rlpcdec").read_bytes()).hexdigest()
+
+    def judge_right(self):
+        """The id of a stream on which the decoder fails without a fault, or None."""
+        return self._first_failure()
+
+    def try_out(self, mutant):
+        """(how it ended, stream): killed, diagnosed (only the rule differs), survived."""
+        path = self._source / mutant.file
+        original = path.read_text(encoding="utf-8")
+        try:
+            path.write_text(seeded(mutant, original), encoding="utf-8")
+            self._make()
+            if self._digest() == self._right:
+                return "same program", ""
+            stream, outcome = self._first_failure() or (None, None)
+        finally:
+            path.write_text(original, encoding="utf-8")
+        if stream is None:
+            return "survived", ""
+        return ("diagnosed" if outcome == "PASS" else "killed"), stream
+
+    def _first_failure(self):
+        """(stream, outcome) of the first stream that is not passed in all its cells, or None."""
+        decoder = contract.Decoder(str(self._build / "rlpcdec"),
+                                   contract.Limits(_TIMEOUT, _MEMORY))
+        try:
+            decoder.describe()
+        except contract.ContractError:
+            return "--rlpc-conformance", "CRASH"
+        decoder.answer["outputs"] = ["rlpd"]
+        grader = grading.Grader(decoder, _NoReference())
+        only_diagnosed = None
+        for stream in self._streams:
+            judgement = grader.judge(stream)
+            if judgement.outcome != "PASS":
+                # It may well notice the next one too.
+                self._streams.remove(stream)
+                self._streams.insert(0, stream)
+                return stream.id, judgement.outcome
+            if judgement.cells["diagnostic"] not in (grading.PASS, grading.NONE):
+                only_diagnosed = only_diagnosed or (stream.id, judgement.outcome)
+        return only_diagnosed
+
+
+_CMAKE = """cmake_minimum_required(VERSION 3.25)
+project(mutants CXX)
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_FLAGS "-O0 -DNDEBUG -w -fwrapv -DRLPC_VERSION=\\\\\\"mutant\\\\\\"")
+find_package(ZLIB REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+file(GLOB sources common/*.cpp decoder/*.cpp)
+list(FILTER sources EXCLUDE REGEX "rlpcinfo")
+add_executable(rlpcdec ${sources})
+target_include_directories(rlpcdec PRIVATE ${CMAKE_SOURCE_DIR})
+target_precompile_headers(rlpcdec PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
+target_link_libraries(rlpcdec PRIVATE ZLIB::ZLIB CLI11::CLI11 nlohmann_json::nlohmann_json)
+"""

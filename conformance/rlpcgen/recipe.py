@@ -1,0 +1,247 @@
+"""Recipes: readable text from which a stream is written byte for byte.
+
+    title: Two clusters, one of them in the frame of its seed triangle
+    features: lcf
+    tier: core
+
+    unit SEQUENCE_HEADER
+      num_vertices_minus1 = 11
+      num_frames_minus1 = 3
+    unit CONNECTIVITY
+      gates = T A 3*P C
+    unit GOF
+      num_clusters_minus1 = 1
+      lcf_flag = 1 0
+      seed_vertex[0] = 0 1 2
+      seed_residual[0][0] = 100 -20 0
+      seed_residual = random(-5, 5) ...
+      num_components = 1 0
+      component 0
+        scale_idx = 40
+        temporal_residual = 3*10 ...
+    unit END_OF_SEQUENCE
+
+`name = values` gives a syntax element its values in the order in which the stream has them, counted
+from the beginning of its unit or component; with indices, those of that part only, which come
+first. `n*v` is n times v, `random(low, high)` a number, and `...` at the end repeats what stands
+before it. What is not given is 0, or what fits: see DEFAULTS of recipe_source.py.
+
+A recipe that says `twin: ID` has the units of that recipe and changes them: `change N NAME` adds
+to unit N, counted from 0; `insert N NAME` puts a unit before it, and `drop N` leaves it out.
+"""
+
+import dataclasses
+import pathlib
+import re
+import zlib
+
+_META = re.compile(r"([a-z_]+):\s*(.*)$")
+_UNIT = re.compile(r"(unit|change|insert)\s+(?:(\d+)\s+)?([A-Z_]+|0x[0-9A-Fa-f]{2})$")
+_DROP = re.compile(r"drop\s+(\d+)$")
+_COMPONENT = re.compile(r"component\s+(\d+|all)$")
+_ENTRY = re.compile(r"([a-z][a-z0-9_]*)((?:\[\d+\])*)\s*=\s*(.*)$")
+_RANDOM = re.compile(r"random\((-?\d+),(-?\d+)\)$")
+_TIMES = re.compile(r"(\d+)\*(.+)$")
+LISTS = ("rules", "features")
+META = ("title", "tier", "seed", "twin", "level", "expect", "note", "superseded_by") + LISTS
+
+
+class RecipeError(Exception):
+    """A recipe that is not understood, with file and line."""
+
+
+@dataclasses.dataclass
+class Entry:
+    name: str
+    indices: tuple
+    text: str
+    place: str
+
+
+@dataclasses.dataclass
+class Unit:
+    name: str
+    entries: list = dataclasses.field(default_factory=list)
+    components: dict = dataclasses.field(default_factory=dict)  # number -> entries
+
+    def copy(self):
+        return Unit(self.name, list(self.entries),
+                    {n: list(entries) for n, entries in self.components.items()})
+
+
+@dataclasses.dataclass
+class Recipe:
+    path: pathlib.Path
+    meta: dict
+    stream: list  # entries that concern the whole stream
+    units: list
+
+
+class Numbers:
+    """A random series that is the same everywhere and for ever (SplitMix64)."""
+
+    def __init__(self, seed):
+        self._state = seed & ((1 << 64) - 1)
+
+    def next64(self):
+        mask = (1 << 64) - 1
+        self._state = (self._state + 0x9E3779B97F4A7C15) & mask
+        z = self._state
+        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & mask
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
+        return z ^ (z >> 31)
+
+    def between(self, low, high):
+        return low + self.next64() % (high - low + 1)
+
+    def chance(self, percent):
+        return self.between(0, 99) < percent
+
+    def pick(self, items):
+        return items[self.between(0, len(items) - 1)]
+
+
+class Values:
+    """The values of an entry, one after the other."""
+
+    def __init__(self, entry, seed):
+        self.entry = entry
+        self._numbers = Numbers(seed ^ zlib.crc32(f"{entry.name}{entry.indices}".encode()))
+        self._items = re.sub(r"\s*([(,])\s*", r"\1", entry.text).split()
+        self._repeats = bool(self._items) and self._items[-1] == "..."
+        if self._repeats:
+            self._items.pop()
+        if not self._items:
+            raise RecipeError(f"{entry.place}: {entry.name} has no value")
+        self._at = 0
+        self._left = None  # of the item at hand
+
+    def done(self):
+        return self._at >= len(self._items) and not self._repeats
+
+    def unused(self):
+        return self._at < len(self._items)
+
+    def _item(self):
+        at = min(self._at, len(self._items) - 1)
+        match = _TIMES.match(self._items[at])
+        return (int(match.group(1)), match.group(2)) if match else (1, self._items[at])
+
+    def next_text(self):
+        count, text = self._item()
+        self._left = (count if self._left is None else self._left) - 1
+        if self._left <= 0:
+            self._at += 1
+            self._left = None
+        match = _RANDOM.match(text)
+        return str(self._numbers.between(*map(int, match.groups()))) if match else text
+
+    def next(self):
+        text = self.next_text()
+        try:
+            return int(text, 0)
+        except ValueError as error:
+            raise RecipeError(f"{self.entry.place}: {text!r} is no number") from error
+
+
+class _Parser:
+    def __init__(self, path, text, load):
+        self.recipe = Recipe(path, {"rules": [], "features": []}, [], [])
+        self._load = load
+        self._entries = self.recipe.stream
+        self._unit = None
+        self._base = None  # units of the twin; None: left out
+        self._inserted = {}
+        for number, line in enumerate(text.splitlines(), 1):
+            self._place = f"{path}:{number}"
+            line = line.split("#", 1)[0].strip()
+            if line:
+                self._line(line)
+        if self._base is not None:
+            for n in range(len(self._base) + 1):
+                self.recipe.units += self._inserted.get(n, [])
+                if n < len(self._base) and self._base[n] is not None:
+                    self.recipe.units.append(self._base[n])
+
+    def fail(self, what):
+        raise RecipeError(f"{self._place}: {what}")
+
+    def _line(self, line):
+        meta, unit, entry = _META.match(line), _UNIT.match(line), _ENTRY.match(line)
+        if meta and self._unit is None and not self.recipe.units:
+            self._meta(*meta.groups())
+        elif unit:
+            self._open_unit(*unit.groups())
+        elif _DROP.match(line):
+            self._base_unit(int(_DROP.match(line).group(1)))
+            self._base[int(_DROP.match(line).group(1))] = None
+        elif line == "stream":
+            self._entries = self.recipe.stream
+        elif _COMPONENT.match(line):
+            if self._unit is None:
+                self.fail("a component stands in a unit")
+            number = _COMPONENT.match(line).group(1)
+            key = number if number == "all" else int(number)
+            self._entries = self._unit.components.setdefault(key, [])
+        elif entry:
+            indices = tuple(int(i) for i in re.findall(r"\d+", entry.group(2)))
+            self._entries.append(Entry(entry.group(1), indices, entry.group(3), self._place))
+        elif self._entries:
+            self._entries[-1].text += " " + line
+        else:
+            self.fail(f"not understood: {line}")
+
+    def _meta(self, key, text):
+        if key not in META:
+            self.fail(f"{key}: not a field of a recipe; there are {', '.join(META)}")
+        self.recipe.meta[key] = text.replace(",", " ").split() if key in LISTS else text
+        if key == "twin":
+            twin = self._load(text)
+            self._base = [unit.copy() for unit in twin.units]
+            self.recipe.stream += twin.stream
+            if "seed" in twin.meta:
+                self.recipe.meta.setdefault("seed", twin.meta["seed"])
+
+    def _base_unit(self, number):
+        if self._base is None or number >= len(self._base) or self._base[number] is None:
+            self.fail(f"the twin has no unit {number}")
+        return self._base[number]
+
+    def _open_unit(self, verb, number, name):
+        if (verb == "unit") != (self._base is None) or (verb == "unit") != (number is None):
+            self.fail("`unit NAME`; or, in a recipe with a twin, `change N NAME`, "
+                      "`insert N NAME`, `drop N`")
+        if verb == "unit":
+            self._unit = Unit(name)
+            self.recipe.units.append(self._unit)
+        elif verb == "change":
+            self._unit = self._base_unit(int(number))
+            if self._unit.name != name:
+                self.fail(f"unit {number} of the twin is {self._unit.name}, not {name}")
+        else:
+            self._unit = Unit(name)
+            self._inserted.setdefault(int(number), []).append(self._unit)
+        self._entries = self._unit.entries
+
+
+def parse(path, text, load):
+    """A Recipe. load(id) gives the recipe of a twin."""
+    return _Parser(path, text, load).recipe
+
+
+def load(path):
+    """The recipe of a file; a twin is looked for beside it, in all areas."""
+    path = pathlib.Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RecipeError(f"{path}: {error.strerror}") from error
+
+    def twin(name):
+        found = sorted(path.parent.parent.glob(f"*/{name}.recipe"))
+        found = found or sorted(path.parent.glob(f"{name}.recipe"))
+        if not found:
+            raise RecipeError(f"{path}: there is no recipe of the twin {name}")
+        return load(found[0])
+
+    return parse(path, text, twin)

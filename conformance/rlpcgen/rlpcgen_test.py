@@ -1,0 +1,286 @@
+#!/usr/bin/env python3
+"""rlpcgen: recipes, damage, random streams, and the way back to recipes.
+
+    rlpcgen_test.py --bin BUILD/bin [unittest arguments, such as Recipes]
+"""
+
+import argparse
+import hashlib
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
+import decompile  # noqa: E402
+import mesh_gates  # noqa: E402
+import random_streams  # noqa: E402
+import recipe as recipes  # noqa: E402
+import recipe_source  # noqa: E402
+import spec_program  # noqa: E402
+import stream_writer  # noqa: E402
+import suite  # noqa: E402
+
+HERE = pathlib.Path(__file__).resolve().parent
+PROGRAM = spec_program.Program(HERE.parents[1] / "spec")
+BUILDER = recipe_source.StreamBuilder(PROGRAM)
+BIN = None
+
+TETRAHEDRON = """title: A tetrahedron
+unit SEQUENCE_HEADER
+  num_vertices_minus1 = 3
+  num_triangles = 4
+unit CONNECTIVITY
+  mesh = tetrahedron
+unit GOF
+  lcf_flag = 1
+  seed_vertex = 0 1 2
+  seed_residual = 10 0 0 5 7 0 1 2 3
+  num_components = 1
+  component 0
+    spatial_residual = 3 -4 5
+    temporal_residual = 9
+unit GOF_HASH
+unit END_OF_SEQUENCE
+"""
+
+
+def build(text):
+    return BUILDER.build(recipes.parse("test", text, None))[0]
+
+
+def expectation(data):
+    return suite.expectation_of(data, PROGRAM)
+
+
+class Recipes(unittest.TestCase):
+    """What a recipe says is in the stream."""
+
+    def breaks(self, rule, text):
+        found = expectation(build(text))
+        self.assertEqual(found.get("rule"), rule, found)
+
+    def changed(self, old, new):
+        self.assertIn(old, TETRAHEDRON)
+        return TETRAHEDRON.replace(old, new)
+
+    def refuses(self, complaint, text):
+        with self.assertRaises(recipes.RecipeError) as raised:
+            build(text)
+        self.assertIn(complaint, str(raised.exception))
+
+    def test_a_stream_decodes_to_what_the_recipe_says(self):
+        found = expectation(build(TETRAHEDRON))
+        self.assertEqual((found["expect"], found["frames"]), ("accept", 1))
+
+    def test_values_repeat_and_are_counted(self):
+        series = build(self.changed("10 0 0 5 7 0 1 2 3", "3*4 6 ..."))
+        self.assertEqual(series, build(self.changed("10 0 0 5 7 0 1 2 3", "4 4 4 6*6")))
+        self.assertNotEqual(series, build(self.changed("10 0 0 5 7 0 1 2 3", "4 4 4 6")))
+
+    def test_an_index_comes_before_the_rest(self):
+        self.assertEqual(build(self.changed("10 0 0 5 7 0 1 2 3", "1 ...\n"
+                                            "  seed_residual[1] = 8 ...")),
+                         build(self.changed("10 0 0 5 7 0 1 2 3", "1 1 1 8 8 8 1 1 1")))
+
+    def test_random_values_depend_on_the_seed_alone(self):
+        text = self.changed("10 0 0 5 7 0 1 2 3", "random(-50, 50) ...")
+        self.assertEqual(build(text), build(text))
+        self.assertNotEqual(build(text), build("seed: 7\n" + text))
+
+    def test_any_element_can_be_illegal(self):
+        self.breaks("R-HDR-06", self.changed("num_triangles = 4",
+                                             "num_triangles = 4\n  position_bits = 25"))
+        self.breaks("R-GOF-07", self.changed("seed_vertex = 0 1 2", "seed_vertex = 0 1 1"))
+        self.breaks("R-GOF-10", self.changed("component 0", "component 0\n    scale_idx = 128"))
+        self.breaks("R-GOF-03", self.changed("lcf_flag = 1", "lcf_flag = 1\n  fraction_bits = 25"))
+        self.breaks("R-BIT-04", self.changed("num_triangles = 4", "num_triangles = 8589934591"))
+
+    def test_damage(self):
+        gof = "unit GOF\n"
+        self.breaks("R-UNT-03", self.changed(gof, gof + "  unit_crc = wrong\n"))
+        self.breaks("R-UNT-02", self.changed(gof, gof + "  unit_size = 5000\n"))
+        self.breaks("R-RNG-01", self.changed(gof, gof + "  payload_cut = 4\n"))
+        self.breaks("R-RNG-01", self.changed(gof, gof + "  payload_append = 00\n"))
+        self.breaks("R-RNG-02", self.changed("  mesh = tetrahedron", "  payload = A8FFFFFFFF00"))
+        self.breaks("R-BIT-02", self.changed(gof, gof + "  alignment = 1\n"))
+        self.breaks("R-UNT-02", TETRAHEDRON + "stream\n  cut = 1\n")
+        self.breaks("R-END-02", TETRAHEDRON + "stream\n  append = 00\n")
+        self.breaks("R-STR-01", TETRAHEDRON + "stream\n  flip = 3\n")
+        self.breaks("R-STR-03", TETRAHEDRON + "stream\n  version_minor = 1\n")
+
+    def test_both_ends_of_a_section_decode_alike(self):
+        low = build(TETRAHEDRON)
+        high = build(self.changed("unit GOF\n", "unit GOF\n  section_end = highest\n"))
+        self.assertNotEqual(low, high)
+        self.assertEqual(expectation(low)["sha256_int"], expectation(high)["sha256_int"])
+
+    def test_complaints_name_the_place(self):
+        self.refuses("test:3: num_vertices is no syntax element",
+                     self.changed("num_vertices_minus1", "num_vertices"))
+        self.refuses("test:8: lcf_flag has values that the unit does not use",
+                     self.changed("lcf_flag = 1", "lcf_flag = 1 0"))
+        self.refuses("'x' is no number", self.changed("lcf_flag = 1", "lcf_flag = x"))
+        self.refuses("GOFS is no unit", self.changed("unit GOF\n", "unit GOFS\n"))
+        self.refuses("does not fit u(3)",
+                     self.changed("lcf_flag = 1", "lcf_flag = 1\n  seed_predictor = 9"))
+        self.refuses("not possible on this gate", self.changed("mesh = tetrahedron", "gates = T P C"))
+        self.refuses("no operation is left", self.changed("mesh = tetrahedron", "gates = T A"))
+        self.refuses("not understood", "what is this\n")
+
+    def test_a_twin_differs_in_what_it_says(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name, "recipes", "GOF")
+            folder.mkdir(parents=True)
+            (folder / "GOF-0001a.recipe").write_text(TETRAHEDRON)
+            twin = folder / "GOF-0001x1.recipe"
+            twin.write_text("title: Twin\ntwin: GOF-0001a\nchange 2 GOF\n  seed_vertex = 0 1 0\n"
+                            "insert 3 METADATA\n  json = {}\n")
+            recipe = recipes.load(twin)
+            self.assertEqual([u.name for u in recipe.units],
+                             ["SEQUENCE_HEADER", "CONNECTIVITY", "GOF", "METADATA", "GOF_HASH",
+                              "END_OF_SEQUENCE"])
+            self.assertEqual(expectation(BUILDER.build(recipe)[0])["rule"], "R-GOF-07")
+            twin.write_text("title: Twin\ntwin: GOF-0001a\nchange 1 GOF\n")
+            with self.assertRaises(recipes.RecipeError):
+                recipes.load(twin)
+            twin.write_text("title: Twin\ntwin: GOF-0002a\n")
+            with self.assertRaises(recipes.RecipeError):
+                recipes.load(twin)
+
+
+class Meshes(unittest.TestCase):
+    """Gates that follow a list of triangles give these triangles."""
+
+    def gives(self, triangles, extra=""):
+        vertices = 1 + max(v for t in triangles for v in t)
+        text = (f"unit SEQUENCE_HEADER\n num_vertices_minus1 = {vertices - 1}\n"
+                f" num_triangles = {len(triangles)}\nunit CONNECTIVITY\n{extra} triangles = "
+                + ", ".join(" ".join(map(str, t)) for t in triangles) + "\n")
+        _, writer = BUILDER.build(recipes.parse("test", text, None))
+        decoded = [tuple(t) for t in writer.ns["Triangles"]]
+        self.assertEqual(len(decoded), len(triangles))
+        self.assertEqual(_shape(decoded), _shape(triangles))
+
+    def test_meshes(self):
+        for triangles in (mesh_gates.grid(4, 3), mesh_gates.grid(4, 4, 1, 1),
+                          mesh_gates.grid(5, 2, 1, 0), mesh_gates.fan(7), mesh_gates.fan(6, 1),
+                          mesh_gates.tetrahedron(), mesh_gates.octahedron()):
+            self.gives(triangles)
+
+    def test_fans_that_meet_in_a_vertex(self):
+        self.gives([(0, 1, 2), (0, 3, 4)], " vertex_reuse_flag = 1\n")
+
+
+def _shape(triangles):
+    """What does not depend on the numbering: how many triangles each edge and vertex has."""
+    count = {}
+    for t in triangles:
+        for k in range(3):
+            count[("v", t[k])] = count.get(("v", t[k]), 0) + 1
+            edge = ("e", *sorted((t[k], t[(k + 1) % 3])))
+            count[edge] = count.get(edge, 0) + 1
+    return sorted((key[0], n) for key, n in count.items())
+
+
+class Random(unittest.TestCase):
+    """Random streams are legal, and the same for the same seed."""
+
+    SEEDS = range(10_000, 10_040)
+
+    def test_both_decoders_decode_them_to_the_same(self):
+        builder = random_streams.RandomBuilder(PROGRAM)
+        with tempfile.TemporaryDirectory() as name:
+            stream, output = pathlib.Path(name, "in.rlpc"), pathlib.Path(name, "out.rlpd")
+            for seed in self.SEEDS:
+                stream.write_bytes(builder.build(seed)[0])
+                done = subprocess.run([BIN / "rlpcdec", "decode", stream, output],
+                                      capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stderr}")
+                self.assertEqual(hashlib.sha256(output.read_bytes()).hexdigest(),
+                                 expectation(stream.read_bytes())["sha256_int"], f"seed {seed}")
+
+    def test_the_generator_has_not_changed(self):
+        # STRESS.json has digests by seed, so seeds give the same streams for ever.
+        builder = random_streams.RandomBuilder(PROGRAM)
+        digest = hashlib.sha256(b"".join(builder.build(seed)[0] for seed in range(20)))
+        self.assertEqual(digest.hexdigest()[:16], GENERATOR_DIGEST)
+
+    def test_carries_run_through_many_bytes(self):
+        writer = stream_writer.RangeWriter()
+        writer.bytes += bytes([7, 255, 255, 255])
+        writer.low = 0xFFFFFFFF
+        writer.narrow(1, 0)
+        self.assertEqual(bytes(writer.bytes), bytes([8, 0, 0, 0]))
+        self.assertEqual((writer.low, writer.carries), (0, [4]))
+
+
+GENERATOR_DIGEST = "72adb70a7cd93a44"
+
+
+class Decompiling(unittest.TestCase):
+    """From a stream to a recipe, and back to the same bytes."""
+
+    def back(self, data):
+        text = decompile.Decompiler(PROGRAM).recipe(data, {"title": "Again"})
+        self.assertEqual(build(text), data)
+        return text
+
+    def test_random_streams(self):
+        builder = random_streams.RandomBuilder(PROGRAM)
+        for seed in range(20_000, 20_015):
+            self.back(builder.build(seed)[0])
+
+    def test_damaged_streams(self):
+        data = build(TETRAHEDRON)
+        for changed in (data[:-3], data + b"\x05", data[:40] + b"\xFF" + data[41:],
+                        data[:9] + b"\x07" + data[10:]):
+            self.back(changed)
+
+    def test_elements_not_bytes(self):
+        text = self.back(build(TETRAHEDRON))
+        self.assertNotIn("payload", text)
+        self.assertIn("gates = T", text)
+        self.assertIn("seed_residual = 10 2*0 5 7 0 1 2 3", text)
+
+
+class Commands(unittest.TestCase):
+    """rlpcgen as people run it."""
+
+    def run_tool(self, *arguments):
+        return subprocess.run([sys.executable, "-B", HERE / "rlpcgen", *map(str, arguments)],
+                              capture_output=True, text=True)
+
+    def test_it_writes_and_complains(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "a.recipe").write_text(TETRAHEDRON)
+            done = self.run_tool(folder / "a.recipe", "-o", folder / "a.rlpc")
+            self.assertEqual((done.returncode, (folder / "a.rlpc").read_bytes()),
+                             (0, build(TETRAHEDRON)), done.stderr)
+            self.assertEqual(self.run_tool("--random", "3-5", "-o", folder / "r").returncode, 0)
+            self.assertEqual(len(list((folder / "r").iterdir())), 3)
+            again = self.run_tool("--decompile", folder / "a.rlpc").stdout
+            self.assertEqual(build(again), build(TETRAHEDRON))
+            (folder / "b.recipe").write_text("unit NOTHING\n")
+            self.assertEqual(self.run_tool(folder / "b.recipe", "-o", folder / "b").returncode, 1)
+            self.assertFalse((folder / "b").exists())
+            self.assertEqual(self.run_tool(folder / "c.recipe", "-o", folder / "b").returncode, 1)
+            self.assertEqual(self.run_tool(folder / "a.recipe").returncode, 64)
+            self.assertEqual(self.run_tool("--random", "x", "-o", folder).returncode, 64)
+            self.assertEqual(self.run_tool("--decompile", folder / "none").returncode, 4)
+
+
+def main():
+    global BIN
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--bin", type=pathlib.Path, required=True)
+    options, rest = parser.parse_known_args()
+    BIN = options.bin.resolve()
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()

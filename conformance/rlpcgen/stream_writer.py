@@ -1,0 +1,355 @@
+"""Writes streams by running the pseudo-code of the specification backwards.
+
+The specification says how a syntax element is read; here every element is first written, with a
+value that a source gives, and then read by the specification's own functions. So contexts,
+conditions and order are those of the text, a new syntax element needs nothing here, and a value
+that is not read back as it was written is noticed at once.
+"""
+
+import ast
+import collections
+import pathlib
+import sys
+import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
+import spec_program  # noqa: E402
+
+BIT_DESCRIPTORS = ("u", "ue", "se")
+MAX_RESIDUAL = 268435455
+_ESCAPE_LENGTH = 27  # most ones before the bits of an escape, 9.5.1
+
+# Requirements on what stands around an element, which is not yet there when it is written.
+_STRUCTURAL = ("R-UNT-01", "R-UNT-02", "R-RNG-01", "R-RNG-02", "R-HSH-01", "R-BIT-03", "R-MET-02")
+
+
+class WriteError(Exception):
+    """A value that cannot be written, or that the specification reads as another one."""
+
+
+class _ElementCalls(ast.NodeTransformer):
+    """target = descriptor(args) becomes target = write_element(name, indices, descriptor, args)."""
+
+    def visit_Assign(self, node):
+        call = node.value
+        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
+                and spec_program.is_descriptor(call.func.id)):
+            return node
+        target, indices = node.targets[0], []
+        while isinstance(target, ast.Subscript):
+            indices.insert(0, ast.parse(ast.unparse(target.slice), mode="eval").body)
+            target = target.value
+        arguments = [ast.Constant(target.id), ast.List(indices, ast.Load()),
+                     ast.Constant(call.func.id)] + call.args
+        node.value = ast.Call(ast.Name("write_element", ast.Load()), arguments, [])
+        return node
+
+
+def _element_calls(functions):
+    """The functions of a program with their elements written; clause 9 contains none."""
+    changed = {}
+    for name, (node, clause) in functions.items():
+        if clause.split(".")[0] != "9":
+            node = _ElementCalls().visit(ast.parse(ast.unparse(node)).body[0])
+        changed[name] = (node, clause)
+    return changed
+
+
+def writing_code(program):
+    """What StreamWriter runs; made once for many streams."""
+    return program.code(transform=_element_calls)
+
+
+def element_names(program):
+    """Names of all syntax elements of a program, with their descriptors."""
+    names = {}
+    for node, clause in program.functions.values():
+        if clause.split(".")[0] == "9":
+            continue
+        for part in ast.walk(node):
+            if (isinstance(part, ast.Assign) and isinstance(part.value, ast.Call)
+                    and isinstance(part.value.func, ast.Name)
+                    and spec_program.is_descriptor(part.value.func.id)):
+                names[spec_program._base_name(part.targets[0])] = part.value.func.id
+    return names
+
+
+class RangeWriter:
+    """The bytes that make a range decoder decide as told: the lower end of its range."""
+
+    def __init__(self):
+        self.bytes = bytearray()
+        self.low = 0  # of the next 32 bits
+        self.carries = []  # length of each carry, in bytes
+
+    def narrow(self, by, shifts):
+        """The range now begins `by` higher; then the decoder took `shifts` bytes."""
+        self.low += by
+        self._carry()
+        for _ in range(shifts):
+            self.bytes.append(self.low >> 24)
+            self.low = (self.low << 8) & 0xFFFFFFFF
+
+    def _carry(self):
+        if self.low >> 32 == 0:
+            return
+        self.low &= 0xFFFFFFFF
+        at = len(self.bytes) - 1
+        while self.bytes[at] == 255:
+            self.bytes[at] = 0
+            at -= 1
+        self.bytes[at] += 1
+        self.carries.append(len(self.bytes) - at)
+
+    def finish(self, size, highest=False):
+        """One byte more, after which zeros lie in the range; the lowest or the highest."""
+        if highest:
+            self.low = (self.low + size - 1) & ~0xFFFFFF
+        else:
+            self.low = (self.low + 0xFFFFFF) & ~0xFFFFFF
+        self._carry()
+        self.bytes.append(self.low >> 24)
+        return bytes(self.bytes)
+
+
+def exp_golomb(value):
+    """Bits of ue( ), as text."""
+    zeros = (value + 1).bit_length() - 1
+    return "0" * zeros + format(value + 1, "b")
+
+
+class StreamWriter:
+    """One stream. source.value(writer, name, indices, descriptor, arguments) gives the values."""
+
+    def __init__(self, code, source, strict=False):
+        """code: of writing_code( ). strict: a broken requirement is an error, not something that was meant."""
+        self.data = bytearray()
+        self.source = source
+        self.strict = strict
+        self.broken = []  # rules, in the order in which they failed
+        self.sections = []  # the RangeWriter of each section
+        self.highest_end = False
+        self.alignment = "0"  # the bits that byte_alignment( ) is to find
+        self._bins = collections.deque()
+        self._range = None
+        self._reading = False  # a payload that was given as bytes
+        self.ns = spec_program.run(code, {
+            "StreamBytes": self.data, "require": self._require, "supported": self._require,
+            "inflates_to": lambda first, end, size: 1, "output_bytes": lambda data: None,
+            "write_element": self._element})
+        self._read = {name: self.ns[name] for name in
+                      ("ae", "bypass", "byte_alignment", "CheckOverrun", "EndSection")}
+        self.ns.update(ae=self._ae, bypass=self._bypass, byte_alignment=self._byte_alignment,
+                       CheckOverrun=lambda: None, EndSection=self._end_section,
+                       CheckHash=self._collect_hash)
+        self.ns["StartReading"]()
+        self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
+                       HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
+                       NumGofFrames=0)
+        self.inferred = {}  # element -> value, or list of values, that fits what is written
+        self.gof_frames = []  # num_gof_frames_minus1 of each GOF
+        self.frame_hashes = []
+        self.running_hash = 0
+
+    # Bits.
+
+    def put_bits(self, bits):
+        position = self.ns["BitPosition"]
+        for bit in bits:
+            if position % 8 == 0:
+                self.data.append(0)
+            self.data[-1] |= int(bit) << (7 - position % 8)
+            position += 1
+        self.ns["ReadEnd"] = 8 * len(self.data)
+
+    def put_bytes(self, data):
+        self.data += data
+        self.ns["BitPosition"] = self.ns["ReadEnd"] = 8 * len(self.data)
+
+    def _byte_alignment(self):
+        missing = -self.ns["BitPosition"] % 8
+        self.put_bits((self.alignment * 8)[:missing])
+        self._read["byte_alignment"]()
+
+    # Sections.
+
+    def _start_range(self):
+        if self._range is None:
+            self._range = RangeWriter()
+            self.sections.append(self._range)
+
+    def _decide(self, upper, call):
+        """Lets the specification decide for one part of its range, by a Code that lies in it."""
+        self._start_range()
+        ns = self.ns
+        before, position = ns["Range"], ns["SectionPosition"]
+        ns["Code"] = before - 1 if upper else 0
+        result = call()
+        shifts = ns["SectionPosition"] - position
+        self._range.narrow(before - (ns["Range"] >> (8 * shifts)) if upper else 0, shifts)
+        return result
+
+    def _ae(self, model):
+        wanted = self._bins.popleft()
+        return self._decide(wanted == 0, lambda: self._read["ae"](model))
+
+    def _bypass(self, n):
+        value = 0
+        for _ in range(n):
+            wanted = self._bins.popleft()
+            value = 2 * value + self._decide(wanted == 1, lambda: self._read["bypass"](1))
+        return value
+
+    def _end_section(self):
+        self._start_range()
+        self.put_bytes(self._range.finish(self.ns["Range"], self.highest_end))
+        self.ns["InSection"] = 0
+        self._range = None
+
+    # Elements.
+
+    def _element(self, name, indices, descriptor, *arguments):
+        if self._reading:
+            return self.ns[descriptor](*arguments)
+        value = self.source.value(self, name, tuple(indices), descriptor, arguments)
+        if descriptor in BIT_DESCRIPTORS:
+            self._put_code(name, value, descriptor, arguments)
+        else:
+            self._bins.extend(self._binarisation(name, value, descriptor, arguments))
+        read = self.ns[descriptor](*arguments)
+        expected = value
+        if descriptor in ("ae_residual", "ae_header"):
+            expected = max(-MAX_RESIDUAL, min(MAX_RESIDUAL, value))
+        if read != expected or self._bins:
+            raise WriteError(f"{name}: {value} was written, but {read} was read")
+        return read
+
+    def _put_code(self, name, value, descriptor, arguments):
+        if descriptor == "u":
+            if not 0 <= value < 1 << arguments[0]:
+                raise WriteError(f"{name}: {value} does not fit u({arguments[0]})")
+            self.put_bits(format(value, "b").zfill(arguments[0]) if arguments[0] else "")
+            return
+        if descriptor == "se":
+            value = 2 * value - 1 if value > 0 else -2 * value
+        if value < 0:
+            raise WriteError(f"{name}: {value} is negative")
+        self.put_bits(exp_golomb(value))
+
+    def _binarisation(self, name, value, descriptor, arguments):
+        if descriptor == "ae_residual":
+            return self._residual_bins(value, arguments[1], len(arguments[0][0][0]))
+        if descriptor == "ae_header":
+            expected = self.ns["HeaderMean"][arguments[0]] >> 4
+            return self._residual_bins(value, expected, len(self.ns["HeaderModels"][0][0]))
+        if descriptor == "ae_unary":
+            count = len(arguments[0])
+            if not 0 <= value <= count:
+                raise WriteError(f"{name}: {value} is not in the range of 0 to {count}")
+            return [1] * value + [0] * (value < count)
+        width = {"ae": 1, "bypass": arguments[0], "ae_tree": arguments[-1]}[descriptor]
+        if not 0 <= value < 1 << width:
+            raise WriteError(f"{name}: {value} does not fit {width} bins")
+        return _digits(value, width)
+
+    def _residual_bins(self, value, expected, longest):
+        """9.5.1, from value to bins."""
+        shift = self.ns["ResidualContext"](expected)[1]
+        magnitude = abs(value)
+        upper = magnitude >> shift
+        bins = [1] * min(upper, longest)
+        if upper < longest:
+            bins.append(0)
+        else:
+            escape = upper - longest + 1
+            length = escape.bit_length() - 1
+            if length > _ESCAPE_LENGTH:
+                raise WriteError(f"a residual of {value} is beyond all codes")
+            bins += [1] * length + [0] * (length < _ESCAPE_LENGTH)
+            bins += _digits(escape - (1 << length), length)
+        bins += _digits(magnitude & ((1 << shift) - 1), shift)
+        return bins + ([int(value < 0)] if magnitude else [])
+
+    # Units.
+
+    def _require(self, condition, rule):
+        if condition or rule in _STRUCTURAL:
+            return
+        self.broken.append(rule)
+        if self.strict:
+            raise WriteError(f"{rule} is broken")
+
+    def unit(self, code, payload=None, finish=None):
+        """A unit with the payload that the source gives, or with these bytes.
+
+        finish(payload) can change the payload once it is written. A payload that breaks a
+        requirement may be one that cannot be written to its end; it ends there.
+        """
+        ns = self.ns
+        self.source.unit_code = code
+        start = len(self.data)
+        ns["unit_header"]()
+        ns["UnitCode"] = code
+        if payload is not None:
+            self._read_payload(payload)
+        else:
+            self._run_payload(code)
+            if self._range is not None:
+                self._end_section()
+        self._bins.clear()
+        if finish is not None:
+            changed = finish(bytes(self.data[start + 5:]))
+            del self.data[start + 5:]
+            self.put_bytes(changed)
+        self._close_unit(start)
+
+    def _run_payload(self, code):
+        try:
+            self.ns["unit_payload"]()
+        except (IndexError, KeyError, NameError, TypeError, ValueError) as error:
+            if not self.broken:
+                raise WriteError(f"unit of code {code}: {error!r}") from error
+
+    def _read_payload(self, payload):
+        """Bytes as they are; what follows depends on what they say, so they are read."""
+        ns, start = self.ns, self.ns["BitPosition"]
+        self.put_bytes(payload)
+        hooks = {name: ns[name] for name in self._read}
+        ns.update(self._read, BitPosition=start)
+        self._reading = True
+        self._run_payload(ns["UnitCode"])
+        self._reading = False
+        ns.update(hooks, BitPosition=8 * len(self.data), InSection=0)
+
+    def _close_unit(self, start):
+        size = len(self.data) - start - 5
+        claimed = self.source.override("unit_size", size)
+        self.data[start + 1:start + 5] = claimed.to_bytes(4, "big")
+        crc = self.source.override("unit_crc", zlib.crc32(self.data[start:]))
+        self.put_bytes(crc.to_bytes(4, "big"))
+
+    def decode_gof(self):
+        """After a GOF unit: its frames count as parsed, and their hashes become known."""
+        self.ns["NumParsedFrames"] += self.ns["NumGofFrames"]
+        self.gof_frames.append(self.ns["NumGofFrames"] - 1)
+        self.frame_hashes, self.running_hash = [], 0
+
+    def hash_of_gof(self, per_frame):
+        """The hashes of the last GOF; decodes it when first asked."""
+        if not self.frame_hashes:
+            self.ns["HashPresent"] = 0
+            try:
+                self.ns["DecodeGof"]()
+            except (IndexError, KeyError, TypeError, ValueError):
+                if not self.broken:
+                    raise
+                self.frame_hashes = [0] * self.ns["NumGofFrames"]
+        return self.frame_hashes if per_frame else [self.running_hash]
+
+    def _collect_hash(self, frame):
+        self.frame_hashes.append(self.ns["HashOfPositions"](0))
+        self.running_hash = self.ns["HashOfPositions"](self.running_hash)
+
+
+def _digits(value, width):
+    return [(value >> (width - 1 - i)) & 1 for i in range(width)]

@@ -1,0 +1,178 @@
+"""The streams of a version: built from their recipes, checked against them, and frozen."""
+
+import hashlib
+import json
+import multiprocessing
+import pathlib
+import re
+import sys
+
+_CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(_CONFORMANCE / "judge"))
+import recipe as recipes  # noqa: E402
+import recipe_source  # noqa: E402
+import spec_program  # noqa: E402  (found through recipe_source)
+import suite  # noqa: E402
+
+LICENCE = "CC0-1.0"
+SUMS = "SHA256SUMS"
+_ID = re.compile(r"[A-Z]{2,3}-\d{4}([a-w]|x\d+[b-w]?)$")
+_PROFILES = {0: "baseline"}
+_SETTINGS = {"profile_idc": 0, "level_idc": 1}
+
+
+class StreamsError(Exception):
+    """A recipe and what comes of it do not agree."""
+
+
+def recipe_paths(folder, only=None):
+    paths = sorted(pathlib.Path(folder).glob("recipes/*/*.recipe"))
+    return [p for p in paths if only is None or p.match(only + ".recipe")]
+
+
+def _header_value(recipe, name):
+    """A syntax element of the first sequence header, as the recipe has it."""
+    for unit in recipe.units:
+        if unit.name == "SEQUENCE_HEADER":
+            for entry in reversed(unit.entries):
+                if entry.name == name:
+                    return int(entry.text, 0)
+            break
+    return _SETTINGS[name]
+
+
+def _expect(recipe, found, place):
+    """What a decoder has to do, from what the recipe announces and what the specification does."""
+    announced = recipe.meta.get("expect")
+    rules = recipe.meta["rules"]
+    if announced == "either":
+        if found["expect"] != "accept" or not rules:
+            raise StreamsError(f"{place}: expect: either is for streams that decode and break a "
+                               "rule that decoding need not check")
+        return announced
+    if found["expect"] == "accept":
+        if announced not in (None, "accept") or "x" in recipe.path.stem:
+            raise StreamsError(f"{place}: meant to be refused, but it decodes")
+        return "accept"
+    if "x" not in recipe.path.stem:
+        raise StreamsError(f"{place}: breaks {found['rule']} at bit {found['bit']}; if that is "
+                           "meant, its id has x and a number behind")
+    if rules != [found["rule"]]:
+        raise StreamsError(f"{place}: `rules: {', '.join(rules)}`, but the first rule that it "
+                           f"breaks is {found['rule']}, at bit {found['bit']}")
+    return found["expect"]
+
+
+def sidecar_of(recipe, data, folder, program):
+    """The sidecar of a stream, but for what is measured."""
+    place = recipe.path
+    if not _ID.match(recipe.path.stem):
+        raise StreamsError(f"{place}: an id is an area, a number and a revision, GOF-0004a; one "
+                           "that is refused has x and a number instead, GOF-0004x1")
+    if "title" not in recipe.meta or recipe.meta.get("tier") not in suite.TIERS:
+        raise StreamsError(f"{place}: a recipe has a title and a tier: {', '.join(suite.TIERS)}")
+    found = suite.expectation_of(data, program)
+    expect = _expect(recipe, found, place)
+    found.pop("expect")
+    level = recipe.meta.get("level", _header_value(recipe, "level_idc"))
+    return {"id": recipe.path.stem, "title": recipe.meta["title"], "spec": folder.name[1:],
+            "profile": _PROFILES.get(_header_value(recipe, "profile_idc"), "baseline"),
+            "level": max(1, min(4, int(level))), "expect": expect, "tier": recipe.meta["tier"],
+            "rules": recipe.meta["rules"], "features": recipe.meta["features"],
+            "twin": recipe.meta.get("twin"), "sha256": hashlib.sha256(data).hexdigest(),
+            "recipe": recipe.path.relative_to(folder).as_posix(),
+            "seed": int(recipe.meta["seed"]) if "seed" in recipe.meta else None,
+            "released": None, "superseded_by": recipe.meta.get("superseded_by"),
+            "licence": LICENCE, **found}
+
+
+class Version:
+    """The folder of a version, such as streams/v1.0."""
+
+    def __init__(self, folder, spec):
+        self.folder = pathlib.Path(folder).resolve()
+        self.program = spec_program.Program(spec)
+        self._builder = recipe_source.StreamBuilder(self.program)
+
+    def make(self, path):
+        """(path of the stream, bytes, sidecar) of a recipe."""
+        recipe = recipes.load(path)
+        data, _ = self._builder.build(recipe)
+        sidecar = sidecar_of(recipe, data, self.folder, self.program)
+        area = path.parent.name
+        place = self.folder / suite.FOLDER_OF[sidecar["expect"]] / area / f"{path.stem}.rlpc"
+        return place, data, sidecar
+
+    def released(self):
+        return (self.folder / SUMS).is_file()
+
+
+_version = None  # of a worker process
+
+
+def _start(folder, spec):
+    global _version
+    _version = Version(folder, spec)
+
+
+def _make(path):
+    try:
+        return path, _version.make(path), None
+    except (StreamsError, recipes.RecipeError) as error:
+        return path, None, str(error)
+
+
+def make_all(folder, spec, only, jobs):
+    """For each recipe (path, (stream path, bytes, sidecar) or None, complaint or None)."""
+    paths = recipe_paths(folder, only)
+    with multiprocessing.Pool(jobs, _start, (folder, spec)) as pool:
+        yield from pool.imap(_make, paths)
+
+
+def sidecar_text(sidecar):
+    return json.dumps(sidecar, indent=1, ensure_ascii=False) + "\n"
+
+
+def write_stream(place, data, sidecar):
+    """Writes both files; keeps what was measured if the stream is the same."""
+    old = place.with_suffix(".json")
+    if old.is_file():
+        before = json.loads(old.read_text(encoding="utf-8"))
+        if before.get("sha256") == sidecar["sha256"] and "measured" in before:
+            sidecar = {**sidecar, "measured": before["measured"]}
+        sidecar["released"] = before.get("released")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    suite.write_file(place, data)
+    suite.write_file(old, sidecar_text(sidecar))
+
+
+def difference(place, data, sidecar):
+    """What is not as the recipe gives it, or None."""
+    if not place.is_file() or not place.with_suffix(".json").is_file():
+        return f"{place}: missing; build the streams"
+    if place.read_bytes() != data:
+        return f"{place}: not what its recipe gives"
+    there = json.loads(place.with_suffix(".json").read_text(encoding="utf-8"))
+    for name, value in sidecar.items():
+        if name != "released" and there.get(name) != value:
+            return (f"{place.with_suffix('.json')}: \"{name}\" is {there.get(name)!r}, but the "
+                    f"recipe gives {value!r}")
+    return None
+
+
+def strays(folder, places):
+    """Streams and sidecars without a recipe."""
+    known = set(places) | {p.with_suffix(".json") for p in places}
+    for kind in sorted(set(suite.FOLDER_OF.values())):
+        for path in sorted((pathlib.Path(folder) / kind).glob("*/*")):
+            if path not in known:
+                yield path
+
+
+def sums(folder):
+    """The text of SHA256SUMS: what a release freezes. Sidecars may gain measurements."""
+    folder = pathlib.Path(folder)
+    paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes/*/*.recipe"))
+    lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n"
+             for p in paths + [folder / suite.INDEX]]
+    return "".join(lines)
