@@ -12,6 +12,7 @@ import check_clauses  # noqa: E402
 import check_float  # noqa: E402
 import check_layers  # noqa: E402
 import check_rules  # noqa: E402
+import check_stability  # noqa: E402
 import cpp_source  # noqa: E402
 
 
@@ -249,6 +250,13 @@ class Rules(TreeTest):
     def test_list_that_is_not_up_to_date(self):
         self.assert_one(check_rules.check, self.tree(self.TEXT, "[]\n"), "not up to date")
 
+    def test_rule_without_check_in_the_validator(self):
+        tools = "conformance/tools/"
+        tree = {**self.tree(self.TEXT), "decoder/parse_a.cpp": 'fail("R-ABC-01");\n',
+                tools + "validator.cpp": '#include "decoder/parse_a.h"\n// "R-ABC-02"\n'}
+        self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")
+        self.assert_clean(check_rules.check, {**tree, tools + "validator_b.cpp": '"R-ABC-02"\n'})
+
     def test_sentence_without_rule(self):
         self.assert_one(check_rules.check,
                         self.tree(self.TEXT + "A stream is unsupported unless z is 3.\n"),
@@ -257,6 +265,45 @@ class Rules(TreeTest):
     def test_rule_without_sentence(self):
         self.assert_one(check_rules.check, self.tree(self.TEXT + "\nx should be 1. {R-ABC-03}\n"),
                         "spec/07.md:5", "R-ABC-03")
+
+
+class Stability(TreeTest):
+    DIGEST = "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae"  # of "foo"
+    RELEASED = {"spec/versions.md": "| 1.0 | Baseline | released 2026-11-21 |\n",
+                "streams/v1.0/SHA256SUMS": DIGEST + "  accept/A/A-0001a.rlpc\n",
+                "streams/v1.0/accept/A/A-0001a.rlpc": "foo"}
+    ENTRY = '{"version": "1.0.0", "erratum": %s, "digests": {}}'
+
+    @staticmethod
+    def released(root):
+        return [list(check_stability.released(root))]
+
+    @staticmethod
+    def entries(root):
+        return [list(check_stability.entries(root))]
+
+    def test_what_is_released_stays(self):
+        self.assert_clean(self.released, self.RELEASED)
+        changed = {**self.RELEASED, "streams/v1.0/accept/A/A-0001a.rlpc": "fop"}
+        self.assert_one(self.released, changed, "A-0001a.rlpc", "changed since its release")
+        missing = {k: v for k, v in self.RELEASED.items() if not k.endswith(".rlpc")}
+        self.assert_one(self.released, missing, "released, but missing")
+
+    def test_the_list_of_versions_is_true(self):
+        said = {"spec/versions.md": self.RELEASED["spec/versions.md"]}
+        self.assert_one(self.released, said, "1.0 is `released 2026-11-21`", "missing")
+        unsaid = {**self.RELEASED, "spec/versions.md": "| 1.0 | Baseline | not released |\n"}
+        self.assert_one(self.released, unsaid, "1.0 is `not released`")
+
+    def test_another_state_of_the_encoder_has_a_reason(self):
+        def tree(*errata, text="# Errata\n"):
+            listed = "[" + ", ".join(self.ENTRY % e for e in errata) + "]"
+            return {check_stability.DIGESTS: listed, "spec/errata.md": text}
+
+        self.assert_clean(self.entries, tree("null"))
+        self.assert_one(self.entries, tree("null", "null"), "names no erratum")
+        self.assert_one(self.entries, tree("null", '"E-001"'), "E-001 is not in")
+        self.assert_clean(self.entries, tree("null", '"E-001"', text="### E-001 Rounding\n"))
 
 
 if __name__ == "__main__":
