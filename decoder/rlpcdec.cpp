@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
 #include "decoder/frame_sink.h"
 #include "decoder/rlpc_decoder.h"
@@ -30,6 +31,10 @@ Examples
   rlpcdec walk.rlpc -o walk.pc2
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
   rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
+
+For the conformance judge (conformance/VALIDATE.md)
+  rlpcdec --rlpc-conformance
+  rlpcdec decode IN.rlpc OUT.rlpd [--max-mem BYTES]
 
 Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the limits;
 4 input or output failed; 64 usage.)";
@@ -194,6 +199,7 @@ void add_options(CLI::App& app, Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  if (const auto code = rlpc::run_conformance_verb(argc, argv)) return *code;
   CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
   app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
   Options options;

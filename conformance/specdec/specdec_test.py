@@ -268,21 +268,26 @@ def encode(folder, animation, *settings):
 
 class Clips(FolderTest):
     def rlpcdec(self, data):
-        """(exit code, rule or None, output) of rlpcdec."""
+        """(exit code, rule or None, number of frames before the error or None, output)."""
         stream, output = self.folder / "in.rlpc", self.folder / "out.rlpd"
         stream.write_bytes(data)
-        done = subprocess.run([BIN / "rlpcdec", stream, "-o", output, "-q"], capture_output=True,
+        output.unlink(missing_ok=True)
+        done = subprocess.run([BIN / "rlpcdec", "decode", stream, output], capture_output=True,
                               text=True, timeout=60, check=False)
-        rule = re.search(r"\(rule (R-\w+-\d+)\)", done.stderr)
-        return (done.returncode, rule and rule.group(1),
-                output.read_bytes() if done.returncode == 0 else b"")
+        verdict = {}
+        if done.returncode != 0:
+            word, _, text = done.stderr.splitlines()[-1].partition(" ")
+            self.assertEqual(word, "rlpc-verdict")
+            verdict = json.loads(text)
+        return (done.returncode, verdict.get("rule"), verdict.get("frame"),
+                output.read_bytes() if output.exists() else b"")
 
 
 class Streams(Clips):
     """What rlpcenc writes decodes to the same bytes, and reads as the same syntax elements."""
 
     def agree(self, data):
-        code, _, expected = self.rlpcdec(data)
+        code, _, _, expected = self.rlpcdec(data)
         self.assertEqual(code, 0)
         elements = []
         decoded = run_stream(data, trace=lambda *element: elements.append(element))
@@ -358,13 +363,15 @@ def stream_of(data, all_units):
 
 
 class DamagedStreams(Clips):
-    """Damaged streams draw the same verdict from the specification and from rlpcdec."""
+    """Damaged streams draw the same verdict, and the same frames before it, from both decoders."""
 
     def agree(self, cases):
         for number, data in enumerate(cases):
             with self.subTest(number=number):
                 code, rule, frames, output = run_stream(data)
-                self.assertEqual((code, rule), self.rlpcdec(data)[:2])
+                got = self.rlpcdec(data)
+                self.assertEqual((code, rule, frames if code else None), got[:3])
+                self.assertTrue(output == got[3], "other bytes than from rlpcdec")
                 if output:
                     vertices, triangles = struct.unpack_from("<II", output, 8)
                     self.assertEqual(len(output), 44 + 12 * triangles + 12 * vertices * frames)

@@ -1,0 +1,254 @@
+"""What a decoder's run over a stream is worth: an outcome, and a cell for each grade."""
+
+import dataclasses
+import tempfile
+
+import divergence
+import rlpd
+from contract import DECODED, LIMIT, REJECTED, UNSUPPORTED
+
+COLUMNS = (
+    ("int", "int", "decodes to the right integers"),
+    ("full", "full", "decodes to the right 32-bit floats"),
+    ("strict", "strict", "is refused, after exactly the frames before the error"),
+    ("diagnostic", "diagnostic", "is refused for the right rule"),
+)
+# Grade: the columns that it takes.
+GRADES = {"R-int": ("int",), "R-full": ("int", "full"), "R-strict": ("int", "strict"),
+          "R-diagnostic": ("int", "strict", "diagnostic")}
+PASS, FAIL, NOT_RUN, NONE = "pass", "fail", "not run", ""
+NOT_SUPPORTED, NOT_DECLARED, NO_RULE = "unsupported", "not declared", "no rule"
+
+
+@dataclasses.dataclass
+class Judgement:
+    """outcome: PASS, FAIL-..., CRASH, UNSUPPORTED or NOT-RUN; reason: one word that says more."""
+
+    outcome: str
+    reason: str = ""
+    text: str = ""
+    cells: dict = dataclasses.field(default_factory=dict)
+    details: dict = dataclasses.field(default_factory=dict)
+    seconds: float = None
+
+
+class Grader:
+    """Runs one decoder over streams."""
+
+    def __init__(self, decoder, reference):
+        self._decoder = decoder
+        self._reference = reference
+        self._floats = "f32" in decoder.answer["outputs"]
+
+    def judge(self, stream):
+        with tempfile.TemporaryDirectory(prefix="rlpc-judge-") as folder:
+            run = self._decoder.decode(stream, "rlpd", folder)
+            judgement = self._outcome(stream, run)
+        judgement.seconds = run.finished.seconds
+        judgement.details.update({
+            "verdict": run.verdict, "exit": run.finished.ending(),
+            "stderr": "\n".join(run.finished.stderr.splitlines()[-8:])[-2000:],
+            "command": self._decoder.decode_command(stream)})
+        self._fill_cells(stream, judgement, run)
+        return judgement
+
+    def _outcome(self, stream, run):
+        """The judgement of the exit code; output is looked at where it should be right."""
+        done, expect = run.finished, stream.expect
+        if done.code is None:
+            return Judgement("CRASH", "timeout", done.ending())
+        if done.code < 0:
+            return Judgement("CRASH", "signal", done.ending())
+        if done.code > LIMIT:
+            return Judgement("CRASH", "exit-code",
+                             f"{done.ending()}; the contract knows 0, 1, 2 and 3")
+        if run.complaint:
+            return Judgement("FAIL-verdict", "no-verdict", f"{done.ending()}, but {run.complaint}")
+        if done.code == LIMIT:
+            return Judgement("FAIL-resource", "limit", "says that it needs more than it may take")
+        if done.code == UNSUPPORTED and expect != "unsupported":
+            if not self._decoder.declares(stream):
+                return Judgement("UNSUPPORTED", "not-declared",
+                                 f"profile {stream.profile}, level {stream.level} not declared")
+            return Judgement("FAIL-unsupported", "declared", "says unsupported, but declares it")
+        if done.code == DECODED and expect in ("accept", "either"):
+            return self._whole_output(stream, run)
+        if done.code == DECODED:
+            return Judgement("FAIL-overaccept", "accepted", f"accepts what it must {_must(stream)}")
+        if done.code == REJECTED and expect in ("accept", "unsupported"):
+            return Judgement("FAIL-overreject", "rejected", f"rejects what it must {_must(stream)}")
+        return self._part_output(stream, run)
+
+    def _whole_output(self, stream, run):
+        if not run.output.is_file():
+            return Judgement("FAIL-output", "no-output", "exit code 0, but OUT does not exist")
+        if rlpd.digest_of(run.output).sha256() == stream.sha256_int:
+            return Judgement("PASS")
+        return self._located(stream, run, "FAIL-output")
+
+    def _part_output(self, stream, run):
+        """After a refusal, where it was due."""
+        exists = run.output.is_file()
+        digest = rlpd.digest_of(run.output) if exists else rlpd.Digest()
+        exists = exists and digest.size > 0  # an empty OUT is as good as none
+        if stream.expect == "either":  # where a decoder notices is left open
+            hashes = digest.frame_sha256
+            if not exists or (not digest.complaint()
+                              and hashes == stream.frame_sha256[:len(hashes)]):
+                return Judgement("PASS")
+            return self._located(stream, run, "FAIL-frames")
+        if digest.sha256() == stream.sha256_int:
+            return Judgement("PASS")
+        if not exists:
+            return Judgement("FAIL-frames", "no-output", "OUT does not exist; expected the "
+                             f"{stream.frames_before} frames before the error")
+        if stream.sha256_int is None:
+            return Judgement("FAIL-frames", "output", f"OUT has {digest.size} bytes; expected no "
+                             "OUT, as the error comes before the first GOF unit")
+        return self._located(stream, run, "FAIL-frames")
+
+    def _located(self, stream, run, outcome):
+        """A wrong output, with its first difference from the reference."""
+        path, complaint = self._reference.output(stream)
+        found = divergence.first_difference(run.output, path) if path else None
+        if found:
+            return Judgement(outcome, found["kind"], describe(found), details={"divergence": found})
+        digest = rlpd.digest_of(run.output)
+        text = digest.complaint() or "wrong hash"
+        if stream.frame_sha256:
+            pairs = zip(digest.frame_sha256, stream.frame_sha256)
+            frame = next((f for f, (a, b) in enumerate(pairs) if a != b),
+                         min(len(digest.frame_sha256), stream.frames))
+            text += f"; frames before {frame} are right"
+        return Judgement(outcome, "hash", f"{text} ({complaint})")
+
+    def _fill_cells(self, stream, judgement, run):
+        cells = dict.fromkeys((key for key, *_ in COLUMNS), NONE)
+        state = {"PASS": PASS, "UNSUPPORTED": NOT_SUPPORTED}.get(judgement.outcome, FAIL)
+        if stream.expect == "accept":
+            cells["int"] = state
+            cells["full"] = self._float_cell(stream, judgement, state)
+        else:
+            cells["strict"] = state
+            cells["diagnostic"] = _rule_cell(stream, judgement, run) if state == PASS else state
+        judgement.cells = cells
+
+    def _float_cell(self, stream, judgement, state):
+        if not self._floats:
+            return NOT_DECLARED
+        if state != PASS:
+            return state
+        with tempfile.TemporaryDirectory(prefix="rlpc-judge-") as folder:
+            run = self._decoder.decode(stream, "f32", folder)
+            text, found = self._float_complaint(stream, run)
+        if text is None:
+            return PASS
+        judgement.outcome, judgement.reason, judgement.text = "FAIL-float", "float", text
+        judgement.details.update({"divergence": found, "exit": run.finished.ending(),
+                                  "command": self._decoder.decode_command(stream, "f32")})
+        return FAIL
+
+    def _float_complaint(self, stream, run):
+        """(text or None, first difference or None) of the .f32 output."""
+        if run.finished.code != DECODED:
+            return f"decodes to .rlpd, but to .f32: {run.finished.ending()}", None
+        if not run.output.is_file():
+            return "exit code 0, but OUT.f32 does not exist", None
+        if rlpd.file_sha256(run.output) == stream.sha256_f32:
+            return None, None
+        path, complaint = self._reference.output(stream)
+        found = divergence.first_float_difference(run.output, path) if path else None
+        return f"floats: {describe(found) if found else 'wrong hash'}", found
+
+
+def _must(stream):
+    return {"accept": "decode", "reject": "reject",
+            "unsupported": "call unsupported"}[stream.expect]
+
+
+def _rule_cell(stream, judgement, run):
+    """Of a stream that was refused, or may be, as it should."""
+    if run.finished.code == DECODED:
+        return PASS
+    rules = [stream.rule] if stream.rule else stream.rules
+    rule = run.verdict.get("rule")
+    if rule is None:
+        return NO_RULE
+    if rule not in rules:
+        judgement.reason = "rule"
+        judgement.text = f"reports {rule}, expected {' or '.join(rules)}"
+        return FAIL
+    frame = run.verdict.get("frame")
+    if stream.frames_before is not None and frame not in (None, stream.frames_before):
+        judgement.reason = "frame"
+        judgement.text = f"reports frame {frame}, expected {stream.frames_before}"
+        return FAIL
+    return PASS
+
+
+def describe(found):
+    """A first difference in a line."""
+    place = {"header": "header, {field}", "triangle": "triangle {triangle}",
+             "vertex": "frame {frame}, vertex {vertex}",
+             "frame-count": "from frame {frame} on"}[found["kind"]].format(**found)
+    return f"{place}: expected {_listed(found['expected'])}, got {_listed(found['got'])}"
+
+
+def _listed(value):
+    return " ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def not_run(stream, reason):
+    """For a stream that was never decoded."""
+    concerned = ("int", "full") if stream.expect == "accept" else ("strict", "diagnostic")
+    return Judgement("NOT-RUN", "interrupted", reason,
+                     {key: NOT_RUN if key in concerned else NONE for key, *_ in COLUMNS},
+                     {"exit": "not run"})
+
+
+def grade(rows, name):
+    """The grade as a dictionary (report.schema.json): counts over the streams it is about."""
+    counts = dict.fromkeys((PASS, FAIL, NOT_SUPPORTED, NOT_DECLARED, NOT_RUN), 0)
+    for row in rows:
+        states = {row["cells"][column] for column in GRADES[name]} - {NONE}
+        if not states:
+            continue
+        states = {FAIL if s == NO_RULE else s for s in states}
+        counts[next(s for s in (NOT_RUN, FAIL, NOT_SUPPORTED, NOT_DECLARED, PASS)
+                    if s in states)] += 1
+    of = sum(counts.values())
+    if counts[FAIL]:
+        status = "FAIL"
+    elif not of or counts[NOT_RUN]:
+        status = "NOT RUN"
+    elif not counts[PASS] or not _decodes_any(rows):
+        status = "NOT DECLARED"
+    else:
+        status = "PASS"
+    text = f"{counts[PASS]} of {of} streams passed"
+    for state, words in ((FAIL, "failed"), (NOT_SUPPORTED, "unsupported, as declared"),
+                         (NOT_DECLARED, "not declared"), (NOT_RUN, "not run")):
+        if counts[state]:
+            text += f", {counts[state]} {words}"
+    return {"grade": name, "status": status, "passed": counts[PASS], "failed": counts[FAIL],
+            "unsupported": counts[NOT_SUPPORTED] + counts[NOT_DECLARED],
+            "not_run": counts[NOT_RUN], "of": of, "text": text}
+
+
+def _decodes_any(rows):
+    """No grade without streams that decode, unless there are none to decode."""
+    states = {row["cells"]["int"] for row in rows} - {NONE}
+    return not states or PASS in states
+
+
+def everything_passed(grades, wanted=None):
+    """Whether the exit code is 0: `wanted` passed, or all that the decoder declares.
+
+    R-diagnostic counts only where it is wanted, as a decoder need not name rules.
+    """
+    status = {g["grade"]: g["status"] for g in grades if g["of"]}
+    if wanted:
+        return status.get(wanted) == "PASS"
+    return (bool(status) and status.get("R-int", "PASS") == "PASS"
+            and status.get("R-full", "PASS") in ("PASS", "NOT DECLARED")
+            and status.get("R-strict", "PASS") == "PASS")

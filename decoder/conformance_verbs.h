@@ -1,0 +1,18 @@
+// What a conformance judge asks of a decoder, as arguments of rlpcdec:
+//
+//   rlpcdec --rlpc-conformance                               what it decodes, as JSON
+//   rlpcdec decode IN.rlpc OUT.rlpd|OUT.f32 [--max-mem BYTES]
+//
+// OUT holds exactly the frames before an error, and is not written at all if the error comes
+// before the first GOF unit (A.2). The last line of standard error on exit codes 1 to 3 is
+// rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
+#pragma once
+
+#include <optional>
+
+namespace rlpc {
+
+// The exit code, or nothing if the arguments are not those above.
+std::optional<int> run_conformance_verb(int argc, char** argv);
+
+}  // namespace rlpc
