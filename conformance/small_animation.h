@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/crc32.h"
 #include "common/stream_format.h"
+#include "conformance/tools/validator.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
@@ -69,6 +71,18 @@ inline MemoryFrames bending_tube(std::uint32_t rings, std::uint32_t num_frames) 
   return {std::move(shape), std::move(frames)};
 }
 
+// What the encoder writes conforms, or the test fails.
+inline void require_conforming(const StreamBytes& bytes) {
+  const auto source = memory_source(bytes);
+  const ValidationReport report = validate(*source);
+  for (const Finding& f : report.findings) {
+    if (f.severity == Severity::kWarning) continue;
+    throw std::logic_error("the encoder broke " + std::string(f.id) + " at bit " +
+                           std::to_string(f.bit_pos) + " (" + f.element + "): " + f.detail);
+  }
+  if (!report.complete) throw std::logic_error("the validator did not check all of a stream");
+}
+
 // Empty if the encoder reports an error.
 inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& settings,
                                     EncodeReport* report = nullptr) {
@@ -78,6 +92,7 @@ inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& 
     return true;
   });
   if (!result) return {};
+  require_conforming(bytes);
   if (report != nullptr) *report = std::move(*result);
   return bytes;
 }

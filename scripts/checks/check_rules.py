@@ -5,6 +5,12 @@ Every rule id in braces ends a sentence that begins with "It is a requirement of
 conformance that" (a stream that breaks it is invalid) or "A stream is unsupported unless". Of each
 rule the list has: id, clause, effect, sentence, and whether the pseudo-code checks it.
 
+Every rule is checked by rlpcval: its id is a string in the code of the validator, in the parsers
+that the validator includes, or in the reader of bits that these share.
+
+Every rule is broken by a stream of each version in streams/ that has sidecars, or by one that a
+decoder may refuse; and sidecars name no other rules.
+
   --write    brings spec/rules.json up to date
 """
 
@@ -68,6 +74,48 @@ def text_of(found):
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
+def validator_code(root):
+    """The code with which rlpcval checks streams, without comments; "" if there is none."""
+    own = [path for path in sorted((root / "conformance" / "tools").glob("validator*"))
+           if path.suffix in (".h", ".cpp") and not cpp_source.is_test(path)]
+    text = "".join(cpp_source.without_comments(path.read_text(encoding="utf-8")) for path in own)
+    if not own:
+        return ""
+    shared = [root / "common" / "bit_reader.cpp"]
+    for name in sorted(set(re.findall(r'#include "(decoder/parse_\w+)\.h"', text))):
+        shared += [root / f"{name}.h", root / f"{name}.cpp"]
+    return text + "".join(cpp_source.without_comments(path.read_text(encoding="utf-8"))
+                          for path in shared if path.exists())
+
+
+def without_check(root, found):
+    """Ids of rules that rlpcval does not check."""
+    code = validator_code(root)
+    return [rule["rule"] for rule in found if code and f'"{rule["rule"]}"' not in code]
+
+
+def broken_by_streams(root):
+    """For each version in streams/: (its name, ids of the rules that its streams break)."""
+    for version in sorted((root / "streams").glob("v*")):
+        sidecars = [json.loads(path.read_text(encoding="utf-8"))
+                    for kind in ("reject", "either") for path in version.glob(f"{kind}/*/*.json")]
+        if sidecars:
+            yield version.name, {rule for sidecar in sidecars if not sidecar.get("superseded_by")
+                                 for rule in sidecar["rules"]}
+
+
+def stream_complaints(root, found):
+    """(complaints about rules and streams, number of rules without a stream that breaks them)"""
+    complaints, without, ids = [], 0, {rule["rule"] for rule in found}
+    for version, broken in broken_by_streams(root):
+        complaints += [f"streams/{version}: no stream breaks {rule}: write a recipe"
+                       for rule in sorted(ids - broken)]
+        complaints += [f"streams/{version}: a sidecar names {rule}, which spec/ does not define"
+                       for rule in sorted(broken - ids)]
+        without += len(ids - broken)
+    return complaints, without
+
+
 def check(root):
     found, complaints = rules(root)
     if not (root / "spec").is_dir():
@@ -76,8 +124,14 @@ def check(root):
     if not path.exists() or path.read_text(encoding="utf-8") != text_of(found):
         complaints.append("spec/rules.json is not up to date: scripts/rules")
     unchecked = [rule["rule"] for rule in found if not rule["checked_by_pseudo_code"]]
+    missing = without_check(root, found)
+    complaints += [f"{rule} has no check in rlpcval: conformance/tools/validator*.cpp"
+                   for rule in missing]
+    about_streams, without = stream_complaints(root, found)
+    complaints += about_streams
     return complaints, (f"{len(found)} rules, of which {len(unchecked)} are not checked by the "
-                        f"decoding process ({', '.join(unchecked)})")
+                        f"decoding process ({', '.join(unchecked)}), and {len(missing)} not by "
+                        f"rlpcval; rules without a stream that breaks them: {without}")
 
 
 def main():

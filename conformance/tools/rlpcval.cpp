@@ -1,0 +1,166 @@
+// rlpcval: everything that is wrong with an .rlpc stream, why, and what to do.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/tools/rlpcval_report.h"
+#include "conformance/tools/rule_explanations.h"
+#include "conformance/tools/validator.h"
+#include "decoder/describe_error.h"
+#include "encoder/progress_bar.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(
+A finding names the rule of the specification, the place and the clause, and says what it means,
+where it usually comes from, and what to do. After an error the validator goes on where it can:
+what it finds then may be a consequence, and is marked so.
+
+Severities
+  error         the stream does not conform
+  unsupported   it is of another version, profile or level; its contents were not checked
+  warning       legal, but surely not meant (W-...)
+
+Examples
+  rlpcval walk.rlpc                          all findings
+  rlpcval *.rlpc --quiet && echo good        a test for scripts
+  rlpcval walk.rlpc --json > findings.json   for machines (findings.schema.json)
+  rlpcval --explain R-RNG-01                 what a rule or a warning means
+  rlpcenc cow.obj -o - | rlpcval -           from standard input
+
+Exit code: 0 conforming; 1 errors; 2 unsupported; 3 not checked whole because of --max-memory;
+4 not readable; 64 usage. Of several streams, the first of 1, 4, 3 and 2 that occurs.)";
+
+struct Options {
+  std::vector<std::string> inputs;
+  std::string explain;
+  rlpc::ValidationOptions validation;
+  bool json = false;
+  bool quiet = false;
+  bool strict_warnings = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("STREAM", o.inputs, "Streams to validate; - for standard input");
+  app.add_option("--explain", o.explain, "Say what a rule or a warning means")->type_name("ID");
+  app.add_flag("--strict-warnings", o.strict_warnings, "Exit code 1 for warnings too");
+  app.add_option("--max-memory", o.validation.limits.max_memory_bytes,
+                 "Give up on streams that need more, for example 500MB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_flag("--json", o.json, "Report as JSON on standard output");
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
+  app.footer(kExamples);
+}
+
+rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
+  if (path != "-") {
+    std::error_code none;
+    if (std::filesystem::is_directory(path, none)) {
+      return rlpc::Error{rlpc::Errc::kIo, "", "stream file", 0};
+    }
+    return rlpc::file_source(path);
+  }
+  std::vector<std::uint8_t> bytes;
+  for (int byte = std::getchar(); byte != EOF; byte = std::getchar()) {
+    bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return rlpc::memory_source(std::move(bytes));
+}
+
+rlpc::ExitCode exit_code(const rlpc::ValidationReport& report, bool strict_warnings) {
+  const bool warned = report.count(rlpc::Severity::kWarning) > 0;
+  switch (rlpc::verdict_of(report)) {
+    case rlpc::Verdict::kConforming:
+      return strict_warnings && warned ? rlpc::kExitInvalid : rlpc::kExitDone;
+    case rlpc::Verdict::kNotConforming:
+      return rlpc::kExitInvalid;
+    case rlpc::Verdict::kUnsupported:
+      return rlpc::kExitUnsupported;
+    case rlpc::Verdict::kNotChecked:
+      break;
+  }
+  return rlpc::exit_code(report.stopped->code);
+}
+
+rlpc::ExitCode worse(rlpc::ExitCode a, rlpc::ExitCode b) {
+  for (const auto code : {rlpc::kExitInvalid, rlpc::kExitIo, rlpc::kExitLimit}) {
+    if (a == code || b == code) return code;
+  }
+  return a == rlpc::kExitDone ? b : a;
+}
+
+rlpc::ExitCode validate(const Options& o, const std::string& path,
+                        nlohmann::ordered_json& streams) {
+  rlpc::ValidationReport report;
+  if (const auto source = open_input(path)) {
+    rlpc::ProgressBar bar("validating", !o.quiet);
+    rlpc::ValidationOptions options = o.validation;
+    options.progress = [&](double fraction) { bar.show(fraction); };
+    report = rlpc::validate(**source, options);
+  } else {
+    report.stopped = source.error();
+    report.complete = false;
+  }
+  const bool unreadable = report.stopped && report.stopped->code == rlpc::Errc::kIo;
+  if (unreadable) {
+    std::cerr << "rlpcval: " << path << ": " << rlpc::describe_error(*report.stopped) << "\n";
+  }
+  if (o.json) {
+    streams.push_back(rlpc::json_of(path, report));
+  } else if (!o.quiet && !unreadable) {
+    rlpc::print_report(stdout, path, report);
+  }
+  return exit_code(report, o.strict_warnings);
+}
+
+int explain(const std::string& id) {
+  const rlpc::RuleExplanation* e = rlpc::explain(id);
+  if (e == nullptr) {
+    std::cerr << "rlpcval: --explain: there is no rule or warning `" << id << "`\n";
+    return rlpc::kExitUsage;
+  }
+  std::printf("%s (clause %s)\n  %s\n  Likely cause: %s\n  What to do: %s\n", e->id, e->clause,
+              e->explanation, e->cause, e->remedy);
+  return rlpc::kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Finds everything that is wrong with .rlpc streams.", "rlpcval");
+  app.set_version_flag("--version", "rlpcval " RLPC_VERSION);
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+  }
+  if (!options.explain.empty()) return explain(options.explain);
+  if (options.inputs.empty()) {
+    std::cerr << "rlpcval: give a stream to validate, or --help\n";
+    return rlpc::kExitUsage;
+  }
+  nlohmann::ordered_json streams = nlohmann::ordered_json::array();
+  rlpc::ExitCode code = rlpc::kExitDone;
+  for (const std::string& path : options.inputs) {
+    code = worse(code, validate(options, path, streams));
+  }
+  if (options.json) {
+    const nlohmann::ordered_json json = {{"rlpcval", RLPC_VERSION}, {"streams", streams}};
+    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in paths
+    std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+  }
+  return code;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcval: %s\n", error.what());  // out of memory, most likely
+  return rlpc::kExitLimit;
+}

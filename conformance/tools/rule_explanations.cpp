@@ -1,0 +1,287 @@
+#include "conformance/tools/rule_explanations.h"
+
+#include <algorithm>
+#include <array>
+
+namespace rlpc {
+namespace {
+
+constexpr std::array kRules = std::to_array<RuleExplanation>({
+    {"R-BIT-01", "9.2",
+     "A fixed-length or Exp-Golomb code goes past the end of its payload, or the stream ends "
+     "within signature and version.",
+     "The file was cut off, unit_size is too small, or an element before was written with "
+     "another number of bits.",
+     "Compare the elements before this one with the syntax table, one by one; unit_size counts "
+     "the payload alone, without header and CRC."},
+    {"R-BIT-02", "9.2", "byte_alignment( ) skips bits that are not zero.",
+     "The bit writer flushes its last byte with old contents or fills it with ones.",
+     "Fill with zero bits up to the next byte. If the bits look like data, an element before "
+     "was written too short or twice."},
+    {"R-BIT-03", "9.2", "The payload goes on where its syntax has ended.",
+     "Padding to a multiple of 4 or 8 bytes, an element that this version does not have, or a "
+     "unit_size that counts the CRC.",
+     "Write exactly the bytes of the syntax table; units need no padding."},
+    {"R-BIT-04", "9.2", "An Exp-Golomb code begins with more than 32 zero bits.",
+     "The value was negative, or above 2^33 - 2, before it was coded; or reading is out of "
+     "step "
+     "because an element before is wrong.",
+     "Check the value for underflow (x_minus1 of 0) and the elements before it."},
+    {"R-CON-01", "7.4.1", "There are more degenerate triangles than triangles.",
+     "num_triangles of the sequence header counts the regular triangles alone.",
+     "num_triangles counts all triangles; the degenerate ones are its last."},
+    {"R-CON-02", "7.4.3",
+     "A component starts, but all vertices have occurred and vertex_reuse_flag is 0.",
+     "NumVertices is smaller than the vertices in use, or the mesh has vertices where several "
+     "fans of triangles meet and vertex_reuse_flag was not set.",
+     "Set vertex_reuse_flag if any vertex has more than one vertex instance; check "
+     "num_vertices_minus1."},
+    {"R-CON-03", "7.4.5", "A reused vertex has not occurred before.",
+     "reused_vertex was written in the numbering of the input, not in that of decoding; or "
+     "with "
+     "another number of bits than CeilLog2( NumCodedVertices ).",
+     "Number vertices in the order in which they first occur in the traversal."},
+    {"R-CON-04", "7.4.4",
+     "The third corner of a triangle is at a node that is no longer on the border, is the "
+     "gate, "
+     "or follows the gate.",
+     "The border of the encoder differs from that of 8.7: the choice of the gate, the order of "
+     "Touch( ), or a flag that had to be written and was not.",
+     "Trace the gates of both sides and find the first that differs; see also close_flag and "
+     "the two glue flags, which come before a join."},
+    {"R-CON-05", "7.4.7", "A corner of a degenerate triangle is no vertex of the mesh.",
+     "The index was written in another numbering, or with another number of bits than "
+     "CeilLog2( NumVertices ).",
+     "Write indices in decoded order, most significant bit first."},
+    {"R-END-01", "7.1",
+     "The GOFs have more or fewer frames together than the sequence header announces.",
+     "num_frames_minus1 was written before the number of frames was known, or the last GOF was "
+     "not written.",
+     "Correct num_frames_minus1, or write the missing GOFs."},
+    {"R-END-02", "7.1", "Bytes follow the end_of_sequence unit.",
+     "Two streams were joined, or the file was written over a longer one without being cut.",
+     "End the file with the end_of_sequence unit. Streams cannot be joined by joining files."},
+    {"R-END-03", "7.8",
+     "index_distance does not lead to a GOF index unit that ends where the end_of_sequence "
+     "unit "
+     "starts.",
+     "The distance was counted to the end of the unit, to its payload, or from the start of "
+     "the "
+     "stream; or a unit was inserted after it was computed.",
+     "Write the size of the whole GOF index unit (payload + 9), or 0 if there is none, and the "
+     "index directly before the end."},
+    {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
+     "A GOF was left out, repeated or reordered; or first_frame counts within something else "
+     "than the sequence.",
+     "Write GOFs in order; first_frame is the number of frames of all GOFs before."},
+    {"R-GOF-02", "7.5", "A GOF has more frames than the sequence has left.",
+     "The last GOF is written with the nominal length of a GOF.",
+     "Shorten the last GOF to the frames that are left, or correct num_frames_minus1."},
+    {"R-GOF-03", "7.5", "fraction_bits is above 24.",
+     "The scale of the factors was chosen without regard to the range.",
+     "Take fewer fraction bits, and larger steps for the spatial values."},
+    {"R-GOF-04", "7.5", "The step of seed residuals is above 65536.",
+     "The step was computed in other units than those of the grid, or for a grid far finer "
+     "than "
+     "the target needs.",
+     "Take a coarser grid, so that steps stay small."},
+    {"R-GOF-05", "7.5", "seed_predictor is above 4.",
+     "A predictor was written that this version does not have; or reading is out of step.",
+     "Write the order of the predictor, 0 to 4; see the elements before if it looks like "
+     "noise."},
+    {"R-GOF-06", "7.5.2", "A seed vertex is no vertex of the mesh.",
+     "The index was written in the numbering of the input, with another number of bits than "
+     "CeilLog2( NumVertices ), or reading is out of step.",
+     "Write seed vertices in decoded order; compare range-coder states at lcf_flag."},
+    {"R-GOF-07", "7.5.2", "Two of the three seed vertices of a cluster are the same.",
+     "A degenerate triangle of the mesh was taken as seed triangle.",
+     "Choose three different vertices; equal positions are allowed, equal indices are not."},
+    {"R-GOF-08", "7.5.3", "A vertex belongs to a cluster that does not exist.",
+     "cluster_idx counts from 1, or clusters were removed after vertices had been given to "
+     "them.",
+     "Number clusters from 0 to num_clusters_minus1 after the last change."},
+    {"R-GOF-09", "7.5.5",
+     "The number of components of a cluster is negative or above the level.",
+     "num_components_delta was taken from another cluster than the one before; or the level is "
+     "too low.",
+     "The delta is that from the cluster before, from 0 for the first; raise level_idc if the "
+     "cluster needs so many."},
+    {"R-GOF-10", "7.5.7", "ScaleIdx leaves 0 to 127.",
+     "The difference was taken from another component than the one before, or the first one "
+     "not from 0.",
+     "Take differences from the component before, across clusters too."},
+    {"R-GOF-11", "7.5.7", "SpatialBits leaves 1 to 24.",
+     "The spatial values need more than 24 bits, or the difference was taken from another "
+     "component.",
+     "Take a larger step for spatial values; the first difference is from 1."},
+    {"R-GOF-12", "7.5.7", "TemporalBits leaves 1 to 26.",
+     "The temporal factor needs more than 26 bits after scaling, or the difference was taken "
+     "from another component.",
+     "Take fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
+    {"R-HDR-01", "7.3", "The profile is not known to this version.",
+     "The stream is of a later version, or reserved values were used.",
+     "Write profile_idc 0 (Baseline), or validate with a later version."},
+    {"R-HDR-02", "7.3", "The level is not known to this version.",
+     "level_idc counts from 0, or the stream is of a later version.",
+     "Write level 1, 2, 3 or 4: the lowest whose limits hold."},
+    {"R-HDR-03", "7.3", "A part of the frame rate is above 2^32 - 1.",
+     "A floating-point rate was turned into a fraction without reducing it, or the 0 of an "
+     "unknown rate became -1.",
+     "Reduce the fraction; 1/1 will do where the rate is not known."},
+    {"R-HDR-04", "7.3", "The step of the grid is not a power of two from 2^-150 to 2^120.",
+     "The exponent has the wrong sign, or that of a value in another unit.",
+     "Choose the step so that the coordinates are normal 32-bit numbers."},
+    {"R-HDR-05", "7.3", "The origin of the grid is more than 2^26 steps away.",
+     "A small object far from the origin of space: the step is too fine for the distance.",
+     "Take a coarser step, or move the animation towards the origin."},
+    {"R-HDR-06", "7.3", "Positions have fewer than 2 or more than 24 bits.",
+     "The bits of the grid were computed from a bounding box without regard to the range.",
+     "Take a coarser step of the grid, or at least 2 bits for an object without size."},
+    {"R-HSH-01", "7.7",
+     "A GOF hash unit has not one hash for the GOF, or not one for each of its frames.",
+     "per_frame_flag does not fit what was written, or the unit belongs to another GOF.",
+     "With per_frame_flag 1, write 4 bytes for each frame of the GOF before; else 4 bytes."},
+    {"R-HSH-02", "7.7", "The decoded positions do not have the hash that the stream gives.",
+     "The encoder reconstructs otherwise than clause 8 (rounding, clipping, order of "
+     "predictions), hashes its input, or hashes in output order.",
+     "Compare the reconstruction frame by frame with that of a decoder; the hash is over "
+     "32-bit "
+     "integers, low byte first, in decoded order."},
+    {"R-HSH-03", "7.2", "A GOF hash unit does not follow a GOF unit directly.",
+     "Another unit was written between them, or a second hash unit for the same GOF.",
+     "Write the hash unit right behind its GOF; metadata goes before the GOF or behind both."},
+    {"R-IDX-01", "7.9", "The GOF index does not list all frames of the sequence once.",
+     "The index was written before the last GOF, or num_index_gofs_minus1 is not one less than "
+     "the number of GOFs.",
+     "Write the index when all GOFs are written, with one entry for each."},
+    {"R-IDX-02", "7.9", "An offset of the GOF index is above 2^32 - 2.",
+     "The stream has more than 4 GB before its first GOF, or a GOF is that large.",
+     "Leave the index out (index_distance 0), or take smaller GOFs."},
+    {"R-IDX-03", "7.9", "The GOF index does not say where the GOF units are.",
+     "index_gof_bytes leaves out GOF hash units, unit headers or CRCs; or units were inserted "
+     "or "
+     "removed after the index was made.",
+     "Count from the start of a GOF unit to the start of the next GOF unit, with all that is "
+     "in "
+     "between; remake the index when units change."},
+    {"R-IDX-04", "7.9", "A GOF index unit that no decoder finds.",
+     "index_distance is 0, the index is not directly before the end_of_sequence unit, or there "
+     "are several.",
+     "Write one index directly before the end, and its size into index_distance."},
+    {"R-LVL-01", "7.3", "The mesh has more vertices than its level allows.",
+     "level_idc was not chosen by the number of vertices.", "Raise level_idc (Table B-1)."},
+    {"R-LVL-02", "7.3", "The mesh has more triangles than its level allows.",
+     "level_idc was chosen by the number of vertices alone.", "Raise level_idc (Table B-1)."},
+    {"R-LVL-03", "7.3", "The sequence has more than 2^24 frames.",
+     "An element was written with the wrong size, or the animation is longer than any level "
+     "allows.",
+     "Split the animation into several streams."},
+    {"R-LVL-04", "7.5",
+     "A GOF has more frames, or more vertices times frames, than its level allows.",
+     "The whole animation was written as one GOF.",
+     "Take shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-LVL-05", "7.5.5", "A GOF has more factors than its level allows.",
+     "Many components over many vertices and frames.",
+     "Take fewer components or shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-LVL-06", "7.5", "A GOF has more clusters than its level allows.",
+     "The number of clusters was chosen without regard to the level.",
+     "Take fewer clusters, or raise level_idc; no level has more than 1024."},
+    {"R-LVL-07", "7.2", "A critical unit is larger than its level allows.",
+     "The size of the unit was never compared with the level; or unit_size is damaged.",
+     "Take shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-MET-01", "7.10", "Metadata are larger than 1 MiB.",
+     "Something else than a description was put into the metadata.",
+     "Keep metadata below 1048576 bytes; large data belong beside the stream."},
+    {"R-MET-02", "7.10", "The metadata are not exactly one zlib stream of metadata_size bytes.",
+     "Raw deflate or gzip was written instead of zlib; metadata_size is the compressed size; "
+     "or "
+     "bytes are left over behind the zlib stream.",
+     "Write metadata_size of the text before compression, then the output of compress( )."},
+    {"R-MET-03", "7.10", "The metadata are no JSON text in UTF-8.",
+     "Text in another encoding, a byte order mark, a terminating zero byte, a trailing comma, "
+     "or single quotes.",
+     "Let a JSON library write the text, in UTF-8 without a byte order mark."},
+    {"R-RNG-01", "9.3.2",
+     "A section of the range coder is longer or shorter than its bins need.",
+     "The range encoder was flushed with too many or too few bytes, or encoder and decoder "
+     "disagree about a model or a context before.",
+     "End the section with the byte after which the decoder stops exactly three bytes past it "
+     "(9.3.2); compare with the traces of Annex C. If elements look like noise before the end, "
+     "find the first that differs."},
+    {"R-RNG-02", "9.3.2", "A section begins with four bytes of 255.",
+     "A carry of the range encoder was lost, or the section was overwritten.",
+     "Propagate carries into the bytes already written."},
+    {"R-STR-01", "7.1", "The file does not begin with the signature of RLPC.",
+     "It is another file, or a transfer as text changed line ends or the first byte.",
+     "Transfer as binary; the first bytes are 89 52 4C 50 43 0D 0A 1A."},
+    {"R-STR-02", "7.1", "The major version of the stream is not known.",
+     "The stream is of a later version, or the version was not written.",
+     "Write version 1.0, or validate with a later version."},
+    {"R-STR-03", "7.1", "The minor version of the stream is not known.",
+     "The stream uses a later minor version.",
+     "Write the lowest version that has the tools in use, or validate with a later version."},
+    {"R-UNT-01", "7.2", "A unit has to follow, but the stream ends.",
+     "The file was cut off between units, or the end_of_sequence unit was not written.",
+     "End every stream with an end_of_sequence unit."},
+    {"R-UNT-02", "7.2", "A unit goes past the end of the stream.",
+     "The file was cut off, or unit_size is wrong: byte order, or counted with header and CRC.",
+     "unit_size is the payload alone, most significant byte first."},
+    {"R-UNT-03", "7.2", "The CRC of a unit does not hold.",
+     "The bytes were damaged; or the CRC was computed without the unit header, with another "
+     "polynomial, or written low byte first.",
+     "CRC-32 of zlib over type, size and payload, written most significant byte first."},
+    {"R-UNT-04", "7.2", "A critical unit has a type that this version does not know.",
+     "The stream is of a later version; or a private unit was written as a critical one.",
+     "Private units are ancillary ones: set ancillary_flag."},
+    {"R-UNT-05", "7.2", "A unit stands where it must not.",
+     "Units are written in another order than that of Table 7-1, or twice.",
+     "Order: sequence header, connectivity, vertex order, GOFs, end of sequence."},
+    {"R-VOR-01", "7.6", "The vertex order leads to an index that no vertex has.",
+     "The differences were taken from another list than VertexOrder, or reading is out of "
+     "step.",
+     "Write VertexOrder[ v ], the index in the output of vertex v in decoded order."},
+    {"R-VOR-02", "7.6", "Two vertices have the same place in the output.",
+     "The list was inverted for only a part of the vertices, or vertices were merged after it "
+     "was made.",
+     "VertexOrder is a permutation of all vertices."},
+});
+
+constexpr std::array kWarnings = std::to_array<RuleExplanation>({
+    {"W-GOF-01", "7.5.3", "A cluster has no coded vertices.",
+     "Clusters that became empty were kept; they cost bits and give nothing.",
+     "Remove empty clusters before the GOF is written."},
+    {"W-GOF-02", "7.5.7", "A component is zero everywhere.",
+     "All its temporal or all its spatial residuals became zero by quantisation.",
+     "Leave out components that quantise to zero."},
+    {"W-HDR-01", "7.3", "The frame rate is not what animations have.",
+     "Numerator and denominator are exchanged, or the rate is the time of a frame.",
+     "Frames per second: 30/1, or 30000/1001."},
+    {"W-HSH-01", "7.7", "GOFs have no hash.", "The encoder was told to leave them out.",
+     "Write a hash for each GOF: decoders cannot notice a difference without one."},
+    {"W-IDX-01", "7.9", "Many GOFs, but no GOF index.", "The encoder writes none.",
+     "Write one: finding a frame takes a walk over all units."},
+    {"W-LVL-01", "7.3", "The level is higher than the stream needs.",
+     "The encoder always writes the same level.",
+     "Write the lowest level whose limits hold, so that more decoders can take the stream."},
+    {"W-MET-01", "7.10", "Several metadata units: only the last one holds.",
+     "A tool added metadata without removing the old ones.", "Keep one metadata unit."},
+    {"W-UNT-01", "7.2", "An ancillary unit of a type that this version does not know.",
+     "A private unit, a unit of a later version, or a damaged type.",
+     "Decoders skip it; make sure that nothing depends on it."},
+});
+
+}  // namespace
+
+std::span<const RuleExplanation> rule_explanations() { return kRules; }
+std::span<const RuleExplanation> warning_explanations() { return kWarnings; }
+
+const RuleExplanation* explain(std::string_view id) {
+  for (const auto table : {rule_explanations(), warning_explanations()}) {
+    const auto found = std::find_if(table.begin(), table.end(),
+                                    [&](const RuleExplanation& e) { return id == e.id; });
+    if (found != table.end()) return &*found;
+  }
+  return nullptr;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,170 @@
+#include "conformance/tools/validator.h"
+
+#include <string>
+
+#include "common/stream_format.h"
+#include "conformance/tools/validator_stream.h"
+
+namespace rlpc {
+
+StreamValidator::StreamValidator(ByteSource& source, const ValidationOptions& options,
+                                 ValidationReport& report)
+    : options_(options),
+      report_(report),
+      findings_(report, options.max_findings),
+      units_(source, findings_, options.limits.max_memory_bytes) {}
+
+// 6.1 stream( )
+void StreamValidator::run() {
+  report_.bytes = units_.size();
+  if (units_.stream_header()) {
+    unsupported_ = report_.count(Severity::kUnsupported) > 0;
+    if (!is_foreign()) walk();
+    findings_.in_unit(std::nullopt);
+    for (const GofIndexCheck& index : indexes_) compare_index(index);
+    warn_of_stream();
+  } else {
+    report_.complete = false;
+  }
+  if (unsupported_) report_.complete = false;
+}
+
+// An unsupported stream is not called invalid: what a later version makes of the rest is not
+// known. Behind damage, it is damage that looks like a later version.
+bool StreamValidator::is_foreign() const {
+  return unsupported_ && report_.count(Severity::kError) == 0;
+}
+
+void StreamValidator::walk() {
+  std::uint64_t offset = kStreamHeaderBytes;
+  for (;;) {
+    if (options_.progress) {
+      options_.progress(static_cast<double>(offset) / static_cast<double>(units_.size()));
+    }
+    findings_.in_unit(std::nullopt);
+    findings_.suspect(false);
+    // That bytes follow the end was said; they are looked at only if they are units.
+    if (ended_ && !units_.is_unit(offset)) return;
+    const auto unit = units_.header_at(offset);
+    bool sound = false;
+    if (unit) sound = visit(*unit);
+    if (units_.failed() || is_foreign()) return;
+    const auto next = place_after(offset, unit, sound);
+    if (!unit || next != unit->end()) lose_units();
+    if (!next) return;
+    offset = *next;
+  }
+}
+
+// Behind the unit at `offset`; or where units are again, if there is none or its size cannot be
+// right.
+std::optional<std::uint64_t> StreamValidator::place_after(std::uint64_t offset,
+                                                          const std::optional<UnitHeader>& unit,
+                                                          bool sound) {
+  if (unit) {
+    const std::uint64_t end = unit->end();
+    const bool trusted = sound || end == units_.size() || units_.is_unit(end);
+    if (trusted || units_.begins_chain(end)) return end;
+  }
+  const auto next = units_.next_chain(offset + 1);
+  if (next || !unit) return next;
+  return unit->end();
+}
+
+void StreamValidator::lose_units() {
+  gap_ = true;
+  frames_suspect_ = true;
+  next_frame_.reset();
+  previous_.reset();
+  previous_gof_.reset();
+  previous_gof_frames_ = 0;
+  report_.complete = false;
+}
+
+// 6.1 leading_units( ) and gof_units( ): Table 7-1. What follows a misplaced unit is not called
+// misplaced for that.
+bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
+  const auto seen = [&](UnitType type) { return seen_[static_cast<std::uint8_t>(type)] > 0; };
+  if (report_.units == 0) return unit.type() == UnitType::kSequenceHeader;
+  if (unit.ancillary() || ended_) return true;
+  switch (unit.type()) {
+    case UnitType::kSequenceHeader:
+      return !seen(UnitType::kSequenceHeader);
+    case UnitType::kConnectivity:
+      return !seen(UnitType::kConnectivity) && !seen(UnitType::kGof);
+    case UnitType::kVertexOrder:
+      return seen(UnitType::kConnectivity) && !seen(UnitType::kVertexOrder) &&
+             !seen(UnitType::kGof);
+    case UnitType::kGof:
+      return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
+    case UnitType::kEndOfSequence:
+      return seen(UnitType::kGof);
+    default:
+      return false;
+  }
+}
+
+// 6.2 CheckUnitType( expected )
+bool StreamValidator::check_place(const UnitHeader& unit) {
+  if (may_stand_here(unit)) return true;
+  const std::uint64_t at = unit.offset * 8;
+  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
+                                          unit.type() <= UnitType::kEndOfSequence);
+  if (known) {
+    findings_.error({Errc::kInvalid, "R-UNT-05", "unit_type", at});
+  } else {
+    findings_.error({Errc::kUnsupported, "R-UNT-04", "unit_type", at},
+                    "unit_type is " + std::to_string(unit.type_byte));
+  }
+  return known;
+}
+
+void StreamValidator::remember_place(const UnitHeader& unit) {
+  ++report_.units;
+  ++seen_[unit.type_byte];
+  previous_ = unit;
+  const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
+  if (unit.ancillary() && !known_ancillary) {
+    findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,
+                      "unit_type is " + std::to_string(unit.type_byte & 0x7F));
+  }
+}
+
+// 6.2 unit_body( )
+bool StreamValidator::visit(const UnitHeader& unit) {
+  findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
+  const bool known = unsupported_ || check_place(unit);
+  const bool is_gof = unit.type() == UnitType::kGof;
+  if (is_gof && header_ && header_->usable && next_frame_ == header_->header.num_frames) {
+    findings_.suspect(frames_suspect_ || header_suspect_);
+    findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
+                    "the GOFs before have all " + std::to_string(*next_frame_) + " frames");
+    findings_.suspect(false);
+  }
+  const bool sound = units_.crc_holds(unit);
+  // A new type in a sound unit, and not a damaged one.
+  if (!known && sound) unsupported_ = true;
+  if (unsupported_) {
+    report_.complete = false;
+  } else {
+    read_payload(unit, sound);
+  }
+  findings_.suspect(!sound);
+  remember_place(unit);
+  if (unit.type() == UnitType::kEndOfSequence) {
+    if (unit.end() != units_.size()) {
+      findings_.error({Errc::kInvalid, "R-END-02", "end_of_sequence", unit.end() * 8},
+                      std::to_string(units_.size() - unit.end()) + " bytes follow");
+    }
+    ended_ = true;
+  }
+  return sound;
+}
+
+ValidationReport validate(ByteSource& source, const ValidationOptions& options) {
+  ValidationReport report;
+  StreamValidator(source, options, report).run();
+  return report;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,46 @@
+// Collects what the validator finds, with the unit that it is looking at.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/result.h"
+#include "conformance/tools/validator.h"
+
+namespace rlpc {
+
+class FindingList {
+ public:
+  FindingList(ValidationReport& report, std::size_t max_findings)
+      : report_(report), max_findings_(max_findings) {}
+
+  // What follows is about this unit.
+  void in_unit(const std::optional<FindingUnit>& unit) { unit_ = unit; }
+  // What follows may be a consequence of what was found before.
+  void suspect(bool suspect) { suspect_ = suspect; }
+  bool suspect() const { return suspect_; }
+
+  // A requirement on which the decoding process depends: a decoder stops at the first.
+  void error(const Error& error, std::string detail = "");
+  // A requirement that decoding in order does not check (4.6).
+  void unchecked(const char* rule, const char* element, std::uint64_t bit_pos,
+                 std::string detail);
+  void warning(const char* id, const char* element, std::uint64_t bit_pos, std::string detail);
+
+  // Errors and unsupported features so far, those that were not listed too.
+  std::uint64_t failures() const { return failures_; }
+
+ private:
+  Finding make(Severity severity, const Error& error, std::string detail) const;
+  void add(Finding finding);
+
+  ValidationReport& report_;
+  std::size_t max_findings_;
+  std::optional<FindingUnit> unit_;
+  bool suspect_ = false;
+  bool stopped_ = false;  // a decoder would have
+  std::uint64_t failures_ = 0;
+};
+
+}  // namespace rlpc

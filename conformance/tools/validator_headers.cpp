@@ -1,0 +1,170 @@
+#include "conformance/tools/validator_headers.h"
+
+#include <string>
+
+#include "common/gof.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::int64_t kMaxCode = 0xFFFFFFFE;  // 2^32 - 2
+
+std::string at_most(std::uint64_t limit) { return "at most " + std::to_string(limit); }
+std::string between(std::int64_t low, std::int64_t high) {
+  return std::to_string(low) + " to " + std::to_string(high) + " are allowed";
+}
+std::string level_allows(std::uint32_t level_idc, std::uint64_t limit, const char* what) {
+  return "level " + std::to_string(level_idc) + " allows " + std::to_string(limit) + what;
+}
+
+// The grid does not influence decoding, nor does the frame rate.
+void check_rate_and_grid(ElementReader& r, SequenceHeader& h) {
+  const auto rate = [&](const char* element) {
+    const std::int64_t value = r.ue(element);
+    r.require(value <= kMaxCode, "R-HDR-03", at_most(kMaxCode));
+    return static_cast<std::uint32_t>(value) + 1;
+  };
+  h.frame_rate.numerator = rate("frame_rate_numerator_minus1");
+  h.frame_rate.denominator = rate("frame_rate_denominator_minus1");
+  const std::int64_t log2_step = r.se("grid_log2_step");
+  r.require(log2_step >= kMinGridLog2Step && log2_step <= kMaxGridLog2Step, "R-HDR-04",
+            between(kMinGridLog2Step, kMaxGridLog2Step));
+  h.grid.log2_step = static_cast<std::int32_t>(log2_step);
+  for (std::int32_t& out : h.grid.origin) {
+    const std::int64_t origin = r.se("grid_origin");
+    r.require(origin >= -kMaxGridOrigin && origin <= kMaxGridOrigin, "R-HDR-05",
+              between(-kMaxGridOrigin, kMaxGridOrigin));
+    out = static_cast<std::int32_t>(origin);
+  }
+}
+
+}  // namespace
+
+// 6.3 sequence_header( )
+HeaderCheck check_sequence_header(ElementReader& r) {
+  HeaderCheck check;
+  SequenceHeader& h = check.header;
+  h.profile_idc = static_cast<std::uint32_t>(r.u(8, "profile_idc"));
+  r.supported(h.profile_idc == kProfileBaseline, "R-HDR-01", "this version has profile 0 only");
+  check.supported = !r.readable() || h.profile_idc == kProfileBaseline;
+  if (!r.readable() || !check.supported) return check;
+  h.level_idc = static_cast<std::uint32_t>(r.u(8, "level_idc"));
+  const bool known_level = h.level_idc >= 1 && h.level_idc <= kMaxLevelIdc;
+  r.supported(known_level, "R-HDR-02", "this version has levels 1 to 4");
+  check.supported = !r.readable() || known_level;
+  if (!r.readable() || !check.supported) return check;
+  const Level& level = h.level();
+  const Level& highest = kLevels.back();
+  const std::int64_t vertices = r.ue("num_vertices_minus1");
+  r.require(vertices < level.max_vertices, "R-LVL-01",
+            level_allows(h.level_idc, level.max_vertices, " vertices"));
+  const std::int64_t triangles = r.ue("num_triangles");
+  r.require(triangles <= level.max_triangles, "R-LVL-02",
+            level_allows(h.level_idc, level.max_triangles, " triangles"));
+  const std::int64_t frames = r.ue("num_frames_minus1");
+  r.require(frames < kMaxFrames, "R-LVL-03",
+            "a sequence has at most " + std::to_string(kMaxFrames) + " frames");
+  check.usable = r.readable() && vertices < highest.max_vertices &&
+                 triangles <= highest.max_triangles && frames < kMaxFrames;
+  check_rate_and_grid(r, h);
+  const std::int64_t bits = r.u(5, "position_bits");
+  check.positions = r.require(bits >= kMinPositionBits && bits <= kMaxPositionBits, "R-HDR-06",
+                              between(kMinPositionBits, kMaxPositionBits));
+  r.byte_alignment();
+  r.expect_end();
+  if (check.usable) {
+    h.num_vertices = static_cast<std::uint32_t>(vertices) + 1;
+    h.num_triangles = static_cast<std::uint32_t>(triangles);
+    h.num_frames = static_cast<std::uint32_t>(frames) + 1;
+  }
+  if (check.positions) h.position_bits = static_cast<int>(bits);
+  return check;
+}
+
+// 6.5 gof( )
+GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
+                                std::optional<std::uint32_t> expected_first_frame) {
+  GofHeaderCheck gof;
+  const Level& level = header.level();
+  const std::int64_t first = r.ue("first_frame");
+  const bool in_sequence = first < header.num_frames;
+  r.require(expected_first_frame ? first == *expected_first_frame : in_sequence, "R-GOF-01",
+            expected_first_frame
+                ? "the GOFs before have " + std::to_string(*expected_first_frame) + " frames"
+                : "the sequence has " + std::to_string(header.num_frames) + " frames");
+  const std::int64_t left = header.num_frames - first;
+  const std::int64_t frames = r.ue("num_gof_frames_minus1") + 1;
+  bool good = in_sequence;
+  if (in_sequence) {
+    good &= r.require(frames <= left, "R-GOF-02",
+                      "the sequence has " + std::to_string(left) + " frames left");
+  }
+  // In the order of the decoding process: not where R-GOF-02 failed.
+  if (good) {
+    const auto values = static_cast<std::uint64_t>(frames) * header.num_vertices;
+    good =
+        r.require(frames <= level.max_gof_frames && values <= level.max_gof_values, "R-LVL-04",
+                  level_allows(header.level_idc, level.max_gof_frames, " frames of a GOF, ") +
+                      std::to_string(level.max_gof_values) + " vertices times frames");
+    gof.first_frame = static_cast<std::uint32_t>(first);
+    gof.num_frames = r.readable() ? static_cast<std::uint32_t>(frames) : 0;
+  }
+  const std::int64_t clusters = r.ue("num_clusters_minus1") + 1;
+  good &= r.require(clusters <= level.max_clusters, "R-LVL-06",
+                    level_allows(header.level_idc, level.max_clusters, " clusters of a GOF"));
+  const std::int64_t fraction_bits = r.u(5, "fraction_bits");
+  good &= r.require(fraction_bits <= kMaxFractionBits, "R-GOF-03", at_most(kMaxFractionBits));
+  const std::int64_t seed_step = r.ue("seed_step_minus1");
+  good &= r.require(seed_step < kMaxSeedStep, "R-GOF-04", at_most(kMaxSeedStep - 1));
+  const std::int64_t seed_predictor = r.u(3, "seed_predictor");
+  good &=
+      r.require(seed_predictor <= kMaxPredictorOrder, "R-GOF-05", at_most(kMaxPredictorOrder));
+  (void)r.u(1, "seed_coupling_flag");
+  const std::uint64_t failures = r.failures();
+  r.byte_alignment();
+  gof.num_clusters = good ? static_cast<std::uint32_t>(clusters) : 0;
+  gof.section_readable = good && r.readable() && r.failures() == failures;
+  return gof;
+}
+
+// 6.9 gof_index( )
+GofIndexCheck check_gof_index(ElementReader& r, std::uint32_t num_frames,
+                              std::uint64_t max_memory_bytes) {
+  GofIndexCheck index;
+  const std::string sum = "the sequence has " + std::to_string(num_frames) + " frames";
+  const std::int64_t num_gofs = r.ue("num_index_gofs_minus1") + 1;
+  bool good = r.require(num_gofs <= num_frames, "R-IDX-01", sum);
+  GofLocation next{static_cast<std::uint64_t>(r.ue("first_gof_offset")), 0};
+  good &= r.require(static_cast<std::int64_t>(next.offset) <= kMaxCode, "R-IDX-02",
+                    at_most(kMaxCode));
+  std::int64_t g = 0;
+  for (; g < num_gofs && r.readable() && next.first_frame < num_frames; ++g) {
+    if (index.gofs.size() * sizeof(GofLocation) > max_memory_bytes) {
+      index.too_large = true;
+      return index;
+    }
+    index.gofs.push_back(next);
+    const std::int64_t frames = r.ue("index_gof_frames_minus1") + 1;
+    const std::int64_t left = std::int64_t{num_frames} - next.first_frame;
+    if (!r.require(frames <= left, "R-IDX-01", sum)) return index;
+    next.first_frame += static_cast<std::uint32_t>(frames);
+    const std::int64_t bytes = r.ue("index_gof_bytes");
+    good &= r.require(bytes <= kMaxCode, "R-IDX-02", at_most(kMaxCode));
+    next.offset += static_cast<std::uint64_t>(bytes);
+  }
+  if (!r.readable()) return index;
+  const std::string lists = "the GOFs listed have " + std::to_string(next.first_frame) +
+                            " frames in " + std::to_string(g) + " of " +
+                            std::to_string(num_gofs) + " GOFs; ";
+  // Once is enough.
+  if (good)
+    good = r.require(g == num_gofs && next.first_frame == num_frames, "R-IDX-01", lists + sum);
+  if (g < num_gofs) return index;
+  r.byte_alignment();
+  r.expect_end();
+  index.end = next.offset;
+  index.readable = good;
+  return index;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,48 @@
+// 6.3, 6.5, 6.8 and 6.9 as the validator reads them: all values out of range are reported.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/sequence_header.h"
+#include "conformance/tools/validator_elements.h"
+#include "decoder/parse_gof_index.h"
+
+namespace rlpc {
+
+struct HeaderCheck {
+  SequenceHeader header;
+  bool supported = true;   // profile and level are known
+  bool usable = false;     // sizes are known and within a level: units can be read with them
+  bool positions = false;  // position_bits is legal: positions can be computed
+};
+
+// 6.3 sequence_header( )
+HeaderCheck check_sequence_header(ElementReader& r);
+
+struct GofHeaderCheck {
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;  // 0: not known
+  std::uint32_t num_clusters = 0;
+  bool section_readable = false;  // nothing but first_frame may be wrong
+};
+
+// 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known.
+GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
+                                std::optional<std::uint32_t> expected_first_frame);
+
+struct GofIndexCheck {
+  FindingUnit unit;
+  bool suspect = false;
+  std::vector<GofLocation> gofs;
+  std::uint64_t end = 0;  // where the bytes of the last GOF end
+  bool readable = false;
+  bool too_large = false;  // for max_memory_bytes
+};
+
+// 6.9 gof_index( )
+GofIndexCheck check_gof_index(ElementReader& r, std::uint32_t num_frames,
+                              std::uint64_t max_memory_bytes);
+
+}  // namespace rlpc

@@ -1,0 +1,290 @@
+// What units hold: 6.3 to 6.10, and the hash check of 8.6.2.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "common/crc32.h"
+#include "common/gof_recon.h"
+#include "conformance/tools/validator_elements.h"
+#include "conformance/tools/validator_json.h"
+#include "conformance/tools/validator_stream.h"
+#include "decoder/parse_connectivity.h"
+#include "decoder/parse_gof.h"
+#include "decoder/parse_gof_hash.h"
+#include "decoder/parse_metadata.h"
+#include "decoder/parse_vertex_order.h"
+
+namespace rlpc {
+namespace {
+
+BitReader bits_of(const UnitHeader& unit, const std::vector<std::uint8_t>& payload) {
+  return BitReader(payload, unit.payload_offset() * 8);
+}
+
+std::string hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08X", value);
+  return text;
+}
+
+// What the rest of a stream is read with is kept, up to the limits of the caller.
+std::uint64_t memory_of(const SequenceHeader& h) {
+  return std::uint64_t{h.num_vertices} * 100 + std::uint64_t{h.num_triangles} * 120;
+}
+
+}  // namespace
+
+// 6.2 unit_payload( ). `sound`: the CRC of the unit holds.
+void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
+  const bool read = !unit.ancillary() || (unit.type_byte >= 0x81 && unit.type_byte <= 0x83);
+  if (!read) return;
+  if (unit.type() == UnitType::kGof) begin_gof(unit);
+  const auto payload = units_.payload(unit);
+  if (!payload) return;
+  findings_.suspect(!sound);
+  switch (unit.type()) {
+    case UnitType::kSequenceHeader:
+      return sequence_header(unit, *payload);
+    case UnitType::kConnectivity:
+      return connectivity(unit, *payload);
+    case UnitType::kVertexOrder:
+      return vertex_order(unit, *payload);
+    case UnitType::kGof:
+      return gof(unit, *payload);
+    case UnitType::kEndOfSequence:
+      return end_of_sequence(unit, *payload);
+    case UnitType::kGofIndex:
+      return gof_index(unit, *payload);
+    case UnitType::kGofHash:
+      return gof_hash(unit, *payload);
+    case UnitType::kMetadata:
+      return metadata(unit, *payload);
+  }
+}
+
+bool StreamValidator::can_read() {
+  findings_.suspect(findings_.suspect() || header_suspect_);
+  if (header_ && header_->usable && within_limits_) return true;
+  report_.complete = false;
+  return false;
+}
+
+// 6.3 sequence_header( )
+void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& payload) {
+  if (header_) return;  // it stands in the wrong place, that was said
+  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  header_ = check_sequence_header(r);
+  header_bit_pos_ = unit.payload_offset() * 8;
+  header_suspect_ = findings_.suspect() || r.failures() > 0;
+  if (!header_->supported) unsupported_ = true;
+  if (!header_->usable) return;
+  units_.set_max_unit_bytes(header_->header.level().max_unit_bytes);
+  report_.header = header_->header;
+  check_limits();
+}
+
+void StreamValidator::check_limits() {
+  const DecodeLimits& limits = options_.limits;
+  const SequenceHeader& h = header_->header;
+  const char* element = nullptr;
+  if (memory_of(h) > limits.max_memory_bytes) element = "num_vertices_minus1";
+  if (h.num_frames > limits.max_frames) element = "num_frames_minus1";
+  if (h.num_triangles > limits.max_triangles) element = "num_triangles";
+  if (h.num_vertices > limits.max_vertices) element = "num_vertices_minus1";
+  within_limits_ = element == nullptr;
+  if (within_limits_) return;
+  findings_.error({Errc::kLimitExceeded, "", element, header_bit_pos_});
+}
+
+// 6.4 Connectivity
+void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payload) {
+  if (has_connectivity_ || !can_read()) return;
+  connectivity_suspect_ = findings_.suspect();
+  const SequenceHeader& h = header_->header;
+  BitReader r = bits_of(unit, payload);
+  const auto triangles = parse_connectivity(r, h.num_vertices, h.num_triangles);
+  if (!triangles) {
+    findings_.error(triangles.error());
+    report_.complete = false;
+    return;
+  }
+  topology_ = make_topology(h.num_vertices, *triangles);
+  has_connectivity_ = true;
+}
+
+// 6.6 vertex_order( )
+void StreamValidator::vertex_order(const UnitHeader& unit, const Payload& payload) {
+  if (has_vertex_order_ || !can_read()) return;
+  BitReader r = bits_of(unit, payload);
+  const auto order = parse_vertex_order(r, header_->header.num_vertices);
+  has_vertex_order_ = static_cast<bool>(order);
+  if (!order) findings_.error(order.error());
+}
+
+// What is known of a GOF before it is read.
+void StreamValidator::begin_gof(const UnitHeader& unit) {
+  gofs_.push_back({unit.offset, 0});
+  previous_gof_.reset();
+  previous_gof_frames_ = 0;
+  expected_first_frame_ = std::exchange(next_frame_, std::nullopt);
+}
+
+// 6.5 gof( )
+void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
+  if (!can_read()) return;
+  const bool damaged = findings_.suspect();
+  findings_.suspect(damaged || frames_suspect_);
+  // One GOF too many was said; it may be a copy of any other.
+  const bool surplus = expected_first_frame_ == header_->header.num_frames;
+  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  const GofHeaderCheck header =
+      check_gof_header(r, header_->header, surplus ? std::nullopt : expected_first_frame_);
+  frames_suspect_ = r.failures() > 0 || damaged || surplus;
+  previous_gof_frames_ = header.num_frames;
+  if (header.num_frames > 0) {
+    gofs_.back().first_frame = header.first_frame;
+    ++known_first_frames_;
+    next_frame_ = header.first_frame + header.num_frames;
+  }
+  if (surplus) next_frame_ = expected_first_frame_;
+  previous_gof_suspect_ = damaged || connectivity_suspect_;
+  findings_.suspect(previous_gof_suspect_);
+  gof_section(unit, payload, header);
+}
+
+// 6.5.1 gof_section( )
+void StreamValidator::gof_section(const UnitHeader& unit, const Payload& payload,
+                                  const GofHeaderCheck& header) {
+  if (!header.section_readable || !has_connectivity_) {
+    report_.complete = false;
+    return;
+  }
+  BitReader r = bits_of(unit, payload);
+  auto gof = parse_gof(r, header_->header, topology_, header.first_frame,
+                       options_.limits.max_memory_bytes);
+  if (!gof) {
+    findings_.error(gof.error());
+    report_.complete = false;
+    return;
+  }
+  ++report_.gofs;
+  report_.frames += gof->num_frames;
+  warn_of_gof(unit, *gof);
+  previous_gof_ = std::move(*gof);
+}
+
+// 6.7 gof_hash( )
+void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
+  const bool after_gof = previous_ && previous_->type() == UnitType::kGof;
+  if (!after_gof) {
+    // Behind a gap, the GOF may be what was lost.
+    if (previous_) {
+      findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
+                          "no GOF unit ends where it starts");
+    }
+    return;
+  }
+  if (previous_gof_frames_ == 0) {
+    report_.complete = false;
+    return;
+  }
+  findings_.suspect(findings_.suspect() || previous_gof_suspect_);
+  BitReader r = bits_of(unit, payload);
+  const auto hash = parse_gof_hash(r, previous_gof_frames_);
+  if (!hash) {
+    findings_.error(hash.error());
+  } else if (previous_gof_ && header_->positions) {
+    compare_hashes(unit, hash->per_frame_flag, hash->position_crc);
+  } else {
+    report_.complete = false;
+  }
+}
+
+// 8.6.2 Hash check
+void StreamValidator::compare_hashes(const UnitHeader& unit, bool per_frame,
+                                     std::span<const std::uint32_t> position_crc) {
+  const GofRecon recon(header_->header, topology_, *previous_gof_);
+  std::vector<std::int32_t> positions(3 * std::size_t{header_->header.num_vertices});
+  std::uint32_t crc = 0;
+  std::uint32_t wrong_frames = 0;
+  std::string first_wrong;
+  const std::uint32_t num_frames = recon.num_frames();
+  for (std::uint32_t f = 0; f < num_frames; ++f) {
+    recon.frame(f, positions);
+    crc = crc32_of_positions(positions, per_frame ? 0 : crc);
+    if (!per_frame && f + 1 < num_frames) continue;
+    const std::uint32_t stored = position_crc[per_frame ? f : 0];
+    if (crc == stored) continue;
+    ++wrong_frames;
+    if (!first_wrong.empty()) continue;
+    const std::uint32_t frame = previous_gof_->first_frame + f;
+    first_wrong = (per_frame ? "of frame " : "of the GOF that ends with frame ") +
+                  std::to_string(frame) + ": position_crc is " + hex(stored) +
+                  ", the decoded positions give " + hex(crc);
+  }
+  if (wrong_frames == 0) {
+    report_.hashed_frames += num_frames;
+    return;
+  }
+  if (per_frame) {
+    report_.hashed_frames += num_frames - wrong_frames;
+    first_wrong += "; it differs in " + std::to_string(wrong_frames) + " of " +
+                   std::to_string(num_frames) + " frames";
+  }
+  findings_.error({Errc::kInvalid, "R-HSH-02", "position_crc", unit.end() * 8}, first_wrong);
+}
+
+// 6.9 gof_index( ): compared with the GOFs when all are known.
+void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) {
+  if (!can_read()) return;
+  ElementReader r(payload, unit.payload_offset() * 8, findings_, Checked::kNotByDecoding);
+  indexes_.push_back(
+      check_gof_index(r, header_->header.num_frames, options_.limits.max_memory_bytes));
+  indexes_.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
+  indexes_.back().suspect = findings_.suspect();
+  if (indexes_.back().too_large) {
+    findings_.error({Errc::kLimitExceeded, "", "num_index_gofs_minus1", r.bit_pos()});
+  }
+}
+
+// 6.10 metadata( )
+void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
+  BitReader r = bits_of(unit, payload);
+  const auto json = parse_metadata(r);
+  if (!json) return findings_.error(json.error());
+  if (const auto at = find_json_error(*json)) {
+    findings_.unchecked("R-MET-03", "metadata_json", unit.payload_offset() * 8 + 32,
+                        "byte " + std::to_string(*at) + " of " + std::to_string(json->size()) +
+                            " inflated bytes cannot stand there");
+  }
+}
+
+// 6.8 end_of_sequence( )
+void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& payload) {
+  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  const auto distance = static_cast<std::uint64_t>(r.u(32, "index_distance"));
+  r.expect_end();
+  const bool follows_index = previous_ && previous_->type() == UnitType::kGofIndex;
+  const bool leads_to_it = follows_index && previous_->offset + distance == unit.offset;
+  if (leads_to_it) ++index_units_found_;
+  if (distance != 0 && r.readable() && !leads_to_it && previous_) {
+    findings_.unchecked(
+        "R-END-03", "index_distance", unit.payload_offset() * 8,
+        "index_distance is " + std::to_string(distance) + "; " +
+            (follows_index
+                 ? "the GOF index unit starts " +
+                       std::to_string(unit.offset - previous_->offset) + " bytes before"
+                 : "the unit directly before is no GOF index unit"));
+  }
+  if (!header_ || !header_->usable) return;
+  findings_.suspect(findings_.suspect() || header_suspect_ || frames_suspect_);
+  if (next_frame_ && *next_frame_ != header_->header.num_frames) {
+    findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
+                    "the GOFs have " + std::to_string(*next_frame_) +
+                        " frames, the sequence header announces " +
+                        std::to_string(header_->header.num_frames));
+  }
+}
+
+}  // namespace rlpc

@@ -1,0 +1,61 @@
+// 6.1 and 6.2 as the validator reads them: signature, unit headers, payloads, CRCs; and where
+// the next unit is when a size cannot be right.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/tools/validator_findings.h"
+#include "decoder/byte_source.h"
+#include "decoder/unit_reader.h"
+
+namespace rlpc {
+
+class StreamUnits {
+ public:
+  StreamUnits(ByteSource& source, FindingList& findings, std::uint64_t max_memory_bytes)
+      : source_(source), findings_(findings), max_memory_bytes_(max_memory_bytes) {}
+
+  // Signature and version. False if there is no use in reading on.
+  bool stream_header();
+  // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
+  void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
+  // The unit at a byte offset; nothing if its header or its end is not there.
+  std::optional<UnitHeader> header_at(std::uint64_t offset);
+  // Compares unit_crc, block by block.
+  bool crc_holds(const UnitHeader& unit);
+  // Nothing if it cannot be read, or takes more memory than allowed.
+  std::optional<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
+
+  // Whether units follow from `offset` on, one behind the other, up to an end_of_sequence unit
+  // at the very end.
+  bool begins_chain(std::uint64_t offset);
+  // The first place from `offset` on where such a chain begins with a unit whose CRC holds.
+  std::optional<std::uint64_t> next_chain(std::uint64_t offset);
+  // Whether a unit of a possible type, with a fitting CRC, is at the offset.
+  bool is_unit(std::uint64_t offset);
+
+  std::uint64_t size() const { return source_.size(); }
+  bool failed() const { return failed_; }  // to read
+
+ private:
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out, const char* element);
+  bool crc_of_unit(const UnitHeader& unit, std::uint32_t& stored, std::uint32_t& computed);
+  // Knows all chains that begin at `offset` or later; false if that takes too much memory.
+  bool find_chains(std::uint64_t offset);
+
+  ByteSource& source_;
+  FindingList& findings_;
+  std::uint64_t max_memory_bytes_;
+  std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
+  bool failed_ = false;
+  std::optional<std::uint64_t> chains_from_;
+  std::vector<bool> chain_;  // [size - chains_from_]: begins a chain
+  // The last search: from where, and what it found.
+  std::optional<std::uint64_t> searched_from_;
+  std::optional<std::uint64_t> found_;
+  std::uint64_t searched_bytes_ = 0;  // whose CRC was computed in searches
+};
+
+}  // namespace rlpc
