@@ -293,15 +293,15 @@ class Program:
             if isinstance(part, ast.Call) and part.func is name and len(part.args) != expected:
                 raise SpecError(f"{self._places[node]}: {name.id} takes {expected} argument(s)")
 
-    def compile(self, given, trace=False, widths=False):
-        """The variables and functions of the program as a dictionary.
+    def code(self, trace=False, widths=False, transform=None):
+        """The program as a code object, for run( ).
 
-        given: StreamBytes and the functions of clause 4.5; with trace, also trace_begin and
-        trace_element; with widths, also checked_width.
+        transform takes functions and returns what runs in their place.
         """
-        inliner = _Inliner(self.functions)
+        functions = transform(self.functions) if transform else self.functions
+        inliner = _Inliner(functions)
         module = ast.Module([], [])
-        for node, clause in self.functions.values():
+        for node, clause in functions.values():
             node = ast.parse(ast.unparse(node)).body[0]  # a copy
             if trace and clause.split(".")[0] != _PARSING_PROCESS:
                 node = _Tracer().visit(node)
@@ -315,7 +315,20 @@ class Program:
             module.body.append(node)
         module.body += self.constants
         ast.fix_missing_locations(module)
-        namespace = {"__builtins__": dict(_PYTHON_FUNCTIONS)}
-        namespace.update(given)
-        exec(compile(module, "spec", "exec"), namespace)  # noqa: S102
-        return namespace
+        return compile(module, "spec", "exec")
+
+    def compile(self, given, trace=False, widths=False):
+        """The variables and functions of the program as a dictionary.
+
+        given: StreamBytes and the functions of clause 4.5; with trace, also trace_begin and
+        trace_element; with widths, also checked_width.
+        """
+        return run(self.code(trace, widths), given)
+
+
+def run(code, given):
+    """What a code object of a program defines, as a dictionary; given: as for compile( )."""
+    namespace = {"__builtins__": dict(_PYTHON_FUNCTIONS)}
+    namespace.update(given)
+    exec(code, namespace)  # noqa: S102
+    return namespace
