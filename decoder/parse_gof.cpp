@@ -60,6 +60,7 @@ class GofSectionParser {
   void cluster_seeds(std::size_t cluster_index);
   void cluster_map();
   std::uint16_t cluster_idx(const ClusterPrediction& prediction);
+  void count_factors(std::uint64_t more, const char* element);
   void seed_tracks();
   void component_counts();
   void components();
@@ -74,6 +75,7 @@ class GofSectionParser {
   std::uint64_t max_memory_bytes_;
   GofModels models_;
   std::vector<std::size_t> coded_vertices_;  // of each cluster
+  std::uint64_t num_factors_ = 0;
   std::vector<std::uint32_t> frame_mean_;
   Component previous_;  // header of the component before
 };
@@ -180,9 +182,19 @@ std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction)
   return 0;
 }
 
+// NumFactors of 6.5.4 and 6.5.5, and the memory that they take.
+void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
+  num_factors_ += more;
+  if (num_factors_ > header_.level().max_gof_factors) fail("R-LVL-05", element);
+  if (num_factors_ * kBytesPerFactor > max_memory_bytes_) {
+    reader_.fail(Errc::kLimitExceeded, "", element, bit_pos());
+  }
+}
+
 // 6.5.4 seed_tracks( )
 void GofSectionParser::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
+  count_factors(3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames, "seed_residual");
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
     SeedContext context(frame_mean_);
@@ -202,7 +214,6 @@ void GofSectionParser::seed_tracks() {
 // 6.5.5 component_counts( )
 void GofSectionParser::component_counts() {
   int previous = 0;
-  std::uint64_t values = 0;
   coded_vertices_.assign(gof_.clusters.size(), 0);
   for (const std::uint16_t i : gof_.cluster_of_vertex) {
     if (i != kSeedCluster) ++coded_vertices_[i];
@@ -211,11 +222,10 @@ void GofSectionParser::component_counts() {
     const Range range{0, header_.level().max_components};
     previous = header_value(HeaderField::kNumComponents, previous, range,
                             "num_components_delta", "R-GOF-09");
-    values += static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames);
-    if (values > header_.level().max_gof_factors) fail("R-LVL-05", "num_components_delta");
-    if (values * kBytesPerFactor > max_memory_bytes_) {
-      reader_.fail(Errc::kLimitExceeded, "", "num_components_delta", bit_pos());
-    }
+    if (failed()) return;
+    count_factors(
+        static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames),
+        "num_components_delta");
     if (failed()) return;
     gof_.clusters[i].components.resize(static_cast<std::size_t>(previous));
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bit_writer.h"
@@ -137,11 +138,13 @@ TEST(ParseGof, SectionMustNotStartWithOnes) {
 
 TEST(ParseGof, FactorsStayWithinTheMemoryOfTheCaller) {
   EXPECT_TRUE(parse_legal(kLegal, nullptr, 32 * kLegalFactors));
-  for (const std::uint64_t bytes : {std::uint64_t{0}, 4 * kLegalFactors}) {
+  const std::vector<std::pair<std::uint64_t, std::string>> too_few{
+      {0, "seed_residual"}, {20 * kLegalFactors, "num_components_delta"}};
+  for (const auto& [bytes, element] : too_few) {
     const auto gof = parse_legal(kLegal, nullptr, bytes);
     ASSERT_FALSE(gof);
     EXPECT_EQ(gof.error().code, Errc::kLimitExceeded);
-    EXPECT_EQ(gof.error().element, std::string("num_components_delta"));
+    EXPECT_EQ(gof.error().element, element);
   }
 }
 

@@ -210,8 +210,13 @@ std::optional<rlpc::InputError> read_metadata(Options& o) {
   if (o.settings.metadata.size() > rlpc::kMaxMetadataBytes) {
     return rlpc::InputError{o.metadata_path + ": metadata may have at most 1 MiB"};
   }
-  if (!nlohmann::json::accept(o.settings.metadata)) {
-    return rlpc::InputError{o.metadata_path + ": not valid JSON"};
+  if (o.settings.metadata.starts_with("\xEF\xBB\xBF")) {
+    return rlpc::InputError{o.metadata_path + ": begins with a byte order mark; JSON has none"};
+  }
+  // The library takes a zero byte for the end.
+  if (o.settings.metadata.find('\0') != std::string::npos ||
+      !nlohmann::json::accept(o.settings.metadata)) {
+    return rlpc::InputError{o.metadata_path + ": not valid JSON in UTF-8"};
   }
   return std::nullopt;
 }

@@ -70,6 +70,7 @@ class SequenceEncoder {
 
   std::optional<InputError> prepare();
   std::optional<InputError> set_level();
+  std::optional<InputError> check_level(const GofSpan& span, const GofTrial& encoded) const;
   std::optional<InputError> load(std::size_t g);
   InputResult<SequenceTrial> encode_at(double step, double analysis_step);
   std::optional<InputError> encode_gof(std::size_t g, double step, double analysis_step,
@@ -189,6 +190,27 @@ std::optional<InputError> SequenceEncoder::load(std::size_t g) {
   return std::nullopt;
 }
 
+// What a level bounds of a coded GOF, and set_level( ) could not foresee.
+std::optional<InputError> SequenceEncoder::check_level(const GofSpan& span,
+                                                       const GofTrial& encoded) const {
+  const Gof& gof = encoded.gof;
+  std::uint64_t factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
+  for (const Cluster& cluster : gof.clusters) {
+    for (const Component& component : cluster.components) {
+      factors += component.spatial_residual.size() + gof.num_frames;
+    }
+  }
+  if (factors <= header_.level().max_gof_factors &&
+      encoded.payload.size() <= header_.level().max_unit_bytes) {
+    return std::nullopt;
+  }
+  return InputError{
+      "a GOF of " + std::to_string(span.count) + " frames has " + std::to_string(factors) +
+      " factors and " + std::to_string(encoded.payload.size()) + " bytes, more than level " +
+      std::to_string(header_.level_idc) +
+      " allows (specification, Annex B); use a smaller --gof or fewer --components"};
+}
+
 // Decodes what was written, as a decoder would, and compares with the input.
 std::optional<InputError> SequenceEncoder::measure(const GofSpan& span, const Gof& gof,
                                                    SequenceTrial& trial,
@@ -237,12 +259,7 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
     state.search.reset();
     state.frames = {};
   }
-  if (encoded.payload.size() > header_.level().max_unit_bytes) {
-    return InputError{"a GOF of " + std::to_string(spans_[g].count) + " frames has " +
-                      std::to_string(encoded.payload.size()) + " bytes, more than level " +
-                      std::to_string(header_.level_idc) +
-                      " allows (specification, Annex B); use a smaller --gof"};
-  }
+  if (auto error = check_level(spans_[g], encoded)) return error;
   trial.gof_units.push_back(write_unit(UnitType::kGof, encoded.payload));
   trial.gof_bytes += trial.gof_units.back().size();
   trial.clusters += static_cast<std::uint32_t>(encoded.gof.clusters.size());
