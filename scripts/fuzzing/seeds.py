@@ -1,0 +1,218 @@
+"""Seeds of the fuzz targets: small streams, and the payloads that are in them."""
+
+import hashlib
+import struct
+import subprocess
+
+MAX_SEED_BYTES = 1 << 16
+STREAM_HEADER_BYTES = 10
+UNIT_HEADER = struct.Struct(">BI")
+CRC_BYTES = 4
+SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF = 1, 2, 3, 4
+GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
+# In the order of decoder/payload_fuzz.cpp.
+SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
+
+# Settings that make different streams of a small animation.
+SETTINGS = [
+    ["--kg", "1", "--metadata", "METADATA", "--keep-order"],
+    ["--kg", "0.3", "--gof", "4", "--hash", "frame"],
+    ["--max-error", "0.01", "--frame", "world", "--gof", "3", "--hash", "none"],
+    ["--gof", "all", "--clusters", "3", "--components", "2", "--qu", "8", "--qc", "8",
+     "--qdelta", "8", "--frame", "lcf", "--no-rdo"],
+]
+OBJ_SEEDS = [
+    b"# frame_rate 30000/1001\nv 0 0 0\nv 1 0 .5e-3\nv 0 +1 -2.25\nv 1 1 1e-50\nf 1 2 3 4\n",
+    b"\xef\xbb\xbfo a\r\nv 0 0 0 1.0\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 0 0\r\nv 0 1 0\r\n"
+    b"f 1/1/1 2//1 3/1\r\nf -1 -2 -3\r\n",
+    b"v 1 2 \\\n 3 # three\n\nv 0.1 3.4028235e38 -1.17549435e-38\rg x\nf 1 2 1\n",
+]
+
+
+class Failure(Exception):
+    """What to tell the user."""
+
+
+def tube(rings, extra):
+    """A tube of `rings` rings of 5 vertices as points and triangles; `extra` adds a degenerate
+    triangle, a vertex of no triangle and a triangle that shares an edge with two others."""
+    points = [(r * 0.3, (i % 3) * 0.4 - 0.3, (i * 2 % 5) * 0.2) for r in range(rings)
+              for i in range(5)]
+    triangles = []
+    for a in range(5 * (rings - 1)):
+        b = a - a % 5 + (a + 1) % 5
+        triangles += [(a, b, a + 5), (b, b + 5, a + 5)]
+    if extra:
+        points += [(9.0, 9.0, 9.0), (0.5, 2.0, 0.5)]
+        triangles += [(0, 0, 1), (0, 1, len(points) - 1)]
+    return points, triangles
+
+
+def moved(points, frame):
+    bend = (frame * 7 % 11) * 0.05
+    return [(x + 0.1 * frame, y + bend * x, z - bend * x * y) for x, y, z in points]
+
+
+def obj_text(points, triangles):
+    lines = ["v %.6g %.6g %.6g" % p for p in points]
+    lines += ["f %d %d %d" % (a + 1, b + 1, c + 1) for a, b, c in triangles]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def pc2_bytes(points, frames):
+    head = b"POINTCACHE2\0" + struct.pack("<iiffi", 1, len(points), 0, 1, frames)
+    return head + b"".join(struct.pack("<3f", *p) for f in range(frames)
+                           for p in moved(points, f))
+
+
+def rlpd_bytes(points, triangles, frames):
+    """Annex A."""
+    head = b"RLPD" + struct.pack("<6Ii3i", 1, len(points), len(triangles), frames, 30, 1,
+                                 -8, 5, -6, 7)
+    head += b"".join(struct.pack("<3I", *t) for t in triangles)
+    return head + b"".join(struct.pack("<3i", *(int(256 * x) for x in p))
+                           for f in range(frames) for p in moved(points, f))
+
+
+def small_animations():
+    """(points, triangles, frames)"""
+    yield (*tube(4, False), 8)
+    yield (*tube(3, True), 5)
+    yield (*tube(12, True), 12)
+    yield [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], 1
+
+
+def encoded_streams(root, work, encoder):
+    """Small animations encoded with several settings, and three frames of the bundled ones."""
+    work.mkdir(parents=True, exist_ok=True)
+    (work / "metadata.json").write_text('{"title": "seed", "tags": [1, 2, 3]}')
+    inputs = [(obj_text(p, t), pc2_bytes(p, f)) for p, t, f in small_animations()]
+    for cache in sorted((root / "streams" / "inputs").glob("*.pc2")):
+        head, frames = bytearray(cache.read_bytes()[:32]), 3
+        points, = struct.unpack_from("<i", head, 16)
+        struct.pack_into("<i", head, 28, frames)
+        frame_data = cache.read_bytes()[32:32 + 12 * points * frames]
+        inputs.append((cache.with_suffix(".obj").read_bytes(), bytes(head) + frame_data))
+    for mesh, cache in inputs:
+        (work / "seed.obj").write_bytes(mesh)
+        (work / "seed.pc2").write_bytes(cache)
+        for setting in SETTINGS:
+            setting = [str(work / "metadata.json") if word == "METADATA" else word
+                       for word in setting]
+            done = subprocess.run(
+                [encoder, work / "seed.obj", "--points", work / "seed.pc2",
+                 "-o", work / "seed.rlpc", "-q", *setting], stderr=subprocess.PIPE, text=True)
+            if done.returncode not in (0, 2):
+                raise Failure(f"a seed cannot be encoded ({' '.join(setting)}): {done.stderr}")
+            yield (work / "seed.rlpc").read_bytes()
+
+
+def released_streams(root):
+    for path in sorted((root / "streams").glob("v*/*/**/*.rlpc")):
+        if path.stat().st_size <= MAX_SEED_BYTES:
+            yield path.read_bytes()
+
+
+def units(stream):
+    """(type, payload) of each unit, as far as they follow each other."""
+    at = STREAM_HEADER_BYTES
+    while at + UNIT_HEADER.size + CRC_BYTES <= len(stream):
+        code, size = UNIT_HEADER.unpack_from(stream, at)
+        first = at + UNIT_HEADER.size
+        if first + size + CRC_BYTES > len(stream):
+            return
+        yield code, stream[first:first + size]
+        at = first + size + CRC_BYTES
+
+
+class Bits:
+    """Clause 9.2, as much as the seeds need."""
+
+    def __init__(self, data):
+        self.text = "".join(f"{byte:08b}" for byte in data)
+        self.at = 0
+
+    def ue(self):
+        """More than any syntax element can have, if the code is not complete."""
+        first = self.text.find("1", self.at)
+        end = 2 * first - self.at + 1
+        if first < 0 or end > len(self.text):
+            return 1 << 40
+        self.at = end
+        return int(self.text[first:end], 2) - 1
+
+
+def parts(stream):
+    """Of a stream: its units, and the counts of its sequence header."""
+    found = list(units(stream))
+    if not found or found[0][0] != SEQUENCE_HEADER or len(found[0][1]) < 3:
+        return None
+    bits = Bits(found[0][1][2:40])
+    counts = {"vertices": bits.ue() + 1, "triangles": bits.ue(), "frames": bits.ue() + 1}
+    return (found, counts) if max(counts.values()) <= 65535 else None
+
+
+def connectivity_seeds(found, counts):
+    for code, payload in found:
+        if code == CONNECTIVITY:
+            yield struct.pack("<HH", counts["vertices"] - 1, counts["triangles"]) + payload
+
+
+def gof_seeds(found, _):
+    first = {}
+    for code, payload in found:
+        first.setdefault(code, payload)
+        if code == GOF and CONNECTIVITY in first:
+            header, connectivity = first[SEQUENCE_HEADER], first[CONNECTIVITY]
+            frame = Bits(payload[:16]).ue()
+            if max(frame, len(header), len(connectivity)) < 65536:
+                yield (struct.pack("<IHH", frame, len(header), len(connectivity)) +
+                       header + connectivity + payload)
+
+
+def payload_seeds(found, counts):
+    gof_frames = 1
+    for code, payload in found:
+        if code == GOF:
+            bits = Bits(payload[:16])
+            bits.ue()
+            gof_frames = bits.ue() + 1
+        elif code in SMALL_PAYLOADS:
+            count = {VERTEX_ORDER: counts["vertices"], GOF_HASH: gof_frames,
+                     GOF_INDEX: counts["frames"]}.get(code, 1)
+            yield struct.pack("<BH", SMALL_PAYLOADS.index(code), (count - 1) & 65535) + payload
+
+
+def sequence_header_seeds(found, _):
+    yield found[0][1]
+
+
+FROM_PARTS = {"connectivity_fuzz": connectivity_seeds, "gof_fuzz": gof_seeds,
+              "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
+
+
+def seeds_of(target, streams):
+    """What a target begins with; of a target that is not known here: streams."""
+    if target == "obj_fuzz":
+        return OBJ_SEEDS + [obj_text(p, t) for p, t, _ in small_animations()]
+    if target == "pc2_fuzz":
+        return [bytes([len(p) - 1]) + pc2_bytes(p, f) for p, _, f in small_animations()]
+    if target == "rlpd_fuzz":
+        return [rlpd_bytes(p, t, f) for p, t, f in small_animations()]
+    if target in FROM_PARTS:
+        known = filter(None, map(parts, streams))
+        return [seed for found, counts in known for seed in FROM_PARTS[target](found, counts)]
+    return streams
+
+
+def write_all(root, corpus, encoder, targets):
+    """Seeds of all targets, in CORPUS/TARGET/seeds; and CORPUS/TARGET/found for what is new."""
+    streams = [*released_streams(root), *encoded_streams(root, corpus / "work", encoder)]
+    for target in targets:
+        folder = corpus / target / "seeds"
+        folder.mkdir(parents=True, exist_ok=True)
+        (corpus / target / "found").mkdir(exist_ok=True)
+        for old in folder.iterdir():
+            old.unlink()
+        for seed in seeds_of(target, streams):
+            (folder / hashlib.sha1(seed).hexdigest()).write_bytes(seed)
