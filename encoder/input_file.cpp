@@ -44,7 +44,12 @@ InputResult<std::string> read_whole_file(const std::string& path) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
   if (file->size() == 0) return InputError{path + ": the file is empty"};
-  std::string text(file->size(), '\0');
+  std::string text;
+  if (file->size() > text.max_size()) {  // possible where std::size_t has 32 bits
+    return InputError{path + ": " + std::to_string(file->size()) +
+                      " bytes are more than this machine can address; use a 64-bit one"};
+  }
+  text.resize(static_cast<std::size_t>(file->size()));
   if (auto error = file->read(0, text)) return *error;
   return text;
 }

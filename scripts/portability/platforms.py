@@ -1,0 +1,170 @@
+"""The builds that are compared: native compilers, and Debian's cross compilers with qemu-user."""
+
+import dataclasses
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+SANITIZERS = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
+GOOGLETEST = pathlib.Path("/usr/src/googletest")
+DEBIAN_KEY = pathlib.Path("/usr/share/keyrings/debian-archive-keyring.gpg")
+
+
+class NotRun(Exception):
+    """A platform that this machine cannot build or run, and why."""
+
+
+class BuildFailed(Exception):
+    """A build that failed, and where its log is."""
+
+
+@dataclasses.dataclass
+class Platform:
+    name: str
+    compiler: str
+    flags: str
+    triplet: str = ""  # of a cross compiler
+    qemu: str = ""
+    unit_tests: bool = False  # those of common/
+
+    def emulator(self):
+        """What stands before the command of a program of this platform."""
+        return [self.qemu, "-L", f"/usr/{self.triplet}"] if self.qemu else []
+
+
+def native():
+    levels = ["-O0", "-O2", "-O3", "-O3 -march=native"]
+    names = ["O0", "O2", "O3", "O3-native"]
+    found = [Platform(f"{short}-{name}", compiler, flags)
+             for short, compiler in [("gcc", "g++"), ("clang", "clang++-14")]
+             for name, flags in zip(names, levels)]
+    return found + [Platform("clang-sanitize", "clang++-14", SANITIZERS)]
+
+
+def cross():
+    """32 bits and the other byte order run the unit tests as well."""
+    return [Platform(name, f"{triplet}-g++", "-O2", triplet, qemu, tests)
+            for name, triplet, qemu, tests in [
+                ("aarch64", "aarch64-linux-gnu", "qemu-aarch64", False),
+                ("armhf", "arm-linux-gnueabihf", "qemu-arm", True),
+                ("riscv64", "riscv64-linux-gnu", "qemu-riscv64", False),
+                ("s390x", "s390x-linux-gnu", "qemu-s390x", True)]]
+
+
+class Builder:
+    """Builds the tools, in OUT/NAME for each platform; libraries of targets in OUT/target."""
+
+    def __init__(self, root, out):
+        self.root = root
+        self.out = out
+
+    def build(self, platform):
+        """Everything that the platform runs; the folder with the programs."""
+        for program in filter(None, [platform.compiler, platform.qemu]):
+            if not shutil.which(program):
+                raise NotRun(f"no {program}")
+        log = self.out / f"{platform.name}.log"
+        with log.open("w") as out:
+            arguments = self._target(platform, out) if platform.triplet else [
+                f"-DCMAKE_CXX_COMPILER={platform.compiler}"]
+            if shutil.which("ccache"):
+                arguments.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+            tests = self.unit_tests(platform)
+            folder = self.out / platform.name
+            self._run(out, ["cmake", "-S", self.root, "-B", folder, "-G", "Ninja",
+                            f"-DBUILD_TESTING={'ON' if tests else 'OFF'}",
+                            "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={platform.flags}",
+                            *arguments])
+            self._run(out, ["cmake", "--build", folder, "--target", "rlpcenc", "rlpcdec"])
+            for name in tests:
+                (folder / "bin" / name).unlink(missing_ok=True)
+            if tests:  # one that does not build is one that fails
+                subprocess.run(["cmake", "--build", folder, "--target", *tests, "--", "-k0"],
+                               stdout=out, stderr=out)
+        return folder / "bin"
+
+    def unit_tests(self, platform):
+        """Names of the test programs that the platform runs."""
+        if not platform.unit_tests or not GOOGLETEST.is_dir():
+            return []
+        lists = (self.root / "common" / "CMakeLists.txt").read_text()
+        return re.findall(r"^rlpc_test\((\w+)", lists, re.MULTILINE)
+
+    def run_unit_tests(self, platform, bin_folder):
+        """Those that fail, or do not build."""
+        failed = []
+        with (self.out / f"{platform.name}.log").open("a") as out:
+            for name in self.unit_tests(platform):
+                command = [*platform.emulator(), bin_folder / name, "--gtest_brief=1"]
+                if not (bin_folder / name).exists() or subprocess.run(
+                        command, stdout=out, stderr=out,
+                        stdin=subprocess.DEVNULL).returncode != 0:
+                    failed.append(name)
+        return failed
+
+    def _target(self, platform, out):
+        """Arguments of CMake for a cross compiler, with the libraries of the target built."""
+        target = self.out / "target" / platform.name
+        arguments = [
+            f"-DCMAKE_TOOLCHAIN_FILE={self.root / 'scripts' / 'cmake' / 'cross_toolchain.cmake'}",
+            f"-DRLPC_TRIPLET={platform.triplet}", f"-DRLPC_QEMU={platform.qemu}",
+            f"-DRLPC_TARGET_ROOT={target}"]
+        if not (target / "lib" / "libz.a").exists():
+            self._zlib(platform, target, out)
+        if self.unit_tests(platform) and not (target / "lib" / "libgtest.a").exists():
+            work = target / "googletest"
+            self._run(out, ["cmake", "-S", GOOGLETEST, "-B", work, "-G", "Ninja",
+                            "-DBUILD_GMOCK=OFF", "-DCMAKE_BUILD_TYPE=Release",
+                            f"-DCMAKE_INSTALL_PREFIX={target}", *arguments])
+            self._run(out, ["cmake", "--build", work, "--target", "install"])
+        return arguments
+
+    def _zlib(self, platform, target, out):
+        work = target / "zlib"
+        shutil.rmtree(work, ignore_errors=True)
+        shutil.copytree(self._zlib_source(out), work)
+        self._run(out, ["./configure", "--static"], cwd=work,
+                  env={**os.environ, "CHOST": platform.triplet})
+        self._run(out, ["make", "libz.a"], cwd=work)
+        for folder, names in [("include", ["zlib.h", "zconf.h"]), ("lib", ["libz.a"])]:
+            (target / folder).mkdir(exist_ok=True)
+            for name in names:
+                shutil.copy(work / name, target / folder)
+
+    def _zlib_source(self, out):
+        """Debian's source package, by apt-get with lists of its own: no architecture and no
+        source of the system changes, and no privilege is needed."""
+        work = self.out / "zlib-source"
+        unpacked = sorted(work.glob("zlib-*/configure"))
+        if unpacked:
+            return unpacked[0].parent
+        if not shutil.which("apt-get") or not shutil.which("dpkg-source"):
+            raise NotRun("no zlib for it: needs apt-get and dpkg-dev")
+        codename = re.search(r"^VERSION_CODENAME=(\w+)",
+                             pathlib.Path("/etc/os-release").read_text(), re.MULTILINE)
+        if not codename or not DEBIAN_KEY.exists():
+            raise NotRun("no zlib for it: its source comes from Debian")
+        for folder in ["lists/partial", "cache/archives/partial"]:
+            (work / folder).mkdir(parents=True, exist_ok=True)
+        (work / "debian.sources").write_text(
+            "Types: deb-src\nURIs: http://deb.debian.org/debian\n"
+            f"Suites: {codename.group(1)}\nComponents: main\nSigned-By: {DEBIAN_KEY}\n")
+        apt = ["apt-get", "-q", "-o", f"Dir::State::Lists={work / 'lists'}",
+               "-o", f"Dir::Cache={work / 'cache'}",
+               "-o", f"Dir::Etc::SourceList={work / 'debian.sources'}",
+               "-o", "Dir::Etc::SourceParts=-", "-o", f"APT::Sandbox::User={os.getuid()}"]
+        try:
+            self._run(out, [*apt, "update"])
+            self._run(out, [*apt, "source", "zlib"], cwd=work)
+        except BuildFailed as failure:
+            raise NotRun(f"the source of zlib cannot be fetched: {failure}") from failure
+        return next(work.glob("zlib-*/configure")).parent
+
+    @staticmethod
+    def _run(out, command, **options):
+        out.flush()
+        if subprocess.run(command, stdout=out, stderr=out, stdin=subprocess.DEVNULL,
+                          **options).returncode != 0:
+            raise BuildFailed(out.name)
