@@ -20,7 +20,7 @@ _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
              "vertex_order": ("vertex_order_delta", None)}
 _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "deflated", "payload",
                             "payload_cut", "payload_append", "payload_replaced", "section_end",
-                            "alignment"}
+                            "alignment", "stop"}
 _STREAM = ("version_major", "version_minor", "signature", "cut", "keep", "append", "flip")
 
 
@@ -257,6 +257,7 @@ class _Hooks:
         end, alignment = source.entry("section_end"), source.entry("alignment")
         writer.highest_end = end is not None and end.text == "highest"
         writer.alignment = alignment.text if alignment is not None else "0"
+        writer.stop_broken = source.entry("stop") is not None
         source.hook(writer.ns)
 
     def __enter__(self):

@@ -106,10 +106,19 @@ class Recipes(unittest.TestCase):
         self.breaks("R-RNG-01", self.changed(gof, gof + "  payload_append = 00\n"))
         self.breaks("R-RNG-02", self.changed("  mesh = tetrahedron", "  payload = A8FFFFFFFF00"))
         self.breaks("R-BIT-02", self.changed(gof, gof + "  alignment = 1\n"))
+        replaced = "  mesh = tetrahedron\n  payload_replaced = A8FFFFFFFF00"
+        self.breaks("R-RNG-02", self.changed("  mesh = tetrahedron", replaced))
         self.breaks("R-UNT-02", TETRAHEDRON + "stream\n  cut = 1\n")
+        self.breaks("R-BIT-01", TETRAHEDRON + "stream\n  keep = 9\n")
         self.breaks("R-END-02", TETRAHEDRON + "stream\n  append = 00\n")
         self.breaks("R-STR-01", TETRAHEDRON + "stream\n  flip = 3\n")
         self.breaks("R-STR-03", TETRAHEDRON + "stream\n  version_minor = 1\n")
+
+    def test_a_payload_can_stop_where_it_breaks_a_requirement(self):
+        many = self.changed("num_components = 1", "num_components = 513")
+        stopped = many.replace("num_components = 513", "num_components = 513\n  stop = broken")
+        self.breaks("R-GOF-09", stopped)
+        self.assertLess(len(build(stopped)), len(build(many)))
 
     def test_both_ends_of_a_section_decode_alike(self):
         low = build(TETRAHEDRON)

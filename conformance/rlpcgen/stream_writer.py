@@ -74,6 +74,10 @@ def element_names(program):
     return names
 
 
+class _Stop(Exception):
+    """The payload is to end here."""
+
+
 class RangeWriter:
     """The bytes that make a range decoder decide as told: the lower end of its range."""
 
@@ -129,6 +133,7 @@ class StreamWriter:
         self.broken = []  # rules, in the order in which they failed
         self.sections = []  # the RangeWriter of each section
         self.highest_end = False
+        self.stop_broken = False  # a payload ends where it breaks a requirement
         self.alignment = "0"  # the bits that byte_alignment( ) is to find
         self._bins = collections.deque()
         self._range = None
@@ -278,6 +283,8 @@ class StreamWriter:
         self.broken.append(rule)
         if self.strict:
             raise WriteError(f"{rule} is broken")
+        if self.stop_broken:
+            raise _Stop
 
     def unit(self, code, payload=None, finish=None):
         """A unit with the payload that the source gives, or with these bytes.
@@ -306,6 +313,8 @@ class StreamWriter:
     def _run_payload(self, code):
         try:
             self.ns["unit_payload"]()
+        except _Stop:
+            pass
         except (IndexError, KeyError, NameError, TypeError, ValueError) as error:
             if not self.broken:
                 raise WriteError(f"unit of code {code}: {error!r}") from error
