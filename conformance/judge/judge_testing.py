@@ -17,6 +17,7 @@ import unittest
 import zlib
 
 sys.dont_write_bytecode = True
+import expectation  # noqa: E402
 import suite  # noqa: E402
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
@@ -78,7 +79,7 @@ def changed(data, kind, nth, change):
 
 def sidecar(identity, data, expect=None, level=1, **more):
     """A whole sidecar for a stream; expect only where it is not what specdec says."""
-    decoded = suite.expectation_of(data, PROGRAM)
+    decoded = expectation.expectation_of(data, PROGRAM)
     result = {"id": identity, "title": f"Test stream {identity}", "spec": "1.0",
               "profile": "baseline", "level": level, "tier": "smoke", "rules": [], "features": [],
               "twin": None, "sha256": hashlib.sha256(data).hexdigest(), "recipe": None,

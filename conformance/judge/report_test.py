@@ -85,7 +85,8 @@ class Reports(JudgeTest):
         target = self.folder / "there.html"
         target.write_text("before")
         code, _, errors = self.run_here("--decoder", Tools.folder / "rlpcdec", "--suite",
-                                        self.suite, "--html", self.folder / "none" / "x.html")
+                                        self.suite, "--max-mem", "0", "--html",
+                                        self.folder / "none" / "x.html")
         self.assertEqual(code, 4)
         self.assertIn("none", errors)
         self.assertEqual(target.read_text(), "before")

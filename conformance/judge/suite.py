@@ -1,4 +1,4 @@
-"""Conformance suites: SUITE.json, streams and their sidecars, and what a stream decodes to."""
+"""Conformance suites: SUITE.json, streams and their sidecars."""
 
 import dataclasses
 import fnmatch
@@ -6,14 +6,8 @@ import hashlib
 import json
 import os
 import pathlib
-import sys
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
-
-import rlpd  # noqa: E402
-import schema  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
+import schema
 
 CONTRACT = 1
 TIERS = ("smoke", "core", "stress")  # each includes those before
@@ -137,27 +131,6 @@ def select(streams, tier="stress", profile=None, only=None):
             if s.superseded_by is None and s.tier in tiers
             and (profile is None or s.profile == profile)
             and (only is None or fnmatch.fnmatchcase(s.id, only))]
-
-
-def expectation_of(data, program=None):
-    """What the specification makes of a stream: the decoded part of its sidecar.
-
-    "expect" is accept, reject or unsupported; with accept come frames, sha256_int, sha256_f32 and
-    frame_sha256, else rule, bit, frames_before and sha256_int (None: nothing is output).
-    """
-    program = program or spec_program.Program(specdec.SPEC)
-    digest = rlpd.Digest(with_f32=True)
-    decoder = specdec.Decoder(program, data, digest.feed)
-    try:
-        decoder.call("stream")
-    except specdec.Verdict as verdict:
-        bit, frames = decoder.place()
-        expect = "reject" if verdict.code == specdec.INVALID else "unsupported"
-        return {"expect": expect, "rule": verdict.rule, "bit": bit, "frames_before": frames,
-                "sha256_int": digest.sha256()}
-    return {"expect": "accept", "frames": len(digest.frame_sha256),
-            "sha256_int": digest.sha256(), "sha256_f32": digest.sha256_f32(),
-            "frame_sha256": digest.frame_sha256}
 
 
 def write_file(path, data):

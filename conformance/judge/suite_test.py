@@ -14,6 +14,7 @@ import subprocess
 import unittest
 
 from judge_testing import JudgeTest, PROGRAM, Tools, add_stream, main, sidecar, write_index
+import expectation
 import rlpd
 import schema
 import suite
@@ -155,7 +156,7 @@ class Expectations(JudgeTest):
     def test_expectations_are_those_of_rlpcdec(self):
         for path in sorted(self.suite.glob("*/*/*.rlpc")):
             with self.subTest(path=path.name):
-                expected = suite.expectation_of(path.read_bytes(), PROGRAM)
+                expected = expectation.expectation_of(path.read_bytes(), PROGRAM)
                 for form, key in (("rlpd", "sha256_int"), ("f32", "sha256_f32")):
                     out = self.folder / f"{path.stem}.{form}"
                     done = subprocess.run([Tools.folder / "rlpcdec", "decode", path, out],

@@ -1,5 +1,6 @@
 """Faults for the decoder: reading the list, seeding one, and finding a stream that notices it."""
 
+import contextlib
 import dataclasses
 import hashlib
 import pathlib
@@ -128,41 +129,60 @@ class Workshop:
 
     def try_out(self, mutant):
         """(how it ended, stream): killed, diagnosed (only the rule differs), survived."""
+        with self._built(mutant) as differs:
+            if not differs:
+                return "same program", ""
+            stream, outcome = self._first_failure() or (None, None)
+        if stream is None:
+            return "survived", ""
+        return ("diagnosed" if outcome == "PASS" else "killed"), stream
+
+    def all_that_notice(self, mutant):
+        """Ids of all streams that notice it: (killed, only diagnosed)."""
+        with self._built(mutant) as differs:
+            noticed = list(self._failures()) if differs else []
+        return ([stream for stream, outcome in noticed if outcome != "PASS"],
+                [stream for stream, outcome in noticed if outcome == "PASS"])
+
+    @contextlib.contextmanager
+    def _built(self, mutant):
+        """The decoder with the fault in it; whether it is another program than without."""
         path = self._source / mutant.file
         original = path.read_text(encoding="utf-8")
         try:
             path.write_text(seeded(mutant, original), encoding="utf-8")
             self._make()
-            if self._digest() == self._right:
-                return "same program", ""
-            stream, outcome = self._first_failure() or (None, None)
+            yield self._digest() != self._right
         finally:
             path.write_text(original, encoding="utf-8")
-        if stream is None:
-            return "survived", ""
-        return ("diagnosed" if outcome == "PASS" else "killed"), stream
 
     def _first_failure(self):
         """(stream, outcome) of the first stream that is not passed in all its cells, or None."""
+        only_diagnosed = None
+        for stream, outcome in self._failures():
+            if outcome != "PASS":
+                # It may well notice the next one too.
+                self._streams.sort(key=lambda other: other.id != stream)
+                return stream, outcome
+            only_diagnosed = only_diagnosed or (stream, outcome)
+        return only_diagnosed
+
+    def _failures(self):
+        """(stream, outcome) of all streams that are not passed in all their cells."""
         decoder = contract.Decoder(str(self._build / "rlpcdec"),
                                    contract.Limits(_TIMEOUT, _MEMORY))
         try:
             decoder.describe()
         except contract.ContractError:
-            return "--rlpc-conformance", "CRASH"
+            yield "--rlpc-conformance", "CRASH"
+            return
         decoder.answer["outputs"] = ["rlpd"]
         grader = grading.Grader(decoder, _NoReference())
-        only_diagnosed = None
-        for stream in self._streams:
+        for stream in list(self._streams):
             judgement = grader.judge(stream)
-            if judgement.outcome != "PASS":
-                # It may well notice the next one too.
-                self._streams.remove(stream)
-                self._streams.insert(0, stream)
-                return stream.id, judgement.outcome
-            if judgement.cells["diagnostic"] not in (grading.PASS, grading.NONE):
-                only_diagnosed = only_diagnosed or (stream.id, judgement.outcome)
-        return only_diagnosed
+            if (judgement.outcome != "PASS"
+                    or judgement.cells["diagnostic"] not in (grading.PASS, grading.NONE)):
+                yield stream.id, judgement.outcome
 
 
 _CMAKE = """cmake_minimum_required(VERSION 3.25)

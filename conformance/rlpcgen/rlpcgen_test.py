@@ -15,13 +15,13 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import decompile  # noqa: E402
+import expectation  # noqa: E402
 import mesh_gates  # noqa: E402
 import random_streams  # noqa: E402
 import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
 import spec_program  # noqa: E402
 import stream_writer  # noqa: E402
-import suite  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 PROGRAM = spec_program.Program(HERE.parents[1] / "spec")
@@ -51,15 +51,15 @@ def build(text):
     return BUILDER.build(recipes.parse("test", text, None))[0]
 
 
-def expectation(data):
-    return suite.expectation_of(data, PROGRAM)
+def expected(data):
+    return expectation.expectation_of(data, PROGRAM)
 
 
 class Recipes(unittest.TestCase):
     """What a recipe says is in the stream."""
 
     def breaks(self, rule, text):
-        found = expectation(build(text))
+        found = expected(build(text))
         self.assertEqual(found.get("rule"), rule, found)
 
     def changed(self, old, new):
@@ -72,7 +72,7 @@ class Recipes(unittest.TestCase):
         self.assertIn(complaint, str(raised.exception))
 
     def test_a_stream_decodes_to_what_the_recipe_says(self):
-        found = expectation(build(TETRAHEDRON))
+        found = expected(build(TETRAHEDRON))
         self.assertEqual((found["expect"], found["frames"]), ("accept", 1))
 
     def test_values_repeat_and_are_counted(self):
@@ -124,7 +124,7 @@ class Recipes(unittest.TestCase):
         low = build(TETRAHEDRON)
         high = build(self.changed("unit GOF\n", "unit GOF\n  section_end = highest\n"))
         self.assertNotEqual(low, high)
-        self.assertEqual(expectation(low)["sha256_int"], expectation(high)["sha256_int"])
+        self.assertEqual(expected(low)["sha256_int"], expected(high)["sha256_int"])
 
     def test_complaints_name_the_place(self):
         self.refuses("test:3: num_vertices is no syntax element",
@@ -151,7 +151,7 @@ class Recipes(unittest.TestCase):
             self.assertEqual([u.name for u in recipe.units],
                              ["SEQUENCE_HEADER", "CONNECTIVITY", "GOF", "METADATA", "GOF_HASH",
                               "END_OF_SEQUENCE"])
-            self.assertEqual(expectation(BUILDER.build(recipe)[0])["rule"], "R-GOF-07")
+            self.assertEqual(expected(BUILDER.build(recipe)[0])["rule"], "R-GOF-07")
             twin.write_text("title: Twin\ntwin: GOF-0001a\nchange 1 GOF\n")
             with self.assertRaises(recipes.RecipeError):
                 recipes.load(twin)
@@ -209,7 +209,7 @@ class Random(unittest.TestCase):
                                       capture_output=True, text=True)
                 self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stderr}")
                 self.assertEqual(hashlib.sha256(output.read_bytes()).hexdigest(),
-                                 expectation(stream.read_bytes())["sha256_int"], f"seed {seed}")
+                                 expected(stream.read_bytes())["sha256_int"], f"seed {seed}")
 
     def test_the_generator_has_not_changed(self):
         # STRESS.json has digests by seed, so seeds give the same streams for ever.

@@ -1,52 +1,71 @@
 """The stress tier: streams of which only the digests are kept.
 
 STRESS.json of a version has a digest for each hundred random legal streams, by seed, and for each
-recipe of recipes-stress/, which may be slow or give large streams. A digest covers the bytes of the
-streams and all that they decode to.
+recipe of recipes-stress/: more of the same kind as the core tier, or slow, or large. A digest covers
+the bytes of the streams and all that they decode to. Whoever wants the streams has them written
+into a folder, which is a suite then.
 """
 
 import hashlib
 import json
 import multiprocessing
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
+import expectation
 import random_streams
 import recipe as recipes
 import recipe_source
 import spec_program
 import suite  # noqa: E402
+import suite_streams
 
 INDEX = "STRESS.json"
 BATCH = 100
-_EXIT_CODES = {"accept": 0, "reject": 1, "unsupported": 2}
+_EXIT_CODES = {"accept": (0,), "reject": (1,), "unsupported": (2,), "either": (0, 1)}
+_VALIDATOR_CODES = {**_EXIT_CODES, "unsupported": (1, 2), "either": (1,)}
 _worker = None
+_out = None  # folder of write_suite, in its worker processes
 
 
 class _Worker:
-    """Makes streams, has both decoders decode them, and the validator look at them."""
+    """Makes streams; has both decoders decode them, and the validator look at them."""
 
-    def __init__(self, folder, spec, bin_folder):
+    def __init__(self, folder, spec, bin_folder=None):
         self._folder = pathlib.Path(folder)
         self._program = spec_program.Program(spec)
         self._random = random_streams.RandomBuilder(self._program)
-        self._recipes = recipe_source.StreamBuilder(self._program)
-        self._bin = pathlib.Path(bin_folder).resolve()
+        self._version = suite_streams.Version(folder, spec)
+        self._bin = bin_folder and pathlib.Path(bin_folder).resolve()
+
+    def make(self, item):
+        """(id, bytes, sidecar) of a stream."""
+        kind, name = item
+        if kind == "recipe":
+            place, data, sidecar = self._version.make(self._folder / name)
+            return place.stem, data, sidecar
+        data, writer = self._random.build(int(name))
+        found = expectation.expectation_of(data, self._program)
+        return f"RND-{int(name):04}a", data, {
+            "id": f"RND-{int(name):04}a", "title": f"Random stream of seed {name}",
+            "spec": self._folder.name[1:], "profile": "baseline", "level": writer.ns["level_idc"],
+            "tier": "stress", "rules": [], "features": [], "twin": None,
+            "sha256": hashlib.sha256(data).hexdigest(), "recipe": None, "seed": int(name), "released": None, "superseded_by": None,
+            "licence": suite_streams.LICENCE, **found}
 
     def examine(self, item):
         """(name, bytes of the stream, SHA-256 of stream and decoded file, complaint or None)."""
-        kind, name = item
-        if kind == "seed":
-            data = self._random.build(int(name))[0]
-        else:
-            data = self._recipes.build(recipes.load(self._folder / name))[0]
-        found = suite.expectation_of(data, self._program)
-        decoded, complaint = self._decode(data, found)
+        try:
+            _, data, sidecar = self.make(item)
+        except (recipes.RecipeError, suite_streams.StreamsError) as error:
+            return item[1], 0, "", str(error)
+        decoded, complaint = self._decode(data, sidecar)
         digest = hashlib.sha256(data).hexdigest() + str(decoded)
-        return name, len(data), digest, complaint
+        return item[1], len(data), digest, complaint
 
     def _decode(self, data, found):
         with tempfile.TemporaryDirectory(prefix="rlpc-stress-") as folder:
@@ -56,15 +75,14 @@ class _Worker:
                                   capture_output=True, text=True)
             decoded = (hashlib.sha256(output.read_bytes()).hexdigest() if output.is_file()
                        else None)
-            expected = _EXIT_CODES[found["expect"]]
-            if done.returncode != expected:
+            if done.returncode not in _EXIT_CODES[found["expect"]]:
                 return decoded, (f"rlpcdec: {done.returncode} {done.stderr[-300:]}; "
                                  f"specdec: {found['expect']} {found.get('rule', '')}")
             if decoded != found["sha256_int"]:
                 return decoded, "rlpcdec and specdec decode to different integers"
             checked = subprocess.run([self._bin / "rlpcval", "--quiet", stream],
                                      capture_output=True, text=True)
-            if checked.returncode != expected:
+            if checked.returncode not in _VALIDATOR_CODES[found["expect"]]:
                 return decoded, f"rlpcval: {checked.stdout[-300:]}{checked.stderr[-300:]}"
         return decoded, None
 
@@ -83,6 +101,25 @@ def items(folder, seeds):
     paths = sorted(pathlib.Path(folder).glob("recipes-stress/*/*.recipe"))
     return ([("seed", str(seed)) for seed in range(seeds)]
             + [("recipe", p.relative_to(folder).as_posix()) for p in paths])
+
+
+def _write(item):
+    stream, data, sidecar = _worker.make(item)
+    place = _out / suite.FOLDER_OF[sidecar["expect"]] / stream.split("-")[0] / f"{stream}.rlpc"
+    suite_streams.write_stream(place, data, sidecar)
+    return stream
+
+
+def write_suite(folder, spec, out, seeds, jobs):
+    """The streams of core and stress tier as a suite of its own; yields the ids of the latter."""
+    global _out
+    folder, _out = pathlib.Path(folder), pathlib.Path(out)
+    for kind in sorted(set(suite.FOLDER_OF.values())):
+        shutil.copytree(folder / kind, _out / kind, dirs_exist_ok=True)
+    with multiprocessing.get_context("fork").Pool(jobs, _start, (folder, spec)) as pool:
+        yield from pool.imap(_write, items(folder, seeds), chunksize=4)
+    index = suite.index_of(_out, f"rlpc-{folder.name}-stress", folder.name[1:])
+    suite.write_file(_out / suite.INDEX, json.dumps(index, indent=1) + "\n")
 
 
 def examine(folder, spec, bin_folder, seeds, jobs):

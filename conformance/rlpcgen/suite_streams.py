@@ -9,6 +9,7 @@ import sys
 
 _CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(_CONFORMANCE / "judge"))
+import expectation  # noqa: E402
 import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
 import spec_program  # noqa: E402  (found through recipe_source)
@@ -71,7 +72,7 @@ def sidecar_of(recipe, data, folder, program):
                            "that is refused has x and a number instead, GOF-0004x1")
     if "title" not in recipe.meta or recipe.meta.get("tier") not in suite.TIERS:
         raise StreamsError(f"{place}: a recipe has a title and a tier: {', '.join(suite.TIERS)}")
-    found = suite.expectation_of(data, program)
+    found = expectation.expectation_of(data, program)
     expect = _expect(recipe, found, place)
     found.pop("expect")
     level = recipe.meta.get("level", _header_value(recipe, "level_idc"))

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Small bad trees, and the complaint that each must draw."""
 
+import json
 import pathlib
 import sys
 import tempfile
@@ -256,6 +257,21 @@ class Rules(TreeTest):
                 tools + "validator.cpp": '#include "decoder/parse_a.h"\n// "R-ABC-02"\n'}
         self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")
         self.assert_clean(check_rules.check, {**tree, tools + "validator_b.cpp": '"R-ABC-02"\n'})
+
+    def test_rule_without_a_stream_that_breaks_it(self):
+        def sidecar(*ids, **more):
+            return json.dumps({"rules": ids, **more})
+
+        tree = {**self.tree(self.TEXT), "streams/v1.0/accept/A/A-0001a.json": sidecar("R-ABC-02"),
+                "streams/v1.0/reject/A/A-0001x1.json": sidecar("R-ABC-01")}
+        self.assert_one(check_rules.check, tree, "streams/v1.0: no stream breaks R-ABC-02")
+        either = "streams/v1.0/either/A/A-0001x2.json"
+        self.assert_clean(check_rules.check, {**tree, either: sidecar("R-ABC-02")})
+        self.assert_one(check_rules.check,
+                        {**tree, either: sidecar("R-ABC-02", superseded_by="A-0001x3")},
+                        "no stream breaks R-ABC-02")
+        self.assert_one(check_rules.check, {**tree, either: sidecar("R-ABC-02", "R-ABC-09")},
+                        "names R-ABC-09, which spec/ does not define")
 
     def test_sentence_without_rule(self):
         self.assert_one(check_rules.check,

@@ -1,0 +1,32 @@
+"""What a decoder is to make of a stream, as the specification decodes it.
+
+The judge does without: for those who write suites, and for tests.
+"""
+
+import pathlib
+import sys
+
+import rlpd
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
+import specdec  # noqa: E402
+
+
+def expectation_of(data, program):
+    """What the specification makes of a stream: the decoded part of its sidecar.
+
+    "expect" is accept, reject or unsupported; with accept come frames, sha256_int, sha256_f32 and
+    frame_sha256, else rule, bit, frames_before and sha256_int (None: nothing is output).
+    """
+    digest = rlpd.Digest(with_f32=True)
+    decoder = specdec.Decoder(program, data, digest.feed)
+    try:
+        decoder.call("stream")
+    except specdec.Verdict as verdict:
+        bit, frames = decoder.place()
+        expect = "reject" if verdict.code == specdec.INVALID else "unsupported"
+        return {"expect": expect, "rule": verdict.rule, "bit": bit, "frames_before": frames,
+                "sha256_int": digest.sha256()}
+    return {"expect": "accept", "frames": len(digest.frame_sha256),
+            "sha256_int": digest.sha256(), "sha256_f32": digest.sha256_f32(),
+            "frame_sha256": digest.frame_sha256}
