@@ -3,7 +3,8 @@
 
 Every rule id in braces ends a sentence that begins with "It is a requirement of bitstream
 conformance that" (a stream that breaks it is invalid) or "A stream is unsupported unless". Of each
-rule the list has: id, clause, effect, sentence, and whether the pseudo-code checks it.
+rule the list has: id, clause, effect, sentence, and which process of the pseudo-code checks it:
+decoding in order, only random access, or none.
 
 Every rule is checked by rlpcval: its id is a string in the code of the validator, in the parsers
 that the validator includes, or in the reader of bits that these share.
@@ -26,6 +27,10 @@ import cpp_source
 EFFECTS = {"It is a requirement of bitstream conformance that": "invalid",
            "A stream is unsupported unless": "unsupported"}
 
+DECODING, RANDOM_ACCESS, NONE = "decoding", "random access", "none"
+# Decoding in order runs no block of these: GOF index, and random access.
+_RANDOM_ACCESS_CLAUSES = ("6.9", "8.8")
+
 _ID = re.compile(r"\{(R-[A-Z]{2,4}-\d{2})\}")
 
 
@@ -46,9 +51,18 @@ def prose(root):
                 clause = heading.group(1)
 
 
+def checked_by(spec, rule):
+    """The process that checks a rule."""
+    if rule not in spec.required:
+        return NONE
+    clauses = [number for number, clause in spec.clauses.items() if f'"{rule}"' in clause.text]
+    innermost = [a for a in clauses if not any(b.startswith(a + ".") for b in clauses)]
+    return RANDOM_ACCESS if set(innermost) <= set(_RANDOM_ACCESS_CLAUSES) else DECODING
+
+
 def rules(root):
     """(list of rules, complaints)"""
-    required = check_clauses.Spec(root).required
+    spec = check_clauses.Spec(root)
     found, complaints = [], []
     for place, clause, text in prose(root):
         end = 0
@@ -62,8 +76,7 @@ def rules(root):
             sentence = before[max(starts):]
             effect = list(EFFECTS.values())[starts.index(max(starts))]
             found.append({"rule": match.group(1), "clause": clause, "effect": effect,
-                          "checked_by_pseudo_code": match.group(1) in required,
-                          "sentence": sentence})
+                          "checked_by": checked_by(spec, match.group(1)), "sentence": sentence})
         for start in EFFECTS:
             if re.search(rf'(?<!"){start}', text[end:]):
                 complaints.append(f"{place}: a sentence with `{start}` has no rule id")
@@ -123,7 +136,7 @@ def check(root):
     path = root / "spec" / "rules.json"
     if not path.exists() or path.read_text(encoding="utf-8") != text_of(found):
         complaints.append("spec/rules.json is not up to date: scripts/rules")
-    unchecked = [rule["rule"] for rule in found if not rule["checked_by_pseudo_code"]]
+    unchecked = [rule["rule"] for rule in found if rule["checked_by"] != DECODING]
     missing = without_check(root, found)
     complaints += [f"{rule} has no check in rlpcval: conformance/tools/validator*.cpp"
                    for rule in missing]

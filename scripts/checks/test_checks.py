@@ -241,7 +241,7 @@ class Rules(TreeTest):
         sentences = [("R-ABC-01", "invalid",
                       "It is a requirement of bitstream conformance that x is 1."),
                      ("R-ABC-02", "unsupported", "A stream is unsupported unless y is 2.")]
-        found = [{"rule": rule, "clause": "7", "effect": effect, "checked_by_pseudo_code": False,
+        found = [{"rule": rule, "clause": "7", "effect": effect, "checked_by": "none",
                   "sentence": sentence} for rule, effect, sentence in sentences]
         return {"spec/07.md": text, "spec/rules.json": listed or check_rules.text_of(found)}
 
@@ -250,6 +250,28 @@ class Rules(TreeTest):
 
     def test_list_that_is_not_up_to_date(self):
         self.assert_one(check_rules.check, self.tree(self.TEXT, "[]\n"), "not up to date")
+
+    def test_process_that_checks_a_rule(self):
+        def block(*ids):
+            return "```rlpc\n" + "".join(f'require(x, "{i}")\n' for i in ids) + "```\n"
+
+        tree = self.tree(self.TEXT)
+        for clauses, expected in (((), ["none", "none"]),
+                                  (("6.9", "R-ABC-01"), ["random access", "none"]),
+                                  (("6.9", "R-ABC-01", "R-ABC-02", "8.8", "R-ABC-02"),
+                                   ["random access", "random access"]),
+                                  (("6.5", "R-ABC-01", "8.8", "R-ABC-01", "R-ABC-02"),
+                                   ["decoding", "random access"])):
+            text = "".join(block(c) if c.startswith("R-") else f"## {c} Clause\n"
+                           for c in clauses)
+            with tempfile.TemporaryDirectory() as folder:
+                root = pathlib.Path(folder)
+                (root / "spec").mkdir()
+                (root / "spec" / "06.md").write_text("# 6 Syntax\n" + text, encoding="utf-8")
+                (root / "spec" / "07.md").write_text(tree["spec/07.md"], encoding="utf-8")
+                found, complaints = check_rules.rules(root)
+            self.assertEqual(complaints, [])
+            self.assertEqual([rule["checked_by"] for rule in found], expected, clauses)
 
     def test_rule_without_check_in_the_validator(self):
         tools = "conformance/tools/"
