@@ -12,7 +12,7 @@
 
 #include "common/crc32.h"
 #include "common/stream_format.h"
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {

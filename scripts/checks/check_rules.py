@@ -89,7 +89,7 @@ def text_of(found):
 
 def validator_code(root):
     """The code with which rlpcval checks streams, without comments; "" if there is none."""
-    own = [path for path in sorted((root / "conformance" / "tools").glob("validator*"))
+    own = [path for path in sorted((root / "conformance" / "rlpcval").glob("validator*"))
            if path.suffix in (".h", ".cpp") and not cpp_source.is_test(path)]
     text = "".join(cpp_source.without_comments(path.read_text(encoding="utf-8")) for path in own)
     if not own:
@@ -138,7 +138,7 @@ def check(root):
         complaints.append("spec/rules.json is not up to date: scripts/rules")
     unchecked = [rule["rule"] for rule in found if rule["checked_by"] != DECODING]
     missing = without_check(root, found)
-    complaints += [f"{rule} has no check in rlpcval: conformance/tools/validator*.cpp"
+    complaints += [f"{rule} has no check in rlpcval: conformance/rlpcval/validator*.cpp"
                    for rule in missing]
     about_streams, without = stream_complaints(root, found)
     complaints += about_streams

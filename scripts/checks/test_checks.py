@@ -274,7 +274,7 @@ class Rules(TreeTest):
             self.assertEqual([rule["checked_by"] for rule in found], expected, clauses)
 
     def test_rule_without_check_in_the_validator(self):
-        tools = "conformance/tools/"
+        tools = "conformance/rlpcval/"
         tree = {**self.tree(self.TEXT), "decoder/parse_a.cpp": 'fail("R-ABC-01");\n',
                 tools + "validator.cpp": '#include "decoder/parse_a.h"\n// "R-ABC-02"\n'}
         self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")

@@ -10,7 +10,8 @@ import random
 import sys
 import zlib
 
-from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2  # noqa: E402
 
 for folder in ("judge", "specdec"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))

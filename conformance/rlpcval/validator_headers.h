@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/sequence_header.h"
-#include "conformance/tools/validator_elements.h"
+#include "conformance/rlpcval/validator_elements.h"
 #include "decoder/parse_gof_index.h"
 
 namespace rlpc {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 
 namespace rlpc {
 

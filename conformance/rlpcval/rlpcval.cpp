@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/tools/rlpcval_report.h"
-#include "conformance/tools/rule_explanations.h"
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/rlpcval_report.h"
+#include "conformance/rlpcval/rule_explanations.h"
+#include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
 #include "encoder/progress_bar.h"
 

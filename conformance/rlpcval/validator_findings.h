@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/result.h"
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 
 namespace rlpc {
 

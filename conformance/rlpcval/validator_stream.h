@@ -10,10 +10,10 @@
 #include "common/gof.h"
 #include "common/mesh.h"
 #include "common/topology.h"
-#include "conformance/tools/validator.h"
-#include "conformance/tools/validator_findings.h"
-#include "conformance/tools/validator_headers.h"
-#include "conformance/tools/validator_units.h"
+#include "conformance/rlpcval/validator.h"
+#include "conformance/rlpcval/validator_findings.h"
+#include "conformance/rlpcval/validator_headers.h"
+#include "conformance/rlpcval/validator_units.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "conformance/tools/validator_elements.h"
+#include "conformance/rlpcval/validator_elements.h"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // What the validator finds beyond the first error, and what decoders need not check.
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 
 #include <gtest/gtest.h>
 

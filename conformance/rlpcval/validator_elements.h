@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "conformance/tools/validator_findings.h"
+#include "conformance/rlpcval/validator_findings.h"
 
 namespace rlpc {
 

@@ -1,10 +1,10 @@
-#include "conformance/tools/rlpcval_report.h"
+#include "conformance/rlpcval/rlpcval_report.h"
 
 #include <cinttypes>
 #include <string_view>
 
 #include "common/stream_format.h"
-#include "conformance/tools/rule_explanations.h"
+#include "conformance/rlpcval/rule_explanations.h"
 
 namespace rlpc {
 namespace {

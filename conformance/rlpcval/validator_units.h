@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "conformance/tools/validator_findings.h"
+#include "conformance/rlpcval/validator_findings.h"
 #include "decoder/byte_source.h"
 #include "decoder/unit_reader.h"
 

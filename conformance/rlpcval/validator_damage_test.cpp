@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/rlpcval/validator.h"
 #include "conformance/small_animation.h"
-#include "conformance/tools/validator.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

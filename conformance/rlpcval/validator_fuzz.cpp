@@ -11,7 +11,7 @@
 
 #include "common/crc32.h"
 #include "common/stream_format.h"
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "conformance/tools/rule_explanations.h"
+#include "conformance/rlpcval/rule_explanations.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "conformance/tools/validator_json.h"
+#include "conformance/rlpcval/validator_json.h"
 
 #include <vector>
 

@@ -6,9 +6,9 @@
 
 #include "common/crc32.h"
 #include "common/gof_recon.h"
-#include "conformance/tools/validator_elements.h"
-#include "conformance/tools/validator_json.h"
-#include "conformance/tools/validator_stream.h"
+#include "conformance/rlpcval/validator_elements.h"
+#include "conformance/rlpcval/validator_json.h"
+#include "conformance/rlpcval/validator_stream.h"
 #include "decoder/parse_connectivity.h"
 #include "decoder/parse_gof.h"
 #include "decoder/parse_gof_hash.h"

@@ -1,9 +1,9 @@
-#include "conformance/tools/validator.h"
+#include "conformance/rlpcval/validator.h"
 
 #include <string>
 
 #include "common/stream_format.h"
-#include "conformance/tools/validator_stream.h"
+#include "conformance/rlpcval/validator_stream.h"
 
 namespace rlpc {
 

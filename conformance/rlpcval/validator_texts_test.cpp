@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/tools/rule_explanations.h"
-#include "conformance/tools/validator_json.h"
+#include "conformance/rlpcval/rule_explanations.h"
+#include "conformance/rlpcval/validator_json.h"
 
 namespace rlpc {
 namespace {

@@ -1,4 +1,4 @@
-#include "conformance/tools/validator_headers.h"
+#include "conformance/rlpcval/validator_headers.h"
 
 #include <string>
 

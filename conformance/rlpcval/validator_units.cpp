@@ -1,4 +1,4 @@
-#include "conformance/tools/validator_units.h"
+#include "conformance/rlpcval/validator_units.h"
 
 #include <algorithm>
 #include <array>

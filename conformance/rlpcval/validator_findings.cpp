@@ -1,4 +1,4 @@
-#include "conformance/tools/validator_findings.h"
+#include "conformance/rlpcval/validator_findings.h"
 
 #include <algorithm>
 #include <string_view>

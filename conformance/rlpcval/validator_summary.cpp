@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string>
 
-#include "conformance/tools/validator_stream.h"
+#include "conformance/rlpcval/validator_stream.h"
 
 namespace rlpc {
 namespace {
