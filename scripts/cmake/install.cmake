@@ -28,7 +28,7 @@ foreach(part common decoder encoder)
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 
-foreach(tool rlpcenc rlpcdec rlpcinfo rlpccmp)
+foreach(tool rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval)
   if(TARGET ${tool})
     install(TARGETS ${tool} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
