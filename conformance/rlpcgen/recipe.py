@@ -230,7 +230,7 @@ def parse(path, text, load):
 
 
 def load(path):
-    """The recipe of a file; a twin is looked for beside it, in all areas."""
+    """The recipe of a file; a twin is looked for in all areas of all tiers, or beside it."""
     path = pathlib.Path(path)
     try:
         text = path.read_text(encoding="utf-8")
@@ -238,7 +238,7 @@ def load(path):
         raise RecipeError(f"{path}: {error.strerror}") from error
 
     def twin(name):
-        found = sorted(path.parent.parent.glob(f"*/{name}.recipe"))
+        found = sorted(path.parents[2].glob(f"recipes*/*/{name}.recipe"))
         found = found or sorted(path.parent.glob(f"{name}.recipe"))
         if not found:
             raise RecipeError(f"{path}: there is no recipe of the twin {name}")
