@@ -22,9 +22,13 @@ import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
 import spec_program  # noqa: E402
 import stream_writer  # noqa: E402
+import stress  # noqa: E402
+import suite  # noqa: E402
+import suite_streams  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
-PROGRAM = spec_program.Program(HERE.parents[1] / "spec")
+SPEC = HERE.parents[1] / "spec"
+PROGRAM = spec_program.Program(SPEC)
 BUILDER = recipe_source.StreamBuilder(PROGRAM)
 BIN = None
 
@@ -227,6 +231,57 @@ class Random(unittest.TestCase):
 
 
 GENERATOR_DIGEST = "72adb70a7cd93a44"
+
+
+class StressTier(unittest.TestCase):
+    """Streams of which only digests are kept."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rlpcgen-test-")
+        self.addCleanup(folder.cleanup)
+        self.version = pathlib.Path(folder.name) / "v1.0"
+        self.add("recipes/GOF/GOF-0001a", TETRAHEDRON, "core")
+        self.add("recipes-stress/GOF/GOF-0001x1", "title: Damaged\nrules: R-UNT-03\n"
+                 "twin: GOF-0001a\nchange 2 GOF\n  unit_crc = wrong\n", "stress")
+        for kind in set(suite.FOLDER_OF.values()):
+            (self.version / kind).mkdir()
+        place, *made = suite_streams.Version(self.version, SPEC).make(
+            self.version / "recipes/GOF/GOF-0001a.recipe")
+        suite_streams.write_stream(place, *made)
+
+    def add(self, name, text, tier):
+        path = self.version / (name + ".recipe")
+        path.parent.mkdir(parents=True)
+        path.write_text(text.replace("\n", f"\ntier: {tier}\n", 1))
+
+    def examine(self, seeds):
+        return list(stress.examine(self.version, SPEC, BIN, seeds, 2))
+
+    def test_both_decoders_and_the_validator_agree(self):
+        results = self.examine(3)
+        self.assertEqual([r[0] for r in results],
+                         ["0", "1", "2", "recipes-stress/GOF/GOF-0001x1.recipe"])
+        self.assertEqual([r[3] for r in results], [None] * 4)
+
+    def test_an_expectation_that_does_not_hold(self):
+        path = self.version / "recipes-stress/GOF/GOF-0001x1.recipe"
+        path.write_text(path.read_text().replace("R-UNT-03", "R-UNT-04"))
+        self.assertIn("the first rule that it breaks is R-UNT-03", self.examine(0)[0][3])
+
+    def test_digests_are_of_whole_batches(self):
+        results = [(str(seed), 0, f"digest {seed}", None) for seed in range(250)]
+        self.assertEqual(list(stress.digests(results)), ["seeds 0-99", "seeds 100-199"])
+        results[150] = ("150", 0, "another", None)
+        before, after = map(stress.digests, (results[:100] + results[100:200], results))
+        self.assertEqual(before, after)
+
+    def test_it_can_be_written_as_a_suite(self):
+        out = self.version.parent / "out"
+        self.assertEqual(len(list(stress.write_suite(self.version, SPEC, out, 2, 2))), 3)
+        loaded = suite.load_suite(out)
+        self.assertEqual([s.id for s in loaded.streams],
+                         ["GOF-0001a", "GOF-0001x1", "RND-0000a", "RND-0001a"])
+        self.assertEqual([s.tier for s in loaded.streams], ["core"] + 3 * ["stress"])
 
 
 class Decompiling(unittest.TestCase):

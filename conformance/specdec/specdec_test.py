@@ -301,7 +301,7 @@ class Streams(Clips):
     def test_many_gofs_with_index_hashes_order_and_metadata(self):
         note = self.folder / "note.json"
         note.write_text('{"title": "elephant"}')
-        self.agree(encode(self.folder, cut_animation(self.folder, "elephant", 11), "--kg", "0.5",
+        self.agree(encode(self.folder, cut_animation(self.folder, "elephant", 33), "--kg", "0.5",
                           "--gof", "2", "--hash", "frame", "--keep-order", "--metadata", note))
 
     def test_local_frames_and_fine_components(self):
