@@ -61,6 +61,7 @@ class GofSectionParser {
   void cluster_map();
   std::uint16_t cluster_idx(const ClusterPrediction& prediction);
   void count_factors(std::uint64_t more, const char* element);
+  void check_factor_memory(const char* element);
   void seed_tracks();
   void component_counts();
   void components();
@@ -182,11 +183,15 @@ std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction)
   return 0;
 }
 
-// NumFactors of 6.5.4 and 6.5.5, and the memory that they take.
+// NumFactors of 6.5.4 and 6.5.5
 void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
   num_factors_ += more;
   if (num_factors_ > header_.level().max_gof_factors) fail("R-LVL-05", element);
-  if (num_factors_ * kBytesPerFactor > max_memory_bytes_) {
+}
+
+// Whether the factors counted so far fit into the memory that the caller allows.
+void GofSectionParser::check_factor_memory(const char* element) {
+  if (!failed() && num_factors_ * kBytesPerFactor > max_memory_bytes_) {
     reader_.fail(Errc::kLimitExceeded, "", element, bit_pos());
   }
 }
@@ -195,6 +200,7 @@ void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
 void GofSectionParser::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
   count_factors(3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames, "seed_residual");
+  check_factor_memory("seed_residual");
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
     SeedContext context(frame_mean_);
@@ -218,7 +224,8 @@ void GofSectionParser::component_counts() {
   for (const std::uint16_t i : gof_.cluster_of_vertex) {
     if (i != kSeedCluster) ++coded_vertices_[i];
   }
-  for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
+  std::vector<std::size_t> counts(gof_.clusters.size(), 0);
+  for (std::size_t i = 0; i < counts.size() && !failed(); ++i) {
     const Range range{0, header_.level().max_components};
     previous = header_value(HeaderField::kNumComponents, previous, range,
                             "num_components_delta", "R-GOF-09");
@@ -226,9 +233,11 @@ void GofSectionParser::component_counts() {
     count_factors(
         static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames),
         "num_components_delta");
-    if (failed()) return;
-    gof_.clusters[i].components.resize(static_cast<std::size_t>(previous));
+    counts[i] = static_cast<std::size_t>(previous);
   }
+  check_factor_memory("num_components_delta");
+  if (failed()) return;
+  for (std::size_t i = 0; i < counts.size(); ++i) gof_.clusters[i].components.resize(counts[i]);
 }
 
 // 6.5.6 components( )
