@@ -10,13 +10,13 @@ void BitReader::fail(Errc code, const char* rule, const char* element, std::uint
 
 std::uint32_t BitReader::take(int n, const char* element, std::uint64_t at) {
   if (error_) return 0;
-  if (pos_ + static_cast<std::uint64_t>(n) > bytes_.size() * 8) {
+  if (pos_ + static_cast<std::uint64_t>(n) > std::uint64_t{bytes_.size()} * 8) {
     fail(Errc::kTruncated, "R-BIT-01", element, at);
     return 0;
   }
   std::uint32_t value = 0;
   for (int i = 0; i < n; ++i, ++pos_) {
-    const unsigned bit = (bytes_[pos_ / 8] >> (7 - pos_ % 8)) & 1U;
+    const unsigned bit = (bytes_[static_cast<std::size_t>(pos_ / 8)] >> (7 - pos_ % 8)) & 1U;
     value = (value << 1) | bit;
   }
   return value;
@@ -81,11 +81,11 @@ void BitReader::byte_alignment() {
 
 std::span<const std::uint8_t> BitReader::remaining_bytes() const {
   assert(pos_ % 8 == 0);
-  return bytes_.subspan(pos_ / 8);
+  return bytes_.subspan(static_cast<std::size_t>(pos_ / 8));
 }
 
 void BitReader::expect_end() {
-  if (pos_ != bytes_.size() * 8) fail(Errc::kInvalid, "R-BIT-03", "unit_payload", bit_pos());
+  if (pos_ != std::uint64_t{bytes_.size()} * 8) fail(Errc::kInvalid, "R-BIT-03", "unit_payload", bit_pos());
 }
 
 }  // namespace rlpc

@@ -18,7 +18,8 @@ std::uint32_t big_endian(std::span<const std::uint8_t> b) {
 // 6.1 stream( )
 Result<bool> UnitReader::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};
-  const std::uint64_t present = std::min<std::uint64_t>(source_->size(), bytes.size());
+  const auto present =
+      static_cast<std::size_t>(std::min<std::uint64_t>(source_->size(), bytes.size()));
   if (!source_->read(0, std::span(bytes).first(present))) {
     return Error{Errc::kIo, "", "signature", 0};
   }

@@ -93,7 +93,7 @@ void print_finding(std::FILE* out, const Finding& f) {
 }
 
 // "2 errors", "1 warning"
-std::string counted(std::size_t count, const std::string& what) {
+std::string counted(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 

@@ -27,7 +27,7 @@ bool ElementReader::bit() {
          "the payload of " + std::to_string(bytes_.size()) + " bytes ends within the element");
     return false;
   }
-  const unsigned byte = bytes_[pos_ / 8];
+  const unsigned byte = bytes_[static_cast<std::size_t>(pos_ / 8)];
   const bool one = ((byte >> (7 - pos_ % 8)) & 1U) != 0;
   ++pos_;
   return one;

@@ -9,7 +9,8 @@ namespace rlpc {
 std::size_t ValidationReport::count(Severity severity) const {
   const auto listed = std::count_if(findings.begin(), findings.end(),
                                     [&](const Finding& f) { return f.severity == severity; });
-  return static_cast<std::size_t>(listed) + (severity == Severity::kError ? omitted : 0);
+  return static_cast<std::size_t>(listed) +
+         (severity == Severity::kError ? static_cast<std::size_t>(omitted) : 0);
 }
 
 const Finding* ValidationReport::first_failure() const {

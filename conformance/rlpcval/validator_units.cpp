@@ -54,7 +54,7 @@ bool StreamUnits::read(std::uint64_t offset, std::span<std::uint8_t> out, const 
 // 6.1 stream( )
 bool StreamUnits::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};
-  const std::size_t present = std::min<std::uint64_t>(size(), bytes.size());
+  const auto present = static_cast<std::size_t>(std::min<std::uint64_t>(size(), bytes.size()));
   if (!read(0, std::span(bytes).first(present), "signature")) return false;
   const std::size_t comparable = std::min(present, kSignature.size());
   if (!std::equal(kSignature.begin(), kSignature.begin() + comparable, bytes.begin())) {
@@ -113,7 +113,8 @@ bool StreamUnits::crc_of_unit(const UnitHeader& unit, std::uint32_t& stored,
   const std::uint64_t crc_at = unit.end() - kUnitCrcBytes;
   computed = 0;
   for (std::uint64_t at = unit.offset; at < crc_at;) {
-    const auto count = std::min<std::uint64_t>(crc_at - at, block.size());
+    const auto count =
+        static_cast<std::size_t>(std::min<std::uint64_t>(crc_at - at, block.size()));
     const auto bytes = std::span(block).first(count);
     if (!read(at, bytes, "unit_payload")) return false;
     computed = crc32_of(bytes, computed);
@@ -153,23 +154,27 @@ std::optional<std::vector<std::uint8_t>> StreamUnits::payload(const UnitHeader& 
 bool StreamUnits::find_chains(std::uint64_t offset) {
   if (chains_from_ && *chains_from_ <= offset) return true;
   offset = std::min(offset, size());
-  const std::uint64_t count = size() - offset;
-  if (count + count / 8 > max_memory_bytes_) return false;
+  if (size() - offset > max_memory_bytes_ / 9 * 8) return false;
+  const auto count = static_cast<std::size_t>(size() - offset);
   std::vector<std::uint8_t> bytes(count);
   if (!read(offset, bytes, "unit_payload")) return false;
   chain_.assign(count, false);
   chains_from_ = offset;
-  for (std::uint64_t i = count; i-- > 0;) {
+  for (std::size_t i = count; i-- > 0;) {
     if (count - i < kUnitHeaderBytes + kUnitCrcBytes || !possible_type(bytes[i])) continue;
     const UnitHeader unit{bytes[i], big_endian(&bytes[i + 1]), offset + i};
     const bool last = unit.end() == size() && unit.type() == UnitType::kEndOfSequence;
-    chain_[i] = last || (unit.end() < size() && chain_[unit.end() - offset]);
+    chain_[i] = last || (unit.end() < size() && in_chain(unit.end()));
   }
   return true;
 }
 
+bool StreamUnits::in_chain(std::uint64_t offset) const {
+  return chain_[static_cast<std::size_t>(offset - *chains_from_)];
+}
+
 bool StreamUnits::begins_chain(std::uint64_t offset) {
-  return offset < size() && find_chains(offset) && chain_[offset - *chains_from_];
+  return offset < size() && find_chains(offset) && in_chain(offset);
 }
 
 std::optional<std::uint64_t> StreamUnits::next_chain(std::uint64_t offset) {
@@ -182,7 +187,7 @@ std::optional<std::uint64_t> StreamUnits::next_chain(std::uint64_t offset) {
   searched_from_ = offset;
   found_.reset();
   for (std::uint64_t at = offset; at < size() && searched_bytes_ <= budget && !found_; ++at) {
-    if (!chain_[at - *chains_from_]) continue;
+    if (!in_chain(at)) continue;
     if (is_unit(at)) found_ = at;
     searched_bytes_ += size() - at;
   }

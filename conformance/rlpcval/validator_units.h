@@ -44,6 +44,7 @@ class StreamUnits {
   bool crc_of_unit(const UnitHeader& unit, std::uint32_t& stored, std::uint32_t& computed);
   // Knows all chains that begin at `offset` or later; false if that takes too much memory.
   bool find_chains(std::uint64_t offset);
+  bool in_chain(std::uint64_t offset) const;  // of those that are known
 
   ByteSource& source_;
   FindingList& findings_;
