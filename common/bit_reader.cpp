@@ -85,7 +85,8 @@ std::span<const std::uint8_t> BitReader::remaining_bytes() const {
 }
 
 void BitReader::expect_end() {
-  if (pos_ != std::uint64_t{bytes_.size()} * 8) fail(Errc::kInvalid, "R-BIT-03", "unit_payload", bit_pos());
+  if (pos_ != std::uint64_t{bytes_.size()} * 8)
+    fail(Errc::kInvalid, "R-BIT-03", "unit_payload", bit_pos());
 }
 
 }  // namespace rlpc
