@@ -126,7 +126,7 @@ class StreamWriter:
     """One stream. source.value(writer, name, indices, descriptor, arguments) gives the values."""
 
     def __init__(self, code, source, strict=False):
-        """code: of writing_code( ). strict: a broken requirement is an error, not something that was meant."""
+        """code: of writing_code( ). strict: a broken requirement is an error, not meant."""
         self.data = bytearray()
         self.source = source
         self.strict = strict

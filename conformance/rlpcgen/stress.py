@@ -24,7 +24,7 @@ import spec_program
 import suite  # noqa: E402
 import suite_streams
 
-INDEX = "STRESS.json"
+INDEX = suite_streams.STRESS
 BATCH = 100
 _EXIT_CODES = {"accept": (0,), "reject": (1,), "unsupported": (2,), "either": (0, 1)}
 _VALIDATOR_CODES = {**_EXIT_CODES, "unsupported": (1, 2), "either": (1,)}
@@ -54,7 +54,8 @@ class _Worker:
             "id": f"RND-{int(name):04}a", "title": f"Random stream of seed {name}",
             "spec": self._folder.name[1:], "profile": "baseline", "level": writer.ns["level_idc"],
             "tier": "stress", "rules": [], "features": [], "twin": None,
-            "sha256": hashlib.sha256(data).hexdigest(), "recipe": None, "seed": int(name), "released": None, "superseded_by": None,
+            "sha256": hashlib.sha256(data).hexdigest(), "recipe": None, "seed": int(name),
+            "released": None, "superseded_by": None,
             "licence": suite_streams.LICENCE, **found}
 
     def examine(self, item):

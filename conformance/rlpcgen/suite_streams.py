@@ -17,6 +17,7 @@ import suite  # noqa: E402
 
 LICENCE = "CC0-1.0"
 SUMS = "SHA256SUMS"
+STRESS = "STRESS.json"  # digests of the stress tier
 _ID = re.compile(r"[A-Z]{2,3}-\d{4}([a-w]|x\d+[b-w]?)$")
 _PROFILES = {0: "baseline"}
 _SETTINGS = {"profile_idc": 0, "level_idc": 1}
@@ -173,7 +174,8 @@ def strays(folder, places):
 def sums(folder):
     """The text of SHA256SUMS: what a release freezes. Sidecars may gain measurements."""
     folder = pathlib.Path(folder)
-    paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes/*/*.recipe"))
+    paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes*/*/*.recipe"))
+    paths += [folder / name for name in (suite.INDEX, STRESS) if (folder / name).is_file()]
     lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n"
-             for p in paths + [folder / suite.INDEX]]
+             for p in paths]
     return "".join(lines)
