@@ -12,6 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import check_clauses  # noqa: E402
 import check_float  # noqa: E402
 import check_layers  # noqa: E402
+import check_pages  # noqa: E402
 import check_rules  # noqa: E402
 import check_stability  # noqa: E402
 import cpp_source  # noqa: E402
@@ -125,6 +126,23 @@ class Layers(TreeTest):
                     "run.py:2", "must not import numpy")
         self.run_on({"conformance/specdec/run.py": "from judge import grade\n",
                      "conformance/judge/grade.py": ""}, "must not import judge")
+
+
+class Pages(TreeTest):
+    THERE = {"spec/a.md": "", "scripts/make_it": ""}
+
+    def run_on(self, text, *expected):
+        (self.assert_one if expected else self.assert_clean)(
+            check_pages.check, {**self.THERE, "README.md": text}, *expected)
+
+    def test_what_is_there(self):
+        self.run_on("`scripts/make_it --all`, spec/a.md. [a](spec/a.md#b) build/spec/c, scripts/make*,"
+                    " streams/vX.Y, [far](https://a.b)\n")
+
+    def test_what_is_not(self):
+        self.run_on("\nsee `spec/b.md`\n", "README.md:2", "spec/b.md")
+        self.run_on("scripts/break*\n", "scripts/break*")
+        self.run_on("[a](a.md)\n", "there is no a.md")
 
 
 class Float(TreeTest):

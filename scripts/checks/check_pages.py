@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Files that pages for people (*.md) name, and relative links in them, exist.
+
+A name is looked at if it begins with one of the project's folders. It may be a glob; `X` stands
+for a version that is not there yet (streams/vX.Y).
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+import cpp_source
+
+_FOLDERS = ("common", "conformance", "decoder", "encoder", "scripts", "spec", "streams")
+_NAME = re.compile(rf"(?<![\w/.%-])((?:{'|'.join(_FOLDERS)})/[\w./*-]*)")
+_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+
+
+def pages(root):
+    for folder in (".", *_FOLDERS):
+        yield from sorted(root.glob("*.md") if folder == "." else (root / folder).rglob("*.md"))
+
+
+def missing(root, path):
+    """(line, name) of what a page names and nobody has."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for match in _NAME.finditer(line):
+            name = match.group(1).rstrip("./")
+            if "vX.Y" not in name and not any(root.glob(name)):
+                yield number, name
+        for match in _LINK.finditer(line):
+            if not (path.parent / match.group(1)).exists():
+                yield number, match.group(1)
+
+
+def check(root):
+    found = list(pages(root))
+    complaints = [f"{path.relative_to(root)}:{line}: there is no {name}"
+                  for path in found for line, name in missing(root, path)]
+    return complaints, f"{len(found)} pages name only what is there"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
+    return cpp_source.report("pages", *check(parser.parse_args().root))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
