@@ -70,11 +70,12 @@ inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_
   return prediction;
 }
 
-// 9.6.3 Expected magnitude of a seed residual.
-class SeedContext {
+// 9.6.3 and 9.8.2 Expected magnitude of a residual of a track: of a seed vertex, a bone, or a
+// trajectory.
+class TrackContext {
  public:
   // frame_mean [num_gof_frames]: mean of the tracks before, per frame.
-  explicit SeedContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
+  explicit TrackContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
   std::uint32_t expected(std::uint32_t f, std::size_t c) const {
     return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;
   }

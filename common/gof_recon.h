@@ -55,6 +55,13 @@ class GofRecon {
 
   // Positions of one frame of the GOF, grid units, [num_vertices][3].
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const;
+  // The same for frames first to first + count - 1, [count][num_vertices][3].
+  void frames(std::uint32_t first, std::uint32_t count,
+              std::span<std::int32_t> positions) const {
+    const std::size_t size = positions.size() / count;
+    for (std::uint32_t i = 0; i < count; ++i)
+      frame(first + i, positions.subspan(i * size, size));
+  }
   std::uint32_t num_frames() const { return num_frames_; }
 
  private:

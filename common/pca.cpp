@@ -1,6 +1,7 @@
 #include "common/pca.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <utility>
 
@@ -8,70 +9,90 @@ namespace rlpc {
 namespace {
 
 constexpr int kNarrowBits = 16;
-constexpr std::int64_t kMaxNarrowSum = (std::int64_t{1} << 31) - 1;
-
-// sums[i] += w * s[i], in blocks that a compiler turns into 16 x 16 -> 32-bit products.
-void add_product(std::int16_t w, const std::int16_t* s, std::int32_t* sums, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) sums[i] += std::int32_t{w} * s[i];
-}
-
-// Two components in one pass over the sums.
-void add_two_products(std::int16_t w0, const std::int16_t* s0, std::int16_t w1,
-                      const std::int16_t* s1, std::int32_t* sums, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    sums[i] += std::int32_t{w0} * s0[i] + std::int32_t{w1} * s1[i];
-  }
-}
+constexpr int kLowDigitBits = 13;
+constexpr std::int64_t kMaxGroupSum = (std::int64_t{1} << 31) - 1;
+constexpr std::size_t kMaxRows = 24;  // of the sums that are found at a time
 
 }  // namespace
 
+std::int32_t FactorSet::Digit::of(std::int32_t value) const {
+  if (shift == 0 && !is_low) return value;
+  const auto high = static_cast<std::int32_t>(round2(value, kLowDigitBits));
+  return is_low ? value - high * (1 << kLowDigitBits) : high;
+}
+
+std::vector<FactorSet::Digit> FactorSet::digits_of(int bits) {
+  if (bits <= kNarrowBits) return {{0, bits - 1, false}};
+  return {{0, kLowDigitBits - 1, true}, {kLowDigitBits, bits - 1 - kLowDigitBits, false}};
+}
+
+FactorSet::Group& FactorSet::group_for(int shift, std::int64_t bound) {
+  for (Group& group : groups_) {
+    if (group.shift == shift && group.bound + bound <= kMaxGroupSum) return group;
+  }
+  Group group;
+  group.shift = shift;
+  group.spatial.resize(num_tiles());
+  groups_.push_back(std::move(group));
+  return groups_.back();
+}
+
 void FactorSet::add(std::span<const std::int32_t> temporal, int temporal_bits,
-                    std::span<const std::int32_t> spatial, int spatial_bits) {
-  assert(temporal.size() == num_frames_ && spatial.size() == num_values_);
+                    std::span<const std::int32_t> spatial, int spatial_bits,
+                    std::size_t stride) {
+  assert(temporal.size() == num_rows_ && spatial.size() + stride > num_values_ * stride);
   const int factor_bits = spatial_factor_bits(spatial_bits);
-  const int shift = factor_bits - spatial_bits;
-  if (factor_bits > kNarrowBits || temporal_bits > kNarrowBits) {
-    Wide wide;
-    wide.temporal.assign(temporal.begin(), temporal.end());
-    wide.spatial.reserve(num_values_);
-    for (const std::int32_t s : spatial) wide.spatial.push_back(s * (1 << shift));
-    wide_.push_back(std::move(wide));
-    return;
-  }
-  const std::int64_t bound = std::int64_t{1} << (factor_bits + temporal_bits - 2);
-  if (narrow_.empty() || narrow_.back().bound + bound > kMaxNarrowSum) narrow_.emplace_back();
-  NarrowGroup& group = narrow_.back();
-  group.bound += bound;
-  ++group.size;
-  for (const std::int32_t t : temporal) group.temporal.push_back(static_cast<std::int16_t>(t));
-  for (const std::int32_t s : spatial) {
-    group.spatial.push_back(static_cast<std::int16_t>(s * (1 << shift)));
+  const std::int32_t scale = 1 << (factor_bits - spatial_bits);
+  for (const Digit& t : digits_of(temporal_bits)) {
+    for (const Digit& s : digits_of(factor_bits)) {
+      const std::int64_t bound = std::int64_t{1} << (t.size_log2 + s.size_log2);
+      Group& group = group_for(t.shift + s.shift, bound);
+      const std::size_t side = group.size % 2;
+      if (side == 0) {
+        group.temporal.resize(group.temporal.size() + 2 * num_rows_);
+        for (auto& tile : group.spatial) tile.resize(tile.size() + 2 * kTileValues);
+      }
+      group.bound += bound;
+      ++group.size;
+      std::int16_t* const of_rows =
+          group.temporal.data() + group.temporal.size() - 2 * num_rows_ + side;
+      for (std::size_t r = 0; r < num_rows_; ++r) {
+        of_rows[2 * r] = static_cast<std::int16_t>(t.of(temporal[r]));
+      }
+      for (std::size_t i = 0; i < num_values_; ++i) {
+        auto& tile = group.spatial[i / kTileValues];
+        tile[tile.size() - 2 * kTileValues + 2 * (i % kTileValues) + side] =
+            static_cast<std::int16_t>(s.of(spatial[i * stride] * scale));
+      }
+    }
   }
 }
 
-void FactorSet::sum_narrow(const NarrowGroup& group, std::size_t frame,
-                           std::span<std::int32_t> sums) const {
+void FactorSet::sum_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
+                         std::span<std::int64_t> sums) const {
+  assert(tile < num_tiles() && first_row + num_rows <= num_rows_);
+  assert(sums.size() == num_rows * kTileValues);
   std::fill(sums.begin(), sums.end(), 0);
-  const auto w = [&](std::size_t k) { return group.temporal[k * num_frames_ + frame]; };
-  const auto s = [&](std::size_t k) { return group.spatial.data() + k * num_values_; };
-  std::size_t k = 0;
-  for (; k + 1 < group.size; k += 2) {
-    add_two_products(w(k), s(k), w(k + 1), s(k + 1), sums.data(), sums.size());
+  std::array<std::int32_t, kMaxRows * kTileValues> of_group;
+  for (std::size_t r = 0; r < num_rows; r += kMaxRows) {
+    const std::size_t rows = std::min(kMaxRows, num_rows - r);
+    std::int64_t* const out = &sums[r * kTileValues];
+    for (const Group& group : groups_) {
+      const FactorPairs factors{group.temporal.data(), num_rows_, group.spatial[tile].data(),
+                                (group.size + 1) / 2};
+      loops_.sum_products(factors, first_row + r, rows, of_group.data());
+      loops_.add_weighted(of_group.data(), 1 << group.shift, rows * kTileValues, out);
+    }
   }
-  if (k < group.size) add_product(w(k), s(k), sums.data(), sums.size());
 }
 
-void FactorSet::sum(std::size_t frame, std::span<std::int64_t> sums) const {
-  assert(sums.size() == num_values_ && frame < num_frames_);
-  std::fill(sums.begin(), sums.end(), 0);
-  std::vector<std::int32_t> narrow_sums(num_values_);
-  for (const NarrowGroup& group : narrow_) {
-    sum_narrow(group, frame, narrow_sums);
-    for (std::size_t i = 0; i < num_values_; ++i) sums[i] += narrow_sums[i];
-  }
-  for (const Wide& wide : wide_) {
-    const std::int64_t w = wide.temporal[frame];
-    for (std::size_t i = 0; i < num_values_; ++i) sums[i] += w * wide.spatial[i];
+void FactorSet::sum(std::size_t row, std::span<std::int64_t> sums) const {
+  assert(sums.size() == num_values_ && row < num_rows_);
+  std::array<std::int64_t, kTileValues> of_tile{};
+  for (std::size_t tile = 0; tile < num_tiles(); ++tile) {
+    sum_tile(tile, row, 1, of_tile);
+    const auto rest = sums.subspan(tile * kTileValues);
+    std::copy_n(of_tile.begin(), std::min(rest.size(), kTileValues), rest.begin());
   }
 }
 

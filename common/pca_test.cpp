@@ -34,16 +34,18 @@ std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t nu
 
 void expect_sums_of_the_plain_twin(const std::vector<Factor>& factors, std::size_t num_values,
                                    std::size_t num_frames) {
-  FactorSet set(num_values, num_frames);
-  for (const Factor& f : factors) {
-    set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
-  }
-  std::vector<std::int64_t> sums(num_values, 12345);
-  for (std::size_t frame = 0; frame < num_frames; ++frame) {
-    set.sum(frame, sums);
-    const std::vector<Int128> plain = plain_sum(factors, num_values, frame);
-    for (std::size_t i = 0; i < num_values; ++i) {
-      ASSERT_TRUE(plain[i] == sums[i]) << "frame " << frame << ", value " << i;
+  for (const TileLoops& loops : tile_loops()) {
+    FactorSet set(num_values, num_frames, loops);
+    for (const Factor& f : factors) {
+      set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
+    }
+    std::vector<std::int64_t> sums(num_values, 12345);
+    for (std::size_t frame = 0; frame < num_frames; ++frame) {
+      set.sum(frame, sums);
+      const std::vector<Int128> plain = plain_sum(factors, num_values, frame);
+      for (std::size_t i = 0; i < num_values; ++i) {
+        ASSERT_TRUE(plain[i] == sums[i]) << "frame " << frame << ", value " << i;
+      }
     }
   }
 }
@@ -88,13 +90,42 @@ TEST(FactorSet, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const std::size_t num_values = 3 * (random() % 12);
+    const std::size_t num_values = 3 * (random() % 50);
     const std::size_t num_frames = 1 + random() % 4;
     const std::size_t count = random() % 12;
     expect_sums_of_the_plain_twin(
         random_factors(random, cases[seed % 5], count, num_values, num_frames), num_values,
         num_frames);
   }
+}
+
+TEST(FactorSet, SumsRowsOfATileAsOneByOne) {
+  std::mt19937 random(1);
+  constexpr std::size_t kRows = 30;
+  const std::vector<Factor> factors =
+      random_factors(random, {1, 24, 1, 26}, 20, kTileValues + 5, kRows);
+  FactorSet set(kTileValues + 5, kRows);
+  for (const Factor& f : factors) {
+    set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
+  }
+  std::vector<std::int64_t> sums((kRows - 1) * kTileValues, 12345);
+  set.sum_tile(1, 1, kRows - 1, sums);
+  std::vector<std::int64_t> of_row(kTileValues + 5);
+  for (std::size_t r = 0; r + 1 < kRows; ++r) {
+    set.sum(r + 1, of_row);
+    for (std::size_t i = 0; i < kTileValues; ++i) {
+      ASSERT_EQ(sums[r * kTileValues + i], i < 5 ? of_row[kTileValues + i] : 0)
+          << "row " << r << ", value " << i;
+    }
+  }
+}
+
+TEST(FactorSet, TakesSpatialValuesByTheirStride) {
+  FactorSet set(2, 1);
+  set.add(std::vector<std::int32_t>{3}, 3, std::vector<std::int32_t>{5, 99, -7}, 13, 2);
+  std::vector<std::int64_t> sums(2);
+  set.sum(0, sums);
+  EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
 }
 
 TEST(FactorSet, WithoutComponentsSumsToZero) { expect_sums_of_the_plain_twin({}, 9, 2); }

@@ -8,7 +8,9 @@
 
 namespace rlpc {
 
+// Each minor version adds a profile: they have the same numbers.
 inline constexpr std::uint32_t kProfileBaseline = 0;
+inline constexpr std::uint32_t kProfileMain = 1;
 
 inline constexpr int kMinPositionBits = 2;
 inline constexpr int kMaxPositionBits = 24;

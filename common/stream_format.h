@@ -11,7 +11,7 @@ inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
                                                         'C',  0x0D, 0x0A, 0x1A};
 
 inline constexpr std::uint32_t kVersionMajor = 1;
-inline constexpr std::uint32_t kVersionMinor = 0;  // the newest that this code knows
+inline constexpr std::uint32_t kVersionMinor = 1;  // the newest that this code knows
 
 inline constexpr std::size_t kStreamHeaderBytes = 10;  // signature and version
 inline constexpr std::size_t kUnitHeaderBytes = 5;     // ancillary_flag, unit_type, unit_size
@@ -24,6 +24,7 @@ enum class UnitType : std::uint8_t {
   kVertexOrder = 0x03,
   kGof = 0x04,
   kEndOfSequence = 0x05,
+  kSlice = 0x06,
   kGofIndex = 0x81,
   kGofHash = 0x82,
   kMetadata = 0x83,

@@ -1,7 +1,7 @@
 #include "common/topology.h"
 
 #include <algorithm>
-#include <array>
+#include <compare>
 #include <utility>
 
 namespace rlpc {
@@ -20,6 +20,22 @@ ListOfLists<T> group(std::uint32_t num_vertices,
   return {std::move(first), std::move(items)};
 }
 
+// Sorts (vertex, item) pairs: by counting, and by comparing those of a vertex, which are few.
+template <class T>
+void sort_pairs(std::uint32_t num_vertices, std::vector<std::pair<std::uint32_t, T>>& pairs) {
+  std::vector<std::uint32_t> end(num_vertices + 1, 0);
+  for (const auto& [vertex, item] : pairs) ++end[vertex + 1];
+  for (std::size_t v = 0; v < num_vertices; ++v) end[v + 1] += end[v];
+  std::vector<std::pair<std::uint32_t, T>> by_vertex(pairs.size());
+  for (const auto& pair : pairs) by_vertex[end[pair.first]++] = pair;
+  std::uint32_t begin = 0;
+  for (std::size_t v = 0; v < num_vertices; ++v) {
+    std::sort(by_vertex.begin() + begin, by_vertex.begin() + end[v]);
+    begin = end[v];
+  }
+  pairs = std::move(by_vertex);
+}
+
 // 8.3.1 Earlier neighbours
 ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
                                                    std::span<const Triangle> triangles) {
@@ -31,45 +47,43 @@ ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
       if (low != high) pairs.emplace_back(high, low);
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+  sort_pairs(num_vertices, pairs);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return group(num_vertices, pairs);
 }
 
-// A directed edge of a triangle and the vertex across.
-struct Edge {
-  std::uint32_t low;
+// Of an edge of a triangle: the higher vertex, and the one across.
+struct EdgeOf {
   std::uint32_t high;
   std::uint32_t across;
+  auto operator<=>(const EdgeOf&) const = default;
 };
 
 // 8.3.2 Parallelograms: only across edges of exactly two triangles.
 ListOfLists<Parallelogram> find_parallelograms(std::uint32_t num_vertices,
                                                std::span<const Triangle> triangles) {
-  std::vector<Edge> edges;
+  std::vector<std::pair<std::uint32_t, EdgeOf>> edges;  // by the lower vertex
   edges.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
-      edges.push_back({low, high, t[k]});
+      edges.push_back({low, {high, t[k]}});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
-    return std::array{x.low, x.high, x.across} < std::array{y.low, y.high, y.across};
-  });
+  sort_pairs(num_vertices, edges);
   std::vector<std::pair<std::uint32_t, Parallelogram>> pairs;
   for (std::size_t i = 0; i < edges.size();) {
+    const auto& [low, edge] = edges[i];
     std::size_t end = i + 1;
-    while (end < edges.size() && edges[end].low == edges[i].low &&
-           edges[end].high == edges[i].high) {
+    while (end < edges.size() && edges[end].first == low &&
+           edges[end].second.high == edge.high) {
       ++end;
     }
     if (end - i == 2) {
-      const std::uint32_t predicted = std::max(edges[i].across, edges[i + 1].across);
-      const std::uint32_t opposite = std::min(edges[i].across, edges[i + 1].across);
-      if (predicted > edges[i].high && predicted > opposite) {
-        pairs.emplace_back(predicted, Parallelogram{edges[i].low, edges[i].high, opposite});
+      const auto [opposite, predicted] = std::minmax(edge.across, edges[i + 1].second.across);
+      if (predicted > edge.high && predicted > opposite) {
+        pairs.emplace_back(predicted, Parallelogram{low, edge.high, opposite});
       }
     }
     i = end;

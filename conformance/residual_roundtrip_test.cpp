@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/range_encoder.h"
 #include "decoder/parse_residual.h"
 #include "encoder/write_residual.h"
 

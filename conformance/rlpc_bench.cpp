@@ -1,5 +1,8 @@
 // Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread.
 //
+// Also multiply-adds per second: of decoding, and of the sums of 8.5.3 by each of the loops
+// that the machine can run, of which the first is the plain one.
+//
 // Animations: the bundled ones and, where they are present beside the project, two of the
 // literature. Peak memory is that of the tools doing
 // the same.
@@ -15,9 +18,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/pca.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/frame_source.h"
 #include "encoder/rlpc_encoder.h"
@@ -82,6 +87,31 @@ std::uint64_t decode(const Bytes& stream, bool verify_hashes) {
     benchmark::DoNotOptimize(positions.data());
   }
   return std::uint64_t{decoder->header().num_vertices} * decoder->header().num_frames;
+}
+
+// Multiply-adds that the sums of a vertex take, over all frames of a stream of the Main
+// profile.
+class MultiplyAddCounter final : public rlpc::Trace {
+ public:
+  void begin(const char*, std::uint64_t) override {}
+  void element(const char* name, std::int64_t value, std::uint64_t) override {
+    if (std::string_view(name) == "num_gof_frames_minus1") gof_frames_ = value + 1;
+    if (std::string_view(name) == "temporal_predictor") count_ += 3 * gof_frames_;
+  }
+  std::int64_t count() const { return count_; }
+
+ private:
+  std::int64_t gof_frames_ = 0;
+  std::int64_t count_ = 0;
+};
+
+double multiply_adds(const Bytes& stream) {
+  MultiplyAddCounter counter;
+  rlpc::DecoderOptions options;
+  options.trace = &counter;
+  auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
+  if (!decoder || !decoder->parse_rest()) stop("a stream of our own does not parse");
+  return static_cast<double>(counter.count()) * decoder->header().num_vertices;
 }
 
 // Runs the tools for their peak memory. A process counts the memory of the one that it was
@@ -160,6 +190,8 @@ void bench_decode(benchmark::State& state, const Animation& animation, double kg
   const Bytes stream = encode(animation, settings);
   std::uint64_t vertex_frames = 0;
   for (auto _ : state) vertex_frames = decode(stream, hashes);
+  state.counters["multiply_adds/s"] =
+      benchmark::Counter(multiply_adds(stream), benchmark::Counter::kIsIterationInvariantRate);
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("rlpc_bench_" + std::to_string(getpid()));
   std::ofstream(file, std::ios::binary)
@@ -180,6 +212,40 @@ void bench_encode(benchmark::State& state, const Animation& animation,
                    "' -o /dev/null -q " + options);
 }
 
+// Sums of narrow or wide components, 16 frames of 4096 vertices at a time.
+void bench_sums(benchmark::State& state, const rlpc::TileLoops& loops, int temporal_bits) {
+  constexpr std::size_t kVertices = 4096;
+  constexpr std::size_t kRows = 48;
+  constexpr std::size_t kComponents = 100;
+  rlpc::FactorSet factors(kVertices, kRows, loops);
+  const std::vector<std::int32_t> temporal(kRows, (1 << (temporal_bits - 1)) - 1);
+  const std::vector<std::int32_t> spatial(kVertices, -77);
+  for (std::size_t k = 0; k < kComponents; ++k)
+    factors.add(temporal, temporal_bits, spatial, 8);
+  std::vector<std::int64_t> sums(kRows * rlpc::kTileValues);
+  for (auto _ : state) {
+    for (std::size_t tile = 0; tile < kVertices / rlpc::kTileValues; ++tile) {
+      factors.sum_tile(tile, 0, kRows, sums);
+      benchmark::DoNotOptimize(sums.data());
+    }
+  }
+  state.counters["multiply_adds/s"] =
+      benchmark::Counter(static_cast<double>(kVertices * kRows * kComponents),
+                         benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void register_sums() {
+  for (std::size_t i = 0; i < rlpc::tile_loops().size(); ++i) {
+    for (const int bits : {14, 18}) {
+      const std::string name =
+          "Sums/temporal_bits:" + std::to_string(bits) + "/loops:" + std::to_string(i);
+      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) {
+        bench_sums(s, rlpc::tile_loops()[i], bits);
+      })->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
 void register_all(const Animation& a) {
   const auto add = [&](const std::string& what, auto&& function) {
     benchmark::RegisterBenchmark((what + "/" + a.name).c_str(), function)
@@ -193,6 +259,7 @@ void register_all(const Animation& a) {
   }
   add("DecodeAndHash/kg:0.3", [=](benchmark::State& s) { bench_decode(s, a, 0.3, true); });
   rlpc::EncoderSettings given;
+  given.profile = rlpc::Profile::kBaseline;
   given.target.kind = rlpc::Target::kNone;
   given.clusters = 24;
   given.components = 10;
@@ -200,7 +267,8 @@ void register_all(const Animation& a) {
   given.rdo = false;
   given.frame_mode = rlpc::FrameMode::kLcf;
   const std::string given_options =
-      "--clusters 24 --components 10 --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf";
+      "--profile baseline --clusters 24 --components 10 --qu 12 --qc 12 --qdelta 12 --no-rdo "
+      "--frame lcf";
   add("EncodeGiven/N:24/L:10",
       [=](benchmark::State& s) { bench_encode(s, a, given, given_options); });
   for (const auto& [name, preset] :
@@ -220,6 +288,7 @@ int main(int argc, char** argv) {
   launcher();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 64;
+  register_sums();
   for (const Animation& animation : animations()) register_all(animation);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

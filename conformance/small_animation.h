@@ -97,10 +97,11 @@ inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& 
   return bytes;
 }
 
-// All of the syntax: 30 vertices, 6 frames, 2 GOFs, clusters with local frames, vertex order,
-// metadata, a hash for each frame.
+// All of the syntax of the Baseline profile: 30 vertices, 6 frames, 2 GOFs, clusters with local
+// frames, vertex order, metadata, a hash for each frame.
 inline EncoderSettings rich_settings() {
   EncoderSettings settings;
+  settings.profile = Profile::kBaseline;
   settings.target = {Target::kNone, 0.0};
   settings.clusters = 2;
   settings.components = 2;
@@ -122,6 +123,7 @@ inline StreamBytes rich_stream() {
 inline StreamBytes indexed_stream() {
   MemoryFrames source = bending_tube(2, 16);
   EncoderSettings settings;
+  settings.profile = Profile::kBaseline;
   settings.target = {Target::kKg, 10.0};
   settings.clusters = 1;
   settings.frame_mode = FrameMode::kWorld;

@@ -219,6 +219,31 @@ class Figures(ToolsTest):
             self.assertEqual(info["bpvf"], report["bpvf"])
             self.assertEqual(sum(info["bits"].values()), 8 * size)
 
+    def test_rlpcinfo_lists_gofs_and_slices(self):
+        stream = self.path("a.rlpc")
+        self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "main")
+        data, at, sizes = stream.read_bytes(), 10, []
+        while at < len(data):
+            size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
+            if data[at] in (4, 6):  # GOF, slice
+                sizes.append(size)
+            at += size
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        self.assertEqual(info["profile_idc"], 1)
+        self.assertEqual([(g["first_frame"], g["num_frames"]) for g in info["gofs"]],
+                         [(0, 20), (20, 20), (40, 20)])
+        self.assertEqual([n["bytes"] for g in info["gofs"] for n in (g, *g["slices"])], sizes)
+        for part in ("bones", "rest positions", "spatial factors"):
+            self.assertGreater(info["bits"][part], 0, part)
+        said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
+        for words in ("Main profile", "in a GOF: ", "frames 20 to 39", "influences, rest positions",
+                      f" {info['gofs'][0]['slices'][0]['bytes']} "):
+            self.assertIn(words, said)
+        self.assertNotIn("frames 20 to 39", self.ok("rlpcinfo", stream).out.decode())
+        self.encode(stream, "--kg", 5, "--profile", "baseline")
+        self.assertNotIn("gofs", self.ok("rlpcinfo", stream, "--json").json())
+        self.assertIn("Baseline profile", self.ok("rlpcinfo", stream, "--gofs").out.decode())
+
     def test_the_csv_has_every_frame(self):
         report = self.encode(self.path("a.rlpc"), "--kg", 0.5, "--keep-order")
         self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"), "--csv",

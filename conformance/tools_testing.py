@@ -4,6 +4,7 @@ import argparse
 import array
 import json
 import pathlib
+import resource
 import shutil
 import struct
 import subprocess
@@ -101,6 +102,12 @@ def read_rlpd(path):
     assert len(data) == at + size * frames
     triangles = [corners[3 * t:3 * t + 3] for t in range(num_triangles)]
     return rest, triangles, [data[at + size * f:at + size * f + size] for f in range(frames)]
+
+
+def limited(size):
+    """Before the tool starts: files may grow to `size` bytes; beyond, writing fails (EFBIG)."""
+    return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+            "restore_signals": False}
 
 
 class ToolsTest(unittest.TestCase):

@@ -131,14 +131,17 @@ int decode(const Request& request) {
 }
 
 int describe() {
-  const std::string spec = std::to_string(kVersionMajor) + "." + std::to_string(kVersionMinor);
+  Json versions = Json::array();
+  for (std::uint32_t minor = 0; minor <= kVersionMinor; ++minor) {
+    versions.push_back(std::to_string(kVersionMajor) + "." + std::to_string(minor));
+  }
   Json levels = Json::array();
   for (std::size_t level = 1; level <= kLevels.size(); ++level) levels.push_back(level);
   const Json answer = {{"contract", kContract},
                        {"name", "rlpcdec"},
                        {"version", RLPC_VERSION},
-                       {"spec", Json::array({spec})},
-                       {"profiles", Json::array({"baseline"})},
+                       {"spec", versions},
+                       {"profiles", Json::array({"baseline", "main"})},
                        {"levels", levels},
                        {"outputs", Json::array({"rlpd", "f32"})}};
   std::cout << answer.dump() << "\n";

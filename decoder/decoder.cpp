@@ -2,11 +2,15 @@
 #include <cassert>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/crc32.h"
-#include "common/gof_recon.h"
 #include "common/stream_format.h"
 #include "common/topology.h"
+#include "decoder/apart.h"
+#include "decoder/frame_recon.h"
+#include "decoder/gofs_ahead.h"
+#include "decoder/parse_bone_gof.h"
 #include "decoder/parse_connectivity.h"
 #include "decoder/parse_gof.h"
 #include "decoder/parse_gof_hash.h"
@@ -22,19 +26,27 @@ namespace {
 
 // 6.2 CheckUnitType( expected )
 // A unit where it may not stand, or a critical one that this version does not know.
-Error misplaced(const UnitHeader& unit) {
-  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
-                                          unit.type() <= UnitType::kEndOfSequence);
+Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
+  const UnitType last = version_minor > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
+  const bool known =
+      unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader && unit.type() <= last);
   return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
                "unit_type", unit.offset * 8};
 }
+
+// Frames that a thread reconstructs at a time: factors are read from memory once for them.
+constexpr std::uint32_t kBandFrames = 4;
+constexpr std::uint32_t kMaxThreads = 256;
 
 }  // namespace
 
 class Decoder::Impl {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
-      : units_(std::move(source), options.trace), options_(options) {}
+      : units_(std::move(source), options.trace), options_(options) {
+    options_.threads = std::clamp(options.threads, 1U, kMaxThreads);
+    next_band_frames_ = kBandFrames * options_.threads;
+  }
 
   Result<bool> open();
   Result<bool> next_frame(std::span<std::int32_t> positions);
@@ -46,6 +58,7 @@ class Decoder::Impl {
   bool has_vertex_order() const { return !vertex_order_.empty(); }
   const std::string& metadata() const { return metadata_; }
   std::uint32_t position() const { return position_; }
+  bool was_cut() const { return was_cut_; }
 
  private:
   Result<bool> read_sequence_header();
@@ -58,19 +71,27 @@ class Decoder::Impl {
   Result<bool> check_end(const UnitHeader& unit);
   Result<bool> load_index();
   Result<std::uint32_t> gof_frames(const UnitHeader& unit);
+  // Goes past the slices of a GOF that is not wanted.
+  Result<bool> skip_slices();
   // Of the next GOF unit, which begins with frames_parsed_.
   void remember_gof(const UnitHeader& unit);
   Result<bool> load_gof();
+  Result<bool> find_gof(const UnitHeader& unit);
+  Result<FrameRecon> read_gof(const UnitHeader& unit);
+  Result<FrameRecon> read_bone_gof(const UnitHeader& unit);
   Result<bool> load_hashes();
+  void recon_band(std::uint32_t first);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
   Result<bool> seek_gof(std::uint32_t frame);
   // Whatever is loaded may not fit the position any more.
   void fail(const Error& error) {
     failure_ = error;
     recon_.reset();
+    ahead_.reset();
   }
   Result<bool> verify_hash(std::span<const std::int32_t> positions);
-  void to_output_order(std::span<std::int32_t> positions);
+  void to_output_order(std::span<const std::int32_t> decoded,
+                       std::span<std::int32_t> positions) const;
 
   UnitReader units_;
   DecoderOptions options_;
@@ -85,15 +106,22 @@ class Decoder::Impl {
   std::vector<GofLocation> gofs_;              // those met so far, ascending
   bool index_tried_ = false;
   bool ended_ = false;
+  bool was_cut_ = false;
 
-  std::optional<Error> failure_;  // stands until a seek
-  std::optional<GofRecon> recon_;
+  std::optional<Error> failure_;                       // stands until a seek
+  std::unique_ptr<MeshPredictions> mesh_predictions_;  // in the Main profile
+  std::optional<FrameRecon> recon_;
   std::uint32_t gof_first_frame_ = 0;
   std::uint32_t position_ = 0;
   std::optional<GofHash> hash_;
   std::uint32_t running_crc_ = 0;
-  std::uint32_t hashed_frames_ = 0;    // consecutive frames of the GOF in running_crc_
-  std::vector<std::int32_t> decoded_;  // a frame in decoded order, if the output has another
+  std::uint32_t hashed_frames_ = 0;  // consecutive frames of the GOF in running_crc_
+  // Frames of the GOF in decoded order, as they were reconstructed together.
+  std::vector<std::int32_t> band_;
+  std::uint32_t band_first_ = 0;
+  std::uint32_t band_frames_ = 0;
+  std::uint32_t next_band_frames_ = 0;
+  std::optional<GofsAhead> ahead_;  // with several threads
 };
 
 Result<bool> Decoder::Impl::open() {
@@ -122,11 +150,12 @@ Result<bool> Decoder::Impl::open() {
 Result<bool> Decoder::Impl::read_sequence_header() {
   const auto unit = units_.header_at(offset_);
   if (!unit) return unit.error();
-  if (unit->type() != UnitType::kSequenceHeader) return misplaced(*unit);
+  if (unit->type() != UnitType::kSequenceHeader)
+    return misplaced(*unit, units_.version_minor());
   const auto payload = units_.payload(*unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(*unit, *payload);
-  const auto header = parse_sequence_header(r);
+  const auto header = parse_sequence_header(r, units_.version_minor());
   if (!header) return header.error();
   header_ = *header;
   units_.set_max_unit_bytes(header_.level().max_unit_bytes);
@@ -142,9 +171,12 @@ Result<bool> Decoder::Impl::check_limits() const {
   if (header_.num_vertices > limits.max_vertices) return exceeded("num_vertices_minus1");
   if (header_.num_triangles > limits.max_triangles) return exceeded("num_triangles");
   if (header_.num_frames > limits.max_frames) return exceeded("num_frames_minus1");
-  // Connectivity, topology and a frame, as this decoder holds them.
-  const std::uint64_t fixed =
-      std::uint64_t{header_.num_vertices} * 100 + std::uint64_t{header_.num_triangles} * 120;
+  // Connectivity, topology, in the Main profile layers, and frames, as this decoder holds
+  // them.
+  const std::uint64_t of_vertex =
+      (header_.profile_idc == kProfileMain ? 400 : 100) + 12 * kBandFrames;
+  const std::uint64_t fixed = std::uint64_t{header_.num_vertices} * of_vertex +
+                              std::uint64_t{header_.num_triangles} * 120;
   if (fixed > limits.max_memory_bytes) return exceeded("num_vertices_minus1");
   return true;
 }
@@ -157,6 +189,9 @@ Result<bool> Decoder::Impl::read_connectivity(const UnitHeader& unit) {
   if (!triangles) return triangles.error();
   triangles_ = std::move(*triangles);
   topology_ = make_topology(header_.num_vertices, triangles_);
+  if (header_.profile_idc == kProfileMain) {
+    mesh_predictions_ = std::make_unique<MeshPredictions>(topology_, triangles_);
+  }
   return true;
 }
 
@@ -170,13 +205,12 @@ Result<bool> Decoder::Impl::read_vertex_order(const UnitHeader& unit) {
   for (Triangle& t : triangles_) {
     for (std::uint32_t& v : t) v = vertex_order_[v];
   }
-  decoded_.resize(3 * std::size_t{header_.num_vertices});
   return true;
 }
 
 // Units that a decoder may skip: their CRC holds, and metadata is kept.
 Result<bool> Decoder::Impl::read_ancillary(const UnitHeader& unit) {
-  if (!unit.ancillary()) return misplaced(unit);
+  if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   if (unit.type() != UnitType::kMetadata) return true;
@@ -259,6 +293,16 @@ Result<std::uint32_t> Decoder::Impl::gof_frames(const UnitHeader& unit) {
   return frames;
 }
 
+Result<bool> Decoder::Impl::skip_slices() {
+  while (header_.profile_idc == kProfileMain && offset_ < units_.size()) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() != UnitType::kSlice) break;
+    offset_ = unit->end();
+  }
+  return true;
+}
+
 void Decoder::Impl::remember_gof(const UnitHeader& unit) {
   if (gofs_.empty() || gofs_.back().first_frame < frames_parsed_) {
     gofs_.push_back({unit.offset, frames_parsed_});
@@ -273,19 +317,70 @@ Result<bool> Decoder::Impl::load_gof() {
   if (frames_parsed_ == header_.num_frames) {
     return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
   }
+  recon_.reset();
+  band_frames_ = 0;
+  if (auto ok = find_gof(unit); !ok) return ok;
+  remember_gof(unit);
+  gof_first_frame_ = frames_parsed_;
+  frames_parsed_ += recon_->num_frames();
+  was_cut_ = was_cut_ || recon_->is_cut();
+  return load_hashes();
+}
+
+// The GOF of a unit, parsed ahead or now; goes past its units.
+Result<bool> Decoder::Impl::find_gof(const UnitHeader& unit) {
+  if (options_.threads > 1 && options_.trace == nullptr) {
+    if (!ahead_) {
+      ahead_.emplace(units_, header_, topology_, mesh_predictions_.get(),
+                     options_.limits.max_memory_bytes / options_.threads, options_.cut);
+    }
+    ahead_->fill(unit.offset, frames_parsed_, options_.threads);
+    if (auto parsed = ahead_->take(unit.offset, frames_parsed_)) {
+      recon_ = std::move(parsed->recon);
+      offset_ = parsed->end;
+      ahead_->fill(offset_, frames_parsed_ + recon_->num_frames(), options_.threads - 1);
+      return true;
+    }
+  }
+  auto recon = header_.profile_idc == kProfileMain ? read_bone_gof(unit) : read_gof(unit);
+  if (!recon) return recon.error();
+  recon_ = std::move(*recon);
+  return true;
+}
+
+// A GOF of the Baseline profile; goes past its unit.
+Result<FrameRecon> Decoder::Impl::read_gof(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
-  recon_.reset();
   BitReader r = units_.bits(unit, *payload);
   const auto gof =
       parse_gof(r, header_, topology_, frames_parsed_, options_.limits.max_memory_bytes);
   if (!gof) return gof.error();
-  recon_.emplace(header_, topology_, *gof);
-  remember_gof(unit);
-  gof_first_frame_ = frames_parsed_;
-  frames_parsed_ += gof->num_frames;
   offset_ = unit.end();
-  return load_hashes();
+  return FrameRecon(GofRecon(header_, topology_, *gof));
+}
+
+// A GOF of the Main profile; goes past its unit and its slice units.
+Result<FrameRecon> Decoder::Impl::read_bone_gof(const UnitHeader& unit) {
+  BoneGofParser parser(header_, *mesh_predictions_, options_.limits.max_memory_bytes,
+                       options_.cut);
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  if (const auto ok = parser.gof(r, frames_parsed_); !ok) return ok.error();
+  offset_ = unit.end();
+  while (offset_ < units_.size()) {
+    const auto slice = units_.header_at(offset_);
+    if (!slice) return slice.error();
+    if (slice->type() != UnitType::kSlice) break;
+    const auto slice_payload = units_.payload(*slice);
+    if (!slice_payload) return slice_payload.error();
+    BitReader slice_bits = units_.bits(*slice, *slice_payload);
+    if (const auto ok = parser.slice(slice_bits, slice->offset * 8); !ok) return ok.error();
+    offset_ = slice->end();
+  }
+  const CodedMesh& mesh = parser.mesh();
+  return FrameRecon(BoneRecon(mesh, parser.finish(), header_.position_bits), parser.is_cut());
 }
 
 // 6.7: a hash unit belongs to the GOF before it.
@@ -302,7 +397,7 @@ Result<bool> Decoder::Impl::load_hashes() {
   BitReader r = units_.bits(*unit, *payload);
   auto hash = parse_gof_hash(r, recon_->num_frames());
   if (!hash) return hash.error();
-  hash_ = std::move(*hash);
+  if (!recon_->is_cut()) hash_ = std::move(*hash);
   offset_ = unit->end();
   return true;
 }
@@ -325,10 +420,15 @@ Result<bool> Decoder::Impl::verify_hash(std::span<const std::int32_t> positions)
 }
 
 // 8.6.1 Output order
-void Decoder::Impl::to_output_order(std::span<std::int32_t> positions) {
+void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
+                                    std::span<std::int32_t> positions) const {
+  if (!has_vertex_order()) {
+    std::copy(decoded.begin(), decoded.end(), positions.begin());
+    return;
+  }
   for (std::size_t v = 0; v < vertex_order_.size(); ++v) {
     for (std::size_t c = 0; c < 3; ++c) {
-      positions[3 * std::size_t{vertex_order_[v]} + c] = decoded_[3 * v + c];
+      positions[3 * std::size_t{vertex_order_[v]} + c] = decoded[3 * v + c];
     }
   }
 }
@@ -347,14 +447,40 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
     if (ended_) return false;
     if (auto more = load_gof(); !more || !*more) return more;
   }
-  const std::span<std::int32_t> out = has_vertex_order() ? std::span(decoded_) : positions;
-  recon_->frame(position_ - gof_first_frame_, out);
+  const std::uint32_t f = position_ - gof_first_frame_;
+  if (f < band_first_ || f >= band_first_ + band_frames_) recon_band(f);
+  const auto decoded = std::span<const std::int32_t>(band_).subspan(
+      (f - band_first_) * positions.size(), positions.size());
   if (hash_) {
-    if (auto ok = verify_hash(out); !ok) return ok;
+    if (auto ok = verify_hash(decoded); !ok) return ok;
   }
-  if (has_vertex_order()) to_output_order(positions);
+  to_output_order(decoded, positions);
   ++position_;
   return true;
+}
+
+// Reconstructs frames of the GOF from `first` on: a band for each thread, but a single frame
+// after a seek, and then more and more.
+void Decoder::Impl::recon_band(std::uint32_t first) {
+  const std::uint32_t most = kBandFrames * options_.threads;
+  const std::size_t frame_size = 3 * std::size_t{header_.num_vertices};
+  band_first_ = first;
+  band_frames_ = std::min(next_band_frames_, recon_->num_frames() - first);
+  next_band_frames_ = std::min(2 * next_band_frames_, most);
+  band_.resize(band_frames_ * frame_size);
+  const auto recon = [&](std::uint32_t begin) {
+    const std::uint32_t count = std::min(kBandFrames, band_frames_ - begin);
+    recon_->frames(first + begin, count,
+                   std::span(band_).subspan(begin * frame_size, count * frame_size));
+  };
+  std::vector<std::future<bool>> others;
+  for (std::uint32_t begin = kBandFrames; begin < band_frames_; begin += kBandFrames) {
+    others.push_back(run_apart([&recon, begin] { recon(begin); }));
+  }
+  recon(0);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (!others[i].get()) recon(static_cast<std::uint32_t>(i + 1) * kBandFrames);
+  }
 }
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
@@ -369,11 +495,13 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
     }
   }
   position_ = frame;
+  next_band_frames_ = 1;
   return true;
 }
 
 Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
   recon_.reset();
+  band_frames_ = 0;
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
@@ -400,6 +528,7 @@ Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
     remember_gof(unit);
     frames_parsed_ += *frames;
     offset_ = unit.end();
+    if (auto ok = skip_slices(); !ok) return ok;
   }
   return load_gof();
 }
@@ -439,5 +568,6 @@ Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->metadata(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }
 std::uint32_t Decoder::position() const { return impl_->position(); }
+bool Decoder::was_cut() const { return impl_->was_cut(); }
 
 }  // namespace rlpc

@@ -12,9 +12,11 @@ namespace {
 
 using Positions = std::vector<std::int32_t>;
 
+constexpr rlpc::DecodeLimits kLimits{2000, 4000, 200, 8 << 20};
+
 rlpc::Result<rlpc::Decoder> open(std::span<const std::uint8_t> stream, bool verify_hashes) {
   rlpc::DecoderOptions options;
-  options.limits = {2000, 4000, 200, 8 << 20};
+  options.limits = kLimits;
   options.verify_hashes = verify_hashes;
   return rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
 }
@@ -54,6 +56,21 @@ void decode_last(std::span<const std::uint8_t> stream) {
   (void)decoder->next_frame(positions);
 }
 
+// Without some of the slices, if there are any.
+void decode_cut(std::span<const std::uint8_t> stream) {
+  rlpc::DecoderOptions options;
+  options.limits = kLimits;
+  options.cut = {static_cast<std::uint32_t>(stream.size() % 4),
+                 static_cast<std::uint32_t>(1 + stream.size() % 3)};
+  auto decoder =
+      rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
+  if (!decoder) return;
+  Positions positions(3 * std::size_t{decoder->header().num_vertices});
+  for (auto more = decoder->next_frame(positions); more && *more;) {
+    more = decoder->next_frame(positions);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -61,5 +78,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view rule = decode(stream, true);
   if (rule == "R-HSH-02") decode(stream, false);  // a mutated GOF goes on past its hash
   decode_last(stream);
+  decode_cut(stream);
   return 0;
 }

@@ -1,6 +1,6 @@
-// Fuzzes the parser of a GOF, and its reconstruction, without a CRC in front. Input: first
-// frame, 4 bytes; sizes of the payloads of sequence header and connectivity, 2 bytes each; both
-// payloads; that of the GOF.
+// Fuzzes the parser of a GOF of the Baseline profile, and its reconstruction, without a CRC in
+// front. Input: first frame, 4 bytes; sizes of the payloads of sequence header and
+// connectivity, 2 bytes each; both payloads; that of the GOF.
 
 #include <algorithm>
 #include <cstddef>
@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint32_t header_bytes = input.number(2);
   const std::uint32_t connectivity_bytes = input.number(2);
   rlpc::BitReader header_bits(input.take(header_bytes));
-  const auto header = rlpc::parse_sequence_header(header_bits);
+  const auto header = rlpc::parse_sequence_header(header_bits, rlpc::kProfileBaseline);
   if (!header || header->num_vertices > kMaxVertices || header->num_frames > kMaxFrames ||
       first_frame >= header->num_frames) {
     return 0;

@@ -4,23 +4,22 @@
 
 #include "common/gof_models.h"
 #include "common/int_math.h"
-#include "common/range_decoder.h"
-#include "decoder/parse_residual.h"
+#include "decoder/parse_component_header.h"
+#include "decoder/parse_track.h"
+#include "decoder/section_reader.h"
 
 namespace rlpc {
 namespace {
 
 // Memory of a factor: as a residual, and arranged for reconstruction.
-constexpr std::uint64_t kBytesPerFactor = 10;
+constexpr std::uint64_t kBytesPerFactor = 14;
 
 // The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
 class GofSectionParser {
  public:
   GofSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
                    Gof& gof, std::uint64_t max_memory_bytes)
-      : reader_(r),
-        first_bit_(r.bit_pos()),
-        rd_(r.remaining_bytes()),
+      : section_(r, "gof_section"),
         header_(header),
         topology_(topology),
         gof_(gof),
@@ -29,33 +28,7 @@ class GofSectionParser {
   void parse();
 
  private:
-  std::uint64_t bit_pos() const { return first_bit_ + rd_.bits_spent(); }
-  bool failed() const { return reader_.error().has_value(); }
-  void fail(const char* rule, const char* element) {
-    reader_.fail(Errc::kInvalid, rule, element, bit_pos());
-  }
-  // A section that ran out of bytes long ago is not worth decoding.
-  void check_overrun(const char* element) {
-    if (rd_.overrun()) fail("R-RNG-01", element);
-  }
-  // Position of the element that comes, if anybody wants to know.
-  std::uint64_t mark() const { return reader_.trace() != nullptr ? bit_pos() : 0; }
-  void trace(const char* element, std::int64_t value, std::uint64_t at) {
-    if (reader_.trace() != nullptr) reader_.trace()->element(element, value, at);
-  }
-  std::int32_t residual(ResidualModels& models, std::uint32_t expected, const char* element) {
-    const std::uint64_t at = mark();
-    const std::int32_t value = parse_residual(rd_, models, expected);
-    trace(element, value, at);
-    return value;
-  }
-
-  bool bin(BitModel& model, const char* element);
-  std::int32_t header_delta(HeaderField field, const char* element);
-  int header_value(HeaderField field, int previous, Range range, const char* element,
-                   const char* rule);
-  template <std::size_t N>
-  int truncated_unary(std::array<BitModel, N>& models, const char* element);
+  bool failed() const { return section_.failed(); }
   void cluster_headers();
   void cluster_seeds(std::size_t cluster_index);
   void cluster_map();
@@ -67,9 +40,7 @@ class GofSectionParser {
   void components();
   void component(std::size_t coded_vertices, Component& component);
 
-  BitReader& reader_;
-  std::uint64_t first_bit_;
-  RangeDecoder rd_;
+  SectionReader section_;
   const SequenceHeader& header_;
   const Topology& topology_;
   Gof& gof_;
@@ -81,62 +52,28 @@ class GofSectionParser {
   Component previous_;  // header of the component before
 };
 
-bool GofSectionParser::bin(BitModel& model, const char* element) {
-  const std::uint64_t at = mark();
-  const bool value = rd_.bin(model);
-  trace(element, value ? 1 : 0, at);
-  return value;
-}
-
-// 9.5.4 ae_header( field )
-std::int32_t GofSectionParser::header_delta(HeaderField field, const char* element) {
-  std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
-  const std::int32_t delta = residual(models_.header, mean >> 4, element);
-  mean = update_mean(mean, magnitude_of(delta), 2);
-  return delta;
-}
-
-int GofSectionParser::header_value(HeaderField field, int previous, Range range,
-                                   const char* element, const char* rule) {
-  const std::int64_t value = std::int64_t{previous} + header_delta(field, element);
-  if (value >= range.min && value <= range.max) return static_cast<int>(value);
-  fail(rule, element);
-  return static_cast<int>(range.min);
-}
-
-template <std::size_t N>
-int GofSectionParser::truncated_unary(std::array<BitModel, N>& models, const char* element) {
-  const std::uint64_t at = mark();
-  std::size_t value = 0;
-  while (value < N && rd_.bin(models[value])) ++value;
-  trace(element, static_cast<std::int64_t>(value), at);
-  return static_cast<int>(value);
-}
-
 // 6.5.2 cluster_headers( )
 void GofSectionParser::cluster_headers() {
   gof_.cluster_of_vertex.assign(header_.num_vertices, 0);
   for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
-    gof_.clusters[i].lcf_flag = bin(models_.lcf_flag, "lcf_flag");
+    gof_.clusters[i].lcf_flag = section_.bin(models_.lcf_flag, "lcf_flag");
     if (gof_.clusters[i].lcf_flag) cluster_seeds(i);
-    check_overrun("lcf_flag");
+    section_.check_overrun("lcf_flag");
   }
 }
 
 void GofSectionParser::cluster_seeds(std::size_t cluster_index) {
   Cluster& cluster = gof_.clusters[cluster_index];
   for (std::uint32_t& v : cluster.seed_vertex) {
-    const std::uint64_t at = mark();
-    v = rd_.bypass(ceil_log2(header_.num_vertices));
-    trace("seed_vertex", v, at);
+    v = section_.bypass(ceil_log2(header_.num_vertices), "seed_vertex");
     if (v >= header_.num_vertices) {
-      fail("R-GOF-06", "seed_vertex");
+      section_.fail("R-GOF-06", "seed_vertex");
       return;
     }
   }
   const auto& s = cluster.seed_vertex;
   if (s[0] == s[1] || s[1] == s[2] || s[2] == s[0]) {
-    fail("R-GOF-07", "seed_vertex");
+    section_.fail("R-GOF-07", "seed_vertex");
     return;
   }
   std::uint32_t anchor = 0;
@@ -164,35 +101,30 @@ void GofSectionParser::cluster_map() {
     }
     gof_.cluster_of_vertex[v] = previous;
   }
-  check_overrun("cluster_idx");
+  section_.check_overrun("cluster_idx");
 }
 
 std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction) {
-  if (bin(models_.cluster_predicted_flag[prediction.context], "cluster_predicted_flag")) {
+  if (section_.bin(models_.cluster_predicted_flag[prediction.context],
+                   "cluster_predicted_flag")) {
     return prediction.cluster;
   }
-  const std::uint64_t at = mark();
-  std::uint32_t node = 1;
-  while (node < models_.cluster_idx.size()) {
-    node = 2 * node + (rd_.bin(models_.cluster_idx[node]) ? 1 : 0);
-  }
-  const std::size_t index = node - models_.cluster_idx.size();
-  trace("cluster_idx", static_cast<std::int64_t>(index), at);
+  const std::uint32_t index = section_.tree(models_.cluster_idx, "cluster_idx");
   if (index < gof_.clusters.size()) return static_cast<std::uint16_t>(index);
-  fail("R-GOF-08", "cluster_idx");
+  section_.fail("R-GOF-08", "cluster_idx");
   return 0;
 }
 
 // NumFactors of 6.5.4 and 6.5.5
 void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
   num_factors_ += more;
-  if (num_factors_ > header_.level().max_gof_factors) fail("R-LVL-05", element);
+  if (num_factors_ > header_.level().max_gof_factors) section_.fail("R-LVL-05", element);
 }
 
 // Whether the factors counted so far fit into the memory that the caller allows.
 void GofSectionParser::check_factor_memory(const char* element) {
   if (!failed() && num_factors_ * kBytesPerFactor > max_memory_bytes_) {
-    reader_.fail(Errc::kLimitExceeded, "", element, bit_pos());
+    section_.fail_limit(element);
   }
 }
 
@@ -203,17 +135,8 @@ void GofSectionParser::seed_tracks() {
   check_factor_memory("seed_residual");
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
-    SeedContext context(frame_mean_);
-    track.residual.resize(gof_.num_frames);
-    for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t value =
-            residual(models_.seed, context.expected(f, c), "seed_residual");
-        context.update(f, c, value);
-        track.residual[f][c] = value;
-      }
-    }
-    check_overrun("seed_residual");
+    track.residual = parse_track(section_, models_.seed, frame_mean_, "seed_residual");
+    section_.check_overrun("seed_residual");
   }
 }
 
@@ -227,8 +150,9 @@ void GofSectionParser::component_counts() {
   std::vector<std::size_t> counts(gof_.clusters.size(), 0);
   for (std::size_t i = 0; i < counts.size() && !failed(); ++i) {
     const Range range{0, header_.level().max_components};
-    previous = header_value(HeaderField::kNumComponents, previous, range,
-                            "num_components_delta", "R-GOF-09");
+    previous = parse_header_field(section_, models_.header, models_.header_mean,
+                                  HeaderField::kNumComponents, previous, range,
+                                  "num_components_delta", "R-GOF-09");
     if (failed()) return;
     count_factors(
         static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames),
@@ -246,7 +170,7 @@ void GofSectionParser::components() {
     frame_mean_.assign(gof_.num_frames, 0);
     for (Component& c : gof_.clusters[i].components) {
       component(coded_vertices_[i], c);
-      check_overrun("spatial_residual");
+      section_.check_overrun("spatial_residual");
       if (failed()) return;
     }
   }
@@ -254,25 +178,19 @@ void GofSectionParser::components() {
 
 // 6.5.7 component( )
 void GofSectionParser::component(std::size_t coded_vertices, Component& component) {
-  component.scale_idx = header_value(HeaderField::kScaleIdx, previous_.scale_idx,
-                                     {0, kMaxScaleIdx}, "scale_idx_delta", "R-GOF-10");
-  component.spatial_bits = header_value(HeaderField::kSpatialBits, previous_.spatial_bits,
-                                        {1, kMaxSpatialBits}, "spatial_bits_delta", "R-GOF-11");
-  component.temporal_bits =
-      header_value(HeaderField::kTemporalBits, previous_.temporal_bits, {1, kMaxTemporalBits},
-                   "temporal_bits_delta", "R-GOF-12");
+  parse_component_header(section_, models_.header, models_.header_mean, previous_, component);
   if (failed()) return;
   component.temporal_predictor =
-      truncated_unary(models_.temporal_predictor, "temporal_predictor");
+      section_.truncated_unary(models_.temporal_predictor, "temporal_predictor");
   component.spatial_predictor = static_cast<SpatialPredictor>(
-      truncated_unary(models_.spatial_predictor, "spatial_predictor"));
+      section_.truncated_unary(models_.spatial_predictor, "spatial_predictor"));
   previous_ = component;
 
   TemporalContext temporal(frame_mean_, component);
   component.temporal_residual.resize(gof_.num_frames);
   for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
     const std::int32_t value =
-        residual(models_.temporal, temporal.expected(f), "temporal_residual");
+        section_.residual(models_.temporal, temporal.expected(f), "temporal_residual");
     temporal.update(f, value);
     component.temporal_residual[f] = value;
   }
@@ -281,7 +199,7 @@ void GofSectionParser::component(std::size_t coded_vertices, Component& componen
   for (std::size_t i = 0; i < coded_vertices; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::int32_t value =
-          residual(models_.spatial, spatial.expected(c), "spatial_residual");
+          section_.residual(models_.spatial, spatial.expected(c), "spatial_residual");
       spatial.update(c, value);
       component.spatial_residual[c * coded_vertices + i] = value;
     }
@@ -290,13 +208,12 @@ void GofSectionParser::component(std::size_t coded_vertices, Component& componen
 
 // 6.5.1 gof_section( )
 void GofSectionParser::parse() {
-  if (!rd_.starts_legally()) fail("R-RNG-02", "gof_section");
   cluster_headers();
   if (!failed()) cluster_map();
   if (!failed()) seed_tracks();
   if (!failed()) component_counts();
   if (!failed()) components();
-  if (!failed() && !rd_.at_exact_end()) fail("R-RNG-01", "gof_section");
+  section_.finish();
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "decoder/parse_sequence_header.h"
 
+#include "decoder/unit_reader.h"
+
 namespace rlpc {
 namespace {
 
@@ -12,12 +14,13 @@ void expect_supported(BitReader& r, bool supported, const char* rule, const char
 }  // namespace
 
 // 6.3 sequence_header( )
-Result<SequenceHeader> parse_sequence_header(BitReader& r) {
+Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor) {
   constexpr std::int64_t kAny = 0xFFFFFFFE;
   SequenceHeader h;
   std::uint64_t at = r.bit_pos();
   h.profile_idc = r.u(8, "profile_idc");
-  expect_supported(r, h.profile_idc == kProfileBaseline, "R-HDR-01", "profile_idc", at);
+  expect_supported(r, h.profile_idc <= version_minor, "R-HDR-01", "profile_idc", at);
+  if (!r.error() && h.profile_idc != version_minor) return unsupported_minor_version();
   at = r.bit_pos();
   h.level_idc = r.u(8, "level_idc");
   expect_supported(r, h.level_idc >= 1 && h.level_idc <= kMaxLevelIdc, "R-HDR-02", "level_idc",

@@ -8,6 +8,6 @@
 namespace rlpc {
 
 // `r` covers exactly the payload of the unit.
-Result<SequenceHeader> parse_sequence_header(BitReader& r);
+Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ const Bytes kLegal{0x00, 0x01, 0x29, 0x0A, 0x00, 0x07, 0x53, 0x00,
 
 Result<SequenceHeader> parse(const Bytes& payload, std::uint64_t first_bit = 0) {
   BitReader r(payload, first_bit);
-  return parse_sequence_header(r);
+  return parse_sequence_header(r, 0);
 }
 
 // The elements as they stand in the syntax.
@@ -113,6 +113,13 @@ TEST(ParseSequenceHeader, OtherProfilesAndLevelsAreUnsupportedNotInvalid) {
     e.profile_idc = profile_idc;
     expect_error(e.payload(), Errc::kUnsupported, "R-HDR-01", "profile_idc");
   }
+  const Bytes baseline = Elements{}.payload();
+  BitReader r(baseline);
+  const auto later = parse_sequence_header(r, 1);
+  ASSERT_FALSE(later);
+  EXPECT_EQ(later.error().code, Errc::kUnsupported);
+  EXPECT_STREQ(later.error().rule, "R-STR-03");
+  EXPECT_EQ(later.error().bit_pos, 72U);
   for (const std::uint32_t level_idc : {0U, kMaxLevelIdc + 1, 255U}) {
     Elements e;
     e.level_idc = level_idc;

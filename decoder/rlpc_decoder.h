@@ -12,7 +12,7 @@
 //     use(decoder->triangles(), positions);
 //   }
 //
-// Nothing throws. Memory stays within one GOF and one frame; whatever a stream claims is
+// Nothing throws. Memory stays within one GOF and four frames; whatever a stream claims is
 // compared with its level and with DecodeLimits before memory is taken for it. A Decoder is
 // used by one thread at a time; different Decoders are independent. After an error the decoder
 // repeats it until seek() succeeds, for example with a frame past the damage.
@@ -32,6 +32,7 @@
 #include "common/trace.h"
 #include "decoder/byte_source.h"
 #include "decoder/float_position.h"
+#include "decoder/slice_cut.h"
 
 namespace rlpc {
 
@@ -47,6 +48,14 @@ struct DecoderOptions {
   DecodeLimits limits;
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
+  // With more than one, GOFs are parsed ahead and frames reconstructed side by side; positions
+  // and errors are the same. Each further thread may take memory for a GOF, of up to
+  // max_memory_bytes / threads, and for four frames.
+  std::uint32_t threads = 1;
+  // Decodes as if the slices that it leaves out were not in the stream, which saves their
+  // time: of them, CRC and indices alone are checked. The hashes of their GOFs do not fit, and
+  // are not compared. Nothing is left out of the Baseline profile.
+  SliceCut cut;
 };
 
 class Decoder {
@@ -76,6 +85,8 @@ class Decoder {
   Result<std::uint32_t> parse_rest();
   // Index of the frame that next_frame would decode.
   std::uint32_t position() const;
+  // Whether DecoderOptions::cut left slices out of a GOF so far.
+  bool was_cut() const;
 
  private:
   class Impl;

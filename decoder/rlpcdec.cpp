@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,9 @@ Examples
   rlpcdec walk.rlpc -o walk.pc2
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
   rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
+  rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
+                                        less detail in less time (Main profile): what decoding
+                                        gives after rlpcinfo --extract components=12,layers=5
 
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
@@ -112,16 +117,20 @@ class FrameCounter {
 
 void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames) {
   const rlpc::SequenceHeader& h = decoder.header();
+  const bool hashes_verified = o.decoder.verify_hashes && !decoder.was_cut();
   if (o.json) {
     const nlohmann::ordered_json json = {{"num_vertices", h.num_vertices},
                                          {"num_triangles", h.num_triangles},
                                          {"frames", frames},
-                                         {"hashes_verified", o.decoder.verify_hashes}};
+                                         {"hashes_verified", hashes_verified},
+                                         {"cut", decoder.was_cut()}};
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     std::fprintf(stderr, "%s: %u frames of %u vertices and %u triangles decoded%s\n",
                  o.input.c_str(), frames, h.num_vertices, h.num_triangles,
-                 o.decoder.verify_hashes ? ", hashes agree" : "");
+                 decoder.was_cut() ? ", cut; hashes of GOFs that are cut were not compared"
+                 : hashes_verified ? ", hashes agree"
+                                   : "");
   }
 }
 
@@ -132,6 +141,11 @@ int decode(const Options& o) {
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
   if (!decoder) return complain(o, decoder.error());
   const rlpc::SequenceHeader& header = decoder->header();
+  if (o.decoder.cut.cuts() && header.profile_idc != rlpc::kProfileMain) {
+    return complain(
+        o.input + ": a stream of the Baseline profile has no slices, and cannot be cut",
+        rlpc::kExitUnsupported);
+  }
   const auto span = parse_frames(o.frames, header.num_frames);
   if (!span) {
     return complain("--frames: expected A-B within 0-" + std::to_string(header.num_frames - 1) +
@@ -186,11 +200,20 @@ void add_options(CLI::App& app, Options& o) {
       ->excludes(output);
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
+  app.add_option("--max-components", o.decoder.cut.max_components,
+                 "Only the component groups with up to K trajectories of a GOF");
+  app.add_option("--max-layers", o.decoder.cut.max_layers,
+                 "Only the layer groups with up to L vertex layers, the coarsest")
+      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1));
   app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
                  "Give up on streams that need more, for example 500MB")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--max-vertices", o.decoder.limits.max_vertices,
                  "Give up on streams with more vertices");
+  app.add_option("--threads", o.decoder.threads,
+                 "Threads, each with memory for a GOF and four frames (default: one for each "
+                 "processor)")
+      ->check(CLI::Range(1, 256));
   app.add_flag("--json", o.json, "Report as JSON on standard output");
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
   app.footer(kExamples);
@@ -203,6 +226,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
   app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
   Options options;
+  options.decoder.threads = std::max(1U, std::thread::hardware_concurrency());
   add_options(app, options);
   try {
     app.parse(argc, argv);

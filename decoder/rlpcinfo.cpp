@@ -1,6 +1,7 @@
 // rlpcinfo: what is in an .rlpc stream.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cinttypes>
 #include <cstdio>
@@ -14,7 +15,9 @@
 #include <vector>
 
 #include "decoder/describe_error.h"
+#include "decoder/extract_verb.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/slice_listing.h"
 
 namespace {
 
@@ -22,17 +25,26 @@ constexpr const char* kExamples = R"(
 Examples
   rlpcinfo walk.rlpc              what is in it, and what takes how many bits
   rlpcinfo walk.rlpc --json       the same for machines
+  rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices (Main profile)
   rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
+  rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
+                                  the stream without slices of finer detail (Main profile): of
+                                  each GOF, as many component groups as have 12 trajectories or
+                                  fewer (0: bones and rest shape alone), and as many layer groups
+                                  as have 5 layers or fewer, the coarsest (but always the first).
+                                  Nothing is encoded anew; --gofs tells what there is to choose
 
-Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported; 4 not readable.)";
+Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
+cannot be cut; 4 input or output failed; 64 usage.)";
 
 // Parts of a stream, in the order of the table.
 struct Part {
   std::string_view name;
   std::vector<std::string_view> elements;
 };
-const std::array<Part, 11>& parts() {
-  static const std::array<Part, 11> kParts{{
+constexpr std::size_t kNumParts = 14;
+const std::array<Part, kNumParts>& parts() {
+  static const std::array<Part, kNumParts> kParts{{
       {"unit headers and CRCs",
        {"version_major", "version_minor", "ancillary_flag", "unit_type", "unit_size",
         "unit_crc"}},
@@ -40,19 +52,29 @@ const std::array<Part, 11>& parts() {
       {"connectivity", {"connectivity"}},
       {"vertex order", {"vertex_order"}},
       {"GOF headers", {"gof"}},
+      {"bones",
+       {"bone_parent_plus1", "bone_pivot", "rotation_flag", "origin_flag", "rotation_step_idx",
+        "rotation_order_minus1", "rotation_residual", "origin_step_idx", "origin_order",
+        "origin_residual"}},
+      {"influences",
+       {"extra_bone_flag", "extra_bone", "extra_bone_weight_minus1", "weight_residual"}},
+      {"rest positions", {"vertex_residual"}},
       {"clusters", {"lcf_flag", "seed_vertex", "cluster_predicted_flag", "cluster_idx"}},
       {"seed tracks", {"seed_residual"}},
       {"component headers",
-       {"num_components_delta", "scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta",
-        "temporal_predictor", "spatial_predictor"}},
-      {"temporal factors", {"temporal_residual"}},
+       {"num_components_delta", "num_group_components_minus1", "scale_idx_delta",
+        "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor", "temporal_weight",
+        "spatial_predictor"}},
+      {"temporal factors", {"temporal_residual", "trajectory_residual"}},
       {"spatial factors", {"spatial_residual"}},
       {"hashes, index, metadata", {"other"}},
   }};
   return kParts;
 }
 
-constexpr std::size_t kAncillaryPart = 10;
+constexpr std::size_t kRestPart = 7;
+constexpr std::size_t kSpatialPart = 12;
+constexpr std::size_t kAncillaryPart = 13;
 
 // Adds up the bits from each element to the next.
 class BitCounter final : public rlpc::Trace {
@@ -75,8 +97,11 @@ class BitCounter final : public rlpc::Trace {
     if (std::string_view(name) == "unit_type") {
       unit_part_ = ancillary_ ? kAncillaryPart : part_of_unit(value);
     }
+    if (std::string_view(name) == "component_group_idx") rest_positions_ = value == 0;
     const auto part = part_of_.find(name);
     open_part_ = part == part_of_.end() ? unit_part_ : part->second;
+    if (open_part_ == kRestPart && !rest_positions_) open_part_ = kSpatialPart;
+    listing_.element(name, value);
   }
   void close(std::uint64_t bit_pos) {
     if (bit_pos > last_) bits_[open_part_] += bit_pos - last_;
@@ -85,6 +110,7 @@ class BitCounter final : public rlpc::Trace {
 
   std::uint64_t bits(std::size_t part) const { return bits_[part]; }
   std::uint64_t num_units() const { return num_units_; }
+  const std::vector<rlpc::BoneGofEntry>& gofs() const { return listing_.gofs(); }
 
  private:
   static std::size_t part_of_unit(std::int64_t unit_type) {
@@ -96,6 +122,7 @@ class BitCounter final : public rlpc::Trace {
       case 3:
         return 3;
       case 4:
+      case 6:
         return 4;
       default:
         return kAncillaryPart;
@@ -104,18 +131,23 @@ class BitCounter final : public rlpc::Trace {
 
   bool print_;
   std::map<std::string_view, std::size_t> part_of_;
-  std::array<std::uint64_t, 11> bits_{};
+  std::array<std::uint64_t, kNumParts> bits_{};
   std::size_t open_part_ = 0;
   bool ancillary_ = false;
+  bool rest_positions_ = false;  // in a slice of them
   std::size_t unit_part_ = 0;
   std::uint64_t last_ = 0;
   std::uint64_t num_units_ = 0;
+  rlpc::SliceListing listing_;
 };
 
 struct Options {
   std::string input;
   bool json = false;
+  bool gofs = false;
   bool trace = false;
+  std::string extract;
+  std::string output;
 };
 
 int complain(const Options& o, const rlpc::Error& error) {
@@ -133,6 +165,43 @@ struct Summary {
 
 double bpvf(const Summary& s, double bits) {
   return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
+}
+
+// Component groups that have slices, with that of the rest positions.
+std::uint32_t num_groups(const rlpc::BoneGofEntry& gof) {
+  return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
+}
+
+nlohmann::ordered_json json_of(const rlpc::BoneGofEntry& gof) {
+  nlohmann::ordered_json slices = nlohmann::ordered_json::array();
+  for (const rlpc::SliceEntry& slice : gof.slices) {
+    slices.push_back({{"component_group_idx", slice.component_group_idx},
+                      {"layer_group_idx", slice.layer_group_idx},
+                      {"num_trajectories", slice.num_trajectories},
+                      {"bytes", slice.bytes}});
+  }
+  nlohmann::ordered_json components = nlohmann::ordered_json::array();
+  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({group + 1, rlpc::SliceCut::kAll});
+    components.push_back({{"components", cut.num_trajectories}, {"bytes", cut.bytes}});
+  }
+  nlohmann::ordered_json layers = nlohmann::ordered_json::array();
+  for (std::uint32_t group = 0; group < gof.layer_group_size.size(); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({rlpc::SliceCut::kAll, group + 1});
+    layers.push_back({{"layers", cut.num_layers}, {"bytes", cut.bytes}});
+  }
+  return {{"first_frame", gof.first_frame},
+          {"num_frames", gof.num_frames},
+          {"num_bones", gof.num_bones},
+          {"num_trajectories", gof.num_trajectories()},
+          {"num_component_groups", gof.num_component_groups},
+          {"prediction_idc", gof.prediction_idc},
+          {"num_layers", gof.num_layers},
+          {"layer_group_size", gof.layer_group_size},
+          {"bytes", gof.bytes},
+          {"slices", std::move(slices)},
+          {"cut_to_components", std::move(components)},
+          {"cut_to_layers", std::move(layers)}};
 }
 
 void print_json(const Summary& s) {
@@ -154,17 +223,73 @@ void print_json(const Summary& s) {
       {"bytes", s.bytes},
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
+  for (const rlpc::BoneGofEntry& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
   if (!s.metadata.empty()) json["metadata"] = nlohmann::json::parse(s.metadata, nullptr, false);
   std::cout << json.dump(2) << "\n";
+}
+
+// "12", or "3 to 12"
+template <class Count>
+std::string range_over(const std::vector<rlpc::BoneGofEntry>& gofs, const Count& count) {
+  const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
+  const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
+  const std::string high = std::to_string(count(*most));
+  return count(*least) == count(*most) ? high : std::to_string(count(*least)) + " to " + high;
+}
+
+void print_bones(const std::vector<rlpc::BoneGofEntry>& gofs) {
+  using Entry = rlpc::BoneGofEntry;
+  const auto over = [&](const auto& count) { return range_over(gofs, count); };
+  std::printf(
+      "  in a GOF: %s bones, %s trajectories in %s component groups, %s layers in %s "
+      "groups, %s slices\n",
+      over([](const Entry& g) { return g.num_bones; }).c_str(),
+      over([](const Entry& g) { return g.num_trajectories(); }).c_str(),
+      over([](const Entry& g) { return g.num_component_groups; }).c_str(),
+      over([](const Entry& g) { return g.num_layers; }).c_str(),
+      over([](const Entry& g) { return g.layer_group_size.size(); }).c_str(),
+      over([](const Entry& g) { return g.slices.size(); }).c_str());
+}
+
+// A line for each component group, a column for each layer group; and what stays of the GOF if
+// it is cut behind one of them.
+void print_slices(const rlpc::BoneGofEntry& gof) {
+  std::printf("\n  frames %u to %u: %u bones in %" PRIu64 " bytes; slices in bytes\n",
+              gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.num_bones, gof.bytes);
+  std::printf("  %-40s", "layers");
+  for (const std::uint32_t size : gof.layer_group_size) std::printf(" %9u", size);
+  std::printf(" %12s\n", "GOF to here");
+  auto slice = gof.slices.begin();
+  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({group + 1, rlpc::SliceCut::kAll});
+    const std::string name =
+        group == 0 ? "influences, rest positions"
+                   : "group " + std::to_string(group) +
+                         ", trajectories: " + std::to_string(slice->num_trajectories);
+    std::printf("  %-40s", name.c_str());
+    for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
+      const bool present = slice != gof.slices.end() && slice->component_group_idx == group;
+      std::printf(" %9s", present ? std::to_string(slice->bytes).c_str() : "");
+      if (present) ++slice;
+    }
+    std::printf(" %12" PRIu64 "\n", cut.bytes);
+  }
+  std::printf("  %-40s", "GOF to here");
+  for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
+    std::printf(" %9" PRIu64, gof.totals({rlpc::SliceCut::kAll, layers + 1}).bytes);
+  }
+  std::printf("\n");
 }
 
 void print_table(const Options& o, const Summary& s) {
   const rlpc::SequenceHeader& h = s.header;
   const double total = 8.0 * static_cast<double>(s.bytes);
-  std::printf("%s: Baseline profile, level %u\n", o.input.c_str(), h.level_idc);
+  std::printf("%s: %s profile, level %u\n", o.input.c_str(),
+              h.profile_idc == rlpc::kProfileMain ? "Main" : "Baseline", h.level_idc);
   std::printf("  %u vertices, %u triangles, %u frames at %u/%u per second, %u GOFs\n",
               h.num_vertices, h.num_triangles, h.num_frames, h.frame_rate.numerator,
               h.frame_rate.denominator, s.num_gofs);
+  if (!s.counter.gofs().empty()) print_bones(s.counter.gofs());
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
   std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
   for (std::size_t p = 0; p < parts().size(); ++p) {
@@ -175,6 +300,9 @@ void print_table(const Options& o, const Summary& s) {
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", s.metadata.c_str());
+  if (o.gofs) {
+    for (const rlpc::BoneGofEntry& gof : s.counter.gofs()) print_slices(gof);
+  }
 }
 
 int inform(const Options& o) {
@@ -207,14 +335,31 @@ int main(int argc, char** argv) try {
   Options options;
   app.add_option("input", options.input, "Stream to look at")->required();
   auto* json = app.add_flag("--json", options.json, "JSON on standard output");
-  app.add_flag("--trace", options.trace, "Print every syntax element")->excludes(json);
+  auto* gofs =
+      app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice (Main profile)");
+  auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
+  auto* extract = app.add_option("--extract", options.extract,
+                                 "components=K,layers=L: write the stream without some slices");
+  auto* output = app.add_option("-o,--output", options.output, "Where --extract writes to");
+  trace->excludes(json);
+  extract->needs(output)->excludes(gofs)->excludes(trace);
+  output->needs(extract);
   app.footer(kExamples);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
-  return inform(options);
+  if (extract->count() == 0) return inform(options);
+  const auto cut = rlpc::parse_slice_cut(options.extract);
+  if (!cut) {
+    std::cerr
+        << "rlpcinfo: --extract: expected components=K, layers=L (L is 1 or more) or both, "
+           "got `"
+        << options.extract << "`\n";
+    return rlpc::kExitUsage;
+  }
+  return rlpc::extract({options.input, options.output, *cut, options.json});
 } catch (const std::exception& error) {
   std::fprintf(stderr, "rlpcinfo: %s\n", error.what());  // out of memory, most likely
   return rlpc::kExitLimit;

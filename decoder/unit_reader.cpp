@@ -15,6 +15,10 @@ std::uint32_t big_endian(std::span<const std::uint8_t> b) {
 
 }  // namespace
 
+Error unsupported_minor_version() {
+  return {Errc::kUnsupported, "R-STR-03", "version_minor", 72};
+}
+
 // 6.1 stream( )
 Result<bool> UnitReader::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};
@@ -39,8 +43,8 @@ Result<bool> UnitReader::stream_header() {
   }
   if (bytes[8] != kVersionMajor)
     return Error{Errc::kUnsupported, "R-STR-02", "version_major", 64};
-  if (bytes[9] > kVersionMinor)
-    return Error{Errc::kUnsupported, "R-STR-03", "version_minor", 72};
+  if (bytes[9] > kVersionMinor) return unsupported_minor_version();
+  version_minor_ = bytes[9];
   return true;
 }
 

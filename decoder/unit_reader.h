@@ -26,6 +26,9 @@ struct UnitHeader {
   std::uint64_t end() const { return payload_offset() + size + kUnitCrcBytes; }
 };
 
+// R-STR-03: a minor version that is not known, or not that of the stream's profile.
+Error unsupported_minor_version();
+
 class UnitReader {
  public:
   UnitReader(std::unique_ptr<ByteSource> source, Trace* trace)
@@ -50,6 +53,7 @@ class UnitReader {
   // Traces the unit_crc of the last payload, which follows the payload's elements.
   void flush_trace();
 
+  std::uint32_t version_minor() const { return version_minor_; }
   std::uint64_t size() const { return source_->size(); }
   Trace* trace() const { return trace_; }
 
@@ -61,6 +65,7 @@ class UnitReader {
 
   std::unique_ptr<ByteSource> source_;
   Trace* trace_;
+  std::uint32_t version_minor_ = 0;
   std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
   std::optional<PendingCrc> pending_crc_;
 };

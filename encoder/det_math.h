@@ -32,6 +32,15 @@ inline double exact_exp2(int n) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
+// 2^x for |x| < 900; relative error below 1e-12.
+inline double det_exp2(double x) {
+  const auto whole = static_cast<int>(x < 0.0 ? x - 0.5 : x + 0.5);
+  const double t = (x - whole) * 0.69314718055994531;
+  double sum = 1.0;
+  for (int k = 13; k >= 1; --k) sum = 1.0 + sum * t / k;
+  return sum * exact_exp2(whole);
+}
+
 // Nearest integer, ties away from zero; |x| < 2^52.
 inline std::int64_t round_to_int(double x) {
   return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);

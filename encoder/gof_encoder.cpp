@@ -1,6 +1,3 @@
-#define EIGEN_DONT_VECTORIZE
-#define EIGEN_DONT_PARALLELIZE
-
 #include "encoder/gof_encoder.h"
 
 #include <Eigen/Cholesky>

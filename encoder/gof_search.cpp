@@ -46,7 +46,7 @@ GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
 
 GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
                      std::uint32_t first_frame, const EncoderSettings& settings,
-                     std::optional<GofChoice> choice)
+                     std::optional<GofChoice>& choice)
     : context_(context),
       frames_(frames),
       first_frame_(first_frame),
@@ -159,12 +159,27 @@ GofChoice GofSearch::choose(double step) {
   return cost(step, world) < cost(step, local) ? world : local;
 }
 
-GofTrial GofSearch::encode(double step, double analysis_step) {
+EncodedGof GofSearch::encode(double step, double analysis_step) {
   if (!choice_) choice_ = choose(step);
   if (!cached_ || cached_->step != analysis_step) {
     cached_ = Cached{analysis_step, analyse(analysis_step, *choice_)};
   }
-  return try_gof(context_, frames_, cached_->analysis, coding_settings(step));
+  EncodedGof encoded;
+  const Gof gof = code_gof(cached_->analysis, coding_settings(step));
+  encoded.units.push_back({UnitType::kGof, write_gof(gof, context_.header, context_.topology)});
+  const auto recon = std::make_shared<GofRecon>(context_.header, context_.topology, gof);
+  encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
+    recon->frame(f, positions);
+  };
+  encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
+  encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
+  for (const Cluster& cluster : gof.clusters) {
+    encoded.components += static_cast<std::uint32_t>(cluster.components.size());
+    for (const Component& component : cluster.components) {
+      encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
+    }
+  }
+  return encoded;
 }
 
 }  // namespace rlpc

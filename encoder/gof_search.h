@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "encoder/gof_coder.h"
 #include "encoder/gof_encoder.h"
 #include "encoder/rlpc_encoder.h"
 
@@ -27,19 +28,17 @@ struct GofChoice {
 };
 
 // Encodes one GOF at varying steps. The last analysis is kept, and serves again for its step.
-class GofSearch {
+class GofSearch : public GofCoder {
  public:
-  // context, frames and settings are kept by reference. choice: that of an earlier search of
-  // the same GOF, or none.
+  // All but the number are kept by reference. choice: that of an earlier search of the same
+  // GOF, or none; the first encode() makes it.
   GofSearch(const EncodingContext& context, const GofFrames& frames, std::uint32_t first_frame,
-            const EncoderSettings& settings, std::optional<GofChoice> choice);
+            const EncoderSettings& settings, std::optional<GofChoice>& choice);
 
   // The GOF at the settings' own quantisers (qu, qc, qdelta) or, without them, with the
   // quantiser step that is given, in grid steps.
   // analysis_step: the step that the analysis is made for, near it.
-  GofTrial encode(double step, double analysis_step);
-  // Made by the first encode().
-  std::optional<GofChoice> choice() const { return choice_; }
+  EncodedGof encode(double step, double analysis_step) override;
 
  private:
   struct Cached {
@@ -59,7 +58,7 @@ class GofSearch {
   std::uint32_t first_frame_;
   const EncoderSettings& settings_;
   MotionClusters motion_;
-  std::optional<GofChoice> choice_;
+  std::optional<GofChoice>& choice_;
   std::optional<Cached> cached_;
 };
 

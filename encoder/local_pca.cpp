@@ -1,13 +1,11 @@
-// The heavy products are loops over independent outputs, so that vectorisation changes no sum.
-#define EIGEN_DONT_VECTORIZE
-#define EIGEN_DONT_PARALLELIZE
-
 #include "encoder/local_pca.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "encoder/matrix_products.h"
 
 namespace rlpc {
 namespace {
@@ -19,21 +17,12 @@ constexpr double kRankTolerance = 1e-13;
 // Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
 void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
 
-// rows^T rows of a row-major matrix; each output is summed over the rows in order.
-Square gram(const double* rows, std::size_t num_rows, std::size_t width) {
-  std::vector<double> g(width * width, 0.0);
-  for (std::size_t r = 0; r < num_rows; ++r) {
-    const double* row = rows + r * width;
-    for (std::size_t i = 0; i < width; ++i) {
-      const double x = row[i];
-      double* out = &g[i * width];
-      for (std::size_t j = 0; j <= i; ++j) out[j] += x * row[j];
-    }
-  }
-  Square result(static_cast<Eigen::Index>(width), static_cast<Eigen::Index>(width));
-  for (std::size_t i = 0; i < width; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      result(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = g[i * width + j];
+Square symmetric(const std::vector<double>& lower, std::size_t width) {
+  const auto n = static_cast<Eigen::Index>(width);
+  Square result(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      result(i, j) = lower[static_cast<std::size_t>(i) * width + static_cast<std::size_t>(j)];
     }
   }
   return result;
@@ -48,24 +37,18 @@ std::vector<double> transpose(const TrajectoryMatrix& m) {
 }
 
 // out[k][row] = sum over i of rows[row][i] * vectors[k][i]
-std::vector<std::vector<double>> project(const double* rows, std::size_t num_rows,
-                                         std::size_t width,
+std::vector<std::vector<double>> project(const std::vector<double>& rows, std::size_t width,
                                          const std::vector<std::vector<double>>& vectors) {
   const std::size_t count = vectors.size();
-  std::vector<double> by_element(width * count);  // [width][count]: outputs lie side by side
+  std::vector<double> by_element(width * count);
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t i = 0; i < width; ++i) by_element[i * count + k] = vectors[k][i];
   }
+  const std::vector<double> products = matrix_product(rows, width, by_element, count);
+  const std::size_t num_rows = rows.size() / width;
   std::vector<std::vector<double>> out(count, std::vector<double>(num_rows));
-  std::vector<double> sums(count);
-  for (std::size_t r = 0; r < num_rows; ++r) {
-    std::fill(sums.begin(), sums.end(), 0.0);
-    for (std::size_t i = 0; i < width; ++i) {
-      const double x = rows[r * width + i];
-      const double* v = by_element.data() + i * count;
-      for (std::size_t k = 0; k < count; ++k) sums[k] += x * v[k];
-    }
-    for (std::size_t k = 0; k < count; ++k) out[k][r] = sums[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t r = 0; r < num_rows; ++r) out[k][r] = products[r * count + k];
   }
   return out;
 }
@@ -92,8 +75,8 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
 
   const bool by_frames = matrix.num_frames <= matrix.num_values;
   const std::vector<double> transposed = by_frames ? std::vector<double>{} : transpose(matrix);
-  const Square g = by_frames ? gram(matrix.a.data(), matrix.num_values, matrix.num_frames)
-                             : gram(transposed.data(), matrix.num_frames, matrix.num_values);
+  const std::size_t width = by_frames ? matrix.num_frames : matrix.num_values;
+  const Square g = symmetric(gram_matrix(by_frames ? matrix.a : transposed, width), width);
   const Eigen::SelfAdjointEigenSolver<Square> solver(g);
   const Eigen::Index size = g.rows();
   // What rounding leaves of a matrix of lower rank is no component.
@@ -110,12 +93,12 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
     vectors.push_back(std::move(v));
   }
   if (by_frames) {
-    pc.spatial = project(matrix.a.data(), matrix.num_values, matrix.num_frames, vectors);
+    pc.spatial = project(matrix.a, matrix.num_frames, vectors);
     pc.temporal = std::move(vectors);
     return pc;
   }
   // Eigenvectors are spatial here: move sigma from the temporal to the spatial factor.
-  pc.temporal = project(transposed.data(), matrix.num_frames, matrix.num_values, vectors);
+  pc.temporal = project(transposed, matrix.num_values, vectors);
   pc.spatial = std::move(vectors);
   for (std::size_t l = 0; l < pc.spatial.size(); ++l) {
     double norm2 = 0.0;

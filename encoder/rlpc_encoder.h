@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "common/bone_gof.h"
 #include "common/mesh.h"
 #include "common/sequence_header.h"
 #include "encoder/frame_source.h"
@@ -32,6 +33,22 @@ enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
 
 // How hard the encoder searches. The syntax is the same.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
+
+// Which tools a stream uses; Main needs decoders of version 1.1.
+enum class Profile : std::uint8_t { kBaseline, kMain };
+
+// Tools of the Main profile; each can be left out, for comparison.
+struct MainTools {
+  Prediction prediction = Prediction::kLayers;
+  std::uint32_t influences = 0;  // most bones of a vertex, 1 to 8; 0: chosen
+  bool geometry_weights = true;  // in the prediction by layers
+  bool outer_ring = true;        // likewise
+  bool layer_steps = true;       // finer steps in coarser layers
+  bool temporal_weights = true;  // transmitted ones, beside the four fixed predictors
+  bool cobra_steps = false;      // of basis vectors: those of Vasa and Skala 2009, (18), (19)
+  std::uint32_t component_groups = 0;  // slices: 0 for the default
+  std::uint32_t layer_groups = 0;
+};
 
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
@@ -50,9 +67,10 @@ struct Target {
 struct EncoderSettings {
   static constexpr std::uint32_t kWholeSequence = std::numeric_limits<std::uint32_t>::max();
 
+  Profile profile = Profile::kMain;
   Target target;
   Preset preset = Preset::kMedium;
-  std::uint32_t clusters = 0;  // N of the paper; 0: chosen for each GOF
+  std::uint32_t clusters = 0;  // N of the paper, or bones; 0: chosen for each GOF
   std::uint32_t components =
       0;            // L of the paper, per cluster; 0: chosen by rate and distortion
   bool rdo = true;  // distribute components over the clusters by rate and distortion
@@ -60,6 +78,7 @@ struct EncoderSettings {
   int qu = 0;  // bits of eigenshapes, coefficients and seed positions relative to
   int qc = 0;  // their ranges, as in the paper; 0: steps of equal distortion
   int qdelta = 0;
+  MainTools tools;
   FrameMode frame_mode = FrameMode::kAuto;
   SeedMode seed_mode = SeedMode::kAuto;
   std::uint32_t gof_frames = 0;  // longest GOF; 0: the default; kWholeSequence: one GOF

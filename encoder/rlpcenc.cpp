@@ -46,7 +46,6 @@ struct Options {
   std::string gof = "128";
   std::string metadata_path;
   std::string order_map;
-  std::string profile = "baseline";
   double kg = 0.0;
   double bpvf = 0.0;
   double max_error = 0.0;
@@ -133,6 +132,48 @@ void add_method_options(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
+void add_main_options(CLI::App& app, Options& o) {
+  using rlpc::Prediction;
+  const std::string tools = "Tools of the Main profile";
+  rlpc::MainTools& t = o.settings.tools;
+  app.add_option("--bones", o.settings.clusters, "Bones per GOF (default: chosen)")
+      ->check(CLI::Range(1, 1024))
+      ->excludes("--clusters")
+      ->group(tools);
+  app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
+      ->check(CLI::Range(1, 8))
+      ->group(tools);
+  add_choice<Prediction>(
+      app, "--prediction", t.prediction, "layers",
+      {{"none", Prediction::kNone},
+       {"parallelogram", Prediction::kParallelogram},
+       {"parallelograms", Prediction::kParallelograms},
+       {"layers", Prediction::kLayers}},
+      "Of spatial factors: none, parallelogram, parallelograms (all), layers")
+      ->group(tools);
+  add_choice<bool>(app, "--basis-steps", t.cobra_steps, "equal",
+                   {{"equal", false}, {"cobra", true}},
+                   "Of temporal factors: equal distortion, or as in COBRA")
+      ->group(tools);
+  app.add_flag("!--no-geometry-weights", t.geometry_weights, "Plain means of rings")
+      ->group(tools);
+  app.add_flag("!--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
+      ->group(tools);
+  app.add_flag("!--no-layer-steps", t.layer_steps, "The same steps in all layers")
+      ->group(tools);
+  app.add_flag("!--no-temporal-weights", t.temporal_weights,
+               "Only the fixed predictors of temporal factors")
+      ->group(tools);
+  app.add_option("--component-groups", t.component_groups,
+                 "Groups of trajectories that a stream can be cut at (default: by size)")
+      ->check(CLI::Range(1, 255))
+      ->group(tools);
+  app.add_option("--layer-groups", t.layer_groups,
+                 "Groups of layers that a stream can be cut at (default: by size)")
+      ->check(CLI::Range(1, 255))
+      ->group(tools);
+}
+
 void add_extra_options(CLI::App& app, Options& o) {
   using rlpc::HashMode;
   const std::string extras = "What else goes in or out";
@@ -158,11 +199,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
   app.add_option("--fps", o.fps,
                  "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
-  app.add_option("--profile", o.profile, "Profile of the stream")
-      ->check(CLI::IsMember({"baseline"}))
-      ->capture_default_str();
+  add_choice<rlpc::Profile>(
+      app, "--profile", o.settings.profile, "main",
+      {{"main", rlpc::Profile::kMain}, {"baseline", rlpc::Profile::kBaseline}},
+      "Profile of the stream: main, baseline");
   add_quality_options(app, o);
   add_method_options(app, o);
+  add_main_options(app, o);
   add_extra_options(app, o);
   app.footer(kExamples);
 }

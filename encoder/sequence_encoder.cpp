@@ -4,9 +4,11 @@
 #include <optional>
 #include <utility>
 
+#include "common/coded_mesh.h"
 #include "common/crc32.h"
-#include "common/gof_recon.h"
+#include "common/layers.h"
 #include "common/topology.h"
+#include "encoder/bone_gof_search.h"
 #include "encoder/det_math.h"
 #include "encoder/gof_search.h"
 #include "encoder/grid_choice.h"
@@ -64,19 +66,21 @@ class SequenceEncoder {
  private:
   struct GofState {
     GofFrames frames;
-    std::unique_ptr<GofSearch> search;
-    std::optional<GofChoice> choice;
+    std::unique_ptr<GofCoder> coder;
+    std::optional<GofChoice> choice;  // of the Baseline profile
+    std::optional<RigChoice> rig;     // of the Main profile
   };
 
   std::optional<InputError> prepare();
   std::optional<InputError> set_level();
-  std::optional<InputError> check_level(const GofSpan& span, const GofTrial& encoded) const;
+  std::optional<InputError> check_level(const GofSpan& span, const EncodedGof& encoded) const;
+  void make_coder(std::size_t g);
   std::optional<InputError> load(std::size_t g);
   InputResult<SequenceTrial> encode_at(double step, double analysis_step);
   std::optional<InputError> encode_gof(std::size_t g, double step, double analysis_step,
                                        SequenceTrial& trial, MetricsAccumulator& metrics);
-  std::optional<InputError> measure(const GofSpan& span, const Gof& gof, SequenceTrial& trial,
-                                    MetricsAccumulator& metrics);
+  std::optional<InputError> measure(const GofSpan& span, const EncodedGof& encoded,
+                                    SequenceTrial& trial, MetricsAccumulator& metrics);
   double measured(const SequenceTrial& trial) const;
   std::uint64_t total_bytes(const SequenceTrial& trial) const;
   InputResult<EncodeReport> write(const SequenceTrial& trial, double step,
@@ -89,6 +93,9 @@ class SequenceEncoder {
   ConnectivityCode connectivity_;
   Topology topology_;
   std::optional<EncodingContext> context_;
+  VertexLayers layers_;  // of the Main profile
+  std::optional<CodedMesh> mesh_;
+  std::optional<BoneContext> bone_context_;
   double rms_spread_ = 0.0;  // grid steps, per coordinate
   std::vector<GofSpan> spans_;
   std::vector<GofState> gofs_;
@@ -98,6 +105,7 @@ class SequenceEncoder {
 };
 
 std::optional<InputError> SequenceEncoder::prepare() {
+  header_.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
   header_.num_vertices = source_.num_vertices();
   header_.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header_.num_frames = source_.num_frames();
@@ -128,7 +136,12 @@ std::optional<InputError> SequenceEncoder::prepare() {
   connectivity_ = write_connectivity(header_.num_vertices, source_.triangles());
   topology_ = make_topology(header_.num_vertices, connectivity_.triangles);
   context_.emplace(EncodingContext{header_, topology_, connectivity_.triangles});
-  lead_.push_back(write_stream_header());
+  if (header_.profile_idc == kProfileMain) {
+    layers_ = make_layers(header_.num_vertices, connectivity_.triangles);
+    mesh_.emplace(settings_.tools.prediction, topology_, layers_);
+    bone_context_.emplace(BoneContext{*mesh_, connectivity_.triangles, header_.position_bits});
+  }
+  lead_.push_back(write_stream_header(header_.profile_idc));
   lead_.push_back(write_unit(UnitType::kSequenceHeader, write_sequence_header(header_)));
   if (!settings_.metadata.empty()) {
     lead_.push_back(write_unit(UnitType::kMetadata, write_metadata(settings_.metadata)));
@@ -169,7 +182,7 @@ std::optional<InputError> SequenceEncoder::set_level() {
 // The frames of a GOF, in decoded vertex order and grid units.
 std::optional<InputError> SequenceEncoder::load(std::size_t g) {
   GofState& state = gofs_[g];
-  if (state.search) return std::nullopt;
+  if (state.coder) return std::nullopt;
   const std::uint32_t n = header_.num_vertices;
   state.frames = {n, spans_[g].count,
                   std::vector<double>(std::size_t{n} * spans_[g].count * 3)};
@@ -185,44 +198,50 @@ std::optional<InputError> SequenceEncoder::load(std::size_t g) {
       }
     }
   }
-  state.search = std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first,
-                                             settings_, state.choice);
+  make_coder(g);
   return std::nullopt;
+}
+
+// What an earlier coder of the same GOF has chosen holds.
+void SequenceEncoder::make_coder(std::size_t g) {
+  GofState& state = gofs_[g];
+  if (header_.profile_idc == kProfileMain) {
+    state.coder = std::make_unique<BoneGofSearch>(*bone_context_, state.frames, spans_[g].first,
+                                                  settings_, state.rig);
+  } else {
+    state.coder = std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first,
+                                              settings_, state.choice);
+  }
 }
 
 // What a level bounds of a coded GOF, and set_level( ) could not foresee.
 std::optional<InputError> SequenceEncoder::check_level(const GofSpan& span,
-                                                       const GofTrial& encoded) const {
-  const Gof& gof = encoded.gof;
-  std::uint64_t factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
-  for (const Cluster& cluster : gof.clusters) {
-    for (const Component& component : cluster.components) {
-      factors += component.spatial_residual.size() + gof.num_frames;
-    }
-  }
-  if (factors <= header_.level().max_gof_factors &&
-      encoded.payload.size() <= header_.level().max_unit_bytes) {
+                                                       const EncodedGof& encoded) const {
+  std::size_t bytes = 0;  // of the largest unit
+  for (const auto& unit : encoded.units) bytes = std::max(bytes, unit.payload.size());
+  if (encoded.num_factors <= header_.level().max_gof_factors &&
+      bytes <= header_.level().max_unit_bytes) {
     return std::nullopt;
   }
   return InputError{
-      "a GOF of " + std::to_string(span.count) + " frames has " + std::to_string(factors) +
-      " factors and " + std::to_string(encoded.payload.size()) + " bytes, more than level " +
-      std::to_string(header_.level_idc) +
+      "a GOF of " + std::to_string(span.count) + " frames has " +
+      std::to_string(encoded.num_factors) + " factors and units of " + std::to_string(bytes) +
+      " bytes, more than level " + std::to_string(header_.level_idc) +
       " allows (specification, Annex B); use a smaller --gof or fewer --components"};
 }
 
 // Decodes what was written, as a decoder would, and compares with the input.
-std::optional<InputError> SequenceEncoder::measure(const GofSpan& span, const Gof& gof,
+std::optional<InputError> SequenceEncoder::measure(const GofSpan& span,
+                                                   const EncodedGof& encoded,
                                                    SequenceTrial& trial,
                                                    MetricsAccumulator& metrics) {
-  const GofRecon recon(header_, topology_, gof);
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
   std::vector<std::int32_t> positions(values);
   std::vector<float> original(values);
   std::vector<float> decoded(values);
   std::vector<std::uint32_t> crc;
   for (std::uint32_t f = 0; f < span.count; ++f) {
-    recon.frame(f, positions);
+    encoded.frame(f, positions);
     if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
       crc.push_back(crc32_of_positions(positions));
     } else {
@@ -252,21 +271,23 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
                                                       SequenceTrial& trial,
                                                       MetricsAccumulator& metrics) {
   if (auto error = load(g)) return error;
-  const GofTrial encoded = gofs_[g].search->encode(step, analysis_step);
   GofState& state = gofs_[g];
-  state.choice = state.search->choice();
+  const EncodedGof encoded = state.coder->encode(step, analysis_step);
   if (!keep_gofs_) {
-    state.search.reset();
+    state.coder.reset();
     state.frames = {};
   }
   if (auto error = check_level(spans_[g], encoded)) return error;
-  trial.gof_units.push_back(write_unit(UnitType::kGof, encoded.payload));
-  trial.gof_bytes += trial.gof_units.back().size();
-  trial.clusters += static_cast<std::uint32_t>(encoded.gof.clusters.size());
-  for (const Cluster& cluster : encoded.gof.clusters) {
-    trial.components += static_cast<std::uint32_t>(cluster.components.size());
+  Bytes units;
+  for (const auto& unit : encoded.units) {
+    const Bytes bytes = write_unit(unit.type, unit.payload);
+    units.insert(units.end(), bytes.begin(), bytes.end());
   }
-  return measure(spans_[g], encoded.gof, trial, metrics);
+  trial.gof_bytes += units.size();
+  trial.gof_units.push_back(std::move(units));
+  trial.clusters += encoded.clusters;
+  trial.components += encoded.components;
+  return measure(spans_[g], encoded, trial, metrics);
 }
 
 InputResult<SequenceTrial> SequenceEncoder::encode_at(double step, double analysis_step) {
@@ -358,7 +379,8 @@ InputResult<EncodeReport> SequenceEncoder::write(const SequenceTrial& trial, dou
 InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
   if (auto error = prepare()) return *error;
   const Target& target = settings_.target;
-  TargetSearch search(target, rms_spread_, exact_exp2(-header_.grid.log2_step));
+  const double step_of_error = header_.profile_idc == kProfileMain ? 9.0 : 6.0;
+  TargetSearch search(target, rms_spread_, exact_exp2(-header_.grid.log2_step), step_of_error);
   std::optional<SequenceTrial> best;
   double best_step = search.step();
   for (;;) {

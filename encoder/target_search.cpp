@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "encoder/det_math.h"
+
 namespace rlpc {
 namespace {
 
@@ -11,14 +13,18 @@ constexpr double kTolerance = 0.02;     // of the target, below it
 constexpr double kFreezeWithin = 0.35;  // of the target
 constexpr double kFinestStep = 0.5;     // grid steps
 constexpr double kCoarsestStep = 0x1p24;
+constexpr double kFarthest = 50.0;  // from one step to the next, as a factor
+// Slopes that are believed, relative to the usual one.
+constexpr double kFlattest = 0.5;
+constexpr double kSteepest = 2.0;
 
 }  // namespace
 
-TargetSearch::TargetSearch(const Target& target, double spread, double steps_per_unit)
-    : target_(target) {
-  // Typical ratios of step to error; the search corrects them.
+TargetSearch::TargetSearch(const Target& target, double spread, double steps_per_unit,
+                           double step_of_error)
+    : target_(target), slope_(usual_slope()) {
   double first = 64.0;
-  if (target.kind == Target::kKg) first = 6.0 * spread * target.value / 100.0;
+  if (target.kind == Target::kKg) first = step_of_error * spread * target.value / 100.0;
   if (target.kind == Target::kMaxError) first = target.value * steps_per_unit;
   if (target.kind == Target::kBpvf) first = 0.02 * spread / target.value;
   step_ = std::clamp(first, kFinestStep, kCoarsestStep);
@@ -75,10 +81,18 @@ void TargetSearch::choose_next(double measured) {
                              : fine_ + (coarse_ - fine_) * std::clamp(share, 0.02, 0.98);
     return;
   }
-  double factor = measured > 0.0 ? target / measured : 16.0;
-  if (target_.kind == Target::kBpvf) factor = 1.0 / (factor * factor);
-  // Past the target by a little, so that it is bracketed.
-  factor = std::clamp(factor * (factor < 1.0 ? 0.97 : 1.02), 0.02, 50.0);
+  // Errors and rates are nearly powers of the step.
+  constexpr double kBeyond = 1e9;  // more, or less, does not matter
+  const double value = std::clamp(measured, target / kBeyond, target * kBeyond);
+  if (last_value_ > 0.0 && value != last_value_ && step_ != previous_step_) {
+    const double rise = det_log2(value / last_value_) / det_log2(step_ / previous_step_);
+    slope_ = std::clamp(rise / usual_slope(), kFlattest, kSteepest) * usual_slope();
+  }
+  last_value_ = value;
+  previous_step_ = step_;
+  const double aim = target * (1.0 - 0.4 * kTolerance);
+  const double factor =
+      std::clamp(det_exp2(det_log2(aim / value) / slope_), 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // as fine or as coarse as it goes
   step_ = next;

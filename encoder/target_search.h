@@ -9,8 +9,10 @@ namespace rlpc {
 class TargetSearch {
  public:
   // spread: root mean square of the coordinates about their frame's mean; steps_per_unit: of
-  // the grid. Steps are in grid steps.
-  TargetSearch(const Target& target, double spread, double steps_per_unit);
+  // the grid. step_of_error: typical ratio of the step to the error of a coordinate, to start
+  // with. Steps are in grid steps.
+  TargetSearch(const Target& target, double spread, double steps_per_unit,
+               double step_of_error = 6.0);
 
   double step() const { return step_; }
   // The step that the analysis is made for. Close to the target it stays as it is, as the
@@ -24,6 +26,7 @@ class TargetSearch {
   bool met() const { return target_.kind == Target::kNone || met_; }
 
  private:
+  double usual_slope() const { return target_.kind == Target::kBpvf ? -0.5 : 0.85; }
   void choose_next(double measured);
 
   Target target_;
@@ -35,6 +38,9 @@ class TargetSearch {
   double fine_value_ = 0.0;
   double coarse_ = 0.0;  // smallest step known to be too coarse
   double coarse_value_ = 0.0;
+  double slope_;             // of log measured against log step
+  double last_value_ = 0.0;  // measured; 0: none
+  double previous_step_ = 1.0;
   int trials_ = 0;
   bool met_ = false;
   bool finished_ = false;

@@ -7,6 +7,7 @@
 #include "common/int_math.h"
 #include "common/range_encoder.h"
 #include "encoder/write_residual.h"
+#include "encoder/write_track.h"
 
 namespace rlpc {
 namespace {
@@ -99,14 +100,7 @@ void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uin
 void GofSectionWriter::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
   for (const SeedTrack& track : gof_.seed_tracks) {
-    SeedContext context(frame_mean_);
-    for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t residual = track.residual[f][c];
-        write_residual(re_, models_.seed, context.expected(f, c), residual);
-        context.update(f, c, residual);
-      }
-    }
+    write_track(re_, models_.seed, frame_mean_, track.residual);
   }
 }
 

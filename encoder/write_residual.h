@@ -6,14 +6,15 @@
 #include <cstdint>
 
 #include "common/int_math.h"
-#include "common/range_encoder.h"
 #include "common/residual_models.h"
 
 namespace rlpc {
 
-// 9.5.1 ae_residual( models, expected ); |value| <= kMaxResidual
-inline void write_residual(RangeEncoder& re, ResidualModels& models, std::uint32_t expected,
-                           std::int32_t value) {
+// 9.5.1 ae_residual( models, expected ); |value| <= kMaxResidual. Coder: RangeEncoder, or what
+// only counts (encoder/bit_cost.h).
+template <class Coder>
+void write_residual(Coder& re, ResidualModels& models, std::uint32_t expected,
+                    std::int32_t value) {
   const auto magnitude = static_cast<std::uint32_t>(value < 0 ? -value : value);
   assert(magnitude <= kMaxResidual);
   const ResidualContext ctx = residual_context(expected);

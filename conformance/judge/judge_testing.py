@@ -46,7 +46,7 @@ def encode(folder, name, frames, *settings):
     mesh, cache = cut_input(folder, name, frames)
     stream = folder / "stream.rlpc"
     subprocess.run([Tools.folder / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q",
-                    "--preset", "fast", *settings], check=True, timeout=60)
+                    "--profile", "baseline", "--preset", "fast", *settings], check=True, timeout=60)
     return stream.read_bytes()
 
 

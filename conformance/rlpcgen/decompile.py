@@ -12,13 +12,15 @@ import specdec  # found through stream_writer
 # Not 0 where nothing is said, so that a 0 has to be said.
 _NOT_ZERO = set(recipe_source.DEFAULTS) | {
     "first_frame", "num_gof_frames_minus1", "num_index_gofs_minus1", "first_gof_offset",
-    "index_gof_frames_minus1", "index_gof_bytes", "index_distance"}
+    "index_gof_frames_minus1", "index_gof_bytes", "index_distance", "component_group_idx",
+    "layer_group_idx", "bone_pivot", "extra_bone"}
 _GATE_FLAGS = {"boundary_flag": "B", "close_flag": "C", "new_vertex_flag": "A",
                "glue_previous_flag": "P", "glue_next_flag": "N"}
 _INFERRED = ("ancillary_flag", "unit_type", "unit_size", "unit_crc", "position_crc", "version_major",
              "version_minor")
 _COMPONENT = ("scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor",
-              "spatial_predictor", "temporal_residual", "spatial_residual")
+              "spatial_predictor", "temporal_residual", "spatial_residual", "temporal_weight",
+              "trajectory_residual")
 
 
 class _Recorder:

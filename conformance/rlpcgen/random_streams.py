@@ -279,27 +279,30 @@ def _join(plan, ns, target):
 
 
 class RandomBuilder:
-    """Builds random streams."""
+    """Builds random streams of a profile: `plan`, `source` and `sequence` are its classes."""
 
-    def __init__(self, program):
+    def __init__(self, program, plan=None, source=None, sequence=None):
         self._code = stream_writer.writing_code(program)
+        self._plan_class = plan or Plan
+        self._source_class = source or RandomSource
+        self._sequence_class = sequence or Sequence
 
     def build(self, seed):
         """(bytes, StreamWriter)"""
-        plan = Plan(Numbers(seed))
+        plan = self._plan_class(Numbers(seed))
         plan.urgent_degree = plan.numbers.between(0, 15)
         operations = self._plan_connectivity(plan)
-        source = RandomSource(plan)
+        source = self._source_class(plan)
         writer = stream_writer.StreamWriter(self._code, source, strict=True)
-        writer.put_bytes(recipe_source.SIGNATURE + bytes([1, 0]))
+        writer.stream_header(recipe_source.SIGNATURE, [1, self._sequence_class.version_minor])
         source.gates(lambda gate: operations.pop(0), writer.ns)
-        _Sequence(plan, writer).write()
+        self._sequence_class(plan, writer).write()
         return bytes(writer.data), writer
 
     def _plan_connectivity(self, plan):
         """Runs the connectivity once, to know the number of vertices it needs."""
         room = plan.numbers.between(3, 40) if plan.reuse else 3 * plan.triangles + 3
-        source = RandomSource(plan)
+        source = self._source_class(plan)
         writer = stream_writer.StreamWriter(self._code, source, strict=True)
         writer.ns.update(NumVertices=room, NumTriangles=plan.triangles + plan.degenerate)
         operations = []
@@ -318,8 +321,10 @@ class RandomBuilder:
         return operations
 
 
-class _Sequence:
+class Sequence:
     """The units of a random stream, one after the other."""
+
+    version_minor = 0
 
     def __init__(self, plan, writer):
         self._n = plan.numbers
@@ -344,6 +349,9 @@ class _Sequence:
             unknown = bytes(self._n.between(0, 255) for _ in range(size))
             self._unit(128 + self._n.pick([0, 4, 60, 127]), unknown)
 
+    def _gof(self):
+        self._unit("GOF")
+
     def write(self):
         self._unit("SEQUENCE_HEADER")
         self._skippable()
@@ -354,7 +362,7 @@ class _Sequence:
             self._writer.ns["HasVertexOrder"] = 1
         self._skippable()
         while self._writer.ns["NumParsedFrames"] < self._writer.ns["NumFrames"]:
-            self._unit("GOF")
+            self._gof()
             self._writer.decode_gof()
             if self._n.chance(self._plan.hash_percent):
                 self._unit("GOF_HASH")

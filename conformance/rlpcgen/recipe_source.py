@@ -10,7 +10,8 @@ SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
 # What an element is when the recipe does not say; 0 for those that are not here.
 DEFAULTS = {"profile_idc": 0, "level_idc": 1, "frame_rate_numerator_minus1": 29,
-            "position_bits": 16, "urgent_degree": 5}
+            "position_bits": 16, "urgent_degree": 5, "layer_step_minus1": 15,
+            "temporal_weight": 256}
 
 # Names of a recipe for absolute values: pseudo name -> (element, variable it differs from).
 _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
@@ -189,12 +190,31 @@ def inferred(writer, name, indices):
     if name == "position_crc":
         hashes = writer.hash_of_gof(ns["per_frame_flag"])
         return hashes[indices[0]] if indices[0] < len(hashes) else 0
+    if name in _SLICES:
+        return _SLICES[name](ns)
     if name in writer.inferred:
         found = writer.inferred[name]
         if isinstance(found, list):
             return found.pop(0) if found else 0
         return found
     return DEFAULTS.get(name, 0)
+
+
+def _next_group(ns):
+    """The component group of the next slice, if none is left out: all layer groups of one first."""
+    group = ns["LastGroup"]
+    return group + (ns["SliceLayers"][group] > ns["num_layer_groups_minus1"])
+
+
+def _next_layers(ns):
+    group = ns["component_group_idx"]
+    return ns["SliceLayers"][group] if group < len(ns["SliceLayers"]) else 0
+
+
+_SLICES = {"component_group_idx": _next_group, "layer_group_idx": _next_layers,
+           "bone_pivot": lambda ns: 1 << (ns["position_bits"] + 4),
+           "extra_bone": lambda ns: next((b for b in range(ns["NumBones"])
+                                          if ns["IsNewBone"](b)), 0)}
 
 
 def unit_codes(ns):
@@ -218,7 +238,7 @@ class StreamBuilder:
         for name, entry in settings.items():
             if name not in _STREAM:
                 raise recipes.RecipeError(f"{entry.place}: a stream has {', '.join(_STREAM)}")
-        _stream_header(writer, settings)
+        writer.stream_header(*_stream_header(settings))
         offsets = []  # (code, first byte)
         for unit in recipe.units:
             code = int(unit.name, 16) if unit.name.startswith("0x") else codes.get(unit.name)
@@ -242,6 +262,9 @@ class StreamBuilder:
             entry = source.unused()[0]
             raise recipes.RecipeError(f"{entry.place}: {entry.name} has values that the unit "
                                       "does not use")
+        if code == codes["SEQUENCE_HEADER"]:
+            # GOFs are written for the version where it does not have the profile.
+            writer.ns["profile_idc"] = min(writer.ns["profile_idc"], writer.ns["version_minor"])
         if code == codes["GOF"]:
             writer.decode_gof()
         if code == codes["VERTEX_ORDER"]:
@@ -300,13 +323,13 @@ def _stored_zlib(text):
     return out + zlib.adler32(text).to_bytes(4, "big")
 
 
-def _stream_header(writer, settings):
+def _stream_header(settings):
     signature = SIGNATURE
     if "signature" in settings:
         signature = hexadecimal(settings["signature"])
     version = [int(settings[n].text) if n in settings else d
                for n, d in (("version_major", 1), ("version_minor", 0))]
-    writer.put_bytes(signature + bytes(version))
+    return signature, version
 
 
 def _finish(data, settings):

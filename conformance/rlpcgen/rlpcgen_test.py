@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import decompile  # noqa: E402
 import expectation  # noqa: E402
 import mesh_gates  # noqa: E402
-import random_streams  # noqa: E402
+import random_main  # noqa: E402
 import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
 import spec_program  # noqa: E402
@@ -198,13 +198,11 @@ def _shape(triangles):
     return sorted((key[0], n) for key, n in count.items())
 
 
-class Random(unittest.TestCase):
-    """Random streams are legal, and the same for the same seed."""
+class RandomTest(unittest.TestCase):
+    """Random streams of a profile are legal, and the same for the same seed."""
 
-    SEEDS = range(10_000, 10_040)
-
-    def test_both_decoders_decode_them_to_the_same(self):
-        builder = random_streams.RandomBuilder(PROGRAM)
+    def decode_to_the_same(self, profile):
+        builder = random_main.builder_of(profile)(PROGRAM)
         with tempfile.TemporaryDirectory() as name:
             stream, output = pathlib.Path(name, "in.rlpc"), pathlib.Path(name, "out.rlpd")
             for seed in self.SEEDS:
@@ -215,11 +213,21 @@ class Random(unittest.TestCase):
                 self.assertEqual(hashlib.sha256(output.read_bytes()).hexdigest(),
                                  expected(stream.read_bytes())["sha256_int"], f"seed {seed}")
 
-    def test_the_generator_has_not_changed(self):
+    def digest(self, profile):
         # STRESS.json has digests by seed, so seeds give the same streams for ever.
-        builder = random_streams.RandomBuilder(PROGRAM)
+        builder = random_main.builder_of(profile)(PROGRAM)
         digest = hashlib.sha256(b"".join(builder.build(seed)[0] for seed in range(20)))
-        self.assertEqual(digest.hexdigest()[:16], GENERATOR_DIGEST)
+        return digest.hexdigest()[:16]
+
+
+class Random(RandomTest):
+    SEEDS = range(10_000, 10_040)
+
+    def test_both_decoders_decode_them_to_the_same(self):
+        self.decode_to_the_same("baseline")
+
+    def test_the_generator_has_not_changed(self):
+        self.assertEqual(self.digest("baseline"), "72adb70a7cd93a44")
 
     def test_carries_run_through_many_bytes(self):
         writer = stream_writer.RangeWriter()
@@ -230,7 +238,14 @@ class Random(unittest.TestCase):
         self.assertEqual((writer.low, writer.carries), (0, [4]))
 
 
-GENERATOR_DIGEST = "72adb70a7cd93a44"
+class RandomMain(RandomTest):
+    SEEDS = range(10_000, 10_020)
+
+    def test_both_decoders_decode_them_to_the_same(self):
+        self.decode_to_the_same("main")
+
+    def test_the_generator_has_not_changed(self):
+        self.assertEqual(self.digest("main"), "c04496161175701c")
 
 
 class StressTier(unittest.TestCase):
@@ -293,7 +308,7 @@ class Decompiling(unittest.TestCase):
         return text
 
     def test_random_streams(self):
-        builder = random_streams.RandomBuilder(PROGRAM)
+        builder = random_main.builder_of("baseline")(PROGRAM)
         for seed in range(20_000, 20_015):
             self.back(builder.build(seed)[0])
 
@@ -302,6 +317,12 @@ class Decompiling(unittest.TestCase):
         for changed in (data[:-3], data + b"\x05", data[:40] + b"\xFF" + data[41:],
                         data[:9] + b"\x07" + data[10:]):
             self.back(changed)
+
+    def test_random_streams_of_the_main_profile(self):
+        builder = random_main.builder_of("main")(PROGRAM)
+        for seed in range(20_000, 20_008):
+            text = self.back(builder.build(seed)[0])
+            self.assertNotRegex(text, "unit (GOF|SLICE)\n(  section_end = highest\n)?  payload")
 
     def test_elements_not_bytes(self):
         text = self.back(build(TETRAHEDRON))

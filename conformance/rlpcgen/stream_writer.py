@@ -277,6 +277,11 @@ class StreamWriter:
 
     # Units.
 
+    def stream_header(self, signature, version):
+        """Signature and [version_major, version_minor]."""
+        self.put_bytes(signature + bytes(version))
+        self.ns["version_major"], self.ns["version_minor"] = version
+
     def _require(self, condition, rule):
         if condition or rule in _STRUCTURAL:
             return
@@ -311,6 +316,10 @@ class StreamWriter:
         self._close_unit(start)
 
     def _run_payload(self, code):
+        if code < 128 and not self.ns["IsKnownType"](code):
+            return  # a slice in version 1.0, as any critical unit that it does not know
+        if code == self.ns["SLICE"] and "SliceLayers" not in self.ns:
+            return  # before the first GOF
         try:
             self.ns["unit_payload"]()
         except _Stop:

@@ -17,7 +17,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import expectation
-import random_streams
+import random_main
 import recipe as recipes
 import recipe_source
 import spec_program
@@ -26,6 +26,7 @@ import suite_streams
 
 INDEX = suite_streams.STRESS
 BATCH = 100
+PROFILES = {"v1.0": "baseline", "v1.1": "main"}  # of the random streams of a version
 _EXIT_CODES = {"accept": (0,), "reject": (1,), "unsupported": (2,), "either": (0, 1)}
 _VALIDATOR_CODES = {**_EXIT_CODES, "unsupported": (1, 2), "either": (1,)}
 _worker = None
@@ -38,7 +39,8 @@ class _Worker:
     def __init__(self, folder, spec, bin_folder=None):
         self._folder = pathlib.Path(folder)
         self._program = spec_program.Program(spec)
-        self._random = random_streams.RandomBuilder(self._program)
+        self._profile = PROFILES[self._folder.name]
+        self._random = random_main.builder_of(self._profile)(self._program)
         self._version = suite_streams.Version(folder, spec)
         self._bin = bin_folder and pathlib.Path(bin_folder).resolve()
 
@@ -52,7 +54,8 @@ class _Worker:
         found = expectation.expectation_of(data, self._program)
         return f"RND-{int(name):04}a", data, {
             "id": f"RND-{int(name):04}a", "title": f"Random stream of seed {name}",
-            "spec": self._folder.name[1:], "profile": "baseline", "level": writer.ns["level_idc"],
+            "spec": self._folder.name[1:], "profile": self._profile,
+            "level": writer.ns["level_idc"],
             "tier": "stress", "rules": [], "features": [], "twin": None,
             "sha256": hashlib.sha256(data).hexdigest(), "recipe": None, "seed": int(name),
             "released": None, "superseded_by": None,

@@ -19,7 +19,6 @@ LICENCE = "CC0-1.0"
 SUMS = "SHA256SUMS"
 STRESS = "STRESS.json"  # digests of the stress tier
 _ID = re.compile(r"[A-Z]{2,3}-\d{4}([a-w]|x\d+[b-w]?)$")
-_PROFILES = {0: "baseline"}
 _SETTINGS = {"profile_idc": 0, "level_idc": 1}
 
 
@@ -41,6 +40,12 @@ def _header_value(recipe, name):
                     return int(entry.text, 0)
             break
     return _SETTINGS[name]
+
+
+def _profile(recipe):
+    """Baseline, too, if version 1.0 has the number of a later profile."""
+    minor = [e.text for e in recipe.stream if e.name == "version_minor"][-1:]
+    return "main" if minor == ["1"] and _header_value(recipe, "profile_idc") == 1 else "baseline"
 
 
 def _expect(recipe, found, place):
@@ -78,7 +83,7 @@ def sidecar_of(recipe, data, folder, program):
     found.pop("expect")
     level = recipe.meta.get("level", _header_value(recipe, "level_idc"))
     return {"id": recipe.path.stem, "title": recipe.meta["title"], "spec": folder.name[1:],
-            "profile": _PROFILES.get(_header_value(recipe, "profile_idc"), "baseline"),
+            "profile": _profile(recipe),
             "level": max(1, min(4, int(level))), "expect": expect, "tier": recipe.meta["tier"],
             "rules": recipe.meta["rules"], "features": recipe.meta["features"],
             "twin": recipe.meta.get("twin"), "sha256": hashlib.sha256(data).hexdigest(),

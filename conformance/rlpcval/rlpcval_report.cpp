@@ -31,6 +31,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "connectivity";
     case UnitType::kVertexOrder:
       return "vertex order";
+    case UnitType::kSlice:
+      return "slice";
     case UnitType::kGof:
       return "GOF";
     case UnitType::kEndOfSequence:

@@ -25,7 +25,7 @@ class Validation(ToolsTest):
 
     def setUp(self):
         super().setUp()
-        self.encode(self.path("a.rlpc"), "--kg", 1, "--gof", 20)
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--gof", 20, "--profile", "baseline")
         self.good = self.path("a.rlpc").read_bytes()
 
     def stream(self, name, data):
@@ -69,6 +69,22 @@ class Validation(ToolsTest):
         self.assertEqual([f["stops_decoder"] for f in stream["findings"]].count(True), 1)
         verdict = run("rlpcdec", self.broken(), "--verify")
         self.assertIn(f"bit {first['bit']}:", verdict.err)
+
+    def test_slices(self):
+        self.encode(self.path("m.rlpc"), "--kg", 1, "--gof", 20, "--profile", "main")
+        good = self.path("m.rlpc").read_bytes()
+        code, (stream,) = self.json(self.path("m.rlpc"))
+        self.assertEqual((code, stream["verdict"]), (0, "conforming"))
+        self.assertEqual((stream["frames"], stream["hashed_frames"]), (60, 60))
+        at, seen = 10, 0
+        while seen < 2:  # the second slice
+            seen += good[at] == 6
+            at += 9 + int.from_bytes(good[at + 1:at + 5], "big")
+        wrong = good[:at - 9] + bytes([good[at - 9] ^ 1]) + good[at - 8:]
+        code, (stream,) = self.json(self.stream("wrong.rlpc", wrong))
+        first = stream["findings"][0]
+        self.assertEqual((code, first["id"], first["unit"]["type"]), (1, "R-UNT-03", "slice"))
+        self.assertEqual(stream["hashed_frames"], 40)
 
     def test_warnings_fail_only_if_wanted(self):
         self.encode(self.path("w.rlpc"), "--kg", 1, "--hash", "none")
@@ -133,11 +149,10 @@ def repaired(data):
 class Specification(ToolsTest):
     """On damaged streams, the rule at which the specification stops is the first of rlpcval."""
 
-    COUNT = 150
+    COUNT = 75  # of each profile
     SEED = 7
 
-    def setUp(self):
-        super().setUp()
+    def encode_small(self, profile):
         triangles = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (0, 0, 1)]
         numbers = random.Random(self.SEED)
         frames = [[numbers.uniform(0, 3) for _ in range(15)] for _ in range(4)]
@@ -146,7 +161,7 @@ class Specification(ToolsTest):
         self.path("m.json").write_text("[1]")
         self.ok("rlpcenc", self.path("m.obj"), "--points", self.path("m.pc2"), "-o",
                 self.path("m.rlpc"), "--kg", 5, "--gof", 2, "--keep-order", "--hash", "frame",
-                "--metadata", self.path("m.json"))
+                "--metadata", self.path("m.json"), "--profile", profile)
 
     def damaged(self):
         """Streams with one to three wrong bytes, most of them with CRCs that fit."""
@@ -163,7 +178,11 @@ class Specification(ToolsTest):
     def test_first_rule(self):
         program = spec_program.Program(specdec.SPEC)
         verdicts, paths = [], []
-        for number, data in enumerate(self.damaged()):
+        streams = []
+        for profile in ("baseline", "main"):
+            self.encode_small(profile)
+            streams += self.damaged()
+        for number, data in enumerate(streams):
             decoder = specdec.Decoder(program, data, lambda output: None)
             try:
                 decoder.call("stream")
@@ -184,9 +203,9 @@ class Suite(ToolsTest):
 
     def reports(self):
         """(sidecar, entry of rlpcval --json) of each stream."""
-        sidecars = sorted((ROOT / "streams" / "v1.0").glob("*/*/*.json"))
+        sidecars = sorted((ROOT / "streams").glob("v*/*/*/*.json"))
         paths = [path.with_suffix(".rlpc") for path in sidecars]
-        self.assertTrue(paths, "streams/v1.0 has no streams")
+        self.assertTrue(paths, "streams/ has no streams")
         # Limits of the highest levels are above the default of --max-memory.
         found = run("rlpcval", "--json", "--max-memory", "64GB", *paths).json()
         schema.check(found, schema.load("findings"))

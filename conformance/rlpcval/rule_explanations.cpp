@@ -27,6 +27,26 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "step "
      "because an element before is wrong.",
      "Check the value for underflow (x_minus1 of 0) and the elements before it."},
+    {"R-BON-01", "7.11", "The step of rest positions is above 65536.",
+     "The step was computed in grid units, or for a grid far finer than the target needs; or "
+     "reading is out of step.",
+     "The step counts sixteenths of a grid unit. Take a coarser grid if it has to be so "
+     "large."},
+    {"R-BON-02", "7.11", "There are more than 255 component groups.",
+     "Each trajectory was given a group of its own.",
+     "Put several trajectories into one group; groups are what a stream can be cut to."},
+    {"R-BON-03", "7.11", "A layer group has no layers.",
+     "There are more layer groups than layers, or the number of layers was not taken from 8.9: "
+     "it depends on the connectivity alone, and is the same in all GOFs.",
+     "Share out exactly NumLayers layers; the last group takes what is left. Compare NumLayers "
+     "with that of another decoder if the numbers look right."},
+    {"R-BON-04", "7.11.2", "The parent of a bone is no bone before it.",
+     "Bones were written in the order of the input, or the index of the parent was written "
+     "without adding 1.",
+     "Sort bones so that parents come first; 0 is for a bone without parent."},
+    {"R-BON-05", "7.11.2", "The step of rotations or origins has an index above 239.",
+     "A step was written in place of its index, or the index was computed in another unit.",
+     "See 8.12.1: eight indices double the step."},
     {"R-CON-01", "7.4.1", "There are more degenerate triangles than triangles.",
      "num_triangles of the sequence header counts the regular triangles alone.",
      "num_triangles counts all triangles; the degenerate ones are its last."},
@@ -120,7 +140,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Take fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
     {"R-HDR-01", "7.3", "The profile is not known to this version.",
      "The stream is of a later version, or reserved values were used.",
-     "Write profile_idc 0 (Baseline), or validate with a later version."},
+     "Write profile_idc 0 (Baseline) with version 1.0, 1 (Main) with version 1.1, or validate "
+     "with a later version."},
     {"R-HDR-02", "7.3", "The level is not known to this version.",
      "level_idc counts from 0, or the stream is of a later version.",
      "Write level 1, 2, 3 or 4: the lowest whose limits hold."},
@@ -149,7 +170,9 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "integers, low byte first, in decoded order."},
     {"R-HSH-03", "7.2", "A GOF hash unit does not follow a GOF unit directly.",
      "Another unit was written between them, or a second hash unit for the same GOF.",
-     "Write the hash unit right behind its GOF; metadata goes before the GOF or behind both."},
+     "Write the hash unit right behind its GOF, and the slices of that; metadata goes before "
+     "the "
+     "GOF or behind all of them."},
     {"R-IDX-01", "7.9", "The GOF index does not list all frames of the sequence once.",
      "The index was written before the last GOF, or num_index_gofs_minus1 is not one less than "
      "the number of GOFs.",
@@ -181,11 +204,11 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The whole animation was written as one GOF.",
      "Take shorter GOFs, or raise level_idc (Table B-1)."},
     {"R-LVL-05", "7.5.5", "A GOF has more factors than its level allows.",
-     "Many components over many vertices and frames.",
-     "Take fewer components or shorter GOFs, or raise level_idc (Table B-1)."},
-    {"R-LVL-06", "7.5", "A GOF has more clusters than its level allows.",
-     "The number of clusters was chosen without regard to the level.",
-     "Take fewer clusters, or raise level_idc; no level has more than 1024."},
+     "Many components, bones or trajectories over many vertices and frames.",
+     "Take fewer of them or shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-LVL-06", "7.5", "A GOF has more clusters, or bones, than its level allows.",
+     "Their number was chosen without regard to the level.",
+     "Take fewer of them, or raise level_idc; no level has more than 1024."},
     {"R-LVL-07", "7.2", "A critical unit is larger than its level allows.",
      "The size of the unit was never compared with the level; or unit_size is damaged.",
      "Take shorter GOFs, or raise level_idc (Table B-1)."},
@@ -211,14 +234,37 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-RNG-02", "9.3.2", "A section begins with four bytes of 255.",
      "A carry of the range encoder was lost, or the section was overwritten.",
      "Propagate carries into the bytes already written."},
+    {"R-SLI-01", "7.12", "A slice is of a component group or a layer group that there is not.",
+     "The groups of the GOF unit before were counted otherwise: 0 is for influences and rest "
+     "positions, component groups count from 1, layer groups from 0.",
+     "Compare num_component_groups and num_layer_groups_minus1 of the GOF unit before."},
+    {"R-SLI-02", "7.12", "A slice stands where it must not, or one that it needs is missing.",
+     "A slice was left out, repeated or reordered, but others that depend on it were kept.",
+     "All layer groups of component group 0 come first, then those of group 1, and so on. Who "
+     "cuts a stream leaves out, with a slice, those of higher layer groups of its component "
+     "group, and those of higher component groups of its layer group."},
+    {"R-SLI-03", "7.12.1",
+     "A component group has no trajectories, or the GOF more than its level allows.",
+     "An empty group was written, or the number of trajectories was never compared with the "
+     "level.",
+     "Leave out empty groups; take fewer trajectories, or raise level_idc (Table B-1)."},
+    {"R-SLI-04", "7.12.2", "An extra bone is none, or influences the vertex already.",
+     "Bones that vertices of the ring have were written as extra bones, or the candidates are "
+     "not those of 8.13.",
+     "Compare the candidates of the vertex with those of another decoder; they come from the "
+     "decoded influences of its ring."},
+    {"R-SLI-05", "7.12.2", "The weights of the extra bones of a vertex are too large together.",
+     "Weights were rounded one by one, so that their sum is above 2^weight_bits.",
+     "Round weights so that their sum is right, extra bones first."},
     {"R-STR-01", "7.1", "The file does not begin with the signature of RLPC.",
      "It is another file, or a transfer as text changed line ends or the first byte.",
      "Transfer as binary; the first bytes are 89 52 4C 50 43 0D 0A 1A."},
     {"R-STR-02", "7.1", "The major version of the stream is not known.",
      "The stream is of a later version, or the version was not written.",
-     "Write version 1.0, or validate with a later version."},
-    {"R-STR-03", "7.1", "The minor version of the stream is not known.",
-     "The stream uses a later minor version.",
+     "Write version 1.0 or 1.1, or validate with a later version."},
+    {"R-STR-03", "7.1",
+     "The minor version of the stream is not known, or is not that of its profile.",
+     "The stream uses a later minor version, or the encoder always writes its own version.",
      "Write the lowest version that has the tools in use, or validate with a later version."},
     {"R-UNT-01", "7.2", "A unit has to follow, but the stream ends.",
      "The file was cut off between units, or the end_of_sequence unit was not written.",
@@ -235,7 +281,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Private units are ancillary ones: set ancillary_flag."},
     {"R-UNT-05", "7.2", "A unit stands where it must not.",
      "Units are written in another order than that of Table 7-1, or twice.",
-     "Order: sequence header, connectivity, vertex order, GOFs, end of sequence."},
+     "Order: sequence header, connectivity, vertex order, GOFs, each with its slices right "
+     "behind it, end of sequence."},
     {"R-VOR-01", "7.6", "The vertex order leads to an index that no vertex has.",
      "The differences were taken from another list than VertexOrder, or reading is out of "
      "step.",
@@ -247,6 +294,10 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
 });
 
 constexpr std::array kWarnings = std::to_array<RuleExplanation>({
+    {"W-BON-01", "7.11.2", "A bone moves no vertex.",
+     "Bones that lost their last vertex to others were kept; they cost bits and give nothing.",
+     "Remove bones that influence no vertex, and are above none that does, before the GOF is "
+     "written."},
     {"W-GOF-01", "7.5.3", "A cluster has no coded vertices.",
      "Clusters that became empty were kept; they cost bits and give nothing.",
      "Remove empty clusters before the GOF is written."},
@@ -265,6 +316,9 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
      "Write the lowest level whose limits hold, so that more decoders can take the stream."},
     {"W-MET-01", "7.10", "Several metadata units: only the last one holds.",
      "A tool added metadata without removing the old ones.", "Keep one metadata unit."},
+    {"W-SLI-01", "7.12.1", "A trajectory is zero in all frames.",
+     "All its residuals became zero by quantisation.",
+     "Leave out trajectories that quantise to zero."},
     {"W-UNT-01", "7.2", "An ancillary unit of a type that this version does not know.",
      "A private unit, a unit of a later version, or a damaged type.",
      "Decoders skip it; make sure that nothing depends on it."},

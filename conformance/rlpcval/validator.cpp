@@ -20,6 +20,7 @@ void StreamValidator::run() {
   if (units_.stream_header()) {
     unsupported_ = report_.count(Severity::kUnsupported) > 0;
     if (!is_foreign()) walk();
+    end_slices();
     findings_.in_unit(std::nullopt);
     for (const GofIndexCheck& index : indexes_) compare_index(index);
     warn_of_stream();
@@ -76,7 +77,10 @@ void StreamValidator::lose_units() {
   frames_suspect_ = true;
   next_frame_.reset();
   previous_.reset();
+  gof_unit_.reset();
+  bone_parser_.reset();
   previous_gof_.reset();
+  previous_bones_.reset();
   previous_gof_frames_ = 0;
   report_.complete = false;
 }
@@ -97,6 +101,10 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
              !seen(UnitType::kGof);
     case UnitType::kGof:
       return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
+    case UnitType::kSlice: {
+      const bool behind_slice = !previous_ || previous_->type() == UnitType::kSlice;
+      return units_.version_minor() > 0 && (gof_unit_ || behind_slice);
+    }
     case UnitType::kEndOfSequence:
       return seen(UnitType::kGof);
     default:
@@ -108,8 +116,10 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
 bool StreamValidator::check_place(const UnitHeader& unit) {
   if (may_stand_here(unit)) return true;
   const std::uint64_t at = unit.offset * 8;
-  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
-                                          unit.type() <= UnitType::kEndOfSequence);
+  const UnitType last =
+      units_.version_minor() > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
+  const bool known =
+      unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader && unit.type() <= last);
   if (known) {
     findings_.error({Errc::kInvalid, "R-UNT-05", "unit_type", at});
   } else {
@@ -123,6 +133,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   ++report_.units;
   ++seen_[unit.type_byte];
   previous_ = unit;
+  if (unit.type() != UnitType::kGof && unit.type() != UnitType::kSlice) gof_unit_.reset();
   const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
   if (unit.ancillary() && !known_ancillary) {
     findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,
@@ -132,6 +143,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
 
 // 6.2 unit_body( )
 bool StreamValidator::visit(const UnitHeader& unit) {
+  if (unit.type() != UnitType::kSlice) end_slices();
   findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
   const bool known = unsupported_ || check_place(unit);
   const bool is_gof = unit.type() == UnitType::kGof;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator.h"
+#include "conformance/sliced_animation.h"
 #include "conformance/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -192,17 +193,19 @@ StreamBytes tangled_stream() {
   }
   MemoryFrames source(std::move(shape), std::move(frames));
   EncoderSettings settings;
+  settings.profile = Profile::kBaseline;
   settings.target = {Target::kKg, 5.0};
   settings.keep_order = true;
   return encode_to_memory(source, settings);
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  constexpr std::array<const char*, 3> kNames{"Rich", "Indexed", "Tangled"};
+  constexpr std::array<const char*, 4> kNames{"Rich", "Indexed", "Tangled", "Sliced"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Damage,
-                         testing::Values(rich_stream, indexed_stream, tangled_stream),
+                         testing::Values(rich_stream, indexed_stream, tangled_stream,
+                                         sliced_stream),
                          stream_name);
 
 }  // namespace

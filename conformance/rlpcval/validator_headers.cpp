@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/bone_gof.h"
 #include "common/gof.h"
 
 namespace rlpc {
@@ -41,12 +42,13 @@ void check_rate_and_grid(ElementReader& r, SequenceHeader& h) {
 }  // namespace
 
 // 6.3 sequence_header( )
-HeaderCheck check_sequence_header(ElementReader& r) {
+HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor) {
   HeaderCheck check;
   SequenceHeader& h = check.header;
   h.profile_idc = static_cast<std::uint32_t>(r.u(8, "profile_idc"));
-  r.supported(h.profile_idc == kProfileBaseline, "R-HDR-01", "this version has profile 0 only");
-  check.supported = !r.readable() || h.profile_idc == kProfileBaseline;
+  r.supported(h.profile_idc <= version_minor, "R-HDR-01",
+              "version 1." + std::to_string(version_minor) + " does not have it");
+  check.supported = !r.readable() || h.profile_idc == version_minor;
   if (!r.readable() || !check.supported) return check;
   h.level_idc = static_cast<std::uint32_t>(r.u(8, "level_idc"));
   const bool known_level = h.level_idc >= 1 && h.level_idc <= kMaxLevelIdc;
@@ -81,10 +83,12 @@ HeaderCheck check_sequence_header(ElementReader& r) {
   return check;
 }
 
-// 6.5 gof( )
-GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
-                                std::optional<std::uint32_t> expected_first_frame) {
-  GofHeaderCheck gof;
+namespace {
+
+// 6.5 gof( ), the elements of all profiles. False if one of them does not let its section be
+// read.
+bool check_gof_frames(ElementReader& r, const SequenceHeader& header,
+                      std::optional<std::uint32_t> expected_first_frame, GofHeaderCheck& gof) {
   const Level& level = header.level();
   const std::int64_t first = r.ue("first_frame");
   const bool in_sequence = first < header.num_frames;
@@ -100,31 +104,117 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                       "the sequence has " + std::to_string(left) + " frames left");
   }
   // In the order of the decoding process: not where R-GOF-02 failed.
-  if (good) {
-    const auto values = static_cast<std::uint64_t>(frames) * header.num_vertices;
-    good =
-        r.require(frames <= level.max_gof_frames && values <= level.max_gof_values, "R-LVL-04",
-                  level_allows(header.level_idc, level.max_gof_frames, " frames of a GOF, ") +
-                      std::to_string(level.max_gof_values) + " vertices times frames");
-    gof.first_frame = static_cast<std::uint32_t>(first);
-    gof.num_frames = r.readable() ? static_cast<std::uint32_t>(frames) : 0;
-  }
-  const std::int64_t clusters = r.ue("num_clusters_minus1") + 1;
-  good &= r.require(clusters <= level.max_clusters, "R-LVL-06",
-                    level_allows(header.level_idc, level.max_clusters, " clusters of a GOF"));
+  if (!good) return false;
+  const auto values = static_cast<std::uint64_t>(frames) * header.num_vertices;
+  good = r.require(frames <= level.max_gof_frames && values <= level.max_gof_values, "R-LVL-04",
+                   level_allows(header.level_idc, level.max_gof_frames, " frames of a GOF, ") +
+                       std::to_string(level.max_gof_values) + " vertices times frames");
+  gof.first_frame = static_cast<std::uint32_t>(first);
+  gof.num_frames = r.readable() ? static_cast<std::uint32_t>(frames) : 0;
+  return good;
+}
+
+bool check_alignment(ElementReader& r) {
+  const std::uint64_t failures = r.failures();
+  r.byte_alignment();
+  return r.readable() && r.failures() == failures;
+}
+
+bool check_fraction_bits(ElementReader& r) {
   const std::int64_t fraction_bits = r.u(5, "fraction_bits");
-  good &= r.require(fraction_bits <= kMaxFractionBits, "R-GOF-03", at_most(kMaxFractionBits));
+  return r.require(fraction_bits <= kMaxFractionBits, "R-GOF-03", at_most(kMaxFractionBits));
+}
+
+// 6.5 clusters_of_gof( )
+bool check_clusters(ElementReader& r, const SequenceHeader& header) {
+  const Level& level = header.level();
+  const std::int64_t clusters = r.ue("num_clusters_minus1") + 1;
+  bool good =
+      r.require(clusters <= level.max_clusters, "R-LVL-06",
+                level_allows(header.level_idc, level.max_clusters, " clusters of a GOF"));
+  good &= check_fraction_bits(r);
   const std::int64_t seed_step = r.ue("seed_step_minus1");
   good &= r.require(seed_step < kMaxSeedStep, "R-GOF-04", at_most(kMaxSeedStep - 1));
   const std::int64_t seed_predictor = r.u(3, "seed_predictor");
   good &=
       r.require(seed_predictor <= kMaxPredictorOrder, "R-GOF-05", at_most(kMaxPredictorOrder));
   (void)r.u(1, "seed_coupling_flag");
-  const std::uint64_t failures = r.failures();
-  r.byte_alignment();
-  gof.num_clusters = good ? static_cast<std::uint32_t>(clusters) : 0;
-  gof.section_readable = good && r.readable() && r.failures() == failures;
+  return check_alignment(r) && good;
+}
+
+// 6.11 layers_of_gof( ). False if it is not known where it ends.
+bool check_layers(ElementReader& r, std::uint32_t num_layers, std::uint32_t& layer_groups) {
+  (void)r.u(4, "damping_log2");
+  (void)r.u(4, "outer_weight");
+  (void)r.u(4, "outer_scale");
+  const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;
+  if (num_layers == 0) return false;
+  const std::string has = "the mesh has " + std::to_string(num_layers) + " layers";
+  if (!r.require(groups <= num_layers, "R-BON-03", has)) return false;
+  std::int64_t left = num_layers;
+  for (std::int64_t after = groups - 1; after > 0; --after) {
+    left -= r.ue("layer_group_layers_minus1") + 1;
+    const std::string due = has + "; " + std::to_string(after) + " of " +
+                            std::to_string(groups) + " layer groups are to follow";
+    if (!r.require(left >= after, "R-BON-03", due)) return false;
+  }
+  for (std::uint32_t i = 0; i < num_layers; ++i) (void)r.u(4, "layer_step_minus1");
+  layer_groups = static_cast<std::uint32_t>(groups);
+  return r.readable();
+}
+
+// 6.11 bones_of_gof( )
+bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
+                 GofHeaderCheck& gof) {
+  const Level& level = header.level();
+  const std::int64_t bones = r.ue("num_bones_minus1") + 1;
+  bool good = r.require(bones <= level.max_clusters, "R-LVL-06",
+                        level_allows(header.level_idc, level.max_clusters, " bones of a GOF"));
+  good &= check_fraction_bits(r);
+  (void)r.u(3, "weight_bits");
+  const std::int64_t rest_step = r.ue("rest_step_minus1");
+  good &= r.require(rest_step < kMaxRestStep, "R-BON-01", at_most(kMaxRestStep - 1));
+  const std::int64_t groups = r.ue("num_component_groups");
+  const bool good_groups =
+      r.require(groups <= kMaxComponentGroups, "R-BON-02", at_most(kMaxComponentGroups));
+  good &= good_groups;
+  SliceCounts slices;
+  const auto prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
+  if (prediction == Prediction::kLayers && !check_layers(r, num_layers, slices.layer_groups)) {
+    return false;
+  }
+  if (good_groups && r.readable()) {
+    slices.component_groups = static_cast<std::uint32_t>(groups);
+    gof.slices = slices;
+  }
+  return check_alignment(r) && good;
+}
+
+}  // namespace
+
+// 6.5 gof( )
+GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
+                                std::optional<std::uint32_t> expected_first_frame,
+                                std::uint32_t num_layers) {
+  GofHeaderCheck gof;
+  const bool good = check_gof_frames(r, header, expected_first_frame, gof);
+  gof.section_readable = header.profile_idc == kProfileMain
+                             ? check_bones(r, header, num_layers, gof)
+                             : check_clusters(r, header);
+  gof.section_readable &= good;
   return gof;
+}
+
+// 6.12 slice_unit( )
+bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
+  const std::int64_t group = r.ue("component_group_idx");
+  bool good =
+      r.require(group <= slices.component_groups, "R-SLI-01",
+                "the GOF has " + std::to_string(slices.component_groups) + " component groups");
+  const std::int64_t layers = r.ue("layer_group_idx");
+  good &= r.require(layers < slices.layer_groups, "R-SLI-01",
+                    "the GOF has " + std::to_string(slices.layer_groups) + " layer groups");
+  return good && r.readable();
 }
 
 // 6.9 gof_index( )

@@ -19,18 +19,28 @@ struct HeaderCheck {
 };
 
 // 6.3 sequence_header( )
-HeaderCheck check_sequence_header(ElementReader& r);
+HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor);
+
+struct SliceCounts {
+  std::uint32_t component_groups = 0;  // and influences, which are none of them
+  std::uint32_t layer_groups = 1;
+};
 
 struct GofHeaderCheck {
   std::uint32_t first_frame = 0;
-  std::uint32_t num_frames = 0;  // 0: not known
-  std::uint32_t num_clusters = 0;
-  bool section_readable = false;  // nothing but first_frame may be wrong
+  std::uint32_t num_frames = 0;       // 0: not known
+  bool section_readable = false;      // nothing but first_frame may be wrong
+  std::optional<SliceCounts> slices;  // in the Main profile, if known
 };
 
-// 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known.
+// 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
+// of the mesh, in the Main profile; 0 if not known.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
-                                std::optional<std::uint32_t> expected_first_frame);
+                                std::optional<std::uint32_t> expected_first_frame,
+                                std::uint32_t num_layers);
+
+// 6.12 slice_unit( ), its indices. True if they are legal.
+bool check_slice_header(ElementReader& r, const SliceCounts& slices);
 
 struct GofIndexCheck {
   FindingUnit unit;

@@ -1,9 +1,10 @@
-// What units hold: 6.3 to 6.10, and the hash check of 8.6.2.
+// What units hold: 6.3 to 6.12, and the hash check of 8.6.2.
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
 
+#include "common/bone_recon.h"
 #include "common/crc32.h"
 #include "common/gof_recon.h"
 #include "conformance/rlpcval/validator_elements.h"
@@ -30,7 +31,8 @@ std::string hex(std::uint32_t value) {
 
 // What the rest of a stream is read with is kept, up to the limits of the caller.
 std::uint64_t memory_of(const SequenceHeader& h) {
-  return std::uint64_t{h.num_vertices} * 100 + std::uint64_t{h.num_triangles} * 120;
+  const std::uint64_t of_vertex = h.profile_idc == kProfileMain ? 400 : 100;
+  return std::uint64_t{h.num_vertices} * of_vertex + std::uint64_t{h.num_triangles} * 120;
 }
 
 }  // namespace
@@ -52,6 +54,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
       return vertex_order(unit, *payload);
     case UnitType::kGof:
       return gof(unit, *payload);
+    case UnitType::kSlice:
+      return slice(unit, *payload);
     case UnitType::kEndOfSequence:
       return end_of_sequence(unit, *payload);
     case UnitType::kGofIndex:
@@ -74,10 +78,17 @@ bool StreamValidator::can_read() {
 void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& payload) {
   if (header_) return;  // it stands in the wrong place, that was said
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
-  header_ = check_sequence_header(r);
+  header_ = check_sequence_header(r, units_.version_minor());
   header_bit_pos_ = unit.payload_offset() * 8;
   header_suspect_ = findings_.suspect() || r.failures() > 0;
   if (!header_->supported) unsupported_ = true;
+  if (!header_->supported && r.failures() == 0) {
+    findings_.in_unit(std::nullopt);
+    findings_.error(unsupported_minor_version(),
+                    "version 1." + std::to_string(units_.version_minor()) +
+                        " is not the first that has the profile of the stream, " +
+                        std::to_string(header_->header.profile_idc));
+  }
   if (!header_->usable) return;
   units_.set_max_unit_bytes(header_->header.level().max_unit_bytes);
   report_.header = header_->header;
@@ -110,6 +121,7 @@ void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payloa
     return;
   }
   topology_ = make_topology(h.num_vertices, *triangles);
+  if (h.profile_idc == kProfileMain) mesh_predictions_.emplace(topology_, *triangles);
   has_connectivity_ = true;
 }
 
@@ -125,7 +137,12 @@ void StreamValidator::vertex_order(const UnitHeader& unit, const Payload& payloa
 // What is known of a GOF before it is read.
 void StreamValidator::begin_gof(const UnitHeader& unit) {
   gofs_.push_back({unit.offset, 0});
+  gof_unit_ = unit;
+  gof_place_ = {report_.units, unit.type_byte, unit.offset};
+  slice_counts_.reset();
+  bone_parser_.reset();
   previous_gof_.reset();
+  previous_bones_.reset();
   previous_gof_frames_ = 0;
   expected_first_frame_ = std::exchange(next_frame_, std::nullopt);
 }
@@ -138,8 +155,11 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   // One GOF too many was said; it may be a copy of any other.
   const bool surplus = expected_first_frame_ == header_->header.num_frames;
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
-  const GofHeaderCheck header =
-      check_gof_header(r, header_->header, surplus ? std::nullopt : expected_first_frame_);
+  const std::uint32_t num_layers =
+      mesh_predictions_ ? mesh_predictions_->get(Prediction::kLayers).num_layers() : 0;
+  const GofHeaderCheck header = check_gof_header(
+      r, header_->header, surplus ? std::nullopt : expected_first_frame_, num_layers);
+  slice_counts_ = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
   previous_gof_frames_ = header.num_frames;
   if (header.num_frames > 0) {
@@ -150,7 +170,11 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   if (surplus) next_frame_ = expected_first_frame_;
   previous_gof_suspect_ = damaged || connectivity_suspect_;
   findings_.suspect(previous_gof_suspect_);
-  gof_section(unit, payload, header);
+  if (header_->header.profile_idc == kProfileMain) {
+    bone_section(unit, payload, header);
+  } else {
+    gof_section(unit, payload, header);
+  }
 }
 
 // 6.5.1 gof_section( )
@@ -174,14 +198,65 @@ void StreamValidator::gof_section(const UnitHeader& unit, const Payload& payload
   previous_gof_ = std::move(*gof);
 }
 
+// 6.11.1 bone_section( )
+void StreamValidator::bone_section(const UnitHeader& unit, const Payload& payload,
+                                   const GofHeaderCheck& header) {
+  if (!header.section_readable || !mesh_predictions_ || !header_->positions) {
+    report_.complete = false;
+    return;
+  }
+  bone_parser_.emplace(header_->header, *mesh_predictions_, options_.limits.max_memory_bytes);
+  BitReader r = bits_of(unit, payload);
+  if (const auto read = bone_parser_->gof(r, header.first_frame); !read) {
+    findings_.error(read.error());
+    report_.complete = false;
+    bone_parser_.reset();
+  }
+}
+
+// 6.12 slice_unit( )
+void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
+  if (!can_read()) return;
+  if (!gof_unit_ || !slice_counts_) {
+    report_.complete = false;
+    return;
+  }
+  previous_gof_suspect_ = previous_gof_suspect_ || findings_.suspect();
+  findings_.suspect(previous_gof_suspect_);
+  ElementReader header(payload, unit.payload_offset() * 8, findings_);
+  bool read = check_slice_header(header, *slice_counts_);
+  if (read && bone_parser_) {
+    BitReader r = bits_of(unit, payload);
+    const auto result = bone_parser_->slice(r, unit.offset * 8);
+    if (!result) findings_.error(result.error());
+    read = static_cast<bool>(result);
+  }
+  needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, unit.size);
+  if (read) return;
+  // What slices behind it hold depends on it.
+  report_.complete = false;
+  previous_gof_suspect_ = true;
+  bone_parser_.reset();
+}
+
+// 8.14.1: slices at the end of a GOF can be absent.
+void StreamValidator::end_slices() {
+  if (!bone_parser_) return;
+  previous_bones_ = bone_parser_->finish();
+  bone_parser_.reset();
+  ++report_.gofs;
+  report_.frames += previous_bones_->num_frames;
+  findings_.in_unit(gof_place_);
+  warn_of_bones(*gof_unit_, *previous_bones_);
+}
+
 // 6.7 gof_hash( )
 void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
-  const bool after_gof = previous_ && previous_->type() == UnitType::kGof;
-  if (!after_gof) {
+  if (!gof_unit_) {
     // Behind a gap, the GOF may be what was lost.
     if (previous_) {
       findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
-                          "no GOF unit ends where it starts");
+                          "no GOF unit, and no slice of one, ends where it starts");
     }
     return;
   }
@@ -192,19 +267,24 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   findings_.suspect(findings_.suspect() || previous_gof_suspect_);
   BitReader r = bits_of(unit, payload);
   const auto hash = parse_gof_hash(r, previous_gof_frames_);
+  const SequenceHeader& h = header_->header;
   if (!hash) {
     findings_.error(hash.error());
   } else if (previous_gof_ && header_->positions) {
-    compare_hashes(unit, hash->per_frame_flag, hash->position_crc);
+    compare_hashes(unit, *hash, GofRecon(h, topology_, *previous_gof_));
+  } else if (previous_bones_) {
+    const CodedMesh& mesh = mesh_predictions_->get(previous_bones_->prediction);
+    compare_hashes(unit, *hash, BoneRecon(mesh, *previous_bones_, h.position_bits));
   } else {
     report_.complete = false;
   }
 }
 
 // 8.6.2 Hash check
-void StreamValidator::compare_hashes(const UnitHeader& unit, bool per_frame,
-                                     std::span<const std::uint32_t> position_crc) {
-  const GofRecon recon(header_->header, topology_, *previous_gof_);
+template <class Recon>
+void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash,
+                                     const Recon& recon) {
+  const bool per_frame = hash.per_frame_flag;
   std::vector<std::int32_t> positions(3 * std::size_t{header_->header.num_vertices});
   std::uint32_t crc = 0;
   std::uint32_t wrong_frames = 0;
@@ -214,11 +294,11 @@ void StreamValidator::compare_hashes(const UnitHeader& unit, bool per_frame,
     recon.frame(f, positions);
     crc = crc32_of_positions(positions, per_frame ? 0 : crc);
     if (!per_frame && f + 1 < num_frames) continue;
-    const std::uint32_t stored = position_crc[per_frame ? f : 0];
+    const std::uint32_t stored = hash.position_crc[per_frame ? f : 0];
     if (crc == stored) continue;
     ++wrong_frames;
     if (!first_wrong.empty()) continue;
-    const std::uint32_t frame = previous_gof_->first_frame + f;
+    const std::uint32_t frame = gofs_.back().first_frame + f;
     first_wrong = (per_frame ? "of frame " : "of the GOF that ends with frame ") +
                   std::to_string(frame) + ": position_crc is " + hex(stored) +
                   ", the decoded positions give " + hex(crc);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/bone_gof.h"
 #include "common/gof.h"
 #include "common/mesh.h"
 #include "common/topology.h"
@@ -14,6 +15,8 @@
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
 #include "conformance/rlpcval/validator_units.h"
+#include "decoder/parse_bone_gof.h"
+#include "decoder/parse_gof_hash.h"
 
 namespace rlpc {
 
@@ -48,9 +51,14 @@ class StreamValidator {
   void gof(const UnitHeader& unit, const Payload& payload);
   void gof_section(const UnitHeader& unit, const Payload& payload,
                    const GofHeaderCheck& header);
+  void bone_section(const UnitHeader& unit, const Payload& payload,
+                    const GofHeaderCheck& header);
+  void slice(const UnitHeader& unit, const Payload& payload);
+  // No slice can follow any more of the GOF whose slices were read.
+  void end_slices();
   void gof_hash(const UnitHeader& unit, const Payload& payload);
-  void compare_hashes(const UnitHeader& unit, bool per_frame,
-                      std::span<const std::uint32_t> position_crc);
+  template <class Recon>
+  void compare_hashes(const UnitHeader& unit, const GofHash& hash, const Recon& recon);
   void gof_index(const UnitHeader& unit, const Payload& payload);
   void metadata(const UnitHeader& unit, const Payload& payload);
   void end_of_sequence(const UnitHeader& unit, const Payload& payload);
@@ -60,6 +68,7 @@ class StreamValidator {
   // validator_summary.cpp: what shows only with the whole stream.
   void compare_index(const GofIndexCheck& index);
   void warn_of_gof(const UnitHeader& unit, const Gof& gof);
+  void warn_of_bones(const UnitHeader& unit, const BoneGof& gof);
   void warn_of_stream();
   void warn_of_level();
 
@@ -84,6 +93,7 @@ class StreamValidator {
   bool has_connectivity_ = false;
   bool has_vertex_order_ = false;
   Topology topology_;
+  std::optional<MeshPredictions> mesh_predictions_;  // in the Main profile
 
   // GOFs.
   std::optional<std::uint32_t> next_frame_ = 0;        // nothing if it is not known
@@ -94,6 +104,11 @@ class StreamValidator {
   bool previous_gof_suspect_ = false;
   std::uint32_t previous_gof_frames_ = 0;  // 0: not known
   std::optional<Gof> previous_gof_;        // if its section could be read
+  std::optional<BoneGof> previous_bones_;  // if its slices could be read as well
+  std::optional<UnitHeader> gof_unit_;     // if it, or a slice of it, is directly before
+  FindingUnit gof_place_;
+  std::optional<SliceCounts> slice_counts_;
+  std::optional<BoneGofParser> bone_parser_;  // if the sections so far could be read
   std::vector<GofIndexCheck> indexes_;
   std::uint64_t index_units_found_ = 0;  // those that index_distance leads to
   Level needed_{};                       // the most that any GOF takes

@@ -21,6 +21,11 @@ bool is_zero(const Component& component) {
   return all_zero(component.temporal_residual) || all_zero(component.spatial_residual);
 }
 
+bool is_still(const Trajectory& trajectory) {
+  return std::all_of(trajectory.residual.begin(), trajectory.residual.end(),
+                     [](const Vec3i& residual) { return residual == Vec3i{}; });
+}
+
 template <class T>
 void raise(T& most, std::uint64_t value) {
   most = std::max(most, static_cast<T>(value));
@@ -99,6 +104,39 @@ void StreamValidator::warn_of_gof(const UnitHeader& unit, const Gof& gof) {
   if (zero_components > 0) {
     findings_.warning("W-GOF-02", "component", at,
                       std::to_string(zero_components) + " components of the GOF");
+  }
+}
+
+void StreamValidator::warn_of_bones(const UnitHeader& unit, const BoneGof& gof) {
+  std::vector<bool> in_use(gof.bones.size(), false);
+  for (const Influences& influences : gof.influences) {
+    for (const Influence& influence : influences) in_use[influence.bone] = true;
+  }
+  // Parents come before their children.
+  for (std::size_t b = gof.bones.size(); b-- > 0;) {
+    const std::int32_t parent = gof.bones[b].parent;
+    if (in_use[b] && parent >= 0) in_use[static_cast<std::size_t>(parent)] = true;
+  }
+  const std::size_t num_vertices = gof.influences.size();
+  raise(needed_.max_unit_bytes, unit.size);
+  raise(needed_.max_gof_frames, gof.num_frames);
+  raise(needed_.max_clusters, gof.bones.size());
+  raise(needed_.max_components, gof.trajectories.size());
+  raise(needed_.max_gof_values, num_vertices * gof.num_frames);
+  raise(needed_.max_gof_factors,
+        6 * gof.bones.size() * gof.num_frames + 3 * num_vertices +
+            gof.trajectories.size() * (num_vertices + 3 * std::size_t{gof.num_frames}));
+  const std::uint64_t at = unit.payload_offset() * 8;
+  const auto idle = std::count(in_use.begin(), in_use.end(), false);
+  if (idle > 0) {
+    findings_.warning(
+        "W-BON-01", "bone", at,
+        std::to_string(idle) + " of " + std::to_string(gof.bones.size()) + " bones");
+  }
+  const auto zero = std::count_if(gof.trajectories.begin(), gof.trajectories.end(), is_still);
+  if (zero > 0) {
+    findings_.warning("W-SLI-01", "trajectory", at,
+                      std::to_string(zero) + " trajectories of the GOF");
   }
 }
 

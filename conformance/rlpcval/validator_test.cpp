@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/bit_writer.h"
+#include "conformance/sliced_animation.h"
 #include "conformance/small_animation.h"
 #include "encoder/write_connectivity.h"
 #include "encoder/write_gof.h"
@@ -53,7 +54,7 @@ Bytes unit_bytes(const StreamBytes& bytes, const UnitPlace& unit) {
 }
 
 TEST(Validator, FindsNothingInGoodStreams) {
-  for (const StreamBytes& stream : {rich_stream(), indexed_stream()}) {
+  for (const StreamBytes& stream : {rich_stream(), indexed_stream(), sliced_stream()}) {
     const ValidationReport report = validate(stream);
     EXPECT_EQ(ids(report), Ids{});
     EXPECT_TRUE(report.complete);
@@ -209,6 +210,111 @@ TEST(Validator, SaysWhatIsMissingOrTooMuch) {
   EXPECT_EQ(found, (Ids{"R-UNT-05", "R-UNT-05"}));
 }
 
+// The elements of a GOF unit of bones up to its layers; and of those.
+void put_bones(BitWriter& w, std::uint32_t num_bones_minus1, std::uint32_t rest_step_minus1,
+               std::uint32_t num_component_groups, std::uint32_t prediction_idc) {
+  w.ue(0);  // first_frame
+  w.ue(1);  // num_gof_frames_minus1
+  w.ue(num_bones_minus1);
+  w.u(5, 3);  // fraction_bits
+  w.u(3, 4);  // weight_bits
+  w.ue(rest_step_minus1);
+  w.ue(num_component_groups);
+  w.u(2, prediction_idc);
+}
+void put_layers(BitWriter& w, const std::vector<std::uint32_t>& layer_group_layers_minus1) {
+  w.u(12, 0);  // damping_log2, outer_weight, outer_scale
+  w.ue(static_cast<std::uint32_t>(layer_group_layers_minus1.size()));
+  for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
+}
+ValidationReport validate_first_gof(const Bytes& payload) {
+  return validate(with_payload_of(sliced_stream(), UnitType::kGof, payload));
+}
+
+TEST(Validator, ReportsAllValuesOfAHeaderOfBones) {
+  BitWriter w;
+  put_bones(w, 256, 1U << 16, 256, 0);
+  w.byte_alignment();
+  const ValidationReport report = validate_first_gof(w.take());
+  Ids found = ids(report);
+  ASSERT_GE(found.size(), 3U);
+  found.resize(3);
+  EXPECT_EQ(found, (Ids{"R-LVL-06", "R-BON-01", "R-BON-02"}));
+  EXPECT_EQ(report.gofs, 1U);  // the other one is read
+  EXPECT_EQ(report.hashed_frames, 2U);
+  EXPECT_FALSE(report.complete);
+}
+
+TEST(Validator, ReportsLayerGroupsWithoutLayers) {
+  const auto first_id = [](const std::vector<std::uint32_t>& layer_group_layers_minus1) {
+    BitWriter w;
+    put_bones(w, 2, 19, 2, 3);
+    put_layers(w, layer_group_layers_minus1);
+    w.u(32, 0);  // enough for layer steps and the section
+    w.u(32, 0);
+    w.u(32, 0);
+    w.byte_alignment();
+    return ids(validate_first_gof(w.take())).at(0);
+  };
+  EXPECT_NE(first_id({0}), "R-BON-03");
+  EXPECT_EQ(first_id({250}), "R-BON-03");
+  EXPECT_EQ(first_id(std::vector<std::uint32_t>(250, 0)), "R-BON-03");
+}
+
+TEST(Validator, ReportsSlicesOfNoGroupAndGoesOn) {
+  const StreamBytes good = sliced_stream();
+  const auto slices = units_of_type(good, UnitType::kSlice);
+  BitWriter w;
+  w.ue(3);
+  w.ue(2);
+  w.byte_alignment();
+  const ValidationReport report = validate(with_payload(good, slices.at(5), w.take()));
+  EXPECT_EQ(ids(report), (Ids{"R-SLI-01", "R-SLI-01"}));
+  EXPECT_EQ(report.gofs, 1U);
+  EXPECT_EQ(report.hashed_frames, 2U);
+  EXPECT_FALSE(report.complete);
+}
+
+TEST(Validator, SaysWhichSlicesAreMissingOrMisplaced) {
+  const StreamBytes good = sliced_stream();
+  const auto slices = units_of_type(good, UnitType::kSlice);
+  ASSERT_EQ(slices.size(), 8U);
+  // Group 0, then groups 1 and 2, of two layer groups each; the second GOF has one of each.
+  StreamBytes stream = good;
+  erase(stream, slices[2]);
+  EXPECT_EQ(ids(stream), Ids{"R-SLI-02"});
+  stream = good;
+  insert(stream, slices[2].offset, unit_bytes(good, slices[0]));
+  EXPECT_EQ(ids(stream), Ids{"R-SLI-02"});
+  // What needs it is gone as well: legal, but for the hash.
+  stream = good;
+  erase(stream, slices[7]);
+  EXPECT_EQ(ids(stream), Ids{"R-HSH-02"});
+  // Behind the hash, and before any GOF.
+  stream = good;
+  insert(stream, units_of_type(good, UnitType::kGofHash).at(1).end(),
+         unit_bytes(good, slices[7]));
+  EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
+  stream = good;
+  insert(stream, units_of_type(good, UnitType::kGof).at(0).offset, unit_bytes(good, slices[0]));
+  EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
+}
+
+TEST(Validator, TakesNoSlicesInStreamsOfVersion0) {
+  const StreamBytes rich = rich_stream();
+  const UnitPlace gof = units_of_type(rich, UnitType::kGof).at(0);
+  StreamBytes stream = rich;
+  insert(stream, gof.end(), write_unit(UnitType::kSlice, {}));
+  const ValidationReport report = validate(stream);
+  EXPECT_EQ(ids(report).at(0), "R-UNT-04");
+  EXPECT_EQ(report.count(Severity::kUnsupported), 1U);
+  EXPECT_EQ(report.count(Severity::kError), 0U);
+}
+
+TEST(Validator, WarnsOfIdleBonesAndStillTrajectories) {
+  EXPECT_EQ(ids(SlicedAnimation().idle_stream()), (Ids{"W-BON-01", "W-SLI-01"}));
+}
+
 // 4.6: the decoding process checks none of these.
 TEST(Validator, ChecksWhatDecodersNeedNot) {
   const StreamBytes rich = rich_stream();
@@ -284,7 +390,7 @@ TEST(Validator, WarnsOfWhatIsSurelyNotMeant) {
   gof.clusters[0].components.resize(1);
   gof.clusters[0].components[0].temporal_residual.assign(1, 5);
   gof.clusters[0].components[0].spatial_residual.assign(12, 0);
-  StreamBytes stream = write_stream_header();
+  StreamBytes stream = write_stream_header(kProfileBaseline);
   const auto append = [&](UnitType type, const Bytes& payload) {
     insert(stream, stream.size(), write_unit(type, payload));
   };
@@ -314,8 +420,12 @@ TEST(Validator, WarnsOfWhatIsSurelyNotMeant) {
 
 TEST(Validator, ReadsNothingOfWhatItDoesNotSupport) {
   const StreamBytes good = rich_stream();
-  for (const auto& [byte, value, rule] : std::vector<std::tuple<std::size_t, int, std::string>>{
-           {8, 2, "R-STR-02"}, {9, 1, "R-STR-03"}, {15, 7, "R-HDR-01"}, {16, 9, "R-HDR-02"}}) {
+  for (const auto& [byte, value, rule] :
+       std::vector<std::tuple<std::size_t, int, std::string>>{{8, 2, "R-STR-02"},
+                                                              {9, 2, "R-STR-03"},
+                                                              {9, 1, "R-STR-03"},
+                                                              {15, 7, "R-HDR-01"},
+                                                              {16, 9, "R-HDR-02"}}) {
     StreamBytes stream = good;
     stream[byte] = static_cast<std::uint8_t>(value);
     repair_crcs(stream);

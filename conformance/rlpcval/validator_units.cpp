@@ -29,11 +29,6 @@ std::string hex(std::uint32_t value) {
   return text;
 }
 
-// Table 7-1. Any ancillary type may stand in a stream.
-bool possible_type(std::uint8_t type_byte) {
-  return (type_byte >= 1 && type_byte <= 5) || (type_byte & kAncillaryFlag) != 0;
-}
-
 std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes>& bytes) {
   if (std::equal(kSignature.begin() + 1, kSignature.begin() + 5, bytes.begin() + 1)) {
     return "the name is right, the bytes around it are not: a transfer as text changed them";
@@ -42,6 +37,13 @@ std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes
 }
 
 }  // namespace
+
+// Table 7-1. Any ancillary type may stand in a stream.
+bool StreamUnits::possible_type(std::uint8_t type_byte) const {
+  const UnitType last = version_minor_ > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
+  return (type_byte & kAncillaryFlag) != 0 ||
+         (type_byte >= 1 && type_byte <= static_cast<std::uint8_t>(last));
+}
 
 bool StreamUnits::read(std::uint64_t offset, std::span<std::uint8_t> out, const char* element) {
   if (failed_) return false;
@@ -56,6 +58,7 @@ bool StreamUnits::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};
   const auto present = static_cast<std::size_t>(std::min<std::uint64_t>(size(), bytes.size()));
   if (!read(0, std::span(bytes).first(present), "signature")) return false;
+  version_minor_ = bytes[9];
   const std::size_t comparable = std::min(present, kSignature.size());
   if (!std::equal(kSignature.begin(), kSignature.begin() + comparable, bytes.begin())) {
     findings_.error({Errc::kInvalid, "R-STR-01", "signature", 0}, describe_signature(bytes));
@@ -67,7 +70,9 @@ bool StreamUnits::stream_header() {
     return false;
   }
   const std::string version = "the stream is of version " + std::to_string(bytes[8]) + "." +
-                              std::to_string(bytes[9]) + ", this is a validator of 1.0";
+                              std::to_string(bytes[9]) + ", this is a validator of " +
+                              std::to_string(kVersionMajor) + "." +
+                              std::to_string(kVersionMinor);
   if (bytes[8] != kVersionMajor) {
     findings_.error({Errc::kUnsupported, "R-STR-02", "version_major", 64}, version);
     return false;

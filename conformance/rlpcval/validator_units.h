@@ -36,6 +36,8 @@ class StreamUnits {
   // Whether a unit of a possible type, with a fitting CRC, is at the offset.
   bool is_unit(std::uint64_t offset);
 
+  // As far as it is known.
+  std::uint32_t version_minor() const { return version_minor_; }
   std::uint64_t size() const { return source_.size(); }
   bool failed() const { return failed_; }  // to read
 
@@ -45,11 +47,13 @@ class StreamUnits {
   // Knows all chains that begin at `offset` or later; false if that takes too much memory.
   bool find_chains(std::uint64_t offset);
   bool in_chain(std::uint64_t offset) const;  // of those that are known
+  bool possible_type(std::uint8_t type_byte) const;
 
   ByteSource& source_;
   FindingList& findings_;
   std::uint64_t max_memory_bytes_;
   std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
+  std::uint32_t version_minor_ = 0;
   bool failed_ = false;
   std::optional<std::uint64_t> chains_from_;
   std::vector<bool> chain_;  // [size - chains_from_]: begins a chain

@@ -242,6 +242,7 @@ class Program:
         self.constants = []
         self.variables = set(_GIVEN_VARIABLES)
         self._places = {}
+        self._codes = {}  # what code( ) made without a transform
         for file, line, clause, text in blocks(folder):
             self._read(file, line, clause, text)
         self._check_names()
@@ -274,30 +275,36 @@ class Program:
             local = set(_stored_names(node))
             if isinstance(node, ast.FunctionDef):
                 local |= {a.arg for a in node.args.args}
-            called = {p.func for p in ast.walk(node)
-                      if isinstance(p, ast.Call) and isinstance(p.func, ast.Name)}
-            for part in ast.walk(node):
+            parts = list(ast.walk(node))
+            calls = [p for p in parts if isinstance(p, ast.Call) and isinstance(p.func, ast.Name)]
+            called = {p.func for p in calls}
+            for part in parts:
                 if not isinstance(part, ast.Name):
                     continue
-                known = functions if part in called else self.variables | local
-                if part.id not in known:
+                if part in called:
+                    known = part.id in functions
+                else:
+                    known = part.id in local or part.id in self.variables
+                if not known:
                     raise SpecError(f"{self._places[node]}: {part.id} is known nowhere")
-            for part in called:
-                self._check_arguments(node, part)
+            for call in calls:
+                self._check_arguments(node, call)
 
-    def _check_arguments(self, node, name):
-        if name.id not in self.functions:
+    def _check_arguments(self, node, call):
+        name = call.func.id
+        if name not in self.functions:
             return
-        expected = len(self.functions[name.id][0].args.args)
-        for part in ast.walk(node):
-            if isinstance(part, ast.Call) and part.func is name and len(part.args) != expected:
-                raise SpecError(f"{self._places[node]}: {name.id} takes {expected} argument(s)")
+        expected = len(self.functions[name][0].args.args)
+        if len(call.args) != expected:
+            raise SpecError(f"{self._places[node]}: {name} takes {expected} argument(s)")
 
     def code(self, trace=False, widths=False, transform=None):
         """The program as a code object, for run( ).
 
         transform takes functions and returns what runs in their place.
         """
+        if transform is None and (trace, widths) in self._codes:
+            return self._codes[trace, widths]
         functions = transform(self.functions) if transform else self.functions
         inliner = _Inliner(functions)
         module = ast.Module([], [])
@@ -315,7 +322,10 @@ class Program:
             module.body.append(node)
         module.body += self.constants
         ast.fix_missing_locations(module)
-        return compile(module, "spec", "exec")
+        code = compile(module, "spec", "exec")
+        if transform is None:
+            self._codes[trace, widths] = code
+        return code
 
     def compile(self, given, trace=False, widths=False):
         """The variables and functions of the program as a dictionary.

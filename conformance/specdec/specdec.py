@@ -118,10 +118,11 @@ def describe(folder):
         {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
          "output_bytes": None})
     text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
-    versions = re.findall(r"\bspecifies RLPC version (\d+\.\d+)", text)
-    profiles = re.findall(r"^\|\s*\d+\s*\|\s*(\w+)\s*\|\s*\d+\.\d+\s*\|", text, re.MULTILINE)
-    return {"contract": 1, "name": "specdec", "version": versions[0], "spec": versions,
-            "profiles": [p.lower() for p in profiles],
+    version = re.search(r"\bspecifies RLPC version (\d+\.\d+)", text).group(1)
+    profiles = re.findall(r"^\|\s*\d+\s*\|\s*(\w+)\s*\|\s*(\d+\.\d+)\s*\|", text, re.MULTILINE)
+    return {"contract": 1, "name": "specdec", "version": version,
+            "spec": [since for _, since in profiles],  # each minor version adds one
+            "profiles": [name.lower() for name, _ in profiles],
             "levels": list(range(1, len(variables["Levels"]) + 1)), "outputs": ["rlpd"]}
 
 

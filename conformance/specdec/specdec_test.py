@@ -187,9 +187,75 @@ class Text(FolderTest):
 
     def test_every_element_of_the_contract_is_there(self):
         answer = specdec.describe(ROOT / "spec")
-        self.assertEqual(answer["spec"], ["1.0"])
-        self.assertEqual(answer["profiles"], ["baseline"])
+        self.assertEqual(answer["spec"], ["1.0", "1.1"])
+        self.assertEqual(answer["profiles"], ["baseline", "main"])
         self.assertEqual(answer["levels"], [1, 2, 3, 4])
+
+
+class MainWidths(unittest.TestCase):
+    """The bounds that 8.11 and 8.12 state, with the greatest values that can occur."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.v = specdec.Decoder(PROGRAM, b"", None, widths=True).variables
+        cls.random = random.Random(11)
+
+    def extreme(self, limit):
+        """A number of at most this magnitude, as large or as small as can be, or any."""
+        r = self.random
+        return r.choice((limit, -limit, limit - 1, 0, 1, -1, r.randint(-limit, limit),
+                         r.randint(-(limit >> 20), limit >> 20)))
+
+    def test_steps(self):
+        steps = [self.v["StepOf"](idx) for idx in range(240)]
+        self.assertEqual(steps, sorted(steps))
+        self.assertEqual((steps[0], steps[8], steps[80]), (1, 2, 1024))
+        self.assertLess(steps[-1], 1 << 30)
+
+    def test_rotations_and_moved_points(self):
+        v, one = self.v, 1 << 30
+        v["BonePivot"] = [[-(1 << 28)] * 3]
+        v["BoneOrigin"] = [[[one - 1, -one, one - 1]]]
+        for _ in range(3000):
+            q = v["NormalizeQuaternion"]([self.extreme((1 << 56) - 1) for _ in range(4)])
+            self.assertLess(sum(c * c for c in q), (one + 8) ** 2)
+            self.assertGreater(sum(c * c for c in q), (one - 8) ** 2)
+            turn = [one] + [self.extreme(one) for _ in range(3)]
+            q = v["RotationAfter"](q, turn)
+            self.assertLessEqual(max(map(abs, q)), one)
+            axes = v["AxesOf"](q)
+            self.assertLessEqual(max(abs(c) for axis in axes for c in axis), one + 32)
+            v["BoneAxes"] = [[axes]]
+            moved = v["MovedPoint"](0, 0, [self.extreme(1 << 28) for _ in range(3)])
+            self.assertLess(max(map(abs, moved)), 1 << 32)
+
+    def test_geometry_weights(self):
+        v, r = self.v, self.random
+        for _ in range(1500):
+            n, m = r.randint(2, 7), r.choice((0, 1, 5, 24))
+            spread = 1 << r.randint(0, 28)
+            v["SpatialFactors"] = [[self.extreme(spread) for _ in range(n + m + 1)]
+                                   for _ in range(3)]
+            v.update(Ring=[list(range(1, n + 1))], OuterRing=[list(range(n + 1, n + m + 1))],
+                     RingWeights=[], OuterWeights=[], outer_weight=r.randint(0, 15),
+                     outer_scale=r.randint(0, 15), damping_log2=r.randint(0, 15))
+            v["PlainWeights"](0)
+            v["FindOffsets"](0)
+            self.assertLessEqual(max(abs(c) for o in v["Offsets"] for c in o), 1 << 11)
+            self.assertLess(max(map(abs, v["Gap"])), 1 << 14)
+            v["AdjustWeights"](0)
+            weights = v["RingWeights"][0] + v["OuterWeights"][0]
+            self.assertEqual(sum(weights), 1 << 14)
+            self.assertLess(sum(map(abs, weights)), 1 << 24)
+
+    def test_streams_of_large_values(self):
+        streams = ROOT / "streams" / "v1.1" / "accept"
+        large = [p for p in sorted(streams.glob("*/*.json"))
+                 if "widths" in json.loads(p.read_text(encoding="utf-8"))["features"]]
+        self.assertGreater(len(large), 5)
+        for path in large:
+            data = path.with_suffix(".rlpc").read_bytes()
+            self.assertEqual(run_stream(data, widths=True)[:2], (0, None), path)
 
 
 class Commands(FolderTest):
@@ -258,11 +324,11 @@ def soup_animation(folder):
     return mesh, cache
 
 
-def encode(folder, animation, *settings):
+def encode(folder, animation, *settings, profile="baseline"):
     mesh, cache = animation
     stream = folder / "stream.rlpc"
-    subprocess.run([BIN / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q", *settings],
-                   check=True, timeout=60)
+    subprocess.run([BIN / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q", "--profile",
+                    profile, *settings], check=True, timeout=60)
     return stream.read_bytes()
 
 
@@ -283,7 +349,7 @@ class Clips(FolderTest):
                 output.read_bytes() if output.exists() else b"")
 
 
-class Streams(Clips):
+class StreamTest(Clips):
     """What rlpcenc writes decodes to the same bytes, and reads as the same syntax elements."""
 
     def agree(self, data):
@@ -298,6 +364,24 @@ class Streams(Clips):
         listed = re.findall(r"^ *\d+    (\w+) = (-?\d+)$", trace, re.MULTILINE)
         self.assertEqual([(name, str(value)) for _, name, value in elements], listed)
 
+    def numbers_matter(self, data, numbers):
+        """Another number in the text of the specification gives another result."""
+        expected = run_stream(data)
+        for file, number, other in numbers:
+            with self.subTest(number=number):
+                copy = self.folder / "spec"
+                shutil.copytree(ROOT / "spec", copy, dirs_exist_ok=True)
+                text = (copy / file).read_text(encoding="utf-8")
+                self.assertEqual(text.count(number), 1)
+                (copy / file).write_text(text.replace(number, other), encoding="utf-8")
+                try:
+                    changed = run_stream(data, spec_program.Program(copy))
+                except IndexError:
+                    changed = None
+                self.assertFalse(changed == expected, "the same result")
+
+
+class Streams(StreamTest):
     def test_many_gofs_with_index_hashes_order_and_metadata(self):
         note = self.folder / "note.json"
         note.write_text('{"title": "elephant"}')
@@ -326,23 +410,58 @@ class Streams(Clips):
         data = encode(self.folder, cut_animation(self.folder, "robot_arm", 4), "--gof", "all",
                       "--clusters", "2", "--components", "3", "--qu", "11", "--qc", "11",
                       "--no-rdo", "--frame", "lcf", "--hash", "none")
-        expected = run_stream(data)
-        for file, number, other in (("09-parsing.md", "RateTable(7)", "RateTable(6)"),
-                                    ("08-decoding.md", "[32768, 35734, ", "[32769, 35735, "),
-                                    ("07-semantics.md", "TrackOfVertex = [-1]",
-                                     "TrackOfVertex = [0]"),
-                                    ("annex-a-rlpd.md", "values = [1, ", "values = [2, ")):
-            with self.subTest(number=number):
-                copy = self.folder / "spec"
-                shutil.copytree(ROOT / "spec", copy, dirs_exist_ok=True)
-                text = (copy / file).read_text(encoding="utf-8")
-                self.assertEqual(text.count(number), 1)
-                (copy / file).write_text(text.replace(number, other), encoding="utf-8")
-                try:
-                    changed = run_stream(data, spec_program.Program(copy))
-                except IndexError:
-                    changed = None
-                self.assertFalse(changed == expected, "the same result")
+        self.numbers_matter(data, (
+            ("09-parsing.md", "RateTable(7)", "RateTable(6)"),
+            ("08-decoding.md", "[32768, 35734, ", "[32769, 35735, "),
+            ("07-semantics.md", "TrackOfVertex = [-1]", "TrackOfVertex = [0]"),
+            ("annex-a-rlpd.md", "values = [1, ", "values = [2, ")))
+
+
+class MainStreams(StreamTest):
+    """The same for the Main profile."""
+
+    def encode(self, name, frames, *settings):
+        return encode(self.folder, cut_animation(self.folder, name, frames), *settings,
+                      profile="main")
+
+    def test_many_gofs_with_index_hashes_and_order(self):
+        self.agree(self.encode("elephant", 9, "--kg", "0.5", "--gof", "3", "--hash", "frame",
+                               "--keep-order"))
+
+    def test_bones(self):
+        data = self.encode("robot_arm", 12, "--kg", "0.3", "--gof", "all")
+        self.agree(data)
+        self.assertEqual(run_stream(data, widths=True)[:2], (0, None))
+
+    def test_triangle_soup(self):
+        self.agree(encode(self.folder, soup_animation(self.folder), "--kg", "1", profile="main"))
+
+    def test_slices_can_be_left_out(self):
+        data = self.encode("curtain", 6, "--kg", "0.5", "--hash", "none")
+        whole = list(units(data))
+        slices = [i for i, (kind, _) in enumerate(whole) if kind == SLICE]
+        self.assertGreater(len(slices), 1)
+        outputs = set()
+        for first in slices:
+            cut = stream_of(data, [u for i, u in enumerate(whole) if i not in slices or i < first])
+            code, rule, frames, output = run_stream(cut)
+            self.assertEqual((code, frames), (0, 6), rule)
+            self.assertTrue(output == self.rlpcdec(cut)[3], "other bytes than from rlpcdec")
+            outputs.add(output)
+        self.assertEqual(len(outputs), len(slices))
+
+    def test_numbers_of_the_text_matter(self):
+        data = self.encode("curtain", 9, "--kg", "0.5", "--hash", "none")
+        self.numbers_matter(data, (
+            ("08-decoding.md", "left = 16384", "left = 19384"),
+            ("08-decoding.md", "Valence[v] > 6", "Valence[v] > 5"),
+            ("08-decoding.md", "[0, 1, 2, 0, 0, 1]", "[0, 1, 2, 0, 0, 2]"),
+            ("09-parsing.md", "GroupEnd = [3]", "GroupEnd = [2]"),
+            ("09-parsing.md", "[8, 13, 20, 32]", "[8, 13, 20, 33]"),
+            ("09-parsing.md", "96 * ComponentMean[l]", "95 * ComponentMean[l]")))
+
+
+SLICE = 6
 
 
 def units(data):
@@ -407,6 +526,14 @@ class DamagedStreams(Clips):
             del all_units[i]
             cases.append(stream_of(data, all_units))
         self.agree(cases)
+
+
+class DamagedMainStreams(DamagedStreams):
+    """The same for the Main profile."""
+
+    def stream(self):
+        return encode(self.folder, soup_animation(self.folder), "--kg", "2", "--gof", "4",
+                      "--keep-order", "--hash", "frame", profile="main")
 
 
 def main():

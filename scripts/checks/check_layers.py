@@ -22,7 +22,7 @@ OURS = {
 }
 TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
 LIBRARIES = {
-    "common": {"zlib.h"},
+    "common": {"zlib.h", "immintrin.h"},
     "decoder": TOOLS | {"tiny_gltf.h"},
     "encoder": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},
     "conformance": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},

@@ -4,8 +4,9 @@
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
   calls just those versions released that have one.
 * The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
-  has the digests by version of the project (CMakeLists.txt). They may change with the version, or
-  with an erratum (spec/errata.md) that the new entry names.
+  has the digests by version of the project (CMakeLists.txt), of streams of the Baseline profile;
+  what the encoder makes of a profile is kept from its release on. They may change with the version,
+  or with an erratum (spec/errata.md) that the new entry names.
 
   --bin FOLDER   where rlpcenc is; without it, the encoder is not run
   --write        add an entry for the encoder as it is now
@@ -62,7 +63,8 @@ def encoder_digests(root, bin_folder):
         for mesh in sorted((root / "streams" / "inputs").glob("*.obj")):
             for setting in SETTINGS:
                 subprocess.run([bin_folder / "rlpcenc", mesh, "--points", mesh.with_suffix(".pc2"),
-                                "-o", out, *setting.split()], check=True, capture_output=True)
+                                "-o", out, "--profile", "baseline", *setting.split()], check=True,
+                               capture_output=True)
                 digest = hashlib.sha256(out.read_bytes()).hexdigest()
                 digests[f"{mesh.stem} {setting}"] = digest[:32]
     return digests

@@ -1,26 +1,32 @@
 """Seeds of the fuzz targets: small streams, and the payloads that are in them."""
 
 import hashlib
+import itertools
 import struct
 import subprocess
+import sys
 
 MAX_SEED_BYTES = 1 << 16
 STREAM_HEADER_BYTES = 10
 UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
-SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF = 1, 2, 3, 4
+SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE = 1, 2, 3, 4, 6
 GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
 # In the order of decoder/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
 
 # Settings that make different streams of a small animation.
+BASELINE = ["--profile", "baseline"]
 SETTINGS = [
-    ["--kg", "1", "--metadata", "METADATA", "--keep-order"],
-    ["--kg", "0.3", "--gof", "4", "--hash", "frame"],
-    ["--max-error", "0.01", "--frame", "world", "--gof", "3", "--hash", "none"],
-    ["--gof", "all", "--clusters", "3", "--components", "2", "--qu", "8", "--qc", "8",
+    ["--kg", "1", "--keep-order", "--hash", "frame"],
+    [*BASELINE, "--kg", "1", "--metadata", "METADATA", "--keep-order"],
+    [*BASELINE, "--kg", "0.3", "--gof", "4", "--hash", "frame"],
+    [*BASELINE, "--max-error", "0.01", "--frame", "world", "--gof", "3", "--hash", "none"],
+    [*BASELINE, "--gof", "all", "--clusters", "3", "--components", "2", "--qu", "8", "--qc", "8",
      "--qdelta", "8", "--frame", "lcf", "--no-rdo"],
 ]
+# The encoder uses a part of what there is in the Main profile.
+RANDOM_MAIN_STREAMS = 60
 OBJ_SEEDS = [
     b"# frame_rate 30000/1001\nv 0 0 0\nv 1 0 .5e-3\nv 0 +1 -2.25\nv 1 1 1e-50\nf 1 2 3 4\n",
     b"\xef\xbb\xbfo a\r\nv 0 0 0 1.0\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 0 0\r\nv 0 1 0\r\n"
@@ -107,6 +113,22 @@ def encoded_streams(root, work, encoder):
             yield (work / "seed.rlpc").read_bytes()
 
 
+def random_main_streams(root):
+    """Random legal streams of the Main profile, as rlpcgen makes them."""
+    for folder in ("judge", "specdec", "rlpcgen"):
+        sys.path.insert(0, str(root / "conformance" / folder))
+    import random_main
+    import random_streams
+    import spec_program
+    builder = random_streams.RandomBuilder(
+        spec_program.Program(root / "spec"), random_main.MainPlan, random_main.MainSource,
+        random_main.MainSequence)
+    for seed in range(RANDOM_MAIN_STREAMS):
+        stream, _ = builder.build(seed)
+        if len(stream) <= MAX_SEED_BYTES:
+            yield stream
+
+
 def released_streams(root):
     for path in sorted((root / "streams").glob("v*/*/**/*.rlpc")):
         if path.stat().st_size <= MAX_SEED_BYTES:
@@ -162,12 +184,30 @@ def gof_seeds(found, _):
     first = {}
     for code, payload in found:
         first.setdefault(code, payload)
-        if code == GOF and CONNECTIVITY in first:
+        if code == GOF and CONNECTIVITY in first and not is_main(first[SEQUENCE_HEADER]):
             header, connectivity = first[SEQUENCE_HEADER], first[CONNECTIVITY]
             frame = Bits(payload[:16]).ue()
             if max(frame, len(header), len(connectivity)) < 65536:
                 yield (struct.pack("<IHH", frame, len(header), len(connectivity)) +
                        header + connectivity + payload)
+
+
+def is_main(header):
+    return header[0] == 1
+
+
+def bone_gof_seeds(found, _):
+    """GOFs with the slices behind them."""
+    before = {}
+    for place, (code, payload) in enumerate(found):
+        before.setdefault(code, payload)
+        if code != GOF or CONNECTIVITY not in before or not is_main(before[SEQUENCE_HEADER]):
+            continue
+        slices = itertools.takewhile(lambda unit: unit[0] == SLICE, found[place + 1:])
+        pieces = [before[SEQUENCE_HEADER], before[CONNECTIVITY], payload, *(s for _, s in slices)]
+        if max(map(len, pieces)) < 65536:
+            yield struct.pack("<I", Bits(payload[:16]).ue()) + b"".join(
+                struct.pack("<H", len(piece)) + piece for piece in pieces)
 
 
 def payload_seeds(found, counts):
@@ -187,8 +227,8 @@ def sequence_header_seeds(found, _):
     yield found[0][1]
 
 
-FROM_PARTS = {"connectivity_fuzz": connectivity_seeds, "gof_fuzz": gof_seeds,
-              "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
+FROM_PARTS = {"bone_gof_fuzz": bone_gof_seeds, "connectivity_fuzz": connectivity_seeds,
+              "gof_fuzz": gof_seeds, "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
 
 
 def seeds_of(target, streams):
@@ -199,6 +239,8 @@ def seeds_of(target, streams):
         return [bytes([len(p) - 1]) + pc2_bytes(p, f) for p, _, f in small_animations()]
     if target == "rlpd_fuzz":
         return [rlpd_bytes(p, t, f) for p, t, f in small_animations()]
+    if target == "validator_fuzz":
+        return [b"\1" + stream for stream in streams]  # CRCs are repaired
     if target in FROM_PARTS:
         known = filter(None, map(parts, streams))
         return [seed for found, counts in known for seed in FROM_PARTS[target](found, counts)]
@@ -207,7 +249,8 @@ def seeds_of(target, streams):
 
 def write_all(root, corpus, encoder, targets):
     """Seeds of all targets, in CORPUS/TARGET/seeds; and CORPUS/TARGET/found for what is new."""
-    streams = [*released_streams(root), *encoded_streams(root, corpus / "work", encoder)]
+    streams = [*released_streams(root), *random_main_streams(root),
+               *encoded_streams(root, corpus / "work", encoder)]
     for target in targets:
         folder = corpus / target / "seeds"
         folder.mkdir(parents=True, exist_ok=True)

@@ -11,17 +11,24 @@ import subprocess
 TIMEOUT_SECONDS = 1800
 PC2_HEADER_BYTES = 32
 
-# Settings that take different paths through the encoder.
-SETTINGS = [
-    "--kg 0.3",
-    "--kg 1 --preset fast --gof 10 --keep-order --hash frame",
-    "--max-error 0.01 --frame world --gof 20",
-    "--bpvf 3 --seeds triangle",
-    "--gof all --clusters 8 --components 6 --qu 12 --qc 12 --qdelta 12 --frame lcf",
-    "--gof all --clusters 5 --components 4 --qu 10 --qc 11 --no-rdo --frame lcf --seeds spread",
-]
+# Settings that take different paths through the encoder, by profile.
+SETTINGS = {
+    "baseline": [
+        "--kg 0.3",
+        "--kg 1 --preset fast --gof 10 --keep-order --hash frame",
+        "--max-error 0.01 --frame world --gof 20",
+        "--bpvf 3 --seeds triangle",
+        "--gof all --clusters 8 --components 6 --qu 12 --qc 12 --qdelta 12 --frame lcf",
+        "--gof all --clusters 5 --components 4 --qu 10 --qc 11 --no-rdo --frame lcf --seeds spread",
+    ],
+    "main": [
+        "--kg 0.3",
+        "--kg 0.1 --preset fast --clusters 4 --gof 5 --keep-order --hash frame",
+        "--max-error 0.01 --preset fast --clusters 6 --components 5",
+    ],
+}
 # The decoded frames of the first setting are also written as floats, and encoded again.
-AGAIN = "--kg 1 --preset fast"
+AGAIN = "--profile baseline --kg 1 --preset fast"
 
 
 class RunFailed(Exception):
@@ -71,6 +78,7 @@ class Workload:
     GROUPS = ["streams", "integers", "floats", "suite"]
 
     def __init__(self, root, meshes, suite, progress):
+        """meshes: by profile."""
         self.root = root
         self.meshes = meshes
         self.suite = suite
@@ -81,7 +89,8 @@ class Workload:
         shutil.rmtree(work, ignore_errors=True)
         work.mkdir(parents=True)
         tools = {name: [*emulator, bin_folder / name] for name in ("rlpcenc", "rlpcdec")}
-        jobs = [(self._encode, mesh, i) for mesh in self.meshes for i in range(len(SETTINGS))]
+        jobs = [(self._encode, (profile, mesh), i) for profile, settings in SETTINGS.items()
+                for mesh in self.meshes[profile] for i in range(len(settings))]
         jobs += [(self._decode_released, path, 0) for path in self.suite]
         results = {group: {} for group in self.GROUPS}
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -96,10 +105,11 @@ class Workload:
                 raise
         return results
 
-    def _encode(self, tools, work, mesh, i):
-        setting = SETTINGS[i]
+    def _encode(self, tools, work, what, i):
+        profile, mesh = what
+        setting = f"--profile {profile} {SETTINGS[profile][i]}"
         job = f"{mesh.stem} {setting}"
-        base = work / f"{mesh.stem}-{i}"
+        base = work / f"{mesh.stem}-{profile}-{i}"
         stream, integers = base.with_suffix(".rlpc"), base.with_suffix(".rlpd")
         met = self._call([*tools["rlpcenc"], mesh, "--points", mesh.with_suffix(".pc2"),
                           "-o", stream, "-q", *setting.split()], (0, 2))

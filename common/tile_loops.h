@@ -1,0 +1,61 @@
+// The inner loops of reconstruction (8.5.3 and 8.14.3), over the vertices of a tile. Plain
+// loops are the definition; where compiler and machine have AVX2, twins do the same faster. All
+// is exact, so that both give the same integers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace rlpc {
+
+// Small enough for the spatial factors of a tile to stay in the first cache; a multiple of 16.
+inline constexpr std::size_t kTileValues = 64;
+
+// Factors of some components, two components (a pair) beside each other; the last pair of an
+// odd number of components has zeros in it.
+struct FactorPairs {
+  const std::int16_t* temporal;  // [num_pairs][temporal_rows][2]
+  std::size_t temporal_rows;
+  const std::int16_t* spatial;  // [num_pairs][kTileValues][2]
+  std::size_t num_pairs;        // at least 1
+};
+
+// Rest positions that a bone moves.
+struct BoneArms {
+  std::array<const std::int32_t*, 3> arm;  // from the pivot, |arm| <= 2^29; [size] each
+  const std::int32_t* weight;              // [size]
+  std::size_t size;
+};
+
+// How the position of a vertex follows from its sums.
+struct PositionWidths {
+  int weight_bits;
+  int fraction_bits;
+  int position_bits;
+};
+
+struct TileLoops {
+  // 8.5.3: sums[r][i] = sum over the components of temporal[first_row + r] * spatial[i];
+  // sums [num_rows][kTileValues]. The caller has made sure that they fit.
+  void (*sum_products)(const FactorPairs& factors, std::size_t first_row, std::size_t num_rows,
+                       std::int32_t* sums);
+  // sums[i] += values[i] * weight, n times.
+  void (*add_weighted)(const std::int32_t* values, std::int32_t weight, std::size_t n,
+                       std::int64_t* sums);
+  // 8.12.3 Moved point, for one coordinate: places[i] = where a bone takes a rest position,
+  // times its weight. axis: that coordinate of the axes of the bone. |axis| <= 2^30 + 16,
+  // |origin| <= 2^30.
+  void (*weighted_places)(const BoneArms& arms, const std::array<std::int32_t, 3>& axis,
+                          std::int32_t origin, std::int64_t* places);
+  // 8.14.3 Positions, for one coordinate: positions [kTileValues] from sums of weighted places
+  // and sums of products, [kTileValues] each.
+  void (*positions)(const std::int64_t* places, const std::int64_t* displacements,
+                    const PositionWidths& widths, std::int32_t* positions);
+};
+
+// The loops that this machine can run; the first are the plain ones, the last the fastest.
+std::span<const TileLoops> tile_loops();
+
+}  // namespace rlpc

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""On random legal streams of the Main profile, and on these damaged, rlpcval and rlpcdec agree.
+
+    agreement_test.py --bin BUILD/bin [unittest arguments, such as Agreement]
+"""
+
+import json
+import pathlib
+import random
+import sys
+import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools_testing import ROOT, ToolsTest, main, run  # noqa: E402
+
+for folder in ("judge", "specdec", "rlpcgen"):
+    sys.path.insert(0, str(ROOT / "conformance" / folder))
+import random_main  # noqa: E402
+import random_streams  # noqa: E402
+import spec_program  # noqa: E402
+import specdec  # noqa: E402
+
+STREAM_HEADER_BYTES, UNIT_HEADER_BYTES, CRC_BYTES = 10, 5, 4
+SLICE = 6
+
+
+def units_of(stream):
+    """(type, payload) of each unit."""
+    units, at = [], STREAM_HEADER_BYTES
+    while at < len(stream):
+        first = at + UNIT_HEADER_BYTES
+        size = int.from_bytes(stream[at + 1:first], "big")
+        units.append((stream[at], stream[first:first + size]))
+        at = first + size + CRC_BYTES
+    return units
+
+
+def stream_of(header, units):
+    """The stream of these units, with sizes and CRCs that fit."""
+    data = bytearray(header)
+    for code, payload in units:
+        unit = bytes([code]) + len(payload).to_bytes(4, "big") + payload
+        data += unit + zlib.crc32(unit).to_bytes(4, "big")
+    return bytes(data)
+
+
+def damaged(stream, numbers):
+    """The stream with one fault, of a kind drawn from `numbers`."""
+    header, units = stream[:STREAM_HEADER_BYTES], units_of(stream)
+    slices = [u for u, (code, _) in enumerate(units) if code == SLICE]
+    kind = numbers.choice(["flip", "flip", "flip", "payload", "cut", "short", "drop", "drop",
+                           "swap", "move"])
+    if kind == "cut":
+        return stream[:numbers.randrange(len(stream))]
+    if kind == "flip":
+        data = bytearray(stream)
+        data[numbers.randrange(len(data))] ^= 1 << numbers.randrange(8)
+        return bytes(data)
+    if kind == "drop":
+        del units[numbers.choice(slices or range(len(units)))]
+    elif kind == "swap":
+        a, b = (numbers.choice(slices or range(len(units))) for _ in range(2))
+        units[a], units[b] = units[b], units[a]
+    elif kind == "move":
+        unit = units.pop(numbers.choice(slices or range(len(units))))
+        units.insert(numbers.randint(0, len(units)), unit)
+    else:
+        u = numbers.choice([u for u, (_, payload) in enumerate(units) if payload])
+        code, payload = units[u]
+        payload = bytearray(payload)
+        if kind == "short":
+            del payload[numbers.randrange(len(payload)):]
+        else:
+            payload[numbers.randrange(len(payload))] ^= 1 << numbers.randrange(8)
+        units[u] = code, bytes(payload)
+    return stream_of(header, units)
+
+
+class Agreement(ToolsTest):
+    SEEDS = 25
+    FAULTS = 6  # of each stream
+
+    def verdict_of_decoder(self, path):
+        """(rule, bit), or None if rlpcdec decodes the stream."""
+        result = run("rlpcdec", "decode", path, self.path("out.rlpd"))
+        if result.code == 0:
+            return None
+        _, verdict = result.err.splitlines()[-1].split("rlpc-verdict ")
+        verdict = json.loads(verdict)
+        return verdict["rule"], verdict["bit"]
+
+    def test_first_rule_and_its_place(self):
+        builder = random_streams.RandomBuilder(
+            spec_program.Program(specdec.SPEC), random_main.MainPlan, random_main.MainSource,
+            random_main.MainSequence)
+        paths = []
+        for seed in range(self.SEEDS):
+            good, numbers = builder.build(seed)[0], random.Random(seed)
+            for number in range(self.FAULTS + 1):
+                paths.append(self.path(f"{seed}-{number}.rlpc"))
+                paths[-1].write_bytes(damaged(good, numbers) if number else good)
+        streams = run("rlpcval", "--json", *paths).json()["streams"]
+        rules = set()
+        for path, stream in zip(paths, streams, strict=True):
+            first = [(f["id"], f["bit"]) for f in stream["findings"] if f["stops_decoder"]]
+            verdict = self.verdict_of_decoder(path)
+            rules.add(verdict and verdict[0])
+            self.assertEqual(first, [verdict] if verdict else [], path.name)
+            if path.stem.endswith("-0"):
+                self.assertEqual(stream["verdict"], "conforming", path.name)
+        self.assertGreater(len(rules), 10)
+
+
+if __name__ == "__main__":
+    main()

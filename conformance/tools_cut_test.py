@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""Streams of the Main profile without some of their slices: rlpcinfo --extract and rlpcdec.
+
+    tools_cut_test.py --bin BUILD/bin [unittest arguments, such as Cutting]
+"""
+
+import random
+import subprocess
+import sys
+
+from tools_testing import ROOT, ToolsTest, limited, main, run
+
+for folder in ("judge", "specdec", "rlpcgen"):
+    sys.path.insert(0, str(ROOT / "conformance" / folder))
+import random_main  # noqa: E402
+import random_streams  # noqa: E402
+import spec_program  # noqa: E402
+import specdec  # noqa: E402
+
+STREAM_HEADER_BYTES, UNIT_BYTES = 10, 9  # header and CRC
+SLICE, GOF_INDEX, GOF_HASH, END = 6, 129, 130, 5
+
+
+def units_of(stream):
+    """(type, bytes) of each unit."""
+    units, at = [], STREAM_HEADER_BYTES
+    while at < len(stream):
+        end = at + UNIT_BYTES + int.from_bytes(stream[at + 1:at + 5], "big")
+        units.append((stream[at], stream[at:end]))
+        at = end
+    return units
+
+
+def expected_slices(gof, components, layers):
+    """Slices of an entry of rlpcinfo --json that stay: counted without any code of the tools."""
+    groups, sizes = {0}, gof["layer_group_size"]
+    total = 0
+    for s in gof["slices"]:
+        total += s["num_trajectories"]
+        if total <= components:
+            groups.add(s["component_group_idx"])
+    num = max([1] + [n for n in range(1, len(sizes) + 1) if sum(sizes[:n]) <= layers])
+    return [s for s in gof["slices"]
+            if s["component_group_idx"] in groups and s["layer_group_idx"] < num]
+
+
+class CutTest(ToolsTest):
+    builder = None
+
+    def random_stream(self, seed):
+        if not CutTest.builder:
+            CutTest.builder = random_streams.RandomBuilder(
+                spec_program.Program(specdec.SPEC), random_main.MainPlan, random_main.MainSource,
+                random_main.MainSequence)
+        path = self.path("in.rlpc")
+        path.write_bytes(CutTest.builder.build(seed)[0])
+        return path
+
+    def rich_stream(self):
+        """The first random stream with GOFs of several component groups and layer groups."""
+        for seed in range(100):
+            path = self.random_stream(seed)
+            for gof in self.ok("rlpcinfo", path, "--json").json()["gofs"]:
+                if len(gof["cut_to_components"]) > 2 and len(gof["cut_to_layers"]) > 1:
+                    return path
+        raise AssertionError("no such stream")
+
+    def extract(self, path, cut, *options):
+        return self.ok("rlpcinfo", path, "--extract", cut, "-o", self.path("cut.rlpc"), *options)
+
+
+class Cutting(CutTest):
+    SEEDS = 40
+    SPECDEC_SEEDS = 12  # whose cut streams the specification decodes too
+
+    def check(self, seed, components, layers):
+        """Cuts a random stream; whether slices were left out."""
+        path, cut = self.random_stream(seed), self.path("cut.rlpc")
+        report = self.extract(path, f"components={components},layers={layers}", "--json").json()
+        entries = self.ok("rlpcinfo", path, "--json").json()["gofs"]
+        stay = [expected_slices(gof, components, layers) for gof in entries]
+        for gof, slices, entry in zip(report["gofs"], stay, entries, strict=True):
+            self.assertEqual(gof["after"]["num_slices"], len(slices))
+            self.assertEqual(gof["before"]["num_slices"], len(entry["slices"]))
+            self.assertEqual(gof["after"]["num_trajectories"],
+                             sum(s["num_trajectories"] for s in slices))
+            self.assertEqual(gof["after"]["bytes"],
+                             entry["bytes"] + sum(s["bytes"] for s in slices))
+        before, after = units_of(path.read_bytes()), units_of(cut.read_bytes())
+        self.assertEqual(sum(code == SLICE for code, _ in after), sum(map(len, stay)))
+        self.assertEqual([code for code, _ in after if code != SLICE],
+                         [code for code, _ in before if code != SLICE])
+        left = iter(before)
+        for unit in after:  # the rest in the order and with the bytes that they had
+            if unit[0] not in (GOF_INDEX, GOF_HASH, END):
+                self.assertIn(unit, left)
+        self.assertEqual(report["after"]["bytes"], cut.stat().st_size)
+        self.assertEqual(report["cut"], len(before) != len(after))
+        if not report["cut"]:
+            self.assertEqual(cut.read_bytes(), path.read_bytes())
+        verdict = self.ok("rlpcval", "--json", cut).json()["streams"][0]["verdict"]
+        self.assertEqual(verdict, "conforming", f"seed {seed}")
+        self.ok("rlpcdec", cut, "-o", self.path("cut.rlpd"))
+        done = self.ok("rlpcdec", path, "-o", self.path("whole.rlpd"), "--max-components",
+                       components, "--max-layers", layers, "--json").json()
+        self.assertEqual(done["cut"], report["cut"])
+        self.assertEqual(done["hashes_verified"], not report["cut"])
+        self.assertEqual(self.path("cut.rlpd").read_bytes(), self.path("whole.rlpd").read_bytes(),
+                         f"seed {seed}")
+        return report["cut"]
+
+    def test_random_streams(self):
+        cuts = 0
+        for seed in range(self.SEEDS):
+            numbers = random.Random(seed)
+            cut = self.check(seed, numbers.choice([0, 0, 1, 2, 3, 5, 1000]),
+                             numbers.choice([1, 2, 9]))
+            cuts += cut
+            if cut and seed < self.SPECDEC_SEEDS:
+                subprocess.run([sys.executable, ROOT / "conformance/specdec/specdec.py", "decode",
+                                self.path("cut.rlpc"), self.path("spec.rlpd")], check=True)
+                self.assertEqual(self.path("cut.rlpd").read_bytes(),
+                                 self.path("spec.rlpd").read_bytes(), f"seed {seed}")
+        self.assertGreater(cuts, self.SEEDS // 4)
+
+    def test_frames_by_seeking(self):
+        path = self.rich_stream()
+        frames = self.ok("rlpcinfo", path, "--json").json()["num_frames"]
+        for options in (["--max-components", 0], ["--max-layers", 1], ["--max-components", 1]):
+            self.ok("rlpcdec", path, "-o", self.path("all.rlpd"), *options)
+            whole = self.path("all.rlpd").read_bytes()
+            for f in range(frames):
+                self.ok("rlpcdec", path, "-o", self.path("one.rlpd"), "--frames", f, *options)
+                one = self.path("one.rlpd").read_bytes()
+                size = (len(whole) - len(one)) // max(1, frames - 1)
+                start = len(whole) - (frames - f) * size
+                self.assertEqual(one[len(one) - size:], whole[start:start + size])
+
+    def test_what_rlpcinfo_says_beforehand_is_what_comes_out(self):
+        path = self.rich_stream()
+        info = self.ok("rlpcinfo", path, "--json").json()
+        # Layers that no GOF can do without.
+        least = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
+                    for gof in info["gofs"])
+        for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers")):
+            for g, gof in enumerate(info["gofs"]):
+                for choice in gof[key]:
+                    if name == "layers" and choice[name] == 0:
+                        continue  # not one slice
+                    report = self.extract(path, f"{name}={choice[name]}", "--json").json()
+                    self.assertEqual(report["gofs"][g]["after"]["bytes"], choice["bytes"])
+                    self.assertEqual(report["request_met"],
+                                     name == "components" or choice[name] >= least)
+        said = self.ok("rlpcinfo", path, "--gofs").out.decode()
+        self.assertIn("GOF to here", said)
+        for gof in info["gofs"]:
+            self.assertIn(f" {gof['cut_to_components'][-1]['bytes']}\n", said)
+
+    def test_the_report_in_words(self):
+        path = self.rich_stream()
+        said = self.extract(path, "components=0,layers=1").out.decode()
+        report = self.extract(path, "components=0,layers=1", "--json").json()
+        for words in (f"{report['before']['bytes']} bytes", f"{report['after']['bytes']} bytes",
+                      f"{report['after']['bpvf']:.4f} bpvf", " 0 of ", "slices"):
+            self.assertIn(words, said)
+        self.assertNotIn("nothing was left out", said)
+        self.assertIn("nothing was left out", self.extract(path, "components=9999").out.decode())
+        self.assertIn("hashes of GOFs that are cut were not compared",
+                      self.ok("rlpcdec", path, "--verify", "--max-components", 0).err)
+        self.assertIn("hashes agree",
+                      self.ok("rlpcdec", path, "--verify", "--max-components", 9999).err)
+
+    def test_layers_that_cannot_be_left_out(self):
+        for seed in range(100):
+            path = self.random_stream(seed)
+            gofs = self.ok("rlpcinfo", path, "--json").json()["gofs"]
+            if any(gof["slices"] and gof["layer_group_size"][0] > 1 for gof in gofs):
+                break
+        self.assertFalse(self.extract(path, "layers=1", "--json").json()["request_met"])
+        self.assertIn("the first layer group always stays",
+                      self.extract(path, "layers=1").out.decode())
+
+
+class CuttingErrors(CutTest):
+    def test_usage(self):
+        path, out = self.random_stream(0), self.path("cut.rlpc")
+        for cut in ("", "components", "components=", "components=-1", "components=x", "layers=0",
+                    "components=1,components=2", "layers=1,layers=1", "components=1,", ",layers=1",
+                    "components=1 layers=2", "components=4294967295", "components=99999999999",
+                    "layers=1.5", "slices=2", "components=+1", "Components=1"):
+            self.fails(64, "components=K", "rlpcinfo", path, "-o", out, "--extract", cut)
+        self.fails(64, "", "rlpcinfo", path, "--extract", "layers=1")
+        self.fails(64, "", "rlpcinfo", path, "-o", out)
+        for option in ("--gofs", "--trace"):
+            self.fails(64, "", "rlpcinfo", path, "--extract", "layers=1", "-o", out, option)
+        for options in (["--max-layers", 0], ["--max-layers", "x"], ["--max-components", -1],
+                        ["--max-components", "1,2"], ["--max-layers", 4294967296]):
+            self.fails(64, "", "rlpcdec", path, "--verify", *options)
+        self.assertEqual(self.files(), ["in.rlpc"])
+
+    def test_the_output_is_the_input(self):
+        path = self.rich_stream()
+        before = path.read_bytes()
+        self.path("link.rlpc").symlink_to(path)
+        for output in (path, self.path("link.rlpc"), f"{self.folder}/./in.rlpc"):
+            self.fails(64, "is the input itself", "rlpcinfo", path, "--extract", "layers=1", "-o",
+                       output)
+        self.assertEqual(path.read_bytes(), before)
+        self.assertEqual(self.files(), ["in.rlpc", "link.rlpc"])
+
+    def test_places_that_cannot_be_written(self):
+        path = self.rich_stream()
+        self.path("folder").mkdir()
+        for output in (self.path("none/a.rlpc"), self.path("folder"), "/dev/full"):
+            self.fails(4, str(output), "rlpcinfo", path, "--extract", "layers=1", "-o", output)
+        self.path("a.rlpc").write_bytes(b"what was there")
+        for output in ("a.rlpc", "b.rlpc"):
+            result = run("rlpcinfo", path, "--extract", "layers=1", "-o", self.path(output),
+                         **limited(100))
+            self.assertEqual(result.code, 4, result.err)
+            self.assertIn(output, result.err)
+        self.assertEqual(self.path("a.rlpc").read_bytes(), b"what was there")
+        self.assertEqual(self.files(), ["a.rlpc", "folder", "in.rlpc"])
+
+    def test_streams_that_cannot_be_cut(self):
+        out = self.path("cut.rlpc")
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--profile", "baseline")
+        self.fails(2, ["a.rlpc", "Baseline profile"], "rlpcinfo", self.path("a.rlpc"), "--extract",
+                   "layers=1", "-o", out)
+        self.fails(2, ["a.rlpc", "Baseline profile"], "rlpcdec", self.path("a.rlpc"), "-o",
+                   self.path("a.rlpd"), "--max-components", 3)
+        self.fails(4, "none.rlpc", "rlpcinfo", self.path("none.rlpc"), "--extract", "layers=1",
+                   "-o", out)
+        stream = bytearray(self.rich_stream().read_bytes())
+        stream[len(stream) // 2] ^= 4
+        self.path("in.rlpc").write_bytes(stream)
+        self.fails(1, ["in.rlpc", "R-"], "rlpcinfo", self.path("in.rlpc"), "--extract", "layers=1",
+                   "-o", out)
+        self.assertEqual(self.files(), ["a.rlpc", "in.rlpc"])
+
+
+if __name__ == "__main__":
+    main()

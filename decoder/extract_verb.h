@@ -1,0 +1,25 @@
+// rlpcinfo --extract: a stream without some of its slices.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "decoder/slice_cut.h"
+
+namespace rlpc {
+
+// "components=K", "layers=L" or both with a comma between them: K is 0 or more, L 1 or more.
+std::optional<SliceCut> parse_slice_cut(const std::string& text);
+
+struct ExtractOptions {
+  std::string input;
+  std::string output;
+  SliceCut cut;
+  bool json = false;
+};
+
+// Writes the stream and a report on standard output, or says on standard error why not; the
+// exit code.
+int extract(const ExtractOptions& options);
+
+}  // namespace rlpc

@@ -1,0 +1,35 @@
+// 8.14.1 Slices that are absent: those to leave out of each GOF of the Main profile.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace rlpc {
+
+// Component groups and layer groups stay whole or go: of each GOF, as many stay as have at most
+// max_components trajectories together, and at most max_layers vertex layers, the coarsest
+// ones. The first layer group always stays, and so do influences and rest positions.
+struct SliceCut {
+  static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t max_components = kAll;
+  std::uint32_t max_layers = kAll;
+
+  bool cuts() const { return max_components != kAll || max_layers != kAll; }
+};
+
+// layer_group_size: layers of each group, at least one group.
+inline std::uint32_t layer_groups_that_stay(std::span<const std::uint32_t> layer_group_size,
+                                            std::uint32_t max_layers) {
+  std::uint64_t layers = layer_group_size[0];
+  std::size_t groups = 1;
+  while (groups < layer_group_size.size()) {
+    layers += layer_group_size[groups];
+    if (layers > max_layers) break;
+    ++groups;
+  }
+  return static_cast<std::uint32_t>(groups);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,50 @@
+// The poses of all bones in a frame at once, from sums over the vertices they move.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "encoder/bone_weights.h"
+#include "encoder/rigid_motion.h"
+
+namespace rlpc {
+
+// Sums of w_a w_b (p, 1) (p, 1)^T over the vertices for all pairs of bones. With them, and with
+// PoseTargets of the frame, the squared error of a frame is a quadratic in the bones' motions:
+// finding poses costs the same for any number of vertices.
+class SkinMoments {
+ public:
+  explicit SkinMoments(std::size_t num_bones);
+  void add(const Vec3d& rest, std::span<const RigWeight> weights);
+
+  std::size_t num_bones() const { return num_bones_; }
+  const Eigen::Matrix4d& block(std::size_t a, std::size_t b) const {
+    return block_[a * num_bones_ + b];
+  }
+  double mass(std::size_t bone) const { return block(bone, bone)(3, 3); }  // sum of w^2
+  Vec3d centre(std::size_t bone) const;
+  double spread2(std::size_t bone) const;  // mean squared distance to the centre
+
+ private:
+  std::size_t num_bones_;
+  std::vector<Eigen::Matrix4d> block_;
+};
+
+// Sums of w_b x (p, 1)^T over the vertices of one frame at positions x.
+class PoseTargets {
+ public:
+  explicit PoseTargets(std::size_t num_bones) : sum_(num_bones, Motion::Zero()) {}
+  void add(const Vec3d& rest, std::span<const RigWeight> weights, const Vec3d& position);
+  const Motion& operator[](std::size_t bone) const { return sum_[bone]; }
+
+ private:
+  std::vector<Motion> sum_;
+};
+
+// Lowers the squared error of a frame: each bone in turn takes the best motion that the others
+// leave it.
+void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
+                  std::vector<Motion>& motions);
+
+}  // namespace rlpc

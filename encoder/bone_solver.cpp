@@ -1,0 +1,293 @@
+#include "encoder/bone_solver.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "encoder/bone_poses.h"
+
+namespace rlpc {
+namespace {
+
+constexpr int kRounds = 6;  // of improvement, after bones have come in
+
+}  // namespace
+
+BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
+    : sample_(sample),
+      max_influences_(max_influences),
+      weights_(sample.num_vertices()),
+      candidates_(sample.num_vertices()),
+      gram_(sample.num_vertices()) {
+  Vec3d mean = Vec3d::Zero();
+  const std::size_t n = sample.num_vertices();
+  for (std::size_t v = 0; v < n; ++v) {
+    rest_.push_back(sample.trajectory(v)[0]);
+    mean += rest_.back() / static_cast<double>(n);
+  }
+  double extent2 = 0.0;
+  for (const Vec3d& p : rest_) extent2 += (p - mean).squaredNorm() / static_cast<double>(n);
+  constexpr double kNegligible = 1e-10;
+  negligible_ = kNegligible * extent2 * static_cast<double>(sample.num_frames);
+  for (const auto& patch : sample.patches) {
+    const std::vector<Motion> motion = motion_of(patch);
+    double error = 0.0;
+    for (const std::uint32_t v : patch) {
+      error += rigid_error(sample.trajectory(v), rest_[v], motion);
+    }
+    patch_error_.push_back(error);
+  }
+  std::vector<std::uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0U);
+  motions_ = {motion_of(all)};
+  improve(1);
+}
+
+bool BoneSolver::grow(std::size_t num_bones) {
+  constexpr std::size_t kExchanges = 6;
+  constexpr std::size_t kExchangedPart = 8;
+  const std::size_t before = motions_.size();
+  while (motions_.size() < num_bones) {
+    const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
+    const std::size_t added = add_bones(count);
+    if (added > 0) improve(kRounds);
+    if (added < count) break;
+  }
+  std::size_t count = 1 + motions_.size() / kExchangedPart;
+  for (std::size_t i = 0; i < kExchanges && count > 0; ++i) {
+    if (!exchange(count)) count /= 2;
+  }
+  return motions_.size() > before;
+}
+
+std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertices) const {
+  std::vector<Motion> motion(sample_.num_frames);
+  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+    MotionFit fit;
+    for (const std::uint32_t v : vertices) fit.add(rest_[v], sample_.trajectory(v)[f]);
+    motion[f] = fit.motion();
+  }
+  return motion;
+}
+
+// Returns how many there were.
+std::size_t BoneSolver::add_bones(std::size_t count) {
+  std::vector<double> error(weights_.size());
+  for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
+  std::size_t added = 0;
+  for (; added < count; ++added) {
+    std::vector<Motion> best;
+    double most = 0.0;
+    for (const std::size_t patch : ill_explained_patches(error)) {
+      std::vector<Motion> motion;
+      const double saved = try_patch(patch, error, motion);
+      if (saved <= most) continue;
+      most = saved;
+      best = std::move(motion);
+    }
+    constexpr double kLeastPart = 1e-9;
+    const double sum = std::accumulate(error.begin(), error.end(), 0.0);
+    const double negligible = negligible_ * static_cast<double>(error.size());
+    if (most <= std::max(kLeastPart * sum, negligible)) break;
+    motions_.push_back(std::move(best));
+    choose_candidates();
+    fit_all_weights();
+    for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
+  }
+  return added;
+}
+
+// Patches that do not touch, first those with a large error of which a rigid motion of their
+// own would leave little.
+std::vector<std::size_t> BoneSolver::ill_explained_patches(
+    std::span<const double> error) const {
+  constexpr std::size_t kTried = 12;
+  constexpr double kRigid = 1e-3;  // part of the error that may be left
+  std::vector<double> score(sample_.patches.size());
+  for (std::size_t i = 0; i < score.size(); ++i) {
+    const auto& patch = sample_.patches[i];
+    const double of_patch = error[patch[0]] * static_cast<double>(patch.size());
+    if (of_patch > 0.0) {
+      score[i] = of_patch * kRigid / (kRigid + patch_error_[i] / of_patch);
+    }
+  }
+  std::vector<std::size_t> order(score.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+  std::vector<char> touched(sample_.num_vertices(), 0);
+  std::vector<std::size_t> result;
+  for (const std::size_t i : order) {
+    const auto& patch = sample_.patches[i];
+    if (score[i] <= 0.0 || result.size() == kTried) break;
+    if (touched[patch[0]] != 0) continue;
+    for (const std::uint32_t v : patch) touched[v] = 1;
+    result.push_back(i);
+  }
+  return result;
+}
+
+// The error that a bone with the motion of a patch would save. The motion is then taken from
+// all vertices that follow it as well as the patch does.
+double BoneSolver::try_patch(std::size_t patch, std::span<const double> error,
+                             std::vector<Motion>& motion) const {
+  constexpr int kFits = 3;
+  std::vector<std::uint32_t> core = sample_.patches[patch];
+  const double tolerance =
+      std::max(4.0 * patch_error_[patch] / static_cast<double>(core.size()), negligible_);
+  double saved = 0.0;
+  for (int i = 0; i < kFits; ++i) {
+    motion = motion_of(core);
+    saved = 0.0;
+    std::vector<std::uint32_t> close;
+    for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
+      const double alone = rigid_error(sample_.trajectory(v), rest_[v], motion);
+      saved += std::max(error[v] - alone, 0.0);
+      if (alone < tolerance) close.push_back(v);
+    }
+    if (close.size() < core.size() || close == core) break;
+    core = std::move(close);
+  }
+  return saved;
+}
+
+void BoneSolver::choose_candidates() {
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    std::vector<std::size_t>& list = candidates_[v];
+    list.clear();
+    for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
+    for (const std::size_t bone :
+         closest_bones(sample_.trajectory(v), rest_[v], motions_, SkinVertex::kMaxCandidates)) {
+      if (list.size() == SkinVertex::kMaxCandidates) break;
+      if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
+    }
+  }
+}
+
+void BoneSolver::fit_all_weights() {
+  const MotionProducts products(motions_);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    const SkinVertex vertex(sample_.trajectory(v), motions_, candidates_[v]);
+    const auto fit = [&] {
+      gram_[v] = vertex.gram(products, rest_[v]);
+      weights_[v] = sparse_weights(gram_[v], SkinVertex::kMaxCandidates, candidates_[v].size(),
+                                   max_influences_, 0.0);
+      for (RigWeight& w : weights_[v].weights) {
+        w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
+      }
+    };
+    fit();
+    if (!rests_move_) continue;
+    rest_[v] = vertex.fit_rest(products, rest_[v], weights_[v].weights);
+    fit();
+  }
+}
+
+void BoneSolver::improve(int rounds) {
+  constexpr int kKeepCandidates = 3;
+  for (int i = 0; i < rounds; ++i) {
+    if (i % kKeepCandidates == 0) choose_candidates();
+    fit_all_weights();
+    improve_motions();
+  }
+  fit_all_weights();
+}
+
+void BoneSolver::settle() {
+  constexpr int kSettlingRounds = 10;
+  rests_move_ = true;
+  improve(kSettlingRounds);
+}
+
+void BoneSolver::improve_motions() {
+  constexpr int kSweeps = 2;
+  const std::size_t n = motions_.size();
+  SkinMoments moments(n);
+  for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
+  std::vector<Motion> frame(n);
+  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+    PoseTargets targets(n);
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v)[f]);
+    }
+    for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
+    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, targets, frame);
+    for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
+  }
+}
+
+// What each bone's vertices would lose without it.
+std::vector<double> BoneSolver::missed() const {
+  std::vector<double> loss(motions_.size(), 0.0);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    const std::size_t count = candidates_[v].size();
+    if (count < 2) continue;
+    for (const RigWeight& w : weights_[v].weights) {
+      // The others only: the bone's row and column take those of the last.
+      SkinVertex::Gram gram = gram_[v];
+      const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
+      const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
+      constexpr std::size_t kStride = SkinVertex::kMaxCandidates;
+      for (std::size_t i = 0; i < count; ++i) {
+        gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        gram[i * kStride + gone] = gram[i * kStride + count - 1];
+      }
+      const double without =
+          sparse_weights(gram, kStride, count - 1, max_influences_, 0.0).error;
+      loss[w.bone] += std::max(without - weights_[v].error, 0.0);
+    }
+  }
+  return loss;
+}
+
+void BoneSolver::remove_bone(std::size_t bone) {
+  motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
+  for (BoneWeights& w : weights_) w.weights.clear();
+  choose_candidates();
+  fit_all_weights();
+}
+
+double BoneSolver::error() const {
+  double sum = 0.0;
+  for (const BoneWeights& w : weights_) sum += w.error;
+  return sum;
+}
+
+// Exchanges the bones that are missed least for new ones, if that is better.
+bool BoneSolver::exchange(std::size_t count) {
+  const BoneSolver before = *this;
+  for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
+    const std::vector<double> loss = missed();
+    remove_bone(
+        static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()));
+  }
+  add_bones(before.motions_.size() - motions_.size());
+  improve(kRounds);
+  if (error() < before.error()) return true;
+  take(before);
+  return false;
+}
+
+void BoneSolver::take(const BoneSolver& other) {
+  motions_ = other.motions_;
+  rest_ = other.rest_;
+  weights_ = other.weights_;
+  candidates_ = other.candidates_;
+  gram_ = other.gram_;
+}
+
+void BoneSolver::remove_worthless_bones(double worth) {
+  bool removed = false;
+  while (motions_.size() > 1) {
+    const std::vector<double> loss = missed();
+    const auto least = std::min_element(loss.begin(), loss.end());
+    if (*least >= worth) break;
+    remove_bone(static_cast<std::size_t>(least - loss.begin()));
+    removed = true;
+  }
+  if (removed) improve(kRounds);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,36 @@
+// One GOF, encoded at varying steps, whatever its profile.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/stream_format.h"
+
+namespace rlpc {
+
+// One encoding of a GOF.
+struct EncodedGof {
+  struct Unit {
+    UnitType type;
+    std::vector<std::uint8_t> payload;
+  };
+  std::vector<Unit> units;  // the GOF unit, then its slices
+  // Decoded positions of frame f of the GOF, as a decoder has them; [num_vertices][3].
+  std::function<void(std::uint32_t f, std::span<std::int32_t> positions)> frame;
+  std::uint64_t num_factors = 0;  // NumFactors of the specification
+  std::uint32_t clusters = 0;     // or bones
+  std::uint32_t components = 0;   // or trajectories
+};
+
+class GofCoder {
+ public:
+  virtual ~GofCoder() = default;
+  // step: of the quantisers, in grid steps. analysis_step: that the analysis is made for, near
+  // it; the last analysis is kept, and serves again for its step.
+  virtual EncodedGof encode(double step, double analysis_step) = 0;
+};
+
+}  // namespace rlpc

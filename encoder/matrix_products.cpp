@@ -1,0 +1,69 @@
+#include "encoder/matrix_products.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 4;  // rows in one pass over the sums
+
+}  // namespace
+
+std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
+  std::vector<double> result(width * width, 0.0);
+  const std::size_t num_rows = rows.size() / width;
+  std::size_t r = 0;
+  for (; r + kTogether <= num_rows; r += kTogether) {
+    const double* r0 = &rows[r * width];
+    const double* r1 = r0 + width;
+    const double* r2 = r1 + width;
+    const double* r3 = r2 + width;
+    for (std::size_t i = 0; i < width; ++i) {
+      double* out = &result[i * width];
+      const double x0 = r0[i];
+      const double x1 = r1[i];
+      const double x2 = r2[i];
+      const double x3 = r3[i];
+      for (std::size_t j = 0; j <= i; ++j) {
+        out[j] += (x0 * r0[j] + x1 * r1[j]) + (x2 * r2[j] + x3 * r3[j]);
+      }
+    }
+  }
+  for (; r < num_rows; ++r) {
+    const double* row = &rows[r * width];
+    for (std::size_t i = 0; i < width; ++i) {
+      double* out = &result[i * width];
+      for (std::size_t j = 0; j <= i; ++j) out[j] += row[i] * row[j];
+    }
+  }
+  return result;
+}
+
+std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
+                                   std::span<const double> b, std::size_t b_width) {
+  const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
+  const std::size_t inner = b_width == 0 ? 0 : b.size() / b_width;
+  std::vector<double> result(num_rows * b_width, 0.0);
+  for (std::size_t r = 0; r < num_rows; ++r) {
+    const double* x = &a[r * a_width];
+    double* out = &result[r * b_width];
+    std::size_t i = 0;
+    for (; i + kTogether <= inner; i += kTogether) {
+      const double* b0 = &b[i * b_width];
+      const double* b1 = b0 + b_width;
+      const double* b2 = b1 + b_width;
+      const double* b3 = b2 + b_width;
+      const double x0 = x[i];
+      const double x1 = x[i + 1];
+      const double x2 = x[i + 2];
+      const double x3 = x[i + 3];
+      for (std::size_t j = 0; j < b_width; ++j) {
+        out[j] += (x0 * b0[j] + x1 * b1[j]) + (x2 * b2[j] + x3 * b3[j]);
+      }
+    }
+    for (; i < inner; ++i) {
+      for (std::size_t j = 0; j < b_width; ++j) out[j] += x[i] * b[i * b_width + j];
+    }
+  }
+  return result;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,22 @@
+// The heavy products of the analysis: loops over independent outputs, each summed in one order,
+// so that vectorisation changes nothing. Matrices are row-major.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace rlpc {
+
+// Lower triangle, with the diagonal, of rows^T rows; [width][width], the rest is 0.
+std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width);
+
+// Left columns of a, as many as b has rows, times b.
+//
+//   a       [num_rows][a_width]
+//   b       [inner][b_width], inner <= a_width
+//   result  [num_rows][b_width]
+std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
+                                   std::span<const double> b, std::size_t b_width);
+
+}  // namespace rlpc
