@@ -234,7 +234,7 @@ void BoneRecon::add_factors(const CodedMesh& mesh, const BoneGof& gof,
 // Where their bones take the rest positions of a tile, times the sum of the weights.
 void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   for (auto& of_coordinate : sums) of_coordinate.fill(0);
-  std::array<std::int64_t, kTileValues> places;
+  std::array<std::int64_t, kTileValues> places{};
   for (std::size_t r = first_run_[tile]; r < first_run_[tile + 1]; ++r) {
     const Run& run = runs_[r];
     const BonePose& pose = bones_[run.bone].poses[f];
@@ -253,8 +253,8 @@ void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
 
 void BoneRecon::frames(std::uint32_t first, std::uint32_t count,
                        std::span<std::int32_t> positions) const {
-  Sums places;
-  std::array<std::array<std::int32_t, kTileValues>, 3> moved;
+  Sums places{};
+  std::array<std::array<std::int32_t, kTileValues>, 3> moved{};
   std::vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);
   for (std::size_t tile = 0; tile + 1 < first_run_.size(); ++tile) {
     factors_.sum_tile(tile, 3 * std::size_t{first}, 3 * std::size_t{count}, displacements);
@@ -266,7 +266,7 @@ void BoneRecon::frames(std::uint32_t first, std::uint32_t count,
         loops_.positions(places[c].data(), &displacements[(3 * f + c) * kTileValues], widths_,
                          moved[c].data());
       }
-      std::int32_t* const out = &positions[3 * (f * num_vertices_ + first_vertex)];
+      std::int32_t* const out = &positions[3 * (std::size_t{f} * num_vertices_ + first_vertex)];
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = moved[c][i];
       }

@@ -128,6 +128,7 @@ std::vector<std::size_t> closest_bones(std::span<const Vec3d> positions, const V
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), count));
   std::vector<std::size_t> bones;
+  bones.reserve(order.size());
   for (const auto& [error, bone] : order) bones.push_back(bone);
   return bones;
 }

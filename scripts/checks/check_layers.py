@@ -21,11 +21,12 @@ OURS = {
     "conformance": {"common", "decoder", "encoder", "conformance"},
 }
 TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
+PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
 LIBRARIES = {
     "common": {"zlib.h", "immintrin.h"},
     "decoder": TOOLS | {"tiny_gltf.h"},
     "encoder": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},
-    "conformance": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},
+    "conformance": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"} | PEERS,
 }
 TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
 # common computes; it neither reads, writes nor logs.

@@ -2,7 +2,7 @@
 """Files that pages for people (*.md) name, and relative links in them, exist.
 
 A name is looked at if it begins with one of the project's folders. It may be a glob; `X` stands
-for a version that is not there yet (streams/vX.Y).
+for a version that is not there yet (streams/vX.Y). Tables that scripts write have marks around them.
 """
 
 import argparse
@@ -15,6 +15,9 @@ import cpp_source
 _FOLDERS = ("common", "conformance", "decoder", "encoder", "scripts", "spec", "streams")
 _NAME = re.compile(rf"(?<![\w/.%-])((?:{'|'.join(_FOLDERS)})/[\w./*-]*)")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+
+# Page: tables in it that a script writes between `<!-- begin: NAME ... -->` and `<!-- end: NAME -->`.
+_WRITTEN = {"README.md": ("rates",)}
 
 
 def pages(root):
@@ -34,10 +37,22 @@ def missing(root, path):
                 yield number, match.group(1)
 
 
+def unmarked(root):
+    """(page, name) of tables that have no place, or several."""
+    for page, names in _WRITTEN.items():
+        text = (root / page).read_text(encoding="utf-8")
+        for name in names:
+            marks = re.findall(rf"^<!-- (begin|end): {name}\b.*-->$", text, re.MULTILINE)
+            if marks != ["begin", "end"]:
+                yield page, name
+
+
 def check(root):
     found = list(pages(root))
     complaints = [f"{path.relative_to(root)}:{line}: there is no {name}"
                   for path in found for line, name in missing(root, path)]
+    complaints += [f"{page}: no marks `begin: {name}`, `end: {name}`, once each"
+                   for page, name in unmarked(root)]
     return complaints, f"{len(found)} pages name only what is there"
 
 

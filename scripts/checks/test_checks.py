@@ -130,10 +130,11 @@ class Layers(TreeTest):
 
 class Pages(TreeTest):
     THERE = {"spec/a.md": "", "scripts/make_it": ""}
+    MARKS = "<!-- begin: rates (scripts/make_it) -->\n| a |\n<!-- end: rates -->\n"
 
-    def run_on(self, text, *expected):
+    def run_on(self, text, *expected, marks=MARKS):
         (self.assert_one if expected else self.assert_clean)(
-            check_pages.check, {**self.THERE, "README.md": text}, *expected)
+            check_pages.check, {**self.THERE, "README.md": text + marks}, *expected)
 
     def test_what_is_there(self):
         self.run_on("`scripts/make_it --all`, spec/a.md. [a](spec/a.md#b) build/spec/c, scripts/make*,"
@@ -143,6 +144,11 @@ class Pages(TreeTest):
         self.run_on("\nsee `spec/b.md`\n", "README.md:2", "spec/b.md")
         self.run_on("scripts/break*\n", "scripts/break*")
         self.run_on("[a](a.md)\n", "there is no a.md")
+
+    def test_written_tables_have_marks(self):
+        for marks in ("", 2 * self.MARKS, self.MARKS.replace("end", "begin")):
+            with self.subTest(marks=marks):
+                self.run_on("", "README.md", "rates", marks=marks)
 
 
 class Float(TreeTest):

@@ -1,0 +1,157 @@
+"""The codecs of the comparison and how to run them: tables, to be changed here and nowhere else."""
+
+import dataclasses
+import re
+import shutil
+import subprocess
+
+# In commands: {mesh}, {points}: the input; {gof}; {setting}: a step of the ladder, in words;
+# {file}: what is to be measured; {order}: order map; {raw}: a file between two steps;
+# {out}: decoded point cache. A step is run as one process.
+RLPC_ENCODE = ("rlpcenc {mesh} --points {points} -o {file} --order-map {order} --gof {gof} "
+               "--quiet {setting}",)
+RLPC_DECODE = ("rlpcdec {file} -o {out} --quiet",)
+XZ, ZSTD = "--lzma2=preset=9e,lc=4,pb=0", "--ultra -22"
+
+COMPONENTS = (2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 120, 160, 240, 320)
+PAPER = "--profile baseline --frame lcf --qu 12 --qc 12 --qdelta 12 --clusters {clusters}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Codec:
+    name: str  # as in --codecs
+    title: str  # as in tables
+    colour: str
+    what: str  # for people who read the results
+    encode: tuple = RLPC_ENCODE
+    decode: tuple = RLPC_DECODE
+    prepare: tuple = ()  # not timed, nothing of it is counted
+    options: str = ""  # come before every setting
+    ladders: tuple = ()  # of settings, coarse to fine; none: "--kg X" for every error asked for
+    restores_order: bool = False  # the decoder does: no order map for the comparison
+    line: str = "solid"
+
+    @property
+    def has_gof(self):
+        return any("{gof}" in step for step in self.encode)
+
+    @property
+    def tools(self):
+        return sorted({step.split()[0] for step in self.prepare + self.encode + self.decode})
+
+
+def peer(name, title, colour, what, packer=None):
+    """A codec of peer_codec, and what packs its file."""
+    codec = name.split("-")[0]
+    encode = f"peer_codec encode {codec} {{mesh}} {{points}} --bits {{setting}} -o "
+    decode = f"peer_codec decode {codec} {{raw}} --order-map {{order}} -o {{out}}"
+    steps = {
+        None: ((encode + "{file}",), (decode.replace("{raw}", "{file}"),)),
+        "xz": ((encode + "{raw}", f"xz -k -S .packed {XZ} {{raw}}"),
+               ("xz -d -k -S .packed {file}", decode)),
+        "zstd": ((encode + "{raw}", f"zstd -q {ZSTD} {{raw}} -o {{file}}"),
+                 ("zstd -q -d {file} -o {raw}", decode)),
+    }[packer]
+    return Codec(name, title, colour, what, *steps,
+                 prepare=(f"peer_codec order {codec} {{mesh}} {{points}} -o {{order}}",),
+                 ladders=(tuple(str(bits) for bits in range(2, 17)),), restores_order=True)
+
+
+def paper(name, title, colour, what, options, clusters=(10, 30)):
+    return Codec(name, title, colour, what, ladders=tuple(
+        tuple(f"{PAPER.format(clusters=n)} {options} --components {l}" for l in COMPONENTS)
+        for n in clusters))
+
+
+MAIN = Codec("main", "Main", "#111111", "RLPC, profile Main", options="--profile main")
+COBRA = ("--prediction parallelogram --bones 1 --influences 1 --no-temporal-weights "
+         "--basis-steps cobra")
+
+CODECS = (
+    MAIN,
+    Codec("main-fast", "Main, fast", "#777777", "the same, --preset fast",
+          options="--profile main --preset fast", line="dashed"),
+    Codec("main-slow", "Main, slow", "#444444", "the same, --preset slow",
+          options="--profile main --preset slow", line="dashed"),
+    Codec("baseline", "Baseline", "#0072b2", "RLPC, profile Baseline",
+          options="--profile baseline"),
+    paper("rlpca", "RLPCA", "#56b4e9",
+          "Amjoun and Strasser 2007, at the paper's settings: profile Baseline, 12 bits, 10 or 30 "
+          "clusters, as many components in each", "--no-rdo"),
+    paper("orlpca", "RLPCA-RDO", "#009e73", "the same, components given by rate and distortion",
+          "--rdo-rate vectors"),
+    Codec("coddyac", "Coddyac + COBRA", "#d55e00",
+          "Vasa and Skala 2007 and 2009, with our entropy coder: profile Main with "
+          f"{COBRA}", options=f"--profile main {COBRA}"),
+    peer("lorenzo-xz", "Lorenzo + xz", "#cc79a7",
+         "differences in time (first or second, whichever is smaller) and from neighbours on the "
+         f"mesh, xz {XZ}", "xz"),
+    peer("meshopt-zstd", "meshopt + zstd", "#e69f00",
+         f"differences in time, codecs of meshoptimizer, zstd {ZSTD}", "zstd"),
+    peer("zfp-xz", "zfp + xz", "#8c564b",
+         "zfp with a bound of the error, each axis an array of vertices and frames; triangles by "
+         "xz", "xz"),
+    peer("draco", "draco per frame", "#b8a800",
+         "draco at its slowest, a mesh for each frame"),
+)
+DEFAULT = ("main", "baseline", "rlpca", "orlpca", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz",
+           "draco")
+README = ("main", "baseline", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz", "draco")
+NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 12 has no package "
+                "of them.")
+
+
+def variant(name, title, colour, options):
+    return Codec(name, title, colour, f"Main with {options}", options=f"--profile main {options}")
+
+
+# What Main loses without one of its tools.
+ABLATIONS = (
+    MAIN,
+    variant("prediction-none", "no prediction over the mesh", "#0072b2", "--prediction none"),
+    variant("parallelogram", "parallelogram", "#56b4e9", "--prediction parallelogram"),
+    variant("parallelograms", "mean of parallelograms", "#009e73", "--prediction parallelograms"),
+    variant("outer-ring", "no outer ring", "#d55e00", "--no-outer-ring"),
+    variant("geometry-weights", "no geometry weights", "#cc79a7", "--no-geometry-weights"),
+    variant("layer-steps", "no layer steps", "#e69f00", "--no-layer-steps"),
+    variant("temporal-weights", "no temporal weights", "#8c564b", "--no-temporal-weights"),
+    variant("bones", "one bone", "#b8a800", "--bones 1"),
+    variant("basis-steps", "basis steps as COBRA", "#777777", "--basis-steps cobra"),
+)
+
+
+class Toolbox:
+    """Where the programs are, and what they can do."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self._said = {}
+
+    def path(self, tool):
+        own = self.folder / tool
+        return str(own) if own.is_file() else shutil.which(tool)
+
+    def _says(self, *command):
+        if command not in self._said:
+            self._said[command] = subprocess.run(
+                [self.path(command[0]), *command[1:]], capture_output=True, text=True,
+                check=False).stdout
+        return self._said[command]
+
+    def missing(self, codec):
+        """Why the codec cannot be run here; None: it can."""
+        for tool in codec.tools:
+            if self.path(tool) is None:
+                return f"{tool} is not installed (scripts/setup --compare)"
+        if "peer_codec" in codec.tools:
+            kind = codec.encode[0].split()[2]
+            if kind not in self._says("peer_codec", "list").split():
+                return ("its library was not there when peer_codec was built "
+                        "(scripts/setup --compare)")
+        if "rlpcenc" in codec.tools:
+            known = self._says("rlpcenc", "--help")
+            asked = " ".join((codec.options, *(s for ladder in codec.ladders for s in ladder[:1])))
+            for word in asked.split():
+                if word.startswith("--") and not re.search(rf"{word}(?![\w-])", known):
+                    return f"this rlpcenc has no {word}"
+        return None

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""A small run of scripts/compare: with rlpc and xz, stopped, continued."""
+
+import argparse
+import csv
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "conformance"))
+from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2  # noqa: E402
+
+
+class Tools:
+    folder = ROOT / "build" / "release" / "bin"  # --bin
+
+
+class SmallRun(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="rlpc-compare-test-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "in put").mkdir()
+        _, triangles = read_obj(INPUTS / "robot_arm.obj")
+        frames = read_pc2(INPUTS / "robot_arm.pc2")[:12]
+        write_obj(self.folder / "in put" / "arm.obj", frames[0], triangles)
+        write_pc2(self.folder / "in put" / "arm.pc2", frames)
+
+    def compare(self, *arguments, code=0):
+        done = subprocess.run(
+            [sys.executable, "-B", ROOT / "scripts" / "compare", "--bin", Tools.folder, "--out",
+             self.folder / "out", "--kg", "0.3,1.0", *arguments],
+            capture_output=True, text=True, timeout=100, check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def points(self):
+        with open(self.folder / "out" / "points.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_run_and_run_again(self):
+        arguments = ("--codecs", "baseline,lorenzo-xz", self.folder / "in put")
+        self.compare(*arguments)
+        points = self.points()
+        self.assertEqual({p["codec"] for p in points}, {"baseline", "lorenzo-xz"})
+        for p in points:
+            self.assertAlmostEqual(float(p["bpvf"]), 8 * int(p["bytes"]) / (404 * 12), 6)
+        baseline = {p["settings"]: p for p in points if p["codec"] == "baseline"}
+        found = baseline["--profile baseline --kg 0.3"]
+        self.assertLessEqual(float(found["kg_error_percent"]), 0.3)
+        self.assertGreater(float(found["encode_seconds"]), 0)
+        steps = sorted((int(p["settings"]), float(p["kg_error_percent"]))
+                       for p in points if p["codec"] == "lorenzo-xz")
+        self.assertTrue(any(kg <= 0.3 for _, kg in steps) and any(kg >= 1.0 for _, kg in steps))
+        # A bit more halves the error.
+        for (bits, kg), (more, less) in zip(steps, steps[1:]):
+            self.assertAlmostEqual(kg / less / 2 ** (more - bits), 1, delta=0.15)
+        out = self.folder / "out"
+        self.assertIn("| arm |", (out / "comparison.md").read_text(encoding="utf-8"))
+        page = (out / "index.html").read_text(encoding="utf-8")
+        xml.etree.ElementTree.fromstring(page.split("\n", 1)[1])
+        xml.etree.ElementTree.parse(out / "arm.svg")
+
+        # The same once more comes from the results that were kept, those that are gone anew.
+        kept = sorted((out / "cache").iterdir())
+        self.assertEqual(len(kept), len(points))
+        changed = json.loads(kept[0].read_text(encoding="utf-8"))
+        kept[0].write_text(json.dumps({**changed, "encode_seconds": 12345.0}), encoding="utf-8")
+        kept[1].unlink()
+        self.compare(*arguments)
+        again = self.points()
+        self.assertEqual([p["bytes"] for p in again], [p["bytes"] for p in points])
+        self.assertEqual([p["encode_seconds"] for p in again].count("12345"), 1)
+        self.assertEqual(len(list((out / "cache").iterdir())), len(points))
+
+    def test_usage(self):
+        self.compare("--codecs", "baseline,nobody", code=64)
+        self.compare("--gof", "few", code=64)
+        done = self.compare("--codecs", "baseline", self.folder / "nowhere.obj", code=1)
+        self.assertIn("nowhere.obj", done.stderr)
+
+    def test_a_failure_is_said_and_does_not_stop_the_rest(self):
+        (self.folder / "in put" / "bad.obj").write_text("v 0 0 0\n")
+        shutil.copy(self.folder / "in put" / "arm.pc2", self.folder / "in put" / "bad.pc2")
+        done = self.compare("--codecs", "baseline", self.folder / "in put", code=1)
+        self.assertIn("bad, Baseline: failed: rlpcenc: ", done.stderr)
+        self.assertEqual({p["sequence"] for p in self.points()}, {"arm"})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bin", type=pathlib.Path, default=Tools.folder)
+    options, rest = parser.parse_known_args()
+    Tools.folder = options.bin.resolve()
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()

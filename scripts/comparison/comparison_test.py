@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+"""Arithmetic, searches and reports of scripts/compare, without any codec."""
+
+import csv
+import dataclasses
+import math
+import pathlib
+import struct
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / name)
+                for name in ("comparison", "figures")]
+import arithmetic  # noqa: E402
+import codec_table  # noqa: E402
+import measure  # noqa: E402
+import report  # noqa: E402
+
+SEQUENCE = measure.Sequence("a & b", None, None, 100, 10)
+
+
+def point(codec, kg, size, gof="all"):
+    return measure.Point(SEQUENCE.name, codec, gof, "--x", size, 8 * size / SEQUENCE.size, kg, 0.5,
+                         2.0, 0.5, 10.0, 5.0)
+
+
+class Rates(unittest.TestCase):
+    def test_front_leaves_out_what_is_beaten(self):
+        self.assertEqual(arithmetic.front([(1, 50), (0.1, 100), (0.5, 120), (2, 50), (0, 900)]),
+                         [(0.1, 100), (1, 50)])
+
+    def test_linear_in_logarithms_between_points(self):
+        points = [(0.1, 400), (1.0, 100), (10.0, 10)]
+        self.assertAlmostEqual(arithmetic.size_at(points, math.sqrt(0.1)), 200)
+        self.assertAlmostEqual(arithmetic.size_at(points, math.sqrt(10)), math.sqrt(1000))
+        self.assertEqual(arithmetic.size_at(points, 1.0), 100)
+
+    def test_beyond_the_points(self):
+        points = [(0.1, 400), (1.0, 100), (1.2, 101)]
+        self.assertIsNone(arithmetic.size_at(points, 0.09))
+        self.assertEqual(arithmetic.size_at(points, 1.1), 100)
+        self.assertIsNone(arithmetic.size_at([], 1))
+
+    def test_geometric_mean(self):
+        self.assertAlmostEqual(arithmetic.geometric_mean([1, 4, 16]), 4)
+        self.assertIsNone(arithmetic.geometric_mean([1, None]))
+        self.assertIsNone(arithmetic.geometric_mean([]))
+
+    def test_power_fit(self):
+        factor, power = arithmetic.power_fit([(x, 3 * x ** 1.25) for x in (1, 10, 200)])
+        self.assertAlmostEqual(factor, 3)
+        self.assertAlmostEqual(power, 1.25)
+
+
+class Cubic(unittest.TestCase):
+    # Slopes of (0, 0), (1, 1), (2, 4) by hand: differences 1 and 3; inside 6 / (3/1 + 3/3) = 1.5;
+    # left (3 * 1 - 3) / 2 = 0, right (3 * 3 - 1) / 2 = 4.
+    CURVE = arithmetic.Pchip([(0, 0), (1, 1), (2, 4)])
+
+    def test_slopes(self):
+        self.assertEqual([self.CURVE.value_and_slope(x)[1] for x in (0, 1, 2)], [0, 1.5, 4])
+
+    def test_integral(self):
+        # h (y0 + y1) / 2 + h^2 (s0 - s1) / 12 of each piece
+        self.assertAlmostEqual(self.CURVE.integral(0, 1), 1 / 2 - 1.5 / 12)
+        self.assertAlmostEqual(self.CURVE.integral(0, 2), 0.375 + 5 / 2 - 2.5 / 12)
+        parts = self.CURVE.integral(0, 0.3) + self.CURVE.integral(0.3, 1.7)
+        self.assertAlmostEqual(parts + self.CURVE.integral(1.7, 2), self.CURVE.integral(0, 2))
+
+    def test_no_overshoot(self):
+        curve = arithmetic.Pchip([(0, 0), (1, 0), (2, 1), (3, 1)])
+        values = [curve.value_and_slope(i / 50)[0] for i in range(151)]
+        self.assertEqual(values, sorted(values))
+        self.assertEqual((values[0], values[-1]), (0, 1))
+
+
+class BdRate(unittest.TestCase):
+    REFERENCE = [(0.05, 900), (0.1, 500), (0.3, 200), (1.0, 80)]
+
+    def test_a_constant_factor_is_itself(self):
+        for factor in (0.5, 1, 3):
+            other = [(kg, factor * size) for kg, size in self.REFERENCE]
+            self.assertAlmostEqual(arithmetic.bd_rate(other, self.REFERENCE), 100 * (factor - 1))
+
+    def test_mean_of_a_factor_that_grows(self):
+        # Twice the bytes at one end, eight times at the other, straight in logarithms: four times.
+        self.assertAlmostEqual(arithmetic.bd_rate([(0.1, 800), (1, 20)], [(0.1, 100), (1, 10)]), 300)
+
+    def test_only_errors_that_both_reach(self):
+        other = [(kg, 2 * size) for kg, size in self.REFERENCE[1:3]]
+        self.assertAlmostEqual(arithmetic.bd_rate(other, self.REFERENCE[1:3]), 100)
+        self.assertIsNone(arithmetic.bd_rate([(2, 50), (3, 40)], self.REFERENCE))
+        self.assertIsNone(arithmetic.bd_rate([(0.1, 50)], self.REFERENCE))
+
+
+class Search(unittest.TestCase):
+    @staticmethod
+    def ladder(errors, asked):
+        measured = []
+
+        def measure_step(setting):
+            measured.append(setting)
+            return dataclasses.replace(point("x", 1, 1), kg_error_percent=setting)
+
+        found = measure.climb(errors, measure_step, asked)
+        return sorted(p.kg_error_percent for p in found), measured
+
+    def test_both_sides_of_every_error_once(self):
+        steps = [2.0 ** -i for i in range(16)]
+        found, measured = self.ladder(steps, (0.05, 0.3))
+        for value in (2 ** -5, 2 ** -4, 0.25, 0.5):
+            self.assertIn(value, found)
+        self.assertEqual(len(measured), len(set(measured)))
+        self.assertLess(len(measured), 10)
+
+    def test_ends(self):
+        self.assertIn(2, self.ladder([8, 4, 2], [1])[0])
+        self.assertIn(8, self.ladder([8, 4, 2], [9])[0])
+
+    def test_no_more_components_than_frames(self):
+        ladder = codec_table.CODECS[4].ladders[0]
+        kept = measure.usable(ladder, dataclasses.replace(SEQUENCE, num_frames=12))
+        self.assertTrue(kept and kept[-1].endswith("--components 12"))
+
+
+class Inputs(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        head = struct.pack("<12siiffi", b"POINTCACHE2\0", 1, 7, 0.0, 1.0, 9)
+        for name in ("a", "b"):
+            (self.folder / f"{name}.obj").write_text("")
+            (self.folder / f"{name}.pc2").write_bytes(head)
+        (self.folder / "alone.obj").write_text("")
+
+    def test_folders_and_pairs(self):
+        a, b = measure.find_sequences([self.folder])
+        self.assertEqual((a.name, b.name, a.num_vertices, a.num_frames), ("a", "b", 7, 9))
+        (pair,) = measure.find_sequences([self.folder / "a.obj", self.folder / "b.pc2"])
+        self.assertEqual((pair.name, pair.points.name), ("a", "b.pc2"))
+
+    def test_complaints(self):
+        for paths in (["alone.obj"], ["c.obj"], ["a.obj", "a.obj"], ["a.obj", "alone.obj"]):
+            with self.assertRaises(measure.Failure):
+                measure.find_sequences([self.folder / path for path in paths])
+
+
+class Reports(unittest.TestCase):
+    CODECS = [c for c in codec_table.CODECS if c.name in ("main", "baseline", "draco")]
+    POINTS = [point("main", 0.1, 500), point("main", 1.1, 50), point("baseline", 0.1, 1000),
+              point("baseline", 1.1, 100), point("draco", 0.2, 2000, "")]
+
+    def setUp(self):
+        self.curves = report.curves_of(self.CODECS, ("all",))
+
+    def test_rates(self):
+        table = report.rates_table([SEQUENCE], self.curves, self.POINTS, 0.1)
+        self.assertEqual(table.rows, [["a & b", "4.00", "8.00", "-"]])
+        ratios = report.ratios_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
+        self.assertEqual(ratios.rows, [["Baseline", "2.00", "2.00"], ["draco per frame", "-", "18.8"]])
+        bd = report.bd_table([SEQUENCE], self.curves, self.POINTS)
+        self.assertEqual(bd.rows[0], ["Baseline", "+100.0 %", "+100.0 %"])
+        extra = report.extra_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
+        self.assertEqual(extra.rows[0], ["Baseline", "+100.0 / +100.0", "+100.0 / +100.0"])
+
+    def test_a_column_for_each_gof(self):
+        curves = report.curves_of(self.CODECS, ("all", "64"))
+        self.assertEqual([c.title for c in curves], [
+            "Main, GOF all", "Main, GOF 64", "Baseline, GOF all", "Baseline, GOF 64",
+            "draco per frame"])
+
+    def test_numbers(self):
+        for value, text in ((0.5, "0.500"), (12.3456, "12.3"), (1234.5, "1230"), (2, "2.00"),
+                            (0.01, "0.0100"), (0, "0"), (None, "-"), (99.99, "100")):
+            self.assertEqual(report.number(value), text)
+
+    def test_csv_reads_back(self):
+        rows = list(csv.DictReader(report.points_csv(self.POINTS).splitlines()))
+        self.assertEqual(len(rows), len(self.POINTS))
+        self.assertEqual((rows[0]["sequence"], rows[0]["bytes"], float(rows[1]["bpvf"])),
+                         ("a & b", "500", 0.4))
+
+    def test_plot_and_page_are_well_formed(self):
+        svg = report.curve_plot(SEQUENCE, self.curves, self.POINTS, (0.1, 1.0))
+        root = xml.etree.ElementTree.fromstring(svg)
+        said = [e.text for e in root.iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("a & b: 100 vertices, 10 frames", said)
+        self.assertIn("Baseline", said)
+        page = report.page("T < 1", ["n & m"], [report.rates_table([SEQUENCE], self.curves,
+                                                                   self.POINTS, 0.1)], [svg])
+        xml.etree.ElementTree.fromstring(page.split("\n", 1)[1])
+
+    def test_nothing_to_draw(self):
+        self.assertIsNone(report.curve_plot(SEQUENCE, self.curves, [], (0.1, 1.0)))
+
+    def test_marked_text_is_replaced_and_nothing_else(self):
+        text = f"a\n{report.MARK[0]}\nold\n{report.MARK[1]}\nb\n"
+        new = report.replace_marked(text, "| new |\n")
+        self.assertEqual(new, text.replace("old\n", "| new |\n"))
+        self.assertEqual(report.replace_marked(new, "| new |\n"), new)
+        with self.assertRaises(measure.Failure):
+            report.replace_marked("a\n", "x")
+
+
+class Tables(unittest.TestCase):
+    def test_names_are_told_apart(self):
+        for table in (codec_table.CODECS, codec_table.ABLATIONS):
+            self.assertEqual(len({c.name for c in table}), len(table))
+        known = {c.name for c in codec_table.CODECS}
+        self.assertLessEqual({*codec_table.DEFAULT, *codec_table.README}, known)
+
+
+if __name__ == "__main__":
+    unittest.main()

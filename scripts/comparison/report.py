@@ -1,0 +1,232 @@
+"""Results as CSV, Markdown, SVG, and one HTML page that holds all of it."""
+
+import csv
+import dataclasses
+import html
+import io
+
+import arithmetic
+import measure
+import svg_plot
+
+NOTHING = "-"
+MARK = ("<!-- begin: rates (scripts/compare --readme) -->", "<!-- end: rates -->")
+
+STYLE = """
+body { font: 15px/1.5 Helvetica, Arial, sans-serif; color: #222; max-width: 1180px;
+       margin: 2em auto; padding: 0 1em; }
+table { border-collapse: collapse; margin: 1em 0; font-variant-numeric: tabular-nums; }
+th, td { padding: 3px 10px; border-bottom: 1px solid #e4e4e4; text-align: right;
+         white-space: nowrap; }
+th { background: #f6f6f6; } th:first-child, td:first-child { text-align: left; }
+.wide { overflow-x: auto; } svg { max-width: 100%; height: auto; } li { margin: 2px 0; }
+"""
+
+
+@dataclasses.dataclass
+class Table:
+    title: str
+    head: list
+    rows: list  # of words
+
+    def markdown(self):
+        lines = ["| " + " | ".join(self.head) + " |",
+                 "|---" + "|---:" * (len(self.head) - 1) + "|"]
+        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in self.rows]) + "\n"
+
+    def html(self):
+        def line(cells, tag):
+            return "<tr>" + "".join(f"<{tag}>{html.escape(c)}</{tag}>" for c in cells) + "</tr>\n"
+        return (f'<div class="wide"><table>\n{line(self.head, "th")}'
+                f'{"".join(line(row, "td") for row in self.rows)}</table></div>\n')
+
+
+@dataclasses.dataclass(frozen=True)
+class Curve:
+    """A codec with its way to group frames: a column of the tables, a line of the plots."""
+    codec: object
+    gof: str
+    title: str
+
+    def points(self, points, sequence):
+        return [p for p in points if (p.sequence, p.codec, p.gof) ==
+                (sequence.name, self.codec.name, self.gof)]
+
+    def sizes(self, points, sequence):
+        return [(p.kg_error_percent, p.bytes) for p in self.points(points, sequence)]
+
+
+def curves_of(codecs, gofs):
+    """The first is the one that others are compared with."""
+    found = []
+    for codec in codecs:
+        for gof in gofs if codec.has_gof else ("",):
+            several = codec.has_gof and len(gofs) > 1
+            found.append(Curve(codec, gof, f"{codec.title}, GOF {gof}" if several else codec.title))
+    return found
+
+
+def number(value, digits=3):
+    """With so many digits that count."""
+    if value is None:
+        return NOTHING
+    if value == 0:
+        return "0"
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e" in text and abs(value) >= 1 else _padded(text, digits)
+
+
+def _padded(text, digits):
+    whole = text.lstrip("-0.").replace(".", "")
+    if "e" in text or len(whole) >= digits:
+        return text
+    return text + ("" if "." in text else ".") + "0" * (digits - len(whole))
+
+
+def percent(value):
+    return NOTHING if value is None else f"{value:+.1f} %"
+
+
+def bpvf_at(curve, points, sequence, kg):
+    size = arithmetic.size_at(curve.sizes(points, sequence), kg)
+    return None if size is None else 8 * size / sequence.size
+
+
+def rates_table(sequences, curves, points, kg):
+    rows = [[sequence.name, *(number(bpvf_at(c, points, sequence, kg)) for c in curves)]
+            for sequence in sequences]
+    if len(sequences) > 1:
+        means = (arithmetic.geometric_mean(bpvf_at(c, points, s, kg) for s in sequences)
+                 for c in curves)
+        rows.append(["geometric mean", *map(number, means)])
+    return Table(f"Bits per vertex and frame at KG error {kg:g} %",
+                 ["sequence", *(c.title for c in curves)], rows)
+
+
+def ratios_table(sequences, curves, points, kgs):
+    """Size against the first curve, geometric mean over the sequences where both reach the error."""
+    rows = []
+    for curve in curves[1:]:
+        row = [curve.title]
+        for kg in kgs:
+            pairs = [(bpvf_at(curve, points, s, kg), bpvf_at(curves[0], points, s, kg))
+                     for s in sequences]
+            ratios = [a / b for a, b in pairs if a is not None and b is not None]
+            mean = arithmetic.geometric_mean(ratios)
+            few = f" ({len(ratios)} of {len(sequences)})" if 0 < len(ratios) < len(sequences) else ""
+            row.append(number(mean) + few)
+        rows.append(row)
+    return Table(f"Size against {curves[0].title} at equal KG error, geometric mean",
+                 ["codec", *(f"KG {kg:g} %" for kg in kgs)], rows)
+
+
+def extra_table(sequences, curves, points, kgs):
+    """As ratios_table, in per cent more, for every sequence."""
+    rows = []
+    for curve in curves[1:]:
+        columns = []
+        for kg in kgs:
+            sizes = [(bpvf_at(curve, points, s, kg), bpvf_at(curves[0], points, s, kg))
+                     for s in sequences]
+            columns.append([None if None in pair else pair[0] / pair[1] for pair in sizes])
+        cells = [" / ".join(_extra(column[i]) for column in columns)
+                 for i in range(len(sequences))]
+        means = [arithmetic.geometric_mean(column) for column in columns]
+        rows.append([curve.title, *cells, " / ".join(map(_extra, means))])
+    title = (f"Per cent more bytes than {curves[0].title} at KG error "
+             + " / ".join(f"{kg:g}" for kg in kgs) + " %")
+    return Table(title, ["without", *(s.name for s in sequences), "mean"], rows)
+
+
+def _extra(ratio):
+    return NOTHING if ratio is None else f"{100 * (ratio - 1):+.1f}"
+
+
+def bd_table(sequences, curves, points):
+    rows = []
+    for curve in curves[1:]:
+        found = [arithmetic.bd_rate(curve.sizes(points, s), curves[0].sizes(points, s))
+                 for s in sequences]
+        ratios = [1 + x / 100 for x in found if x is not None]
+        mean = arithmetic.geometric_mean(ratios)
+        rows.append([curve.title, *map(percent, found),
+                     percent(None if mean is None else 100 * (mean - 1))])
+    return Table(f"BD-rate against {curves[0].title} (above 0: more bytes)",
+                 ["codec", *(s.name for s in sequences), "mean"], rows)
+
+
+def speed_table(sequences, curves, points, kg):
+    """Vertices times frames a second, and memory, at the point nearest to an error."""
+    rows = []
+    for curve in curves:
+        encode, decode, peaks = [], [], []
+        for sequence in sequences:
+            at = [p for p in curve.points(points, sequence) if p.kg_error_percent > 0]
+            if not at:
+                continue
+            point = min(at, key=lambda p: max(p.kg_error_percent / kg, kg / p.kg_error_percent))
+            encode.append(sequence.size / point.encode_seconds)
+            decode.append(sequence.size / point.decode_seconds)
+            peaks.append((point.encode_peak_mib, point.decode_peak_mib))
+        if encode:
+            rows.append([curve.title, *(number(arithmetic.geometric_mean(x) / 1e6)
+                                        for x in (encode, decode)),
+                         *(f"{max(column):.0f}" for column in zip(*peaks))])
+    return Table(f"Speed near KG {kg:g} %: million vertices times frames a second (geometric mean) "
+                 "of the tools, files read and written; largest peak memory",
+                 ["codec", "encode", "decode", "encode, MiB", "decode, MiB"], rows)
+
+
+def points_csv(points):
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(field.name for field in dataclasses.fields(measure.Point))
+    for point in points:
+        rows.writerow(f"{value:.9g}" if isinstance(value, float) else value
+                      for value in dataclasses.astuple(point))
+    return text.getvalue()
+
+
+def curve_plot(sequence, curves, points, kgs):
+    """Around these errors. None if there is nothing to draw."""
+    series = []
+    for number_of, curve in enumerate(curves):
+        line = sorted((8 * size / sequence.size, kg)
+                      for kg, size in arithmetic.front(curve.sizes(points, sequence))
+                      if min(kgs) / 2 <= kg <= 2 * max(kgs))
+        second = any(c.codec is curve.codec for c in curves[:number_of])
+        if line:
+            series.append(svg_plot.Series(curve.title, line, curve.codec.colour,
+                                          "dashed" if second else curve.codec.line,
+                                          width=2.8 if number_of == 0 else 2.0))
+    if not series:
+        return None
+    title = f"{sequence.name}: {sequence.num_vertices} vertices, {sequence.num_frames} frames"
+    return svg_plot.plot(title, series, "bits per vertex and frame (whole file)",
+                         "KG error, per cent")
+
+
+def page(title, notes, tables, plots):
+    parts = [f"<h1>{html.escape(title)}</h1>", "<ul>",
+             *(f"<li>{html.escape(note)}</li>" for note in notes), "</ul>"]
+    for table in tables:
+        parts += [f"<h2>{html.escape(table.title)}</h2>", table.html()]
+    parts += plots
+    return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+            f"<title>{html.escape(title)}</title><style>{STYLE}</style></head><body>\n"
+            + "\n".join(parts) + "\n</body></html>\n")
+
+
+def markdown(title, notes, tables):
+    lines = [f"# {title}", "", *(f"- {note}" for note in notes)]
+    for table in tables:
+        lines += ["", f"## {table.title}", "", table.markdown().rstrip()]
+    return "\n".join(lines) + "\n"
+
+
+def replace_marked(text, table):
+    """`text` with what stands between the marks replaced."""
+    begin, end = (text.find(mark) for mark in MARK)
+    if begin < 0 or end < begin:
+        raise measure.Failure(f"README.md has no lines {MARK[0]} and {MARK[1]}")
+    return text[:begin + len(MARK[0])] + "\n" + table + text[end:]
