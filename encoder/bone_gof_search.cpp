@@ -203,13 +203,17 @@ EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
     choice_ = RigChoice{choose(analysis_step), analysis_step, times + 1};
     cached_.reset();
   }
+  const auto code_at = [&](double wanted) {
+    if (!cached_ || cached_->step != wanted) {
+      cached_ = Cached{wanted, analyse(choice_->rig, wanted)};
+    }
+    return code_bone_gof(context_.mesh, context_.position_bits, cached_->analysis, settings_,
+                         step);
+  };
+  BoneGof gof = code_at(analysis_step);
   // Without trajectories, nothing but the analysis depends on the step.
-  const double wanted = cached_ && cached_->analysis.pc.temporal.empty() ? step : analysis_step;
-  if (!cached_ || cached_->step != wanted) {
-    cached_ = Cached{wanted, analyse(choice_->rig, wanted)};
-  }
-  return encoded_gof(context_, code_bone_gof(context_.mesh, context_.position_bits,
-                                             cached_->analysis, settings_, step));
+  if (gof.trajectories.empty()) gof = code_at(step);
+  return encoded_gof(context_, gof);
 }
 
 }  // namespace rlpc

@@ -31,7 +31,7 @@ struct RigChoice {
   // Whether others should be chosen for a step.
   bool is_far(double other) const {
     constexpr double kFar = 1.6;
-    constexpr int kMostTimes = 2;
+    constexpr int kMostTimes = 3;
     return times < kMostTimes && (other > kFar * step || other * kFar < step);
   }
 };

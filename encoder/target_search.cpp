@@ -39,7 +39,7 @@ bool TargetSearch::report(double measured) {
   }
   const bool within = measured <= target_.value;
   const double ratio = measured / target_.value;
-  if (frozen_ == 0.0 && ratio > 1.0 - kFreezeWithin && ratio < 1.0 + kFreezeWithin) {
+  if (analysis_step() == step_ && ratio > 1.0 - kFreezeWithin && ratio < 1.0 + kFreezeWithin) {
     // What was measured before belongs to other analyses.
     frozen_ = step_;
     fine_ = coarse_ = 0.0;

@@ -16,8 +16,12 @@ class TargetSearch {
 
   double step() const { return step_; }
   // The step that the analysis is made for. Close to the target it stays as it is, as the
-  // measured value jumps from one analysis to the next.
-  double analysis_step() const { return frozen_ > 0.0 ? frozen_ : step_; }
+  // measured value jumps from one analysis to the next; but it serves nearby steps only.
+  double analysis_step() const {
+    constexpr double kServes = 1.6;
+    const bool near = step_ < kServes * frozen_ && frozen_ < kServes * step_;
+    return near ? frozen_ : step_;
+  }
   double last_step() const { return last_step_; }
   // True if this is the best encoding so far.
   bool report(double measured);
