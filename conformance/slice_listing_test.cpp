@@ -13,18 +13,6 @@
 namespace rlpc {
 namespace {
 
-class ListingTrace final : public Trace {
- public:
-  void begin(const char*, std::uint64_t) override {}
-  void element(const char* name, std::int64_t value, std::uint64_t) override {
-    listing_.element(name, value);
-  }
-  const std::vector<BoneGofEntry>& gofs() const { return listing_.gofs(); }
-
- private:
-  SliceListing listing_;
-};
-
 std::vector<BoneGofEntry> entries_of(const StreamBytes& stream) {
   ListingTrace trace;
   DecoderOptions options;

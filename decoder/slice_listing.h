@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/trace.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
@@ -64,6 +65,19 @@ class SliceListing {
   std::uint64_t unit_bytes_ = 0;
   std::uint32_t first_frame_ = 0;
   std::uint32_t num_frames_ = 0;
+};
+
+// A trace that only lists.
+class ListingTrace final : public Trace {
+ public:
+  void begin(const char*, std::uint64_t) override {}
+  void element(const char* name, std::int64_t value, std::uint64_t) override {
+    listing_.element(name, value);
+  }
+  const std::vector<BoneGofEntry>& gofs() const { return listing_.gofs(); }
+
+ private:
+  SliceListing listing_;
 };
 
 }  // namespace rlpc

@@ -23,18 +23,6 @@ class SharedSource final : public ByteSource {
   std::shared_ptr<ByteSource> source_;
 };
 
-class ListingTrace final : public Trace {
- public:
-  void begin(const char*, std::uint64_t) override {}
-  void element(const char* name, std::int64_t value, std::uint64_t) override {
-    listing_.element(name, value);
-  }
-  const std::vector<BoneGofEntry>& gofs() const { return listing_.gofs(); }
-
- private:
-  SliceListing listing_;
-};
-
 }  // namespace
 
 StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/bone_tree.h"
+#include "encoder/gof_coder.h"
 #include "encoder/skin_vertex.h"
 
 namespace rlpc {
@@ -15,7 +16,6 @@ namespace {
 constexpr double kFreeBoneBits = 15.0;
 constexpr double kPinnedBoneBits = 7.5;
 constexpr double kInfluenceBits = 7.0;
-constexpr double kErrorPerBit = 0.1155;  // squared steps
 
 // Evenly spaced, from the first to the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {

@@ -1,52 +1,15 @@
-// Analysis and quantisation of one GOF of the Main profile (clauses 8.10 to 8.14 backwards).
+// Quantisation of one GOF of the Main profile: trajectories, their spatial factors, and the
+// slices that these are cut into (clauses 8.10, 8.11 and 8.14 backwards).
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "common/bone_gof.h"
-#include "common/bone_recon.h"
-#include "encoder/gof_frames.h"
-#include "encoder/local_pca.h"
-#include "encoder/rig.h"
+#include "common/coded_mesh.h"
+#include "encoder/bone_analysis.h"
 
 namespace rlpc {
 
-struct BoneSettings {
-  Prediction prediction = Prediction::kLayers;
-  int weight_bits = 6;
-  int damping_log2 = 8;
-  int outer_weight = 3;
-  int outer_scale = 3;
-  bool layer_steps = true;             // finer steps in coarser layers
-  bool temporal_weights = true;        // not only the orders of 8.2.2
-  bool cobra_steps = false;            // of temporal values; else of equal distortion
-  std::uint32_t component_groups = 0;  // 0: as many as suit
-  std::uint32_t layer_groups = 0;
-  double dead_zone = 0.08;      // 0 rounds to nearest, 0.5 truncates
-  double temporal_error = 0.8;  // of a temporal value, relative to that of a spatial one
-  std::size_t max_trajectories = 1024;
-};
-
-// Bones, influences and rest positions of a GOF, quantised, and the principal components of
-// what they leave of the motion.
-struct BoneAnalysis {
-  BoneGof gof;  // without trajectories
-  std::vector<BoneMotion> bones;
-  std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
-  PrincipalComponents pc;
-  std::vector<double> spatial;  // pc.spatial, [num_vertices][components]
-};
-
-// Every coded value adds about the same squared error, step^2 / 12, to the sum over all
-// coordinates of all frames.
-BoneAnalysis analyse_bones(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-                           std::uint32_t first_frame, const Rig& rig,
-                           const BoneSettings& settings, double step);
-
 // The GOF ready to be written.
-BoneGof code_bone_gof(const CodedMesh& mesh, int position_bits, const BoneAnalysis& analysis,
+BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
                       const BoneSettings& settings, double step);
 
 }  // namespace rlpc

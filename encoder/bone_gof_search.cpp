@@ -7,15 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/bone_recon.h"
 #include "encoder/bone_fit.h"
 #include "encoder/write_bone_gof.h"
 
 namespace rlpc {
 namespace {
 
-// At the operating point, a bit is worth this many squared steps of error: the slope of the
-// rate of a uniform quantiser, 1 / (2 ln 2 D) bits with D = step^2 / 12.
-constexpr double kErrorPerBit = 0.1155;
 // Bones are compared by cost when they leave less error than this many steps,
 constexpr double kNearError = 3.0;
 // and looked for at all when a few leave less than this.
@@ -36,23 +34,6 @@ std::span<const std::uint32_t> counts(Preset preset) {
 
 BoneFitOptions bone_options(std::size_t influences, double step) {
   return {.max_influences = influences, .step = step};
-}
-
-double squared_error(const EncodedGof& encoded, const GofFrames& frames) {
-  const std::size_t values = std::size_t{frames.num_vertices} * 3;
-  std::vector<std::int32_t> positions(values);
-  double sum = 0.0;
-  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
-    encoded.frame(f, positions);
-    const double* original = frames.at(f, 0);
-    double of_frame = 0.0;
-    for (std::size_t i = 0; i < values; ++i) {
-      const double d = positions[i] - original[i];
-      of_frame += d * d;
-    }
-    sum += of_frame;
-  }
-  return sum;
 }
 
 EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
@@ -131,12 +112,11 @@ BoneAnalysis BoneGofSearch::analyse(const Rig& rig, double step) const {
 
 double BoneGofSearch::cost(const Rig& rig, double step) const {
   const BoneAnalysis analysis = analyse(rig, step);
-  const EncodedGof encoded = encoded_gof(
-      context_,
-      code_bone_gof(context_.mesh, context_.position_bits, analysis, settings_, step));
+  const EncodedGof encoded =
+      encoded_gof(context_, code_bone_gof(context_.mesh, analysis, settings_, step));
   double bits = 0.0;
   for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
-  return squared_error(encoded, frames_) + kErrorPerBit * step * step * bits;
+  return squared_error(frames_, encoded.frame) + kErrorPerBit * step * step * bits;
 }
 
 // A small sample shows whether bones are worth a search.
@@ -207,8 +187,7 @@ EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
     if (!cached_ || cached_->step != wanted) {
       cached_ = Cached{wanted, analyse(choice_->rig, wanted)};
     }
-    return code_bone_gof(context_.mesh, context_.position_bits, cached_->analysis, settings_,
-                         step);
+    return code_bone_gof(context_.mesh, cached_->analysis, settings_, step);
   };
   BoneGof gof = code_at(analysis_step);
   // Without trajectories, nothing but the analysis depends on the step.

@@ -11,6 +11,10 @@
 
 namespace rlpc {
 
+// At the operating point, a bit is worth this many squared steps of error: the slope of the
+// rate of a uniform quantiser, 1 / (2 ln 2 D) bits with D = step^2 / 12.
+inline constexpr double kErrorPerBit = 0.1155;
+
 // One encoding of a GOF.
 struct EncodedGof {
   struct Unit {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/int_math.h"
@@ -19,6 +20,26 @@ struct GofFrames {
     return &xyz[(std::size_t{frame} * num_vertices + vertex) * 3];
   }
 };
+
+// Squared distance of decoded positions from the frames, over all. decode(f, positions) sets
+// those of frame f, [num_vertices][3].
+template <typename Decode>
+double squared_error(const GofFrames& frames, const Decode& decode) {
+  const std::size_t values = std::size_t{frames.num_vertices} * 3;
+  std::vector<std::int32_t> positions(values);
+  double sum = 0.0;
+  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+    decode(f, std::span<std::int32_t>(positions));
+    const double* original = frames.at(f, 0);
+    double of_frame = 0.0;
+    for (std::size_t i = 0; i < values; ++i) {
+      const double d = positions[i] - original[i];
+      of_frame += d * d;
+    }
+    sum += of_frame;
+  }
+  return sum;
+}
 
 // The grid position nearest to a vertex, clipped to position_bits.
 inline Vec3i nearest_position(const double* xyz, int position_bits) {

@@ -29,18 +29,8 @@ GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
   trial.gof = code_gof(analysis, coding);
   trial.payload = write_gof(trial.gof, context.header, context.topology);
   const GofRecon recon(context.header, context.topology, trial.gof);
-  const std::size_t values = std::size_t{frames.num_vertices} * 3;
-  std::vector<std::int32_t> positions(values);
-  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
-    recon.frame(f, positions);
-    const double* original = frames.at(f, 0);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < values; ++i) {
-      const double d = positions[i] - original[i];
-      sum += d * d;
-    }
-    trial.squared_error += sum;
-  }
+  trial.squared_error = squared_error(
+      frames, [&](std::uint32_t f, std::span<std::int32_t> out) { recon.frame(f, out); });
   return trial;
 }
 

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "encoder/elimination.h"
+
 namespace rlpc {
 
 Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit) {
@@ -59,7 +61,7 @@ Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d
     // Newton's step for trace(R^T h), as a turn x after R: (trace(k) I - k) x = curl of k.
     const Eigen::Matrix3d k = h * r.transpose();
     const double trace = k(0, 0) + k(1, 1) + k(2, 2);
-    std::array<std::array<double, 4>, 3> m{};
+    Equations3 m{};
     for (std::size_t a = 0; a < 3; ++a) {
       const auto row = static_cast<Eigen::Index>(a);
       const auto next = static_cast<Eigen::Index>((a + 1) % 3);
@@ -70,23 +72,12 @@ Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d
       }
       m[a][3] = k(last, next) - k(next, last);
     }
-    std::array<double, 3> x{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!(m[a][a] > kFlat * trace)) return rotation_matrix(nearest_rotation(h));
-      for (std::size_t b = a + 1; b < 3; ++b) {
-        const double factor = m[b][a] / m[a][a];
-        for (std::size_t c = a; c < 4; ++c) m[b][c] -= factor * m[a][c];
-      }
-    }
-    double size2 = 0.0;
-    for (std::size_t a = 3; a-- > 0;) {
-      x[a] = m[a][3];
-      for (std::size_t b = a + 1; b < 3; ++b) x[a] -= m[a][b] * x[b];
-      x[a] /= m[a][a];
-      size2 += x[a] * x[a];
-    }
+    const auto x = solve3(m, 3, kFlat * trace);
+    if (!x) return rotation_matrix(nearest_rotation(h));
+    const auto [x0, x1, x2] = *x;
+    const double size2 = x2 * x2 + x1 * x1 + x0 * x0;
     if (!(size2 < kFar * kFar)) return rotation_matrix(nearest_rotation(h));
-    r = rotation_matrix(normalised({1.0, 0.5 * x[0], 0.5 * x[1], 0.5 * x[2]})) * r;
+    r = rotation_matrix(normalised({1.0, 0.5 * x0, 0.5 * x1, 0.5 * x2})) * r;
   }
   return r;
 }

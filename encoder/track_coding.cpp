@@ -9,6 +9,7 @@
 #include "common/gof.h"
 #include "encoder/bit_cost.h"
 #include "encoder/det_math.h"
+#include "encoder/elimination.h"
 #include "encoder/write_track.h"
 
 namespace rlpc {
@@ -28,7 +29,7 @@ std::int32_t to_residual(double x) {
 // Weights of the `count` values before that predict the series best, in least squares.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
                  std::array<std::int16_t, kMaxTemporalWeights>& weights) {
-  std::array<std::array<double, 4>, 3> m{};  // normal equations, the right side last
+  Equations3 m{};  // normal equations
   const auto n = static_cast<std::size_t>(count);
   for (std::size_t f = n; f < values.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -44,19 +45,11 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
   for (std::size_t i = 0; i < n; ++i) {
     m[i][i] += 0.25 * step * step * static_cast<double>(values.size());
   }
+  const auto solution = solve3(m, n);
+  if (!solution) return false;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(m[i][i] > 0.0)) return false;
-    for (std::size_t r = i + 1; r < n; ++r) {
-      const double factor = m[r][i] / m[i][i];
-      for (std::size_t k = i; k < 4; ++k) m[r][k] -= factor * m[i][k];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    double x = m[i][3];
-    for (std::size_t k = i + 1; k < n; ++k) x -= m[i][k] * m[k][3];
-    m[i][3] = x / m[i][i];
     weights[i] = static_cast<std::int16_t>(
-        round_to_int(std::clamp(m[i][3] * kWeightScale, -kMaxWeight, kMaxWeight)));
+        round_to_int(std::clamp((*solution)[i] * kWeightScale, -kMaxWeight, kMaxWeight)));
   }
   return true;
 }
@@ -172,39 +165,25 @@ void code_trajectory(std::span<const std::array<double, 3>> values, double step,
 BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
                      TrackState& rotations, TrackState& origins, Bone& bone) {
   // The orders do not depend on each other but for rounding: first rotations, then origins.
-  TrackState best_state = rotations;
-  if (bone.rotation_flag) {
+  const auto choose = [&](TrackState& state, int& order, int first,
+                          const TrackResiduals& residuals) {
+    TrackState best_state = state;
     double best = std::numeric_limits<double>::infinity();
-    int best_order = 1;
-    for (bone.rotation_order = 1; bone.rotation_order <= kMaxPredictorOrder;
-         ++bone.rotation_order) {
+    int best_order = first;
+    for (order = first; order <= kMaxPredictorOrder; ++order) {
       track_bone(wanted, parent, bone);
-      TrackState after = rotations;
-      const double bits = track_bits(after, bone.rotation_residual);
+      TrackState after = state;
+      const double bits = track_bits(after, residuals);
       if (bits >= best) continue;
       best = bits;
-      best_order = bone.rotation_order;
+      best_order = order;
       best_state = std::move(after);
     }
-    bone.rotation_order = best_order;
-    rotations = best_state;
-  }
-  if (bone.origin_flag) {
-    double best = std::numeric_limits<double>::infinity();
-    int best_order = 0;
-    best_state = origins;
-    for (bone.origin_order = 0; bone.origin_order <= kMaxPredictorOrder; ++bone.origin_order) {
-      track_bone(wanted, parent, bone);
-      TrackState after = origins;
-      const double bits = track_bits(after, bone.origin_residual);
-      if (bits >= best) continue;
-      best = bits;
-      best_order = bone.origin_order;
-      best_state = std::move(after);
-    }
-    bone.origin_order = best_order;
-    origins = best_state;
-  }
+    order = best_order;
+    state = std::move(best_state);
+  };
+  if (bone.rotation_flag) choose(rotations, bone.rotation_order, 1, bone.rotation_residual);
+  if (bone.origin_flag) choose(origins, bone.origin_order, 0, bone.origin_residual);
   return track_bone(wanted, parent, bone);
 }
 
