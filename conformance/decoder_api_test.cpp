@@ -227,7 +227,7 @@ TEST(DecodeLimits, HoldForTheFactorsOfAGof) {
   EncoderSettings settings = rich_settings();
   settings.gof_frames = EncoderSettings::kWholeSequence;
   settings.components = 30;
-  settings.rdo = false;
+  settings.baseline.rdo = false;
   const StreamBytes stream = encode_to_memory(source, settings);
   ASSERT_FALSE(stream.empty());
   DecoderOptions options;

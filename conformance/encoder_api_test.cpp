@@ -33,14 +33,15 @@ std::string error_of(const std::function<void(EncoderSettings&)>& change) {
 
 TEST(Settings, ThatContradictEachOtherAreRefused) {
   const auto paper = [](EncoderSettings& s) {
+    s.profile = Profile::kBaseline;
     s.target = {Target::kNone, 0.0};
-    s.qu = s.qc = 10;
+    s.baseline.qu = s.baseline.qc = 10;
     s.components = 2;
   };
   EXPECT_EQ(error_of(paper), "");
-  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qc = 0; }).find("go together"),
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qc = 0; }).find("go together"),
             std::string::npos);
-  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qu = 0; }).find("go together"),
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qu = 0; }).find("go together"),
             std::string::npos);
   EXPECT_NE(error_of([&](auto& s) {
               paper(s);
@@ -49,9 +50,57 @@ TEST(Settings, ThatContradictEachOtherAreRefused) {
             std::string::npos);
   EXPECT_NE(error_of([&](auto& s) { paper(s), s.components = 0; }).find("components"),
             std::string::npos);
-  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qu = 21; }).find("20 bits"), std::string::npos);
-  EXPECT_NE(error_of([&](auto& s) { paper(s), s.qdelta = 25; }).find("24 bits"),
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qu = 21; }).find("20 bits"),
             std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qdelta = 25; }).find("24 bits"),
+            std::string::npos);
+}
+
+// One parameter of a profile, and how the error is to call it.
+struct Parameter {
+  const char* option;
+  std::function<void(EncoderSettings&)> give;
+};
+
+void expect_only_of(Profile profile, const char* name, const std::vector<Parameter>& list) {
+  const Profile other = profile == Profile::kMain ? Profile::kBaseline : Profile::kMain;
+  for (const Parameter& p : list) {
+    EXPECT_EQ(error_of([&](auto& s) { s.profile = profile, p.give(s); }), "") << p.option;
+    EXPECT_EQ(error_of([&](auto& s) { s.profile = other, p.give(s); }),
+              std::string(p.option) + " needs --profile " + name + ": use that, or leave out " +
+                  p.option);
+  }
+}
+
+TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
+  const auto given = [](EncoderSettings& s) {
+    s.target = {Target::kNone, 0.0};
+    s.components = 2;
+  };
+  expect_only_of(Profile::kBaseline, "baseline",
+                 {{"--clusters", [](auto& s) { s.baseline.clusters = 2; }},
+                  {"--no-rdo", [&](auto& s) { given(s), s.baseline.rdo = false; }},
+                  {"--rdo-rate", [&](auto& s) { given(s), s.baseline.rate_in_vectors = true; }},
+                  {"--qu", [&](auto& s) { given(s), s.baseline.qu = s.baseline.qc = 10; }},
+                  {"--qdelta", [](auto& s) { s.baseline.qdelta = 10; }},
+                  {"--frame", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
+                  {"--seeds", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }}});
+  EXPECT_NE(error_of([](auto& s) { s.baseline.qc = 10; }).find("--qc needs --profile baseline"),
+            std::string::npos);
+}
+
+TEST(Settings, OfTheMainProfileAreRefusedInTheBaselineProfile) {
+  expect_only_of(Profile::kMain, "main",
+                 {{"--bones", [](auto& s) { s.main.bones = 2; }},
+                  {"--prediction", [](auto& s) { s.main.prediction = Prediction::kNone; }},
+                  {"--influences", [](auto& s) { s.main.influences = 2; }},
+                  {"--no-geometry-weights", [](auto& s) { s.main.geometry_weights = false; }},
+                  {"--no-outer-ring", [](auto& s) { s.main.outer_ring = false; }},
+                  {"--no-layer-steps", [](auto& s) { s.main.layer_steps = false; }},
+                  {"--no-temporal-weights", [](auto& s) { s.main.temporal_weights = false; }},
+                  {"--basis-steps", [](auto& s) { s.main.cobra_steps = true; }},
+                  {"--component-groups", [](auto& s) { s.main.component_groups = 2; }},
+                  {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}});
 }
 
 TEST(Settings, ATargetIsAboveZero) {
@@ -66,8 +115,13 @@ TEST(Settings, ATargetIsAboveZero) {
   }
 }
 
-TEST(Settings, NoLevelHasMoreClusters) {
-  EXPECT_NE(error_of([](auto& s) { s.clusters = 1025; }).find("level"), std::string::npos);
+TEST(Settings, NoLevelHasMoreClustersOrBones) {
+  EXPECT_NE(error_of([](auto& s) { s.main.bones = 1025; }).find("level"), std::string::npos);
+  EXPECT_NE(error_of([](auto& s) {
+              s.profile = Profile::kBaseline;
+              s.baseline.clusters = 1025;
+            }).find("level"),
+            std::string::npos);
 }
 
 TEST(Encoder, RefusesWhatNoLevelAllows) {
@@ -165,35 +219,43 @@ std::vector<Edge> edges() {
   return list;
 }
 
+// Encodes at 1 %, and decodes all frames.
+void expect_round_trip(const Edge& edge, EncoderSettings settings) {
+  FrameSource::Shape shape;
+  shape.triangles = edge.triangles;
+  MemoryFrames source(std::move(shape), edge.frames);
+  settings.target = {Target::kKg, 1.0};
+  settings.keep_order = true;
+  EncodeReport report;
+  const StreamBytes stream = encode_to_memory(source, settings, &report);
+  ASSERT_FALSE(stream.empty()) << error_of(source, settings);
+  EXPECT_TRUE(!report.target_met || report.metrics.kg_error_percent <= 1.0);
+  auto decoder = Decoder::open(memory_source(StreamBytes(stream)));
+  ASSERT_TRUE(decoder) << decoder.error().rule;
+  std::vector<std::int32_t> positions(3 * std::size_t{source.num_vertices()});
+  std::uint32_t frames = 0;
+  for (auto more = decoder->next_frame(positions);; more = decoder->next_frame(positions)) {
+    ASSERT_TRUE(more) << more.error().rule << " " << more.error().element;
+    if (!*more) break;
+    ++frames;
+  }
+  EXPECT_EQ(frames, source.num_frames());
+}
+
 TEST(Encoder, TakesInputsAtTheEdge) {
   for (const Edge& edge : edges()) {
-    for (const FrameMode mode : {FrameMode::kAuto, FrameMode::kLcf, FrameMode::kWorld}) {
-      for (const std::uint32_t clusters : {0U, 1U, 3U}) {
-        SCOPED_TRACE(testing::Message() << edge.name << ", " << clusters << " clusters, mode "
-                                        << static_cast<int>(mode));
-        FrameSource::Shape shape;
-        shape.triangles = edge.triangles;
-        MemoryFrames source(std::move(shape), edge.frames);
-        EncoderSettings settings;
-        settings.target = {Target::kKg, 1.0};
-        settings.frame_mode = mode;
-        settings.clusters = clusters;
-        settings.keep_order = true;
-        EncodeReport report;
-        const StreamBytes stream = encode_to_memory(source, settings, &report);
-        ASSERT_FALSE(stream.empty()) << error_of(source, settings);
-        EXPECT_TRUE(!report.target_met || report.metrics.kg_error_percent <= 1.0);
-        auto decoder = Decoder::open(memory_source(StreamBytes(stream)));
-        ASSERT_TRUE(decoder) << decoder.error().rule;
-        std::vector<std::int32_t> positions(3 * std::size_t{source.num_vertices()});
-        std::uint32_t frames = 0;
-        for (auto more = decoder->next_frame(positions);;
-             more = decoder->next_frame(positions)) {
-          ASSERT_TRUE(more) << more.error().rule << " " << more.error().element;
-          if (!*more) break;
-          ++frames;
-        }
-        EXPECT_EQ(frames, source.num_frames());
+    for (const std::uint32_t parts : {0U, 1U, 3U}) {
+      SCOPED_TRACE(testing::Message() << edge.name << ", " << parts << " bones or clusters");
+      EncoderSettings settings;
+      settings.main.bones = parts;
+      expect_round_trip(edge, settings);
+      for (const FrameMode mode : {FrameMode::kAuto, FrameMode::kLcf, FrameMode::kWorld}) {
+        SCOPED_TRACE(testing::Message() << "Baseline, mode " << static_cast<int>(mode));
+        EncoderSettings baseline;
+        baseline.profile = Profile::kBaseline;
+        baseline.baseline.clusters = parts;
+        baseline.baseline.frame_mode = mode;
+        expect_round_trip(edge, baseline);
       }
     }
   }

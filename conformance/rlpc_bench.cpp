@@ -261,11 +261,11 @@ void register_all(const Animation& a) {
   rlpc::EncoderSettings given;
   given.profile = rlpc::Profile::kBaseline;
   given.target.kind = rlpc::Target::kNone;
-  given.clusters = 24;
+  given.baseline.clusters = 24;
   given.components = 10;
-  given.qu = given.qc = given.qdelta = 12;
-  given.rdo = false;
-  given.frame_mode = rlpc::FrameMode::kLcf;
+  given.baseline.qu = given.baseline.qc = given.baseline.qdelta = 12;
+  given.baseline.rdo = false;
+  given.baseline.frame_mode = rlpc::FrameMode::kLcf;
   const std::string given_options =
       "--profile baseline --clusters 24 --components 10 --qu 12 --qc 12 --qdelta 12 --no-rdo "
       "--frame lcf";

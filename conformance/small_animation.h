@@ -103,11 +103,11 @@ inline EncoderSettings rich_settings() {
   EncoderSettings settings;
   settings.profile = Profile::kBaseline;
   settings.target = {Target::kNone, 0.0};
-  settings.clusters = 2;
+  settings.baseline.clusters = 2;
   settings.components = 2;
-  settings.qu = settings.qc = 8;
-  settings.qdelta = 10;
-  settings.frame_mode = FrameMode::kLcf;
+  settings.baseline.qu = settings.baseline.qc = 8;
+  settings.baseline.qdelta = 10;
+  settings.baseline.frame_mode = FrameMode::kLcf;
   settings.gof_frames = 3;
   settings.keep_order = true;
   settings.hash_mode = HashMode::kFrame;
@@ -125,8 +125,8 @@ inline StreamBytes indexed_stream() {
   EncoderSettings settings;
   settings.profile = Profile::kBaseline;
   settings.target = {Target::kKg, 10.0};
-  settings.clusters = 1;
-  settings.frame_mode = FrameMode::kWorld;
+  settings.baseline.clusters = 1;
+  settings.baseline.frame_mode = FrameMode::kWorld;
   settings.gof_frames = 1;
   return encode_to_memory(source, settings);
 }

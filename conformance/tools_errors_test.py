@@ -128,10 +128,40 @@ class BadInput(ToolsTest):
 
     def test_settings_that_contradict(self):
         mesh = self.obj(TRIANGLE)
-        self.refused("both", mesh, "--qu", 12, "--components", 2)
-        self.refused("target", mesh, "--qu", 12, "--qc", 12, "--components", 2, "--kg", 1)
-        self.refused("--components", mesh, "--qu", 12, "--qc", 12)
+        paper = (mesh, "--profile", "baseline", "--qu", 12)
+        self.refused("both", *paper, "--components", 2)
+        self.refused("target", *paper, "--qc", 12, "--components", 2, "--kg", 1)
+        self.refused("--components", *paper, "--qc", 12)
         self.refused("m.json", mesh, "--metadata", self.obj("{", "m.json"))
+
+    def test_options_of_the_other_profile(self):
+        mesh = self.obj(TRIANGLE)
+        for profile, other, options in (
+                ("baseline", "main", ("--clusters 2", "--qu 12", "--qc 12", "--qdelta 12",
+                                      "--no-rdo", "--rdo-rate vectors", "--frame lcf",
+                                      "--seeds spread")),
+                ("main", "baseline", ("--bones 2", "--influences 2", "--prediction none",
+                                      "--basis-steps cobra", "--no-geometry-weights",
+                                      "--no-outer-ring", "--no-layer-steps",
+                                      "--no-temporal-weights", "--component-groups 2",
+                                      "--layer-groups 2"))):
+            for option in options:
+                self.refused(f"{option.split()[0]} needs --profile {profile}", mesh, "--profile",
+                             other, *option.split())
+        self.refused("--frame needs --profile baseline", mesh, "--frame", "world")  # main: default
+        for options in ("--profile baseline --frame world --no-rdo --components 1",
+                        "--no-outer-ring --bones 1"):
+            self.ok("rlpcenc", mesh, "-o", self.path("out.rlpc"), *options.split())
+
+    def test_help_shows_the_profile_of_an_option(self):
+        groups = self.ok("rlpcenc", "--help").out.decode().split("\n\n")
+        for heading, options in (("Parameters of both", ("--components", "--gof")),
+                                 ("Main profile", ("--bones", "--layer-groups")),
+                                 ("Baseline profile", ("--clusters", "--seeds"))):
+            group = [text for text in groups if text.strip().startswith(heading)]
+            self.assertEqual(len(group), 1, heading)
+            for option in options:
+                self.assertIn(option, group[0])
 
 
 class BadOutput(ToolsTest):

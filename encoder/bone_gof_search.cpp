@@ -88,11 +88,11 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
       frames_(frames),
       first_frame_(first_frame),
       preset_(settings.preset),
-      bones_(settings.clusters),
-      max_influences_(settings.tools.influences == 0 ? kUsualInfluences
-                                                     : settings.tools.influences),
+      bones_(settings.main.bones),
+      max_influences_(settings.main.influences == 0 ? kUsualInfluences
+                                                    : settings.main.influences),
       choice_(choice) {
-  const MainTools& tools = settings.tools;
+  const MainTools& tools = settings.main;
   settings_.prediction = tools.prediction;
   if (!tools.geometry_weights) settings_.damping_log2 = 0;
   if (!tools.outer_ring) settings_.outer_weight = 0;

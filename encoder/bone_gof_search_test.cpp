@@ -182,7 +182,7 @@ TEST(BoneGofSearch, DoesNotDependOnTheStepsTriedBefore) {
 TEST(BoneGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
   const Animation a(bending);
   EncoderSettings settings = fast();
-  settings.clusters = 3;
+  settings.main.bones = 3;
   settings.components = 2;
   const Outcome outcome = encode(a, 4.0, settings);
   EXPECT_LE(outcome.gof.clusters, 3U);

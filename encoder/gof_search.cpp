@@ -41,11 +41,12 @@ GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
       frames_(frames),
       first_frame_(first_frame),
       settings_(settings),
+      tools_(settings.baseline),
       motion_(frames, context.triangles, context.header.position_bits),
       choice_(choice) {
-  const bool world = settings.frame_mode == FrameMode::kWorld;
-  if (!choice_ && settings.clusters > 0 && settings.frame_mode != FrameMode::kAuto) {
-    choice_ = GofChoice{settings.clusters, world};
+  const bool world = tools_.frame_mode == FrameMode::kWorld;
+  if (!choice_ && tools_.clusters > 0 && tools_.frame_mode != FrameMode::kAuto) {
+    choice_ = GofChoice{tools_.clusters, world};
   }
 }
 
@@ -54,17 +55,16 @@ AnalysisSettings GofSearch::analysis_settings(double step, const GofChoice& choi
   a.world = choice.world;
   a.max_components = context_.header.level().max_components;
   const double seed_step =
-      settings_.qdelta > 0
-          ? exact_exp2(std::max(context_.header.position_bits - settings_.qdelta, 0))
-          : step * kSeedStepFactor;
+      tools_.qdelta > 0 ? exact_exp2(std::max(context_.header.position_bits - tools_.qdelta, 0))
+                        : step * kSeedStepFactor;
   a.seed_step = static_cast<std::uint32_t>(
       std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
   if (settings_.components > 0) {
     // With a budget, clusters share: some take more than their mean.
     a.max_components = std::min<std::size_t>(
         a.max_components,
-        settings_.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
-  } else if (settings_.qu == 0) {
+        tools_.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
+  } else if (tools_.qu == 0) {
     a.min_energy = kMinEnergySteps * step * step;
   }
   return a;
@@ -74,24 +74,24 @@ CodingSettings GofSearch::coding_settings(double step) const {
   CodingSettings c;
   c.step = step;
   c.components = settings_.components;
-  if (settings_.qu > 0) {
+  if (tools_.qu > 0) {
     c.steps = CodingSettings::Steps::kRanges;
-    c.qu = settings_.qu;
-    c.qc = settings_.qc;
+    c.qu = tools_.qu;
+    c.qc = tools_.qc;
     c.dead_zone = 0.0;
   }
-  if (!settings_.rdo) {
+  if (!tools_.rdo) {
     c.allocation = CodingSettings::Allocation::kFixed;
   } else if (settings_.components > 0) {
-    c.allocation = settings_.rate_in_vectors ? CodingSettings::Allocation::kVectorBudget
-                                             : CodingSettings::Allocation::kBitBudget;
+    c.allocation = tools_.rate_in_vectors ? CodingSettings::Allocation::kVectorBudget
+                                          : CodingSettings::Allocation::kBitBudget;
   }
   return c;
 }
 
 GofAnalysis GofSearch::analyse(double step, const GofChoice& choice) {
-  const bool spread = settings_.seed_mode == SeedMode::kSpread ||
-                      (settings_.seed_mode == SeedMode::kAuto && settings_.qu == 0);
+  const bool spread = tools_.seed_mode == SeedMode::kSpread ||
+                      (tools_.seed_mode == SeedMode::kAuto && tools_.qu == 0);
   const Clustering clustering =
       spread ? motion_.spread_clusters(choice.clusters) : motion_.clusters(choice.clusters);
   return analyse_gof(context_, frames_, first_frame_, clustering,
@@ -133,16 +133,14 @@ GofChoice GofSearch::choose(double step) {
   const bool fast = settings_.preset == Preset::kFast;
   if (fast) {
     const auto wanted = static_cast<std::uint32_t>(std::sqrt(frames_.num_vertices) / 3.0);
-    return {
-        std::clamp<std::uint32_t>(settings_.clusters > 0 ? settings_.clusters : wanted, 1, 32),
-        settings_.frame_mode == FrameMode::kWorld};
+    return {std::clamp<std::uint32_t>(tools_.clusters > 0 ? tools_.clusters : wanted, 1, 32),
+            tools_.frame_mode == FrameMode::kWorld};
   }
   const auto best_of = [&](bool world) {
-    return GofChoice{settings_.clusters > 0 ? settings_.clusters : choose_count(step, world),
-                     world};
+    return GofChoice{tools_.clusters > 0 ? tools_.clusters : choose_count(step, world), world};
   };
-  if (settings_.frame_mode != FrameMode::kAuto) {
-    return best_of(settings_.frame_mode == FrameMode::kWorld);
+  if (tools_.frame_mode != FrameMode::kAuto) {
+    return best_of(tools_.frame_mode == FrameMode::kWorld);
   }
   const GofChoice local = best_of(false);
   const GofChoice world = best_of(true);

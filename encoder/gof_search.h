@@ -57,6 +57,7 @@ class GofSearch : public GofCoder {
   const GofFrames& frames_;
   std::uint32_t first_frame_;
   const EncoderSettings& settings_;
+  const BaselineTools& tools_;
   MotionClusters motion_;
   std::optional<GofChoice>& choice_;
   std::optional<Cached> cached_;

@@ -37,8 +37,21 @@ enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 // Which tools a stream uses; Main needs decoders of version 1.1.
 enum class Profile : std::uint8_t { kBaseline, kMain };
 
-// Tools of the Main profile; each can be left out, for comparison.
+// Parameters that only the Baseline profile has.
+struct BaselineTools {
+  std::uint32_t clusters = 0;    // N of the paper; 0: chosen for each GOF
+  bool rdo = true;               // components go to clusters by rate and distortion
+  bool rate_in_vectors = false;  // as the paper counts it; else in estimated bits
+  int qu = 0;  // bits of eigenshapes, coefficients and seed positions relative to
+  int qc = 0;  // their ranges, as in the paper; 0: steps of equal distortion
+  int qdelta = 0;
+  FrameMode frame_mode = FrameMode::kAuto;
+  SeedMode seed_mode = SeedMode::kAuto;
+};
+
+// Parameters that only the Main profile has; each tool can be left out, for comparison.
 struct MainTools {
+  std::uint32_t bones = 0;  // of a GOF; 0: chosen
   Prediction prediction = Prediction::kLayers;
   std::uint32_t influences = 0;  // most bones of a vertex, 1 to 8; 0: chosen
   bool geometry_weights = true;  // in the prediction by layers
@@ -70,17 +83,10 @@ struct EncoderSettings {
   Profile profile = Profile::kMain;
   Target target;
   Preset preset = Preset::kMedium;
-  std::uint32_t clusters = 0;  // N of the paper, or bones; 0: chosen for each GOF
-  std::uint32_t components =
-      0;            // L of the paper, per cluster; 0: chosen by rate and distortion
-  bool rdo = true;  // distribute components over the clusters by rate and distortion
-  bool rate_in_vectors = false;  // as the paper counts it; else in estimated bits
-  int qu = 0;  // bits of eigenshapes, coefficients and seed positions relative to
-  int qc = 0;  // their ranges, as in the paper; 0: steps of equal distortion
-  int qdelta = 0;
-  MainTools tools;
-  FrameMode frame_mode = FrameMode::kAuto;
-  SeedMode seed_mode = SeedMode::kAuto;
+  // Per cluster (L of the paper) or, of the Main profile, per GOF; 0: by rate and distortion.
+  std::uint32_t components = 0;
+  BaselineTools baseline;        // as by default unless profile is kBaseline
+  MainTools main;                // as by default unless it is kMain
   std::uint32_t gof_frames = 0;  // longest GOF; 0: the default; kWholeSequence: one GOF
   bool keep_order = false;       // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
@@ -118,7 +124,7 @@ using ByteSink = std::function<bool(std::span<const std::uint8_t>)>;
 using Progress = std::function<void(double)>;
 
 // Encodes a whole sequence. Errors: what the source reports; what no level allows; settings
-// that contradict each other; a sink that failed.
+// that contradict each other, or that the profile does not have; a sink that failed.
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress = {});
 

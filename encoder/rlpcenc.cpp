@@ -34,8 +34,9 @@ Examples
   rlpcenc frames/ -o walk.rlpc --kg 0.3                    smaller, visibly the same
   rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5    1.5 bits per vertex and frame
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.001   a bound for every vertex
-  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --gof all --clusters 30 --components 20 \
-      --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf     the RLPCA paper's settings
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all --clusters 30 \
+      --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf
+                                                           the RLPCA paper's settings
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was out of reach; 64 usage.)";
 
@@ -49,7 +50,6 @@ struct Options {
   double kg = 0.0;
   double bpvf = 0.0;
   double max_error = 0.0;
-  bool no_rdo = false;
   bool json = false;
   bool quiet = false;
   rlpc::EncoderSettings settings;
@@ -68,6 +68,13 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
       ->transform(CLI::CheckedTransformer(words).description(""))
       ->type_name(list)
       ->default_str(first);
+}
+
+// A flag that turns off what is on without it.
+CLI::Option* add_off_switch(CLI::App& app, const std::string& name, bool& value,
+                            const std::string& what) {
+  return app.add_flag_callback(
+      name, [&value] { value = false; }, what);
 }
 
 void add_quality_options(CLI::App& app, Options& o) {
@@ -89,56 +96,64 @@ void add_quality_options(CLI::App& app, Options& o) {
 }
 
 void add_method_options(CLI::App& app, Options& o) {
+  const std::string method = "Parameters of both profiles";
+  add_choice<rlpc::Profile>(
+      app, "--profile", o.settings.profile, "main",
+      {{"main", rlpc::Profile::kMain}, {"baseline", rlpc::Profile::kBaseline}},
+      "Profile of the stream: main, baseline")
+      ->group(method);
+  app.add_option(
+         "--components", o.settings.components,
+         "Components per GOF; Baseline: per cluster (L; default: by rate and distortion)")
+      ->check(CLI::Range(1, 1024))
+      ->group(method);
+  app.add_option("--gof", o.gof, "Longest group of frames, or `all` for one group")
+      ->group(method)
+      ->capture_default_str();
+}
+
+void add_baseline_options(CLI::App& app, Options& o) {
   using rlpc::FrameMode;
   using rlpc::SeedMode;
-  const std::string paper = "Parameters of the method";
-  app.add_option("--clusters", o.settings.clusters, "Clusters per GOF (N; default: chosen)")
+  const std::string baseline = "Baseline profile alone: parameters of the RLPCA paper";
+  rlpc::BaselineTools& t = o.settings.baseline;
+  app.add_option("--clusters", t.clusters, "Clusters per GOF (N; default: chosen)")
       ->check(CLI::Range(1, 1024))
-      ->group(paper);
-  app.add_option("--components", o.settings.components,
-                 "Components per cluster (L; default: chosen by rate and distortion)")
-      ->check(CLI::Range(1, 1024))
-      ->group(paper);
-  app.add_option("--qu", o.settings.qu, "Bits of eigenshapes; with --qc, in place of a quality")
+      ->group(baseline);
+  app.add_option("--qu", t.qu, "Bits of eigenshapes; with --qc, in place of a quality")
       ->check(CLI::Range(2, 20))
-      ->group(paper);
-  app.add_option("--qc", o.settings.qc, "Bits of coefficients")
+      ->group(baseline);
+  app.add_option("--qc", t.qc, "Bits of coefficients")
       ->check(CLI::Range(2, 20))
-      ->group(paper);
-  app.add_option("--qdelta", o.settings.qdelta,
-                 "Bits of seed positions (default: from the quality)")
+      ->group(baseline);
+  app.add_option("--qdelta", t.qdelta, "Bits of seed positions (default: from the quality)")
       ->check(CLI::Range(2, 24))
-      ->group(paper);
-  app.add_flag("--no-rdo", o.no_rdo, "The same number of components in every cluster")
-      ->group(paper);
+      ->group(baseline);
+  add_off_switch(app, "--no-rdo", t.rdo, "The same number of components in every cluster")
+      ->group(baseline);
   add_choice<bool>(
-      app, "--rdo-rate", o.settings.rate_in_vectors, "bits",
-      {{"bits", false}, {"vectors", true}},
+      app, "--rdo-rate", t.rate_in_vectors, "bits", {{"bits", false}, {"vectors", true}},
       "With --components, what the clusters share: bits, or vectors as in the paper")
-      ->group(paper);
+      ->group(baseline);
   add_choice<FrameMode>(
-      app, "--frame", o.settings.frame_mode, "auto",
+      app, "--frame", t.frame_mode, "auto",
       {{"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}},
       "Coordinates of clusters: auto, lcf (local frames), world")
-      ->group(paper);
-  add_choice<SeedMode>(app, "--seeds", o.settings.seed_mode, "auto",
+      ->group(baseline);
+  add_choice<SeedMode>(app, "--seeds", t.seed_mode, "auto",
                        {{"auto", SeedMode::kAuto},
                         {"triangle", SeedMode::kTriangle},
                         {"spread", SeedMode::kSpread}},
                        "Vertices that carry local frames: auto, triangle, spread")
-      ->group(paper);
-  app.add_option("--gof", o.gof, "Longest group of frames, or `all` for one group")
-      ->group(paper)
-      ->capture_default_str();
+      ->group(baseline);
 }
 
 void add_main_options(CLI::App& app, Options& o) {
   using rlpc::Prediction;
-  const std::string tools = "Tools of the Main profile";
-  rlpc::MainTools& t = o.settings.tools;
-  app.add_option("--bones", o.settings.clusters, "Bones per GOF (default: chosen)")
+  const std::string tools = "Main profile alone: its tools";
+  rlpc::MainTools& t = o.settings.main;
+  app.add_option("--bones", t.bones, "Bones per GOF (default: chosen)")
       ->check(CLI::Range(1, 1024))
-      ->excludes("--clusters")
       ->group(tools);
   app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
       ->check(CLI::Range(1, 8))
@@ -155,14 +170,14 @@ void add_main_options(CLI::App& app, Options& o) {
                    {{"equal", false}, {"cobra", true}},
                    "Of temporal factors: equal distortion, or as in COBRA")
       ->group(tools);
-  app.add_flag("!--no-geometry-weights", t.geometry_weights, "Plain means of rings")
+  add_off_switch(app, "--no-geometry-weights", t.geometry_weights, "Plain means of rings")
       ->group(tools);
-  app.add_flag("!--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
+  add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
       ->group(tools);
-  app.add_flag("!--no-layer-steps", t.layer_steps, "The same steps in all layers")
+  add_off_switch(app, "--no-layer-steps", t.layer_steps, "The same steps in all layers")
       ->group(tools);
-  app.add_flag("!--no-temporal-weights", t.temporal_weights,
-               "Only the fixed predictors of temporal factors")
+  add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
+                 "Only the fixed predictors of temporal factors")
       ->group(tools);
   app.add_option("--component-groups", t.component_groups,
                  "Groups of trajectories that a stream can be cut at (default: by size)")
@@ -199,13 +214,10 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
   app.add_option("--fps", o.fps,
                  "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
-  add_choice<rlpc::Profile>(
-      app, "--profile", o.settings.profile, "main",
-      {{"main", rlpc::Profile::kMain}, {"baseline", rlpc::Profile::kBaseline}},
-      "Profile of the stream: main, baseline");
   add_quality_options(app, o);
   add_method_options(app, o);
   add_main_options(app, o);
+  add_baseline_options(app, o);
   add_extra_options(app, o);
   app.footer(kExamples);
 }
@@ -239,8 +251,7 @@ bool finish_settings(Options& o) {
   if (o.bpvf > 0.0) s.target = {rlpc::Target::kBpvf, o.bpvf};
   if (o.max_error > 0.0) s.target = {rlpc::Target::kMaxError, o.max_error};
   const bool asked = o.kg > 0.0 || o.bpvf > 0.0 || o.max_error > 0.0;
-  if (s.qu > 0 && !asked) s.target = {rlpc::Target::kNone, 0.0};
-  s.rdo = !o.no_rdo;
+  if (s.baseline.qu > 0 && !asked) s.target = {rlpc::Target::kNone, 0.0};
   return true;
 }
 

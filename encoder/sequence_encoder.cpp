@@ -9,6 +9,7 @@
 #include "common/layers.h"
 #include "common/topology.h"
 #include "encoder/bone_gof_search.h"
+#include "encoder/check_settings.h"
 #include "encoder/det_math.h"
 #include "encoder/gof_search.h"
 #include "encoder/grid_choice.h"
@@ -138,7 +139,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   context_.emplace(EncodingContext{header_, topology_, connectivity_.triangles});
   if (header_.profile_idc == kProfileMain) {
     layers_ = make_layers(header_.num_vertices, connectivity_.triangles);
-    mesh_.emplace(settings_.tools.prediction, topology_, layers_);
+    mesh_.emplace(settings_.main.prediction, topology_, layers_);
     bone_context_.emplace(BoneContext{*mesh_, connectivity_.triangles, header_.position_bits});
   }
   lead_.push_back(write_stream_header(header_.profile_idc));
@@ -167,7 +168,7 @@ std::optional<InputError> SequenceEncoder::set_level() {
     const Level& level = header_.level();
     if (header_.num_vertices <= level.max_vertices &&
         header_.num_triangles <= level.max_triangles && longest <= level.max_gof_frames &&
-        settings_.clusters <= level.max_clusters &&
+        std::max(settings_.baseline.clusters, settings_.main.bones) <= level.max_clusters &&
         settings_.components <= level.max_components &&
         std::uint64_t{longest} * header_.num_vertices <= level.max_gof_values) {
       return std::nullopt;
@@ -370,7 +371,7 @@ InputResult<EncodeReport> SequenceEncoder::write(const SequenceTrial& trial, dou
   report.num_gofs = static_cast<std::uint32_t>(spans_.size());
   report.clusters = trial.clusters;
   report.components = trial.components;
-  if (settings_.qu == 0) report.step = step * exact_exp2(header_.grid.log2_step);
+  if (settings_.baseline.qu == 0) report.step = step * exact_exp2(header_.grid.log2_step);
   report.trials = trials_;
   report.input_vertex = connectivity_.input_vertex;
   return report;
@@ -397,29 +398,6 @@ InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
   if (report) report->target_met = search.met();
   if (report && progress_) progress_(1.0);
   return report;
-}
-
-std::optional<InputError> check_settings(const EncoderSettings& s) {
-  if ((s.qu == 0) != (s.qc == 0)) {
-    return InputError{"qu and qc go together: give both, or neither"};
-  }
-  if (s.qu > 0 && s.target.kind != Target::kNone) {
-    return InputError{
-        "a target searches the quantisers: leave out either the target or qu and qc"};
-  }
-  if (s.qu > 0 && s.components == 0) {
-    return InputError{"qu and qc need a number of components per cluster (--components)"};
-  }
-  if (s.qu < 0 || s.qc < 0 || s.qdelta < 0 || s.qu > 20 || s.qc > 20 || s.qdelta > 24) {
-    return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
-  }
-  if (s.metadata.size() > kMaxMetadataBytes) {
-    return InputError{"metadata may have at most 1 MiB"};
-  }
-  if (s.target.kind != Target::kNone && !(s.target.value > 0.0)) {
-    return InputError{"a target must be above zero"};
-  }
-  return std::nullopt;
 }
 
 }  // namespace

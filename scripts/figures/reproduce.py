@@ -82,8 +82,8 @@ class Bench:
         if method == OURS:
             settings = ["--kg", f"{target:.6g}"]
         else:
-            settings = ["--clusters", clusters, "--components", components, *Q12,
-                        *METHODS[method][0]]
+            settings = ["--profile", "baseline", "--clusters", clusters, "--components",
+                        components, *Q12, *METHODS[method][0]]
         stream, order = self.folder / "stream.rlpc", self.folder / "stream.order"
         _, encode_seconds = self.call("rlpcenc", self.mesh, "--points", self.points, "-o", stream,
                                       "--gof", "all", "--order-map", order, *settings)

@@ -23,8 +23,8 @@ SETTINGS = {
     ],
     "main": [
         "--kg 0.3",
-        "--kg 0.1 --preset fast --clusters 4 --gof 5 --keep-order --hash frame",
-        "--max-error 0.01 --preset fast --clusters 6 --components 5",
+        "--kg 0.1 --preset fast --bones 4 --gof 5 --keep-order --hash frame",
+        "--max-error 0.01 --preset fast --bones 6 --components 5",
     ],
 }
 # The decoded frames of the first setting are also written as floats, and encoded again.

@@ -1,0 +1,94 @@
+#include "encoder/check_settings.h"
+
+#include <string>
+#include <vector>
+
+#include "common/sequence_header.h"
+
+namespace rlpc {
+namespace {
+
+struct Parameter {
+  const char* option;  // of rlpcenc
+  bool given;          // it is not as by default
+};
+
+// The names of all members keep the list complete: one more does not compile.
+std::vector<Parameter> parameters(const BaselineTools& tools) {
+  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode] = tools;
+  const BaselineTools usual;
+  return {{"--clusters", clusters != usual.clusters},
+          {"--no-rdo", rdo != usual.rdo},
+          {"--rdo-rate", rate_in_vectors != usual.rate_in_vectors},
+          {"--qu", qu != usual.qu},
+          {"--qc", qc != usual.qc},
+          {"--qdelta", qdelta != usual.qdelta},
+          {"--frame", frame_mode != usual.frame_mode},
+          {"--seeds", seed_mode != usual.seed_mode}};
+}
+
+std::vector<Parameter> parameters(const MainTools& tools) {
+  const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
+               temporal_weights, cobra_steps, component_groups, layer_groups] = tools;
+  const MainTools usual;
+  return {{"--bones", bones != usual.bones},
+          {"--prediction", prediction != usual.prediction},
+          {"--influences", influences != usual.influences},
+          {"--no-geometry-weights", geometry_weights != usual.geometry_weights},
+          {"--no-outer-ring", outer_ring != usual.outer_ring},
+          {"--no-layer-steps", layer_steps != usual.layer_steps},
+          {"--no-temporal-weights", temporal_weights != usual.temporal_weights},
+          {"--basis-steps", cobra_steps != usual.cobra_steps},
+          {"--component-groups", component_groups != usual.component_groups},
+          {"--layer-groups", layer_groups != usual.layer_groups}};
+}
+
+// Parameters of a profile that is not that of the stream would do nothing.
+std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
+                                       const std::string& profile) {
+  for (const Parameter& p : parameters) {
+    if (p.given) {
+      return InputError{std::string(p.option) + " needs --profile " + profile +
+                        ": use that, or leave out " + p.option};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_quantisers(const EncoderSettings& s) {
+  const BaselineTools& b = s.baseline;
+  if ((b.qu == 0) != (b.qc == 0)) {
+    return InputError{"qu and qc go together: give both, or neither"};
+  }
+  if (b.qu > 0 && s.target.kind != Target::kNone) {
+    return InputError{
+        "a target searches the quantisers: leave out either the target or qu and qc"};
+  }
+  if (b.qu > 0 && s.components == 0) {
+    return InputError{"qu and qc need a number of components per cluster (--components)"};
+  }
+  if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
+    return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<InputError> check_settings(const EncoderSettings& s) {
+  const bool main = s.profile == Profile::kMain;
+  if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
+                        : check_unused(parameters(s.main), "main")) {
+    return error;
+  }
+  if (auto error = check_quantisers(s)) return error;
+  if (s.metadata.size() > kMaxMetadataBytes) {
+    return InputError{"metadata may have at most 1 MiB"};
+  }
+  if (s.target.kind != Target::kNone && !(s.target.value > 0.0)) {
+    return InputError{"a target must be above zero"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rlpc
