@@ -103,6 +103,12 @@ TEST(Settings, OfTheMainProfileAreRefusedInTheBaselineProfile) {
                   {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}});
 }
 
+TEST(Settings, AVertexFollowsAtMostFourBones) {
+  EXPECT_EQ(error_of([](auto& s) { s.main.influences = 4; }), "");
+  EXPECT_NE(error_of([](auto& s) { s.main.influences = 5; }).find("4 bones (--influences)"),
+            std::string::npos);
+}
+
 TEST(Settings, ATargetIsAboveZero) {
   for (const auto kind : {Target::kKg, Target::kBpvf, Target::kMaxError}) {
     for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {

@@ -118,7 +118,8 @@ class BadInput(ToolsTest):
         self.fails(64, "", "rlpcenc", mesh, "-o")
         for options in ("--kg 0", "--kg -1", "--kg a", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x",
                         "--fps 0", "--fps a", "--preset best", "--clusters 0", "--qu 1",
-                        "--frame y", "--profile scalable", "--nonsense"):
+                        "--influences 0", "--influences 5", "--frame y", "--profile scalable",
+                        "--nonsense"):
             self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
         self.assertEqual(self.files(), ["mesh.obj"])
         for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):

@@ -16,7 +16,7 @@
 namespace rlpc {
 
 struct BoneFitOptions {
-  std::size_t max_influences = 3;  // of a vertex while bones are looked for, 1 to 8
+  std::size_t max_influences = 3;  // of a vertex while bones are looked for, 1 to 4
   double step = 1.0;  // of the quantisers, grid units: smaller errors do not matter
   std::uint32_t sample_frames = 64;      // at most so many are looked at together,
   std::uint32_t sample_vertices = 3000;  // and so many vertices
@@ -42,7 +42,7 @@ class BoneFit {
 
   // The bones that save more bits than they cost. Bone 0 is the only root; weights are heaviest
   // first; rotations do not change sign from frame to frame.
-  // max_influences: of a vertex, 1 to 8.
+  // max_influences: of a vertex, 1 to 4.
   Rig rig(std::size_t max_influences) const;
 
  private:

@@ -4,10 +4,12 @@
 #include <array>
 #include <cassert>
 
+#include "common/bone_gof.h"
+
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kMost = 8;
+constexpr std::size_t kMost = kMaxExtraBones;
 
 struct Blend {
   std::size_t size = 0;

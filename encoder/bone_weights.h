@@ -19,7 +19,7 @@ struct BoneWeights {
 // lowers the error by more than `error_per_influence`; one whose weight would be negative goes.
 //
 //   gram            [count][stride], row-major, positive semidefinite
-//   max_influences  1 to 8
+//   max_influences  1 to kMaxExtraBones
 BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std::size_t count,
                            std::size_t max_influences, double error_per_influence);
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/bone_gof.h"
 #include "common/sequence_header.h"
 
 namespace rlpc {
@@ -82,6 +83,11 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
     return error;
   }
   if (auto error = check_quantisers(s)) return error;
+  // A vertex of which no bone is a candidate can have no more (6.12.2).
+  if (s.main.influences > kMaxExtraBones) {
+    return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
+                      " bones (--influences)"};
+  }
   if (s.metadata.size() > kMaxMetadataBytes) {
     return InputError{"metadata may have at most 1 MiB"};
   }

@@ -53,7 +53,7 @@ struct BaselineTools {
 struct MainTools {
   std::uint32_t bones = 0;  // of a GOF; 0: chosen
   Prediction prediction = Prediction::kLayers;
-  std::uint32_t influences = 0;  // most bones of a vertex, 1 to 8; 0: chosen
+  std::uint32_t influences = 0;  // most bones of a vertex, 1 to 4; 0: chosen
   bool geometry_weights = true;  // in the prediction by layers
   bool outer_ring = true;        // likewise
   bool layer_steps = true;       // finer steps in coarser layers

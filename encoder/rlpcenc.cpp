@@ -156,7 +156,7 @@ void add_main_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(1, 1024))
       ->group(tools);
   app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
-      ->check(CLI::Range(1, 8))
+      ->check(CLI::Range(1, rlpc::kMaxExtraBones))
       ->group(tools);
   add_choice<Prediction>(
       app, "--prediction", t.prediction, "layers",
