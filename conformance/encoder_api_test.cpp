@@ -50,6 +50,15 @@ TEST(Settings, ThatContradictEachOtherAreRefused) {
             std::string::npos);
   EXPECT_NE(error_of([&](auto& s) { paper(s), s.components = 0; }).find("components"),
             std::string::npos);
+  const auto shared = [](EncoderSettings& s, bool rdo) {
+    s.profile = Profile::kBaseline;
+    s.baseline.rdo = rdo;
+    s.baseline.rate_in_vectors = rdo;
+  };
+  EXPECT_NE(error_of([&](auto& s) { shared(s, false); }).find("--no-rdo needs"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](auto& s) { shared(s, true); }).find("--rdo-rate needs"),
+            std::string::npos);
   EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qu = 21; }).find("20 bits"),
             std::string::npos);
   EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qdelta = 25; }).find("24 bits"),

@@ -133,6 +133,7 @@ class BadInput(ToolsTest):
         self.refused("both", *paper, "--components", 2)
         self.refused("target", *paper, "--qc", 12, "--components", 2, "--kg", 1)
         self.refused("--components", *paper, "--qc", 12)
+        self.refused("--components", mesh, "--profile", "baseline", "--no-rdo")
         self.refused("m.json", mesh, "--metadata", self.obj("{", "m.json"))
 
     def test_options_of_the_other_profile(self):

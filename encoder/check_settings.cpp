@@ -56,7 +56,7 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
-std::optional<InputError> check_quantisers(const EncoderSettings& s) {
+std::optional<InputError> check_baseline(const EncoderSettings& s) {
   const BaselineTools& b = s.baseline;
   if ((b.qu == 0) != (b.qc == 0)) {
     return InputError{"qu and qc go together: give both, or neither"};
@@ -67,6 +67,10 @@ std::optional<InputError> check_quantisers(const EncoderSettings& s) {
   }
   if (b.qu > 0 && s.components == 0) {
     return InputError{"qu and qc need a number of components per cluster (--components)"};
+  }
+  if ((!b.rdo || b.rate_in_vectors) && s.components == 0) {
+    return InputError{std::string(b.rdo ? "--rdo-rate" : "--no-rdo") +
+                      " needs a number of components per cluster (--components)"};
   }
   if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
     return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
@@ -82,7 +86,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
                         : check_unused(parameters(s.main), "main")) {
     return error;
   }
-  if (auto error = check_quantisers(s)) return error;
+  if (auto error = check_baseline(s)) return error;
   // A vertex of which no bone is a candidate can have no more (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
