@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "encoder/bone_estimate.h"
 #include "encoder/bone_tree.h"
 #include "encoder/gof_coder.h"
-#include "encoder/skin_vertex.h"
+#include "encoder/skin_sums.h"
 
 namespace rlpc {
 namespace {
@@ -125,13 +126,11 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
 
-std::vector<Vec3d> BoneFit::trajectory(std::uint32_t vertex) const {
-  std::vector<Vec3d> result;
+void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const {
   for (const std::uint32_t f : chosen_) {
     const double* p = frames_.at(f, vertex);
-    result.push_back(Vec3d(p[0], p[1], p[2]) - centre_[f]);
+    to.push_back(Vec3d(p[0], p[1], p[2]) - centre_[f]);
   }
-  return result;
 }
 
 // All vertices, or if they are many the patches around some.
@@ -152,8 +151,7 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
     for (std::uint32_t& v : patch) {
       if (index[v] == BoneSample::kNone) {
         index[v] = count++;
-        const std::vector<Vec3d> path = trajectory(v);
-        sample.positions.insert(sample.positions.end(), path.begin(), path.end());
+        append_trajectory(v, sample.positions);
       }
       v = index[v];
     }
@@ -169,6 +167,30 @@ double BoneFit::worth_of_bone() const {
   const double part = static_cast<double>(sample_.positions.size()) /
                       (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
   return kFreeBoneBits * frames_.num_frames * error_per_bit() * part;
+}
+
+double BoneFit::expected_cost() const {
+  const double n = static_cast<double>(frames_.num_vertices);
+  const double bits = kFreeBoneBits * frames_.num_frames * static_cast<double>(num_bones()) +
+                      kInfluenceBits * n * solver_.mean_influences();
+  return rlpc::expected_cost(sample_, solver_.residuals(), frames_.num_vertices,
+                             frames_.num_frames, options_.step) +
+         error_per_bit() * bits;
+}
+
+double BoneFit::expected_sliding_cost() const {
+  std::vector<double> residuals;
+  for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
+    Vec3d mean = Vec3d::Zero();
+    for (const Vec3d& x : sample_.trajectory(v)) mean += x;
+    mean /= static_cast<double>(sample_.num_frames);
+    for (const Vec3d& x : sample_.trajectory(v)) {
+      const Vec3d left = x - mean;
+      residuals.insert(residuals.end(), {left(0), left(1), left(2)});
+    }
+  }
+  return rlpc::expected_cost(sample_, residuals, frames_.num_vertices, frames_.num_frames,
+                             options_.step);
 }
 
 double BoneFit::rms_error() const {
@@ -189,36 +211,39 @@ double BoneFit::sliding_error() const {
 // Weights and rest positions of all vertices, given the bones.
 void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
                            Rig& rig) const {
-  const BoneMotions& motions = solver.motions();
+  constexpr std::uint32_t kTogether = 256;
   constexpr int kRounds = 3;
-  const MotionProducts products(motions);
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * error_per_bit() * part;
-  for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-    const std::vector<Vec3d> path = trajectory(v);
-    Vec3d rest = single_rest(path, motions);
-    if (const auto at = sample_.place_of(v)) rest = solver.rest(*at);
-    BoneWeights best;
-    for (int i = 0; i < kRounds; ++i) {
-      const std::vector<std::size_t> candidates =
-          closest_bones(path, rest, motions, SkinVertex::kMaxCandidates);
-      const SkinVertex vertex(path, motions, candidates);
-      best = sparse_weights(vertex.gram(products, rest), SkinVertex::kMaxCandidates,
-                            candidates.size(), max_influences, per_influence);
-      for (RigWeight& w : best.weights) {
-        w.bone = static_cast<std::uint32_t>(candidates[w.bone]);
+  for (std::uint32_t first = 0; first < frames_.num_vertices; first += kTogether) {
+    const std::uint32_t end = std::min(first + kTogether, frames_.num_vertices);
+    std::vector<Vec3d> positions;
+    for (std::uint32_t v = first; v < end; ++v) append_trajectory(v, positions);
+    const SkinSums sums(positions, solver.motions());
+    for (std::uint32_t v = first; v < end; ++v) {
+      const std::size_t i = v - first;
+      const auto place = sample_.place_of(v);
+      Vec3d rest = place ? solver.rest(*place) : sums.single_rest(i);
+      BoneWeights best;
+      for (int round = 0; round < kRounds; ++round) {
+        const std::vector<std::size_t> bones =
+            sums.closest_bones(i, rest, SkinSums::kMaxCandidates);
+        best = sparse_weights(sums.gram(i, bones, rest), SkinSums::kMaxCandidates, bones.size(),
+                              max_influences, per_influence);
+        for (RigWeight& w : best.weights) w.bone = static_cast<std::uint32_t>(bones[w.bone]);
+        rest = sums.fit_rest(i, rest, best.weights);
       }
-      rest = vertex.fit_rest(products, rest, best.weights);
+      rig.weights[v] = std::move(best.weights);
+      rig.rest[v] = {rest(0), rest(1), rest(2)};
     }
-    rig.weights[v] = std::move(best.weights);
-    rig.rest[v] = {rest(0), rest(1), rest(2)};
   }
 }
 
 // The motions of all frames, each starting from the nearest of the chosen ones.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
-  constexpr int kSweeps = 6;
+  constexpr int kSweeps = 3;
+  constexpr int kSteps = 3;
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   std::vector<Motion> now(n);
@@ -232,6 +257,7 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
     }
     for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
     for (int i = 0; i < kSweeps; ++i) refine_poses(moments, targets, now);
+    for (int i = 0; i < kSteps; ++i) solve_poses(moments, targets, now);
     for (std::size_t b = 0; b < n; ++b) {
       result[b][f] = now[b];
       result[b][f].col(3) += centre_[f];

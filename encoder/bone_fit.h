@@ -20,6 +20,7 @@ struct BoneFitOptions {
   double step = 1.0;  // of the quantisers, grid units: smaller errors do not matter
   std::uint32_t sample_frames = 64;      // at most so many are looked at together,
   std::uint32_t sample_vertices = 3000;  // and so many vertices
+  int exchanges = 6;                     // of bones, at each growth
 };
 
 // Finds bones, weights, rest positions, tree and pivots of at least one vertex in at least one
@@ -33,7 +34,11 @@ class BoneFit {
   BoneFit& operator=(const BoneFit&) = delete;
 
   // Adds bones up to a number; false if none was worth adding.
-  bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
+  bool grow(std::size_t num_bones) { return solver_.grow(num_bones, options_.exchanges); }
+  // What coding the GOF with these bones is expected to cost (bone_estimate.h), rest positions
+  // left out; and with one that only follows the centre of the vertices.
+  double expected_cost() const;
+  double expected_sliding_cost() const;
   // Of a vertex of the sample in a frame, grid units.
   double rms_error() const;
   // The same of one bone that only follows the centre of the vertices.
@@ -48,7 +53,7 @@ class BoneFit {
  private:
   double error_per_bit() const;
   double worth_of_bone() const;
-  std::vector<Vec3d> trajectory(std::uint32_t vertex) const;
+  void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;
   BoneSample sample_of(std::span<const Triangle> triangles) const;
   void fit_vertices(const BoneSolver& solver, std::size_t max_influences, Rig& rig) const;
   BoneMotions fit_frames(const BoneMotions& motions, const SkinMoments& moments,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -14,26 +15,27 @@
 namespace rlpc {
 namespace {
 
-// Bones are compared by cost when they leave less error than this many steps,
-constexpr double kNearError = 3.0;
-// and looked for at all when a few leave less than this.
-constexpr double kPromisingError = 1.6;
 constexpr std::uint32_t kMinVerticesOfBone = 8;
-constexpr std::uint32_t kUsualBones = 20;
-constexpr std::uint32_t kUsualInfluences = 3;
+constexpr std::uint32_t kUsualInfluences = 4;
+// Bones are looked for with vertices that follow one, and with vertices that follow two: with
+// more, bones overlap, and neither they nor weights are smooth.
+constexpr std::uint32_t kSearchInfluences = 2;
 // Error that one bone may leave of that of one which does not turn, to be chosen unseen.
 constexpr double kRigidPart = 0.4;
+// Expected costs, relative to that without bones, at which these are looked for; and relative
+// to the least, at which they are tried.
+constexpr double kPromising = 0.85;
+constexpr double kNearLeast = 1.06;
+// So many bones tell whether more are worth looking at: not above this expected cost.
+constexpr std::uint32_t kEnoughBones = 20;
+constexpr double kHopeless = 0.92;
 
 // Numbers of bones worth comparing.
 std::span<const std::uint32_t> counts(Preset preset) {
-  static constexpr std::array<std::uint32_t, 4> kFew{5, 10, 20, 36};
-  static constexpr std::array<std::uint32_t, 10> kMany{4, 6, 9, 13, 16, 20, 25, 30, 36, 48};
+  static constexpr std::array<std::uint32_t, 4> kFew{10, 20, 28, 36};
+  static constexpr std::array<std::uint32_t, 9> kMany{5, 10, 15, 20, 24, 28, 36, 48, 64};
   if (preset == Preset::kSlow) return kMany;
   return kFew;
-}
-
-BoneFitOptions bone_options(std::size_t influences, double step) {
-  return {.max_influences = influences, .step = step};
 }
 
 EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
@@ -110,8 +112,7 @@ BoneAnalysis BoneGofSearch::analyse(const Rig& rig, double step) const {
                        settings_, step);
 }
 
-double BoneGofSearch::cost(const Rig& rig, double step) const {
-  const BoneAnalysis analysis = analyse(rig, step);
+double BoneGofSearch::cost(const BoneAnalysis& analysis, double step) const {
   const EncodedGof encoded =
       encoded_gof(context_, code_bone_gof(context_.mesh, analysis, settings_, step));
   double bits = 0.0;
@@ -119,69 +120,108 @@ double BoneGofSearch::cost(const Rig& rig, double step) const {
   return squared_error(frames_, encoded.frame) + kErrorPerBit * step * step * bits;
 }
 
-// A small sample shows whether bones are worth a search.
-BoneFit BoneGofSearch::quick_fit(double step) const {
-  BoneFitOptions options = bone_options(max_influences_, step);
-  options.sample_frames = 24;
-  options.sample_vertices = 700;
-  return {frames_, context_.triangles, options};
+BoneFit BoneGofSearch::fit(std::size_t influences, double step) const {
+  return {frames_, context_.triangles, {.max_influences = influences, .step = step}};
 }
 
-bool BoneGofSearch::bones_promise(double step) const {
-  constexpr std::size_t kBones = 20;
-  BoneFit fit = quick_fit(step);
-  fit.grow(kBones);
-  return fit.rms_error() < kPromisingError * step;
+// From a small sample.
+BoneFit BoneGofSearch::quick_fit(std::size_t influences, double step) const {
+  return {frames_,
+          context_.triangles,
+          {.max_influences = influences,
+           .step = step,
+           .sample_frames = 24,
+           .sample_vertices = 700,
+           .exchanges = 2}};
 }
 
 // One bone that turns, if that makes much of a difference, else one that does not.
 Rig BoneGofSearch::quick_choice(double step) const {
-  const BoneFit fit = quick_fit(step);
-  return fit.rms_error() < kRigidPart * fit.sliding_error() ? fit.rig(1) : sliding_rig(frames_);
+  const BoneFit quick = quick_fit(1, step);
+  return quick.rms_error() < kRigidPart * quick.sliding_error() ? quick.rig(1)
+                                                                : sliding_rig(frames_);
 }
 
-Rig BoneGofSearch::choose(double step) const {
-  if (preset_ == Preset::kFast && bones_ == 0) return quick_choice(step);
-  // Where vertices follow one bone while bones are looked for, these are more likely to be
-  // parts that move rigidly.
-  BoneFit hard(frames_, context_.triangles, bone_options(1, step));
-  if (bones_ > 0) {
-    hard.grow(bones_);
-    return hard.rig(max_influences_);
-  }
-  Rig best = sliding_rig(frames_);
-  double least = cost(best, step);
-  const auto consider = [&](Rig rig) {
-    const double now = cost(rig, step);
-    if (now >= least) return false;
-    least = now;
-    best = std::move(rig);
-    return true;
-  };
-  consider(hard.rig(1));
-  if (preset_ == Preset::kMedium && !bones_promise(step)) return best;
-  std::uint32_t best_count = kUsualBones;
+// The numbers of bones that a small sample promises most of, with vertices that follow so many.
+BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double step) const {
+  Promise best;
+  BoneFit quick = quick_fit(influences, step);
+  const double sliding = quick.expected_sliding_cost();
   for (const std::uint32_t count : counts(preset_)) {
-    if (count * kMinVerticesOfBone > frames_.num_vertices || !hard.grow(count)) break;
-    if (hard.rms_error() > kNearError * step) continue;
-    if (consider(hard.rig(1))) best_count = count;
-    if (max_influences_ > 1 && consider(hard.rig(max_influences_))) best_count = count;
-  }
-  if (max_influences_ == 1) return best;
-  BoneFit soft(frames_, context_.triangles, bone_options(max_influences_, step));
-  for (const std::uint32_t count : counts(preset_)) {
-    if (preset_ != Preset::kSlow && count != best_count) continue;
-    if (count * kMinVerticesOfBone > frames_.num_vertices || !soft.grow(count)) break;
-    if (soft.rms_error() < kNearError * step) consider(soft.rig(max_influences_));
+    if (count * kMinVerticesOfBone > frames_.num_vertices || !quick.grow(count)) break;
+    const double part = quick.expected_cost() / sliding;
+    if (part < best.part) best = {count, part};
+    if (count >= kEnoughBones && best.part > kHopeless) break;
   }
   return best;
+}
+
+// Keeps a rig if it costs less than the one before, with its analysis.
+double BoneGofSearch::consider(Rig rig, double step, double& least) {
+  BoneAnalysis analysis = analyse(rig, step);
+  const double now = cost(analysis, step);
+  if (now < least) {
+    least = now;
+    choice_->rig = std::move(rig);
+    cached_ = Cached{step, std::move(analysis)};
+  }
+  return now;
+}
+
+void BoneGofSearch::choose(double step) {
+  cached_.reset();
+  if (preset_ == Preset::kFast && bones_ == 0) {
+    choice_->rig = quick_choice(step);
+    return;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  const std::uint32_t most = std::min(kSearchInfluences, max_influences_);
+  const auto final_influences = [&](std::uint32_t influences) {
+    return influences == 1 ? 1 : max_influences_;
+  };
+  if (bones_ > 0) {
+    for (std::uint32_t influences = 1; influences <= most; ++influences) {
+      BoneFit full = fit(influences, step);
+      full.grow(bones_);
+      consider(full.rig(final_influences(influences)), step, least);
+    }
+    return;
+  }
+  consider(sliding_rig(frames_), step, least);
+  consider(quick_fit(1, step).rig(1), step, least);
+  // What does not promise much with two influences does so less with one.
+  std::array<Promise, kSearchInfluences> promises;
+  double promised = kPromising;
+  for (std::uint32_t influences = most; influences > 0; --influences) {
+    promises[influences - 1] = promise(influences, step);
+    if (promises[influences - 1].part > promised) break;
+    promised = std::min(promised, promises[influences - 1].part * kNearLeast);
+  }
+  const bool slow = preset_ == Preset::kSlow;
+  for (std::uint32_t influences = 1; influences <= most; ++influences) {
+    const Promise& promise = promises[influences - 1];
+    if (!slow && promise.part > promised) continue;
+    BoneFit full = fit(influences, step);
+    double expected = std::numeric_limits<double>::infinity();
+    double before = expected;
+    for (const std::uint32_t count : counts(preset_)) {
+      if (!slow && count > promise.count) break;
+      if (count * kMinVerticesOfBone > frames_.num_vertices || !full.grow(count)) break;
+      const double now = full.expected_cost();
+      expected = std::min(expected, now);
+      if (now > kNearLeast * expected) continue;
+      const double real = consider(full.rig(final_influences(influences)), step, least);
+      if (!slow && real > before) break;
+      before = real;
+    }
+  }
 }
 
 EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
   if (!choice_ || choice_->is_far(analysis_step)) {
     const int times = choice_ ? choice_->times : 0;
-    choice_ = RigChoice{choose(analysis_step), analysis_step, times + 1};
-    cached_.reset();
+    choice_ = RigChoice{{}, analysis_step, times + 1};
+    choose(analysis_step);
   }
   const auto code_at = [&](double wanted) {
     if (!cached_ || cached_->step != wanted) {

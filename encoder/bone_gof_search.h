@@ -52,11 +52,18 @@ class BoneGofSearch : public GofCoder {
   };
 
   BoneAnalysis analyse(const Rig& rig, double step) const;
-  double cost(const Rig& rig, double step) const;
-  BoneFit quick_fit(double step) const;
+  double cost(const BoneAnalysis& analysis, double step) const;
+  struct Promise {
+    std::uint32_t count = 0;  // bones
+    double part = 2.0;        // expected cost, of that without bones
+  };
+
+  BoneFit fit(std::size_t influences, double step) const;
+  BoneFit quick_fit(std::size_t influences, double step) const;
+  Promise promise(std::size_t influences, double step) const;
   Rig quick_choice(double step) const;
-  bool bones_promise(double step) const;
-  Rig choose(double step) const;
+  double consider(Rig rig, double step, double& least);
+  void choose(double step);
 
   const BoneContext& context_;
   const GofFrames& frames_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "encoder/symmetric_solve.h"
+
 namespace rlpc {
 namespace {
 
@@ -58,6 +60,76 @@ void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
     const Eigen::Matrix3d r = closest_rotation(h, before);
     motions[b].leftCols<3>() = r;
     motions[b].col(3) = (left.col(3) - r * sum) / mass;
+  }
+}
+
+namespace {
+
+// u x v for all u in the columns of the second factor of sum(v u^T)
+Vec3d curl(const Eigen::Matrix3d& k) {
+  return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
+}
+
+Eigen::Matrix3d cross_matrix(const Vec3d& a) {
+  Eigen::Matrix3d m;
+  m << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0;
+  return m;
+}
+
+// Sum of w_b w_c J_b^T J_c, where J = (-[R p]x, 1) is how a turn and a shift of a bone move the
+// point p that it takes to R p + t.
+Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen::Matrix3d& rb,
+                                     const Eigen::Matrix3d& rc) {
+  const Eigen::Matrix3d n = rb * moments.topLeftCorner<3, 3>() * rc.transpose();
+  Eigen::Matrix<double, 6, 6> a;
+  a.topLeftCorner<3, 3>() = -n.transpose();
+  a.topLeftCorner<3, 3>().diagonal().array() += n(0, 0) + n(1, 1) + n(2, 2);
+  a.topRightCorner<3, 3>() = cross_matrix(rb * moments.block<3, 1>(0, 3));
+  a.bottomLeftCorner<3, 3>() = -cross_matrix(rc * moments.block<3, 1>(0, 3));
+  a.bottomRightCorner<3, 3>().setIdentity();
+  a.bottomRightCorner<3, 3>() *= moments(3, 3);
+  return a;
+}
+
+}  // namespace
+
+void solve_poses(const SkinMoments& moments, const PoseTargets& targets,
+                 std::vector<Motion>& motions) {
+  constexpr double kDamping = 1e-3;  // of the diagonal
+  const std::size_t n = motions.size();
+  std::vector<double> a(36 * n * n, 0.0);
+  std::vector<double> x(6 * n, 0.0);
+  for (std::size_t b = 0; b < n; ++b) {
+    Motion left = targets[b];  // sum of w_b r (p, 1)^T, where r is what all bones leave
+    const Eigen::Matrix3d rb = motions[b].leftCols<3>();
+    for (std::size_t c = 0; c < n; ++c) {
+      const Eigen::Matrix4d& m = moments.block(c, b);
+      if (!(m(3, 3) > 0.0)) continue;
+      left -= motions[c] * m;
+      if (c < b) continue;
+      const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
+      for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          a[(6 * b + i) * 6 * n + 6 * c + k] =
+              block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+        }
+      }
+    }
+    const Vec3d turn = curl(left.leftCols<3>() * rb.transpose());
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[6 * b + i] = turn(static_cast<Eigen::Index>(i));
+      x[6 * b + 3 + i] = left(static_cast<Eigen::Index>(i), 3);
+    }
+  }
+  for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;
+  solve_symmetric(a, x);
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!(moments.mass(b) > 0.0)) continue;
+    const Vec3d turn{x[6 * b], x[6 * b + 1], x[6 * b + 2]};
+    const Eigen::Matrix3d r =
+        rotation_matrix(normalised({1.0, 0.5 * turn(0), 0.5 * turn(1), 0.5 * turn(2)}));
+    motions[b].leftCols<3>() = r * motions[b].leftCols<3>();
+    motions[b].col(3) += Vec3d(x[6 * b + 3], x[6 * b + 4], x[6 * b + 5]);
   }
 }
 

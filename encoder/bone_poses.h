@@ -47,4 +47,9 @@ class PoseTargets {
 void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
                   std::vector<Motion>& motions);
 
+// The same for all bones at once, by a step of Gauss and Newton: slower, but it gets there
+// where vertices follow several bones. The motions must be near already.
+void solve_poses(const SkinMoments& moments, const PoseTargets& targets,
+                 std::vector<Motion>& motions);
+
 }  // namespace rlpc

@@ -29,22 +29,13 @@ BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
   for (const Vec3d& p : rest_) extent2 += (p - mean).squaredNorm() / static_cast<double>(n);
   constexpr double kNegligible = 1e-10;
   negligible_ = kNegligible * extent2 * static_cast<double>(sample.num_frames);
-  for (const auto& patch : sample.patches) {
-    const std::vector<Motion> motion = motion_of(patch);
-    double error = 0.0;
-    for (const std::uint32_t v : patch) {
-      error += rigid_error(sample.trajectory(v), rest_[v], motion);
-    }
-    patch_error_.push_back(error);
-  }
   std::vector<std::uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0U);
   motions_ = {motion_of(all)};
   improve(1);
 }
 
-bool BoneSolver::grow(std::size_t num_bones) {
-  constexpr std::size_t kExchanges = 6;
+bool BoneSolver::grow(std::size_t num_bones, int exchanges) {
   constexpr std::size_t kExchangedPart = 8;
   const std::size_t before = motions_.size();
   while (motions_.size() < num_bones) {
@@ -54,7 +45,7 @@ bool BoneSolver::grow(std::size_t num_bones) {
     if (added < count) break;
   }
   std::size_t count = 1 + motions_.size() / kExchangedPart;
-  for (std::size_t i = 0; i < kExchanges && count > 0; ++i) {
+  for (int i = 0; i < exchanges && count > 0; ++i) {
     if (!exchange(count)) count /= 2;
   }
   return motions_.size() > before;
@@ -70,28 +61,33 @@ std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertice
   return motion;
 }
 
+void BoneSolver::find_patch_errors() {
+  for (const auto& patch : sample_.patches) {
+    const std::vector<Motion> motion = motion_of(patch);
+    double error = 0.0;
+    for (const std::uint32_t v : patch) {
+      for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+        error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+      }
+    }
+    patch_error_.push_back(error);
+  }
+}
+
 // Returns how many there were.
 std::size_t BoneSolver::add_bones(std::size_t count) {
+  if (patch_error_.empty()) find_patch_errors();
   std::vector<double> error(weights_.size());
   for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
   std::size_t added = 0;
   for (; added < count; ++added) {
-    std::vector<Motion> best;
-    double most = 0.0;
-    for (const std::size_t patch : ill_explained_patches(error)) {
-      std::vector<Motion> motion;
-      const double saved = try_patch(patch, error, motion);
-      if (saved <= most) continue;
-      most = saved;
-      best = std::move(motion);
-    }
+    auto [best, most] = best_new_bone(error);
     constexpr double kLeastPart = 1e-9;
     const double sum = std::accumulate(error.begin(), error.end(), 0.0);
     const double negligible = negligible_ * static_cast<double>(error.size());
     if (most <= std::max(kLeastPart * sum, negligible)) break;
     motions_.push_back(std::move(best));
-    choose_candidates();
-    fit_all_weights();
+    fit_all_weights(true);
     for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
   }
   return added;
@@ -127,50 +123,66 @@ std::vector<std::size_t> BoneSolver::ill_explained_patches(
   return result;
 }
 
-// The error that a bone with the motion of a patch would save. The motion is then taken from
-// all vertices that follow it as well as the patch does.
-double BoneSolver::try_patch(std::size_t patch, std::span<const double> error,
-                             std::vector<Motion>& motion) const {
+// Tries the motions of some patches. Each is then taken from all vertices that follow it as
+// well as the patch does.
+BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) const {
   constexpr int kFits = 3;
-  std::vector<std::uint32_t> core = sample_.patches[patch];
-  const double tolerance =
-      std::max(4.0 * patch_error_[patch] / static_cast<double>(core.size()), negligible_);
-  double saved = 0.0;
-  for (int i = 0; i < kFits; ++i) {
-    motion = motion_of(core);
-    saved = 0.0;
-    std::vector<std::uint32_t> close;
-    for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
-      const double alone = rigid_error(sample_.trajectory(v), rest_[v], motion);
-      saved += std::max(error[v] - alone, 0.0);
-      if (alone < tolerance) close.push_back(v);
-    }
-    if (close.size() < core.size() || close == core) break;
-    core = std::move(close);
+  struct Trial {
+    std::vector<std::uint32_t> core;
+    double tolerance;
+    double saved = 0.0;
+  };
+  std::vector<Trial> trials;
+  for (const std::size_t patch : ill_explained_patches(error)) {
+    const auto& core = sample_.patches[patch];
+    trials.push_back(
+        {core,
+         std::max(4.0 * patch_error_[patch] / static_cast<double>(core.size()), negligible_)});
   }
-  return saved;
+  NewBone best;
+  if (trials.empty()) return best;
+  BoneMotions motions(trials.size());
+  for (int i = 0; i < kFits; ++i) {
+    for (std::size_t t = 0; t < trials.size(); ++t) motions[t] = motion_of(trials[t].core);
+    const SkinSums sums(sample_.positions, motions);
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      Trial& trial = trials[t];
+      trial.saved = 0.0;
+      std::vector<std::uint32_t> close;
+      for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
+        const double alone = sums.rigid_error(v, t, rest_[v]);
+        trial.saved += std::max(error[v] - alone, 0.0);
+        if (alone < trial.tolerance) close.push_back(v);
+      }
+      if (close.size() >= trial.core.size()) trial.core = std::move(close);
+    }
+  }
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    if (trials[t].saved <= best.saved) continue;
+    best = {std::move(motions[t]), trials[t].saved};
+  }
+  return best;
 }
 
-void BoneSolver::choose_candidates() {
+void BoneSolver::choose_candidates(const SkinSums& sums) {
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     std::vector<std::size_t>& list = candidates_[v];
     list.clear();
     for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
-    for (const std::size_t bone :
-         closest_bones(sample_.trajectory(v), rest_[v], motions_, SkinVertex::kMaxCandidates)) {
-      if (list.size() == SkinVertex::kMaxCandidates) break;
+    for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
+      if (list.size() == SkinSums::kMaxCandidates) break;
       if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
     }
   }
 }
 
-void BoneSolver::fit_all_weights() {
-  const MotionProducts products(motions_);
+void BoneSolver::fit_all_weights(bool new_candidates) {
+  const SkinSums sums(sample_.positions, motions_);
+  if (new_candidates) choose_candidates(sums);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const SkinVertex vertex(sample_.trajectory(v), motions_, candidates_[v]);
     const auto fit = [&] {
-      gram_[v] = vertex.gram(products, rest_[v]);
-      weights_[v] = sparse_weights(gram_[v], SkinVertex::kMaxCandidates, candidates_[v].size(),
+      gram_[v] = sums.gram(v, candidates_[v], rest_[v]);
+      weights_[v] = sparse_weights(gram_[v], SkinSums::kMaxCandidates, candidates_[v].size(),
                                    max_influences_, 0.0);
       for (RigWeight& w : weights_[v].weights) {
         w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
@@ -178,7 +190,7 @@ void BoneSolver::fit_all_weights() {
     };
     fit();
     if (!rests_move_) continue;
-    rest_[v] = vertex.fit_rest(products, rest_[v], weights_[v].weights);
+    rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
     fit();
   }
 }
@@ -186,11 +198,10 @@ void BoneSolver::fit_all_weights() {
 void BoneSolver::improve(int rounds) {
   constexpr int kKeepCandidates = 3;
   for (int i = 0; i < rounds; ++i) {
-    if (i % kKeepCandidates == 0) choose_candidates();
-    fit_all_weights();
+    fit_all_weights(i % kKeepCandidates == 0);
     improve_motions();
   }
-  fit_all_weights();
+  fit_all_weights(false);
 }
 
 void BoneSolver::settle() {
@@ -224,10 +235,10 @@ std::vector<double> BoneSolver::missed() const {
     if (count < 2) continue;
     for (const RigWeight& w : weights_[v].weights) {
       // The others only: the bone's row and column take those of the last.
-      SkinVertex::Gram gram = gram_[v];
+      SkinSums::Gram gram = gram_[v];
       const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
       const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
-      constexpr std::size_t kStride = SkinVertex::kMaxCandidates;
+      constexpr std::size_t kStride = SkinSums::kMaxCandidates;
       for (std::size_t i = 0; i < count; ++i) {
         gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
       }
@@ -245,14 +256,35 @@ std::vector<double> BoneSolver::missed() const {
 void BoneSolver::remove_bone(std::size_t bone) {
   motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
   for (BoneWeights& w : weights_) w.weights.clear();
-  choose_candidates();
-  fit_all_weights();
+  fit_all_weights(true);
 }
 
 double BoneSolver::error() const {
   double sum = 0.0;
   for (const BoneWeights& w : weights_) sum += w.error;
   return sum;
+}
+
+// Beyond the first.
+double BoneSolver::mean_influences() const {
+  std::size_t sum = 0;
+  for (const BoneWeights& w : weights_) sum += w.weights.size() - 1;
+  return static_cast<double>(sum) / static_cast<double>(weights_.size());
+}
+
+std::vector<double> BoneSolver::residuals() const {
+  std::vector<double> result;
+  result.reserve(3 * sample_.positions.size());
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+      Vec3d left = sample_.trajectory(v)[f];
+      for (const RigWeight& w : weights_[v].weights) {
+        left -= w.weight * moved(motions_[w.bone][f], rest_[v]);
+      }
+      result.insert(result.end(), {left(0), left(1), left(2)});
+    }
+  }
+  return result;
 }
 
 // Exchanges the bones that are missed least for new ones, if that is better.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "encoder/bone_weights.h"
-#include "encoder/skin_vertex.h"
+#include "encoder/skin_sums.h"
 
 namespace rlpc {
 
@@ -40,31 +40,39 @@ class BoneSolver {
   // The sample is kept by reference. There is one bone at first.
   BoneSolver(const BoneSample& sample, std::size_t max_influences);
 
-  // Adds bones up to a number, in several steps; false if none was worth adding.
-  bool grow(std::size_t num_bones);
+  // Adds bones up to a number, in several steps, then exchanges some; false if none was worth
+  // adding.
+  bool grow(std::size_t num_bones, int exchanges);
   // Improves rest positions, too; bones cannot be added after that.
   void settle();
   // Leaves out bones that save less squared error than `worth`.
   void remove_worthless_bones(double worth);
 
   double error() const;  // squared, over the sample
+  double mean_influences() const;
+  // What the bones leave: [vertex][3 * frame].
+  std::vector<double> residuals() const;
 
   const BoneMotions& motions() const { return motions_; }
   const Vec3d& rest(std::size_t vertex) const { return rest_[vertex]; }  // of the sample
 
  private:
+  void find_patch_errors();
   bool exchange(std::size_t count);
   void take(const BoneSolver& other);
   std::size_t add_bones(std::size_t count);
   std::vector<std::size_t> ill_explained_patches(std::span<const double> error) const;
-  double try_patch(std::size_t patch, std::span<const double> error,
-                   std::vector<Motion>& motion) const;
+  struct NewBone {
+    std::vector<Motion> motion;
+    double saved = 0.0;  // squared error
+  };
+  NewBone best_new_bone(std::span<const double> error) const;
   std::vector<Motion> motion_of(std::span<const std::uint32_t> vertices) const;
 
   void improve(int rounds);
   void improve_motions();
-  void choose_candidates();
-  void fit_all_weights();
+  void choose_candidates(const SkinSums& sums);
+  void fit_all_weights(bool new_candidates);
 
   std::vector<double> missed() const;
   void remove_bone(std::size_t bone);
@@ -72,13 +80,13 @@ class BoneSolver {
   const BoneSample& sample_;
   std::size_t max_influences_;
   double negligible_ = 0.0;          // squared error of a vertex over the frames
-  std::vector<double> patch_error_;  // when moved rigidly
+  std::vector<double> patch_error_;  // when moved rigidly; once needed
   bool rests_move_ = false;
   BoneMotions motions_;
   std::vector<Vec3d> rest_;
   std::vector<BoneWeights> weights_;  // of bones
   std::vector<std::vector<std::size_t>> candidates_;
-  std::vector<SkinVertex::Gram> gram_;  // of the candidates
+  std::vector<SkinSums::Gram> gram_;  // of the candidates
 };
 
 }  // namespace rlpc

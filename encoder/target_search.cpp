@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kMaxTrials = 18;
 constexpr double kTolerance = 0.02;     // of the target, below it
-constexpr double kFreezeWithin = 0.35;  // of the target
 constexpr double kFinestStep = 0.5;     // grid steps
 constexpr double kCoarsestStep = 0x1p24;
 constexpr double kFarthest = 50.0;  // from one step to the next, as a factor
@@ -38,8 +37,7 @@ bool TargetSearch::report(double measured) {
     return true;
   }
   const bool within = measured <= target_.value;
-  const double ratio = measured / target_.value;
-  if (analysis_step() == step_ && ratio > 1.0 - kFreezeWithin && ratio < 1.0 + kFreezeWithin) {
+  if (analysis_step() == step_ && is_near(measured)) {
     // What was measured before belongs to other analyses.
     frozen_ = step_;
     fine_ = coarse_ = 0.0;
@@ -59,6 +57,14 @@ bool TargetSearch::report(double measured) {
   met_ = met_ || within;
   choose_next(measured);
   return better;
+}
+
+// Whether the analysis for this step serves for the one that reaches the target.
+bool TargetSearch::is_near(double measured) const {
+  const double ratio = measured / target_.value;
+  if (!(ratio > 0.5 && ratio < 2.0)) return false;
+  const double factor = det_exp2(-det_log2(ratio) / usual_slope());
+  return factor < kServes && factor * kServes > 1.0;
 }
 
 void TargetSearch::choose_next(double measured) {

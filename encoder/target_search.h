@@ -18,7 +18,6 @@ class TargetSearch {
   // The step that the analysis is made for. Close to the target it stays as it is, as the
   // measured value jumps from one analysis to the next; but it serves nearby steps only.
   double analysis_step() const {
-    constexpr double kServes = 1.6;
     const bool near = step_ < kServes * frozen_ && frozen_ < kServes * step_;
     return near ? frozen_ : step_;
   }
@@ -30,6 +29,9 @@ class TargetSearch {
   bool met() const { return target_.kind == Target::kNone || met_; }
 
  private:
+  static constexpr double kServes = 1.2;
+
+  bool is_near(double measured) const;
   double usual_slope() const { return target_.kind == Target::kBpvf ? -0.5 : 0.85; }
   void choose_next(double measured);
 

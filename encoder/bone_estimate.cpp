@@ -1,0 +1,66 @@
+#include "encoder/bone_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "encoder/det_math.h"
+#include "encoder/gof_coder.h"
+#include "encoder/local_pca.h"
+
+namespace rlpc {
+namespace {
+
+// What spatial prediction leaves of each trajectory, a vertex at a time: mean squared
+// differences between the middle of a patch and the vertices around it.
+std::vector<double> differences(const BoneSample& sample, const PrincipalComponents& pc) {
+  const std::size_t count = pc.spatial.size();
+  std::vector<double> sum(count, 0.0);
+  for (const auto& patch : sample.patches) {
+    const auto around = static_cast<double>(patch.size() - 1);
+    for (std::size_t l = 0; l < count; ++l) {
+      double d = pc.spatial[l][patch[0]];
+      for (std::size_t i = 1; i < patch.size(); ++i) d -= pc.spatial[l][patch[i]] / around;
+      sum[l] += d * d;
+    }
+  }
+  for (double& s : sum) s /= static_cast<double>(sample.patches.size());
+  return sum;
+}
+
+}  // namespace
+
+double expected_cost(const BoneSample& sample, const std::vector<double>& residuals,
+                     std::uint32_t num_vertices, std::uint32_t num_frames, double step) {
+  // Temporal prediction leaves about this part of the energy of a temporal vector.
+  constexpr double kLeft = 0.25;
+  TrajectoryMatrix matrix;
+  matrix.num_values = sample.num_vertices();
+  matrix.num_frames = 3 * sample.num_frames;
+  matrix.a = residuals;
+  const PrincipalComponents pc = principal_components(matrix, matrix.num_frames, 0.0);
+  const std::vector<double> difference = differences(sample, pc);
+  const double vertices = num_vertices;
+  const double values = 3.0 * num_frames;
+  const double of_frames = num_frames / static_cast<double>(sample.num_frames);
+  const double of_all = of_frames * vertices / static_cast<double>(sample.num_vertices());
+  const double error = step * step / 12.0;
+  double cost = 0.0;
+  for (std::size_t l = 0; l < pc.energy.size(); ++l) {
+    const double energy = of_all * pc.energy[l];
+    if (l >= difference.size()) {
+      cost += energy;
+      continue;
+    }
+    const double spatial_bits =
+        0.5 * vertices * det_log2(1.0 + of_frames * difference[l] / error);
+    const double temporal_bits =
+        0.5 * values * det_log2(1.0 + kLeft * energy / (values * error));
+    const double coded = error * (vertices + values) +
+                         kErrorPerBit * step * step * (spatial_bits + temporal_bits);
+    cost += std::min(energy, coded);
+  }
+  return cost;
+}
+
+}  // namespace rlpc

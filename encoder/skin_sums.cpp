@@ -1,0 +1,139 @@
+#include "encoder/skin_sums.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+#include "encoder/elimination.h"
+#include "encoder/matrix_products.h"
+
+namespace rlpc {
+namespace {
+
+Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
+
+}  // namespace
+
+SkinSums::SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions)
+    : num_bones_(motions.size()),
+      num_frames_(motions.front().size()),
+      product_(num_bones_ * num_bones_, Eigen::Matrix4d::Zero()) {
+  const std::size_t columns = 4 * num_bones_;
+  std::vector<double> by_frame(3 * num_frames_ * columns);
+  for (std::size_t b = 0; b < num_bones_; ++b) {
+    for (std::size_t f = 0; f < num_frames_; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          by_frame[(3 * f + c) * columns + 4 * b + k] =
+              motions[b][f](static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k));
+        }
+      }
+    }
+  }
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  const std::span<const double> flat(positions.data()->data(), 3 * positions.size());
+  along_ = matrix_product(flat, 3 * num_frames_, by_frame, columns);
+  for (std::size_t i = 0; i < positions.size(); i += num_frames_) {
+    double square = 0.0;
+    for (const Vec3d& x : positions.subspan(i, num_frames_)) square += x.squaredNorm();
+    square_.push_back(square);
+  }
+  const std::vector<double> gram = gram_matrix(by_frame, columns);
+  for (std::size_t a = 0; a < num_bones_; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      Eigen::Matrix4d& sum = product_[a * num_bones_ + b];
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          const std::size_t row = std::max(4 * a + i, 4 * b + k);
+          const std::size_t column = std::min(4 * a + i, 4 * b + k);
+          sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+              gram[row * columns + column];
+        }
+      }
+      product_[b * num_bones_ + a] = sum.transpose();
+    }
+  }
+}
+
+double SkinSums::rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& rest) const {
+  const Eigen::Vector4d p = homogeneous(rest);
+  const double error = p.dot(product(bone, bone) * p) - 2.0 * p.dot(along(vertex, bone));
+  return std::max(error + square_[vertex], 0.0);  // but for rounding
+}
+
+Vec3d SkinSums::single_rest(std::size_t vertex) const {
+  const auto n = static_cast<double>(num_frames_);
+  Vec3d best = Vec3d::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < num_bones_; ++b) {
+    // Sums over the frames of where the rest position would be, R^T (x - t), and of its square.
+    const Eigen::Vector4d sums = along(vertex, b);
+    const Eigen::Matrix4d& own = product(b, b);
+    const Vec3d rest = sums.head<3>() - own.block<3, 1>(0, 3);
+    const double square = square_[vertex] - 2.0 * sums(3) + own(3, 3);
+    const double error = square - rest.squaredNorm() / n;
+    if (error >= least) continue;
+    least = error;
+    best = rest / n;
+  }
+  return best;
+}
+
+std::vector<std::size_t> SkinSums::closest_bones(std::size_t vertex, const Vec3d& rest,
+                                                 std::size_t count) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t b = 0; b < num_bones_; ++b) {
+    order.emplace_back(rigid_error(vertex, b, rest), b);
+  }
+  std::sort(order.begin(), order.end());
+  order.resize(std::min(order.size(), count));
+  std::vector<std::size_t> bones;
+  bones.reserve(order.size());
+  for (const auto& [error, bone] : order) bones.push_back(bone);
+  return bones;
+}
+
+SkinSums::Gram SkinSums::gram(std::size_t vertex, std::span<const std::size_t> bones,
+                              const Vec3d& rest) const {
+  assert(bones.size() <= kMaxCandidates);
+  const Eigen::Vector4d p = homogeneous(rest);
+  std::array<double, kMaxCandidates> part{};
+  for (std::size_t i = 0; i < bones.size(); ++i) part[i] = p.dot(along(vertex, bones[i]));
+  Gram gram{};
+  for (std::size_t i = 0; i < bones.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double both = p.dot(product(bones[i], bones[j]) * p);
+      const double value = both - part[i] - part[j] + square_[vertex];
+      gram[i * kMaxCandidates + j] = gram[j * kMaxCandidates + i] = value;
+    }
+  }
+  for (std::size_t i = 0; i < bones.size(); ++i) {
+    double& own = gram[i * kMaxCandidates + i];
+    own = std::max(own, 0.0);  // but for rounding
+  }
+  return gram;
+}
+
+Vec3d SkinSums::fit_rest(std::size_t vertex, const Vec3d& before,
+                         std::span<const RigWeight> weights) const {
+  constexpr double kPull = 1e-4;
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
+  for (const RigWeight& a : weights) {
+    wanted += a.weight * along(vertex, a.bone);
+    for (const RigWeight& b : weights) sum += a.weight * b.weight * product(a.bone, b.bone);
+  }
+  const double pull = kPull * static_cast<double>(num_frames_);
+  Equations3 m{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t k = 0; k < 3; ++k) m[i][k] = sum(row, static_cast<Eigen::Index>(k));
+    m[i][i] += pull;
+    m[i][3] = wanted(row) - sum(row, 3) + pull * before(row);
+  }
+  const auto x = solve3(m);
+  return x ? Vec3d((*x)[0], (*x)[1], (*x)[2]) : before;
+}
+
+}  // namespace rlpc
