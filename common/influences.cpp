@@ -47,7 +47,7 @@ void InfluencePrediction::add_extra_bone(std::uint32_t bone, int weight) {
 }
 
 int InfluencePrediction::candidate_mean(std::size_t k) const {
-  const auto n = static_cast<std::int64_t>(std::max<std::size_t>(ring_.size(), 1));
+  const auto n = static_cast<std::int64_t>(ring_.size());
   return static_cast<int>(div_round(candidates_[k].sum, n));
 }
 
@@ -61,7 +61,7 @@ std::uint32_t InfluencePrediction::expected(std::size_t k) const {
     }
     difference += weight > mean ? weight - mean : mean - weight;
   }
-  const auto n = static_cast<std::int64_t>(std::max<std::size_t>(ring_.size(), 1));
+  const auto n = static_cast<std::int64_t>(ring_.size());
   const std::int64_t sum =
       8 * div_round(16 * difference, n) + 5 * 16 * std::int64_t{magnitude_before_};
   return static_cast<std::uint32_t>(sum >> 4);

@@ -189,7 +189,7 @@ std::optional<Ring> walk_fan(const Fan& fan, std::size_t first) {
 
 // 8.9.3 Ring of a vertex: FindRing( v ), none if the triangles around v are not a fan.
 std::optional<Ring> find_ring(const Rest& rest, std::uint32_t v) {
-  if (rest.valence(v) < 1 || rest.valence(v) > kMaxFan) return std::nullopt;
+  assert(rest.valence(v) > 0 && rest.valence(v) <= kMaxFan);
   Fan fan;
   for (std::uint32_t c = rest.first(v); c != kNone; c = rest.next(c)) {
     fan.starts[fan.size] = rest.vertex(Rest::after(c));

@@ -16,6 +16,13 @@ namespace {
 // Memory of a factor: as a residual with its magnitude, as a value, and arranged for the sums.
 constexpr std::uint64_t kBytesPerFactor = 18;
 
+// 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
+static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level) {
+  return 6 * std::uint64_t{level.max_clusters} * level.max_gof_frames +
+             3 * std::uint64_t{level.max_vertices} <=
+         level.max_gof_factors;
+}));
+
 // 6.11.2 bone( b )
 class BoneParser {
  public:
@@ -102,7 +109,6 @@ void BoneGofParser::bone_section(BitReader& r) {
   num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
                  3 * std::uint64_t{header_.num_vertices};
   if (section.failed()) return;
-  if (num_factors_ > header_.level().max_gof_factors) section.fail("R-LVL-05", "bone_section");
   const std::uint64_t of_vertices = sizeof(Influences) * std::uint64_t{header_.num_vertices};
   if (num_factors_ * kBytesPerFactor + of_vertices > max_memory_bytes_) {
     section.fail_limit("bone_section");
