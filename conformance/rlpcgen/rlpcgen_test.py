@@ -258,8 +258,6 @@ class StressTier(unittest.TestCase):
         self.add("recipes/GOF/GOF-0001a", TETRAHEDRON, "core")
         self.add("recipes-stress/GOF/GOF-0001x1", "title: Damaged\nrules: R-UNT-03\n"
                  "twin: GOF-0001a\nchange 2 GOF\n  unit_crc = wrong\n", "stress")
-        for kind in set(suite.FOLDER_OF.values()):
-            (self.version / kind).mkdir()
         place, *made = suite_streams.Version(self.version, SPEC).make(
             self.version / "recipes/GOF/GOF-0001a.recipe")
         suite_streams.write_stream(place, *made)

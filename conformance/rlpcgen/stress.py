@@ -119,7 +119,8 @@ def write_suite(folder, spec, out, seeds, jobs):
     global _out
     folder, _out = pathlib.Path(folder), pathlib.Path(out)
     for kind in sorted(set(suite.FOLDER_OF.values())):
-        shutil.copytree(folder / kind, _out / kind, dirs_exist_ok=True)
+        if (folder / kind).is_dir():  # a version need not have streams of every kind
+            shutil.copytree(folder / kind, _out / kind, dirs_exist_ok=True)
     with multiprocessing.get_context("fork").Pool(jobs, _start, (folder, spec)) as pool:
         yield from pool.imap(_write, items(folder, seeds), chunksize=4)
     index = suite.index_of(_out, f"rlpc-{folder.name}-stress", folder.name[1:])
