@@ -77,7 +77,7 @@ struct BoneGof {
   int outer_weight = 0;                         // 1/16
   int outer_scale = 0;                          // 1/16
   std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
-  std::vector<std::uint8_t> layer_step;         // [num_coded_layers], 1 to kMaxLayerStep
+  std::vector<std::uint8_t> layer_step;         // of each layer, 1 to kMaxLayerStep
   std::vector<Bone> bones;
   std::uint32_t num_component_groups = 0;
   // End of each group among the spatial factors; [0] is kRestFactors. Groups without any slice

@@ -67,7 +67,7 @@ class VertexWeights {
     weights_.assign(ring_size_ + outer_size, 0);
     const auto n = static_cast<std::int64_t>(ring_size_);
     const auto m = static_cast<std::int64_t>(outer_size);
-    const std::int64_t a = n < 2 || m == 0 ? 0 : gof_.outer_weight;
+    const std::int64_t a = m == 0 ? 0 : gof_.outer_weight;
     const std::int64_t of_ring = n > 0 ? div_round((16 + a) << 10, n) : 0;
     const std::int64_t of_outer = m > 0 ? -div_round(a << 10, m) : 0;
     std::fill_n(weights_.begin(), ring_size_, of_ring);
