@@ -29,6 +29,11 @@ struct RunningMagnitude {
   }
 };
 
+// 9.6.1 ClippedMagnitude( residual ): as of a running mean, with 8 fractional bits.
+constexpr std::uint32_t clipped_magnitude(std::int32_t residual) {
+  return std::min<std::uint32_t>(magnitude_of(residual), 0x100000) << 8;
+}
+
 // Small numbers of cluster and component headers, coded as differences.
 enum class HeaderField : std::uint8_t {
   kNumComponents,
@@ -128,9 +133,8 @@ class SpatialContext {
     return (2 * mean_[c].slow + mean_[c].fast + here) >> 6;
   }
   void update(std::size_t c, std::int32_t residual) {
-    const std::uint32_t magnitude = magnitude_of(residual);
-    mean_[c].update(magnitude);
-    before_ = std::min<std::uint32_t>(magnitude, 0x100000) << 8;
+    mean_[c].update(magnitude_of(residual));
+    before_ = clipped_magnitude(residual);
   }
 
  private:

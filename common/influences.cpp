@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/gof_models.h"
 #include "common/int_math.h"
-#include "common/residual_models.h"
 
 namespace rlpc {
 
@@ -63,8 +63,8 @@ std::uint32_t InfluencePrediction::expected(std::size_t k) const {
   }
   const auto n = static_cast<std::int64_t>(ring_.size());
   const std::int64_t sum =
-      8 * div_round(16 * difference, n) + 5 * 16 * std::int64_t{magnitude_before_};
-  return static_cast<std::uint32_t>(sum >> 4);
+      128 * div_round(16 * difference, n) + 5 * std::int64_t{magnitude_before_};
+  return static_cast<std::uint32_t>(sum >> 8);
 }
 
 void InfluencePrediction::add_candidate(std::size_t k, std::int32_t residual) {
@@ -72,7 +72,7 @@ void InfluencePrediction::add_candidate(std::size_t k, std::int32_t residual) {
     add_influence(candidates_[k].bone,
                   clip3(0, left_, std::int64_t{candidate_mean(k)} + residual));
   }
-  magnitude_before_ = magnitude_of(residual);
+  magnitude_before_ = clipped_magnitude(residual);
 }
 
 void InfluencePrediction::add_influence(std::uint32_t bone, std::int64_t weight) {

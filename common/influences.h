@@ -57,7 +57,7 @@ class InfluencePrediction {
   Influences found_;
   int num_extra_ = 0;
   int left_ = 0;
-  std::uint32_t magnitude_before_ = 0;
+  std::uint32_t magnitude_before_ = 0;  // 8 fractional bits
 };
 
 }  // namespace rlpc

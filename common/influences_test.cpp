@@ -71,7 +71,7 @@ TEST(Influences, ThatTheRingSharesArePassedOn) {
 }
 
 // 9.8.3: half of the mean difference from the mean, with 4 fractional bits, and 5/16 of the
-// residual before.
+// residual before, whose magnitude is clipped to 2^20.
 TEST(Influences, ExpectedResidualsFollowTheDifferencesInTheRing) {
   const std::vector<Influences> known{of({{0, 40}, {1, 24}}), of({{0, 60}, {1, 4}}),
                                       of({{0, 64}})};
@@ -84,8 +84,12 @@ TEST(Influences, ExpectedResidualsFollowTheDifferencesInTheRing) {
   prediction.add_candidate(1, -6);
   // 8 * 155 + 5 * 16 * 6 = 1720; / 16 = 107.5
   EXPECT_EQ(prediction.expected(1), 107U);
-  prediction.add_candidate(1, kMost);
-  EXPECT_EQ(prediction.expected(1), (8 * 155 + 5 * 16 * std::int64_t{kMost}) >> 4);
+  prediction.add_candidate(1, -0xfffff);
+  EXPECT_EQ(prediction.expected(1), 77U + 5 * 0xfffff);
+  for (const std::int32_t clipped : {0x100000, -0x100001, kMost, -kMost}) {
+    prediction.add_candidate(1, clipped);
+    EXPECT_EQ(prediction.expected(1), 77U + 5 * 0x100000) << clipped;
+  }
 }
 
 TEST(Influences, ExtraBonesAreAtMostFourAndNew) {

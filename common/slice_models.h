@@ -61,9 +61,7 @@ class VertexContexts {
   }
   void update(std::int32_t residual) {
     const std::uint32_t magnitude = magnitude_of(residual);
-    const std::uint64_t clipped = std::uint64_t{std::min<std::uint32_t>(magnitude, 0x100000)}
-                                  << 8;
-    activity_sum_ += clipped - (activity_sum_ >> 4);
+    activity_sum_ += clipped_magnitude(residual) - (activity_sum_ >> 4);
     activity_mean_ += mean_[next_] - (activity_mean_ >> 4);
     latest_mean_ = update_mean(latest_mean_, magnitude, 2);
     mean_[next_] = update_mean(mean_[next_], magnitude, 5);
