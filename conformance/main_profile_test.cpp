@@ -140,6 +140,29 @@ TEST(MainProfile, EncodesTheSameEachTime) {
 }
 
 // One vertex, points on a line, a mesh without triangles, a single frame.
+// Noise needs as many trajectories as there are, more than the level of so small a mesh allows.
+TEST(MainProfile, RaisesTheLevelForManyTrajectories) {
+  constexpr std::uint32_t kVertices = 540;
+  constexpr std::uint32_t kFrames = 174;
+  FrameSource::Shape shape;
+  shape.frame_rate = {24, 1};
+  std::vector<std::vector<float>> frames(kFrames);
+  std::uint32_t state = 1;
+  for (auto& frame : frames) {
+    for (std::uint32_t i = 0; i < 3 * kVertices; ++i) {
+      state = state * 1664525 + 1013904223;
+      frame.push_back(static_cast<float>(state >> 8) * 0x1p-24F);
+    }
+  }
+  MemoryFrames source(std::move(shape), std::move(frames));
+  EncoderSettings settings = settings_for({Target::kKg, 3.0});
+  settings.gof_frames = EncoderSettings::kWholeSequence;
+  const Encoded e = encoded(source, settings);
+  EXPECT_GT(e.report.components, kLevels[0].max_components);
+  EXPECT_EQ(e.report.header.level_idc, 2U);
+  EXPECT_LE(decoded_metrics(source, e.bytes).kg_error_percent, 3.0);
+}
+
 TEST(MainProfile, TakesDegenerateMeshes) {
   struct Case {
     std::uint32_t num_vertices;

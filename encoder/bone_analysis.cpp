@@ -97,9 +97,6 @@ class BoneAnalyser {
     gof.num_frames = frames_.num_frames;
     gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
     gof.prediction = settings_.prediction;
-    gof.damping_log2 = settings_.damping_log2;
-    gof.outer_weight = settings_.outer_weight;
-    gof.outer_scale = settings_.outer_scale;
     gof.layer_group_size = {mesh_.num_layers()};
     gof.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
     gof.slice_layers = {1};

@@ -35,7 +35,7 @@ struct BoneSettings {
 // Bones, influences and rest positions of a GOF, quantised, and the principal components of
 // what they leave of the motion.
 struct BoneAnalysis {
-  BoneGof gof;  // without trajectories
+  BoneGof gof;  // without trajectories and geometry weights
   std::vector<BoneMotion> bones;
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   PrincipalComponents pc;

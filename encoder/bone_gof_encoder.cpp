@@ -30,13 +30,14 @@ class TrajectoryCoder {
         settings_(settings),
         step_(step),
         num_frames_(analysis.gof.num_frames),
-        gof_(analysis.gof) {}
+        gof_(analysis.gof) {
+    gof_.damping_log2 = settings.damping_log2;
+    gof_.outer_weight = settings.outer_weight;
+    gof_.outer_scale = settings.outer_scale;
+  }
 
   BoneGof code() {
-    const double least = least_energy(step_, mesh_.num_vertices(), analysis_.gof.num_frames);
-    while (count_ < analysis_.pc.temporal.size() && analysis_.pc.energy[count_] > least) {
-      ++count_;
-    }
+    count_ = num_trajectories(analysis_, step_);
     if (count_ > 0) {
       code_temporal();
       fit_spatial();
@@ -277,6 +278,14 @@ class TrajectoryCoder {
 };
 
 }  // namespace
+
+std::size_t num_trajectories(const BoneAnalysis& analysis, double step) {
+  const double least = least_energy(step, static_cast<std::uint32_t>(analysis.rest[0].size()),
+                                    analysis.gof.num_frames);
+  std::size_t count = 0;
+  while (count < analysis.pc.temporal.size() && analysis.pc.energy[count] > least) ++count;
+  return count;
+}
 
 BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
                       const BoneSettings& settings, double step) {

@@ -8,6 +8,9 @@
 
 namespace rlpc {
 
+// How many of the principal components are worth a trajectory.
+std::size_t num_trajectories(const BoneAnalysis& analysis, double step);
+
 // The GOF ready to be written.
 BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
                       const BoneSettings& settings, double step);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bone_recon.h"
+#include "common/sequence_header.h"
 #include "encoder/bone_fit.h"
 #include "encoder/write_bone_gof.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::uint32_t kMinVerticesOfBone = 8;
 constexpr std::uint32_t kUsualInfluences = 4;
+constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
 // Bones are looked for with vertices that follow one, and with vertices that follow two: with
 // more, bones overlap, and neither they nor weights are smooth.
 constexpr std::uint32_t kSearchInfluences = 2;
@@ -26,35 +28,38 @@ constexpr double kRigidPart = 0.4;
 // to the least, at which they are tried.
 constexpr double kPromising = 0.85;
 constexpr double kNearLeast = 1.06;
+constexpr double kWorthACost = 1.2;
 // So many bones tell whether more are worth looking at: not above this expected cost.
 constexpr std::uint32_t kEnoughBones = 20;
 constexpr double kHopeless = 0.92;
 
 // Numbers of bones worth comparing.
-std::span<const std::uint32_t> counts(Preset preset) {
-  static constexpr std::array<std::uint32_t, 4> kFew{10, 20, 28, 36};
-  static constexpr std::array<std::uint32_t, 9> kMany{5, 10, 15, 20, 24, 28, 36, 48, 64};
-  if (preset == Preset::kSlow) return kMany;
-  return kFew;
+constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
+constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
+
+const CodedMesh& mesh_of(const BoneContext& context, Prediction prediction) {
+  return context.meshes[static_cast<std::size_t>(prediction)];
 }
 
 EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
   EncodedGof encoded;
-  BoneGofPayloads payloads = write_bone_gof(gof, context.mesh, context.position_bits);
+  const CodedMesh& mesh = mesh_of(context, gof.prediction);
+  BoneGofPayloads payloads = write_bone_gof(gof, mesh, context.position_bits);
   encoded.units.push_back({UnitType::kGof, std::move(payloads.gof)});
   for (auto& slice : payloads.slices) {
     encoded.units.push_back({UnitType::kSlice, std::move(slice)});
   }
-  const auto recon = std::make_shared<BoneRecon>(context.mesh, gof, context.position_bits);
+  const auto recon = std::make_shared<BoneRecon>(mesh, gof, context.position_bits);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);
   };
   encoded.clusters = static_cast<std::uint32_t>(gof.bones.size());
   encoded.components = static_cast<std::uint32_t>(gof.trajectories.size());
-  encoded.num_factors = 6 * std::uint64_t{gof.bones.size()} * gof.num_frames +
-                        3 * std::uint64_t{context.mesh.num_vertices()} +
-                        gof.trajectories.size() *
-                            (context.mesh.num_vertices() + 3 * std::uint64_t{gof.num_frames});
+  encoded.most_components = encoded.components;
+  encoded.num_factors =
+      6 * std::uint64_t{gof.bones.size()} * gof.num_frames +
+      3 * std::uint64_t{mesh.num_vertices()} +
+      gof.trajectories.size() * (mesh.num_vertices() + 3 * std::uint64_t{gof.num_frames});
   return encoded;
 }
 
@@ -85,36 +90,40 @@ Rig sliding_rig(const GofFrames& frames) {
 
 BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames,
                              std::uint32_t first_frame, const EncoderSettings& settings,
-                             std::optional<RigChoice>& choice)
+                             std::optional<BoneChoice>& choice)
     : context_(context),
       frames_(frames),
       first_frame_(first_frame),
+      tools_(settings.main),
       preset_(settings.preset),
-      bones_(settings.main.bones),
-      max_influences_(settings.main.influences == 0 ? kUsualInfluences
-                                                    : settings.main.influences),
+      max_influences_(tools_.influences == 0 ? kUsualInfluences : tools_.influences),
       choice_(choice) {
-  const MainTools& tools = settings.main;
-  settings_.prediction = tools.prediction;
-  if (!tools.geometry_weights) settings_.damping_log2 = 0;
-  if (!tools.outer_ring) settings_.outer_weight = 0;
-  if (!tools.outer_ring) settings_.outer_scale = 0;
-  settings_.layer_steps = tools.layer_steps;
-  settings_.temporal_weights = tools.temporal_weights;
-  settings_.cobra_steps = tools.cobra_steps;
-  settings_.component_groups = tools.component_groups;
-  settings_.layer_groups = tools.layer_groups;
-  if (settings.components > 0) settings_.max_trajectories = settings.components;
+  usual_.prediction = tools_.prediction.value_or(Prediction::kLayers);
+  if (!tools_.geometry_weights) usual_.damping_log2 = 0;
+  if (!tools_.outer_ring) usual_.outer_weight = 0;
+  if (!tools_.outer_ring) usual_.outer_scale = 0;
+  usual_.layer_steps = tools_.layer_steps;
+  usual_.temporal_weights = tools_.temporal_weights;
+  usual_.cobra_steps = tools_.cobra_steps;
+  usual_.component_groups = tools_.component_groups;
+  usual_.layer_groups = tools_.layer_groups;
+  usual_.max_trajectories = kLevels.back().max_components;
+  if (settings.components > 0) usual_.max_trajectories = settings.components;
 }
 
-BoneAnalysis BoneGofSearch::analyse(const Rig& rig, double step) const {
-  return analyse_bones(context_.mesh, context_.position_bits, frames_, first_frame_, rig,
-                       settings_, step);
+BoneAnalysis BoneGofSearch::analyse(const BoneChoice& choice, double step) const {
+  return analyse_bones(mesh_of(context_, choice.settings.prediction), context_.position_bits,
+                       frames_, first_frame_, choice.rig, choice.settings, step);
 }
 
-double BoneGofSearch::cost(const BoneAnalysis& analysis, double step) const {
-  const EncodedGof encoded =
-      encoded_gof(context_, code_bone_gof(context_.mesh, analysis, settings_, step));
+BoneGof BoneGofSearch::code(const BoneAnalysis& analysis, const BoneSettings& settings,
+                            double step) const {
+  return code_bone_gof(mesh_of(context_, settings.prediction), analysis, settings, step);
+}
+
+double BoneGofSearch::cost(const BoneAnalysis& analysis, const BoneSettings& settings,
+                           double step) const {
+  const EncodedGof encoded = encoded_gof(context_, code(analysis, settings, step));
   double bits = 0.0;
   for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
   return squared_error(frames_, encoded.frame) + kErrorPerBit * step * step * bits;
@@ -147,7 +156,7 @@ BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double ste
   Promise best;
   BoneFit quick = quick_fit(influences, step);
   const double sliding = quick.expected_sliding_cost();
-  for (const std::uint32_t count : counts(preset_)) {
+  for (const std::uint32_t count : kFewBones) {
     if (count * kMinVerticesOfBone > frames_.num_vertices || !quick.grow(count)) break;
     const double part = quick.expected_cost() / sliding;
     if (part < best.part) best = {count, part};
@@ -156,39 +165,83 @@ BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double ste
   return best;
 }
 
-// Keeps a rig if it costs less than the one before, with its analysis.
-double BoneGofSearch::consider(Rig rig, double step, double& least) {
-  BoneAnalysis analysis = analyse(rig, step);
-  const double now = cost(analysis, step);
-  if (now < least) {
-    least = now;
-    choice_->rig = std::move(rig);
-    cached_ = Cached{step, std::move(analysis)};
+// Takes a rig if it costs less than the one before, with its analysis.
+double BoneGofSearch::consider(Rig rig) {
+  BoneChoice other{std::move(rig), usual_, choice_->step, choice_->times};
+  BoneAnalysis analysis = analyse(other, other.step);
+  const double now = cost(analysis, other.settings, other.step);
+  if (now < least_) {
+    least_ = now;
+    cached_ = Cached{other.step, std::move(analysis)};
+    choice_ = std::move(other);
   }
   return now;
 }
 
+// The same of tools.
+void BoneGofSearch::consider(const BoneSettings& settings) {
+  BoneChoice other{choice_->rig, settings, choice_->step, choice_->times};
+  const bool same_analysis = settings.prediction == choice_->settings.prediction &&
+                             settings.layer_steps == choice_->settings.layer_steps;
+  BoneAnalysis analysis =
+      same_analysis ? std::move(cached_->analysis) : analyse(other, other.step);
+  const double now = cost(analysis, settings, other.step);
+  if (now < least_) {
+    least_ = now;
+    choice_ = std::move(other);
+  } else if (!same_analysis) {
+    return;
+  }
+  cached_ = Cached{choice_->step, std::move(analysis)};
+}
+
+// Geometry weights cost more than they bring where rest positions tell little, and
+// parallelograms predict regular meshes of few vertices better.
+void BoneGofSearch::choose_prediction() {
+  const auto try_other = [&](auto BoneSettings::*member, auto value) {
+    BoneSettings other = choice_->settings;
+    if (other.*member == value) return;
+    other.*member = value;
+    consider(other);
+  };
+  const bool slow = preset_ == Preset::kSlow;
+  const bool small = frames_.num_vertices <= kSmallMesh;
+  if (choice_->settings.prediction == Prediction::kLayers) {
+    if (tools_.geometry_weights) try_other(&BoneSettings::damping_log2, 0);
+    if (tools_.layer_steps && (slow || small)) try_other(&BoneSettings::layer_steps, false);
+  }
+  if (!tools_.prediction && (slow || small)) {
+    try_other(&BoneSettings::prediction, Prediction::kParallelogram);
+    try_other(&BoneSettings::prediction, Prediction::kParallelograms);
+  }
+}
+
 void BoneGofSearch::choose(double step) {
+  const int times = choice_ ? choice_->times : 0;
+  choice_ = BoneChoice{{}, usual_, step, times + 1};
   cached_.reset();
-  if (preset_ == Preset::kFast && bones_ == 0) {
+  if (preset_ == Preset::kFast && tools_.bones == 0) {
     choice_->rig = quick_choice(step);
     return;
   }
-  double least = std::numeric_limits<double>::infinity();
+  least_ = std::numeric_limits<double>::infinity();
+  choose_bones();
+  choose_prediction();
+}
+
+void BoneGofSearch::choose_bones() {
+  const double step = choice_->step;
   const std::uint32_t most = std::min(kSearchInfluences, max_influences_);
-  const auto final_influences = [&](std::uint32_t influences) {
-    return influences == 1 ? 1 : max_influences_;
-  };
-  if (bones_ > 0) {
+  if (tools_.bones > 0) {
     for (std::uint32_t influences = 1; influences <= most; ++influences) {
       BoneFit full = fit(influences, step);
-      full.grow(bones_);
-      consider(full.rig(final_influences(influences)), step, least);
+      full.grow(tools_.bones);
+      consider(full.rig(influences == 1 ? 1 : max_influences_));
     }
     return;
   }
-  consider(sliding_rig(frames_), step, least);
-  consider(quick_fit(1, step).rig(1), step, least);
+  consider(sliding_rig(frames_));
+  consider(quick_fit(1, step).rig(1));
   // What does not promise much with two influences does so less with one.
   std::array<Promise, kSearchInfluences> promises;
   double promised = kPromising;
@@ -197,42 +250,47 @@ void BoneGofSearch::choose(double step) {
     if (promises[influences - 1].part > promised) break;
     promised = std::min(promised, promises[influences - 1].part * kNearLeast);
   }
-  const bool slow = preset_ == Preset::kSlow;
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
     const Promise& promise = promises[influences - 1];
-    if (!slow && promise.part > promised) continue;
-    BoneFit full = fit(influences, step);
-    double expected = std::numeric_limits<double>::infinity();
-    double before = expected;
-    for (const std::uint32_t count : counts(preset_)) {
-      if (!slow && count > promise.count) break;
-      if (count * kMinVerticesOfBone > frames_.num_vertices || !full.grow(count)) break;
-      const double now = full.expected_cost();
-      expected = std::min(expected, now);
-      if (now > kNearLeast * expected) continue;
-      const double real = consider(full.rig(final_influences(influences)), step, least);
-      if (!slow && real > before) break;
-      before = real;
-    }
+    if (promise.part <= promised) try_bones(influences, kFewBones, promise.count);
+    if (preset_ == Preset::kSlow) try_bones(influences, kManyBones, kManyBones.back());
   }
 }
 
-EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
-  if (!choice_ || choice_->is_far(analysis_step)) {
-    const int times = choice_ ? choice_->times : 0;
-    choice_ = RigChoice{{}, analysis_step, times + 1};
-    choose(analysis_step);
+// Growing numbers of bones, until the cost rises beyond the number that is likely the best.
+void BoneGofSearch::try_bones(std::uint32_t influences, std::span<const std::uint32_t> counts,
+                              std::uint32_t likely) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  BoneFit full = fit(influences, choice_->step);
+  double expected = kNone;
+  double before = kNone;
+  for (const std::uint32_t count : counts) {
+    if (count * kMinVerticesOfBone > frames_.num_vertices || !full.grow(count)) break;
+    const double now = full.expected_cost();
+    expected = std::min(expected, now);
+    if (now > kWorthACost * expected) continue;
+    const double real = consider(full.rig(influences == 1 ? 1 : max_influences_));
+    if (real > before && count >= likely) break;
+    before = real;
   }
-  const auto code_at = [&](double wanted) {
+}
+
+bool BoneGofSearch::needs_frames(double step, double analysis_step) const {
+  return !choice_ || choice_->is_far(analysis_step) || !cached_ ||
+         cached_->step != analysis_step || num_trajectories(cached_->analysis, step) == 0;
+}
+
+EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
+  if (!choice_ || choice_->is_far(analysis_step)) choose(analysis_step);
+  const auto analyse_for = [&](double wanted) {
     if (!cached_ || cached_->step != wanted) {
-      cached_ = Cached{wanted, analyse(choice_->rig, wanted)};
+      cached_ = Cached{wanted, analyse(*choice_, wanted)};
     }
-    return code_bone_gof(context_.mesh, cached_->analysis, settings_, step);
   };
-  BoneGof gof = code_at(analysis_step);
+  analyse_for(analysis_step);
   // Without trajectories, nothing but the analysis depends on the step.
-  if (gof.trajectories.empty()) gof = code_at(step);
-  return encoded_gof(context_, gof);
+  if (num_trajectories(cached_->analysis, step) == 0) analyse_for(step);
+  return encoded_gof(context_, code(cached_->analysis, choice_->settings, step));
 }
 
 }  // namespace rlpc

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "common/coded_mesh.h"
 #include "common/mesh.h"
@@ -17,16 +18,17 @@
 namespace rlpc {
 
 struct BoneContext {
-  const CodedMesh& mesh;
+  std::vector<CodedMesh> meshes;        // by Prediction
   std::span<const Triangle> triangles;  // decoded order
   int position_bits;
 };
 
-// The bones of a GOF, and the step that they were chosen for.
-struct RigChoice {
+// Bones and tools of a GOF, and the step that they were chosen for.
+struct BoneChoice {
   Rig rig;
-  double step;
-  int times = 1;  // that bones have been chosen
+  BoneSettings settings;
+  double step = 0.0;
+  int times = 0;  // that there was a choice
 
   // Whether others should be chosen for a step.
   bool is_far(double other) const {
@@ -41,8 +43,9 @@ class BoneGofSearch : public GofCoder {
   // All but the number are kept by reference. choice: that of an earlier search of the same
   // GOF, or none; the first encode() makes it.
   BoneGofSearch(const BoneContext& context, const GofFrames& frames, std::uint32_t first_frame,
-                const EncoderSettings& settings, std::optional<RigChoice>& choice);
+                const EncoderSettings& settings, std::optional<BoneChoice>& choice);
 
+  bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
 
  private:
@@ -51,8 +54,9 @@ class BoneGofSearch : public GofCoder {
     BoneAnalysis analysis;
   };
 
-  BoneAnalysis analyse(const Rig& rig, double step) const;
-  double cost(const BoneAnalysis& analysis, double step) const;
+  BoneAnalysis analyse(const BoneChoice& choice, double step) const;
+  BoneGof code(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
+  double cost(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
   struct Promise {
     std::uint32_t count = 0;  // bones
     double part = 2.0;        // expected cost, of that without bones
@@ -62,18 +66,24 @@ class BoneGofSearch : public GofCoder {
   BoneFit quick_fit(std::size_t influences, double step) const;
   Promise promise(std::size_t influences, double step) const;
   Rig quick_choice(double step) const;
-  double consider(Rig rig, double step, double& least);
+  double consider(Rig rig);
+  void consider(const BoneSettings& settings);
+  void choose_bones();
+  void try_bones(std::uint32_t influences, std::span<const std::uint32_t> counts,
+                 std::uint32_t likely);
+  void choose_prediction();
   void choose(double step);
 
   const BoneContext& context_;
   const GofFrames& frames_;
   std::uint32_t first_frame_;
-  BoneSettings settings_;
+  MainTools tools_;
+  BoneSettings usual_;
   Preset preset_;
-  std::uint32_t bones_;  // 0: chosen
   std::uint32_t max_influences_;
-  std::optional<RigChoice>& choice_;
+  std::optional<BoneChoice>& choice_;
   std::optional<Cached> cached_;
+  double least_ = 0.0;  // cost of the choice so far
 };
 
 }  // namespace rlpc

@@ -25,8 +25,11 @@ struct Animation {
   explicit Animation(const Move& move, std::uint32_t num_frames = 20)
       : triangles(tube()),
         topology(make_topology(kVertices, triangles)),
-        layers(make_layers(kVertices, triangles)),
-        mesh(Prediction::kLayers, topology, layers) {
+        layers(make_layers(kVertices, triangles)) {
+    for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
+                                        Prediction::kParallelograms, Prediction::kLayers}) {
+      meshes.emplace_back(prediction, topology, layers);
+    }
     frames.num_vertices = kVertices;
     frames.num_frames = num_frames;
     for (std::uint32_t f = 0; f < num_frames; ++f) {
@@ -57,7 +60,7 @@ struct Animation {
   std::vector<Triangle> triangles;
   Topology topology;
   VertexLayers layers;
-  CodedMesh mesh;
+  std::vector<CodedMesh> meshes;
   GofFrames frames;
 };
 
@@ -86,8 +89,8 @@ struct Outcome {
 };
 
 Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
-  const BoneContext context{a.mesh, a.triangles, kPositionBits};
-  std::optional<RigChoice> choice;
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
   BoneGofSearch search(context, a.frames, 0, settings, choice);
   Outcome outcome;
   outcome.gof = search.encode(step, step);
@@ -161,14 +164,14 @@ TEST(BoneGofSearch, IsTheSameEachTime) {
 TEST(BoneGofSearch, DoesNotDependOnTheStepsTriedBefore) {
   const Animation a(bending);
   const EncoderSettings settings = fast();
-  const BoneContext context{a.mesh, a.triangles, kPositionBits};
-  std::optional<RigChoice> choice;
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
   BoneGofSearch search(context, a.frames, 0, settings, choice);
   search.encode(20.0, 20.0);
   ASSERT_TRUE(choice);
   for (const auto& [step, analysis_step] :
        {std::pair{50.0, 20.0}, std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
-    std::optional<RigChoice> same = choice;
+    std::optional<BoneChoice> same = choice;
     BoneGofSearch fresh(context, a.frames, 0, settings, same);
     const auto expected = fresh.encode(step, analysis_step).units;
     const auto units = search.encode(step, analysis_step).units;
@@ -187,6 +190,51 @@ TEST(BoneGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
   const Outcome outcome = encode(a, 4.0, settings);
   EXPECT_LE(outcome.gof.clusters, 3U);
   EXPECT_EQ(outcome.gof.components, 2U);
+}
+
+// As far as bones, tools and their prediction go, nothing that can be asked for is better.
+TEST(BoneGofSearch, ChoosesThePredictionThatCostsLeast) {
+  const double step = 20.0;
+  const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
+    const Outcome o = encode(a, step, settings);
+    return o.rms_error * o.rms_error * static_cast<double>(a.frames.xyz.size()) +
+           kErrorPerBit * step * step * 8.0 * static_cast<double>(o.bytes);
+  };
+  bool differs = false;
+  for (const Move& move : {Move(bending), Move(rigid)}) {
+    const Animation a(move);
+    const double chosen = cost(a, {});
+    for (const Prediction prediction :
+         {Prediction::kParallelogram, Prediction::kParallelograms, Prediction::kLayers}) {
+      EncoderSettings settings;
+      settings.main.prediction = prediction;
+      const double asked = cost(a, settings);
+      EXPECT_LE(chosen, asked * (1.0 + 1e-9)) << static_cast<int>(prediction);
+      differs = differs || asked > 1.01 * chosen;
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
+// Frames may go where they are not needed.
+TEST(BoneGofSearch, SaysWhenItNeedsTheFrames) {
+  Animation a(bending);
+  const EncoderSettings settings = fast();
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  EXPECT_TRUE(search.needs_frames(20.0, 20.0));
+  search.encode(20.0, 20.0);
+  EXPECT_FALSE(search.needs_frames(22.0, 20.0));
+  const auto expected = search.encode(22.0, 20.0).units;
+  EXPECT_TRUE(search.needs_frames(26.0, 26.0));
+  EXPECT_TRUE(search.needs_frames(1e6, 20.0));  // no trajectories: the analysis is made anew
+  a.frames.xyz = {};
+  const auto units = search.encode(22.0, 20.0).units;
+  ASSERT_EQ(units.size(), expected.size());
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    EXPECT_EQ(units[i].payload, expected[i].payload) << i;
+  }
 }
 
 TEST(BoneGofSearch, CountsItsFactors) {

@@ -24,14 +24,17 @@ struct EncodedGof {
   std::vector<Unit> units;  // the GOF unit, then its slices
   // Decoded positions of frame f of the GOF, as a decoder has them; [num_vertices][3].
   std::function<void(std::uint32_t f, std::span<std::int32_t> positions)> frame;
-  std::uint64_t num_factors = 0;  // NumFactors of the specification
-  std::uint32_t clusters = 0;     // or bones
-  std::uint32_t components = 0;   // or trajectories
+  std::uint64_t num_factors = 0;      // NumFactors of the specification
+  std::uint32_t clusters = 0;         // or bones
+  std::uint32_t components = 0;       // or trajectories
+  std::uint32_t most_components = 0;  // of a cluster; all trajectories
 };
 
 class GofCoder {
  public:
   virtual ~GofCoder() = default;
+  // Whether encode() looks at the frames; else they may be gone.
+  virtual bool needs_frames(double step, double analysis_step) const = 0;
   // step: of the quantisers, in grid steps. analysis_step: that the analysis is made for, near
   // it; the last analysis is kept, and serves again for its step.
   virtual EncodedGof encode(double step, double analysis_step) = 0;

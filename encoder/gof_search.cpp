@@ -162,7 +162,9 @@ EncodedGof GofSearch::encode(double step, double analysis_step) {
   encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
   encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
   for (const Cluster& cluster : gof.clusters) {
-    encoded.components += static_cast<std::uint32_t>(cluster.components.size());
+    const auto components = static_cast<std::uint32_t>(cluster.components.size());
+    encoded.components += components;
+    encoded.most_components = std::max(encoded.most_components, components);
     for (const Component& component : cluster.components) {
       encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
     }

@@ -38,6 +38,7 @@ class GofSearch : public GofCoder {
   // The GOF at the settings' own quantisers (qu, qc, qdelta) or, without them, with the
   // quantiser step that is given, in grid steps.
   // analysis_step: the step that the analysis is made for, near it.
+  bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   EncodedGof encode(double step, double analysis_step) override;
 
  private:

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,14 +52,14 @@ struct BaselineTools {
 
 // Parameters that only the Main profile has; each tool can be left out, for comparison.
 struct MainTools {
-  std::uint32_t bones = 0;  // of a GOF; 0: chosen
-  Prediction prediction = Prediction::kLayers;
-  std::uint32_t influences = 0;  // most bones of a vertex, 1 to 4; 0: chosen
-  bool geometry_weights = true;  // in the prediction by layers
-  bool outer_ring = true;        // likewise
-  bool layer_steps = true;       // finer steps in coarser layers
-  bool temporal_weights = true;  // transmitted ones, beside the four fixed predictors
-  bool cobra_steps = false;      // of basis vectors: those of Vasa and Skala 2009, (18), (19)
+  std::uint32_t bones = 0;               // of a GOF; 0: chosen
+  std::optional<Prediction> prediction;  // of spatial factors; none: chosen
+  std::uint32_t influences = 0;          // most bones of a vertex, 1 to 4; 0: chosen
+  bool geometry_weights = true;          // in the prediction by layers
+  bool outer_ring = true;                // likewise
+  bool layer_steps = true;               // finer steps in coarser layers
+  bool temporal_weights = true;          // transmitted ones, beside the four fixed predictors
+  bool cobra_steps = false;  // of basis vectors: those of Vasa and Skala 2009, (18), (19)
   std::uint32_t component_groups = 0;  // slices: 0 for the default
   std::uint32_t layer_groups = 0;
 };

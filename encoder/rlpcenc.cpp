@@ -158,13 +158,14 @@ void add_main_options(CLI::App& app, Options& o) {
   app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
       ->check(CLI::Range(1, rlpc::kMaxExtraBones))
       ->group(tools);
-  add_choice<Prediction>(
-      app, "--prediction", t.prediction, "layers",
-      {{"none", Prediction::kNone},
+  add_choice<std::optional<Prediction>>(
+      app, "--prediction", t.prediction, "auto",
+      {{"auto", std::nullopt},
+       {"none", Prediction::kNone},
        {"parallelogram", Prediction::kParallelogram},
        {"parallelograms", Prediction::kParallelograms},
        {"layers", Prediction::kLayers}},
-      "Of spatial factors: none, parallelogram, parallelograms (all), layers")
+      "Of spatial factors: auto, none, parallelogram, parallelograms (all), layers")
       ->group(tools);
   add_choice<bool>(app, "--basis-steps", t.cobra_steps, "equal",
                    {{"equal", false}, {"cobra", true}},

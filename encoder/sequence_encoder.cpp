@@ -69,12 +69,12 @@ class SequenceEncoder {
     GofFrames frames;
     std::unique_ptr<GofCoder> coder;
     std::optional<GofChoice> choice;  // of the Baseline profile
-    std::optional<RigChoice> rig;     // of the Main profile
+    std::optional<BoneChoice> bones;  // of the Main profile
   };
 
   std::optional<InputError> prepare();
   std::optional<InputError> set_level();
-  std::optional<InputError> check_level(const GofSpan& span, const EncodedGof& encoded) const;
+  std::optional<InputError> raise_level(const GofSpan& span, const EncodedGof& encoded);
   void make_coder(std::size_t g);
   std::optional<InputError> load(std::size_t g);
   InputResult<SequenceTrial> encode_at(double step, double analysis_step);
@@ -95,12 +95,11 @@ class SequenceEncoder {
   Topology topology_;
   std::optional<EncodingContext> context_;
   VertexLayers layers_;  // of the Main profile
-  std::optional<CodedMesh> mesh_;
   std::optional<BoneContext> bone_context_;
   double rms_spread_ = 0.0;  // grid steps, per coordinate
   std::vector<GofSpan> spans_;
   std::vector<GofState> gofs_;
-  bool keep_gofs_ = false;
+  bool keep_coders_ = false;
   std::uint32_t trials_ = 0;
   std::vector<std::vector<std::uint8_t>> lead_;  // units before the first GOF
 };
@@ -132,15 +131,18 @@ std::optional<InputError> SequenceEncoder::prepare() {
   spans_ = cut_gofs(header_.num_frames, longest);
   if (auto error = set_level()) return error;
   gofs_.resize(spans_.size());
-  keep_gofs_ = std::uint64_t{header_.num_vertices} * header_.num_frames * 24 <= kKeepBytes;
+  keep_coders_ = std::uint64_t{header_.num_vertices} * header_.num_frames * 24 <= kKeepBytes;
 
   connectivity_ = write_connectivity(header_.num_vertices, source_.triangles());
   topology_ = make_topology(header_.num_vertices, connectivity_.triangles);
   context_.emplace(EncodingContext{header_, topology_, connectivity_.triangles});
   if (header_.profile_idc == kProfileMain) {
     layers_ = make_layers(header_.num_vertices, connectivity_.triangles);
-    mesh_.emplace(settings_.main.prediction, topology_, layers_);
-    bone_context_.emplace(BoneContext{*mesh_, connectivity_.triangles, header_.position_bits});
+    bone_context_.emplace(BoneContext{{}, connectivity_.triangles, header_.position_bits});
+    for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
+                                        Prediction::kParallelograms, Prediction::kLayers}) {
+      bone_context_->meshes.emplace_back(prediction, topology_, layers_);
+    }
   }
   lead_.push_back(write_stream_header(header_.profile_idc));
   lead_.push_back(write_unit(UnitType::kSequenceHeader, write_sequence_header(header_)));
@@ -183,7 +185,6 @@ std::optional<InputError> SequenceEncoder::set_level() {
 // The frames of a GOF, in decoded vertex order and grid units.
 std::optional<InputError> SequenceEncoder::load(std::size_t g) {
   GofState& state = gofs_[g];
-  if (state.coder) return std::nullopt;
   const std::uint32_t n = header_.num_vertices;
   state.frames = {n, spans_[g].count,
                   std::vector<double>(std::size_t{n} * spans_[g].count * 3)};
@@ -199,7 +200,6 @@ std::optional<InputError> SequenceEncoder::load(std::size_t g) {
       }
     }
   }
-  make_coder(g);
   return std::nullopt;
 }
 
@@ -208,27 +208,33 @@ void SequenceEncoder::make_coder(std::size_t g) {
   GofState& state = gofs_[g];
   if (header_.profile_idc == kProfileMain) {
     state.coder = std::make_unique<BoneGofSearch>(*bone_context_, state.frames, spans_[g].first,
-                                                  settings_, state.rig);
+                                                  settings_, state.bones);
   } else {
     state.coder = std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first,
                                               settings_, state.choice);
   }
 }
 
-// What a level bounds of a coded GOF, and set_level( ) could not foresee.
-std::optional<InputError> SequenceEncoder::check_level(const GofSpan& span,
-                                                       const EncodedGof& encoded) const {
+// Raises the level where a coded GOF needs more than set_level( ) could foresee.
+std::optional<InputError> SequenceEncoder::raise_level(const GofSpan& span,
+                                                       const EncodedGof& encoded) {
   std::size_t bytes = 0;  // of the largest unit
   for (const auto& unit : encoded.units) bytes = std::max(bytes, unit.payload.size());
-  if (encoded.num_factors <= header_.level().max_gof_factors &&
-      bytes <= header_.level().max_unit_bytes) {
+  for (std::uint32_t level_idc = header_.level_idc; level_idc <= kMaxLevelIdc; ++level_idc) {
+    const Level& level = kLevels[level_idc - 1];
+    if (encoded.num_factors > level.max_gof_factors || bytes > level.max_unit_bytes ||
+        encoded.clusters > level.max_clusters ||
+        encoded.most_components > level.max_components) {
+      continue;
+    }
+    header_.level_idc = level_idc;
     return std::nullopt;
   }
-  return InputError{
-      "a GOF of " + std::to_string(span.count) + " frames has " +
-      std::to_string(encoded.num_factors) + " factors and units of " + std::to_string(bytes) +
-      " bytes, more than level " + std::to_string(header_.level_idc) +
-      " allows (specification, Annex B); use a smaller --gof or fewer --components"};
+  return InputError{"a GOF of " + std::to_string(span.count) + " frames has " +
+                    std::to_string(encoded.num_factors) + " factors and units of " +
+                    std::to_string(bytes) +
+                    " bytes, more than any level allows (specification, Annex B); use a " +
+                    "smaller --gof or fewer --components"};
 }
 
 // Decodes what was written, as a decoder would, and compares with the input.
@@ -271,14 +277,16 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
                                                       double analysis_step,
                                                       SequenceTrial& trial,
                                                       MetricsAccumulator& metrics) {
-  if (auto error = load(g)) return error;
   GofState& state = gofs_[g];
-  const EncodedGof encoded = state.coder->encode(step, analysis_step);
-  if (!keep_gofs_) {
-    state.coder.reset();
-    state.frames = {};
+  const bool needed = !state.coder || state.coder->needs_frames(step, analysis_step);
+  if (needed && state.frames.xyz.empty()) {
+    if (auto error = load(g)) return error;
   }
-  if (auto error = check_level(spans_[g], encoded)) return error;
+  if (!state.coder) make_coder(g);
+  const EncodedGof encoded = state.coder->encode(step, analysis_step);
+  if (!keep_coders_) state.coder.reset();
+  if (!keep_coders_ || !state.coder->needs_frames(step, analysis_step)) state.frames = {};
+  if (auto error = raise_level(spans_[g], encoded)) return error;
   Bytes units;
   for (const auto& unit : encoded.units) {
     const Bytes bytes = write_unit(unit.type, unit.payload);
@@ -338,6 +346,7 @@ InputResult<EncodeReport> SequenceEncoder::write(const SequenceTrial& trial, dou
     report.bytes += bytes.size();
     return sink(bytes);
   };
+  lead_[1] = write_unit(UnitType::kSequenceHeader, write_sequence_header(header_));
   bool ok = true;
   for (const auto& unit : lead_) ok = ok && put(unit);
   const std::uint64_t first_gof = report.bytes;

@@ -9,8 +9,8 @@ namespace rlpc {
 namespace {
 
 constexpr int kMaxTrials = 18;
-constexpr double kTolerance = 0.02;     // of the target, below it
-constexpr double kFinestStep = 0.5;     // grid steps
+constexpr double kTolerance = 0.02;  // of the target, below it
+constexpr double kFinestStep = 0.5;  // grid steps
 constexpr double kCoarsestStep = 0x1p24;
 constexpr double kFarthest = 50.0;  // from one step to the next, as a factor
 // Slopes that are believed, relative to the usual one.
