@@ -158,14 +158,19 @@ void add_main_options(CLI::App& app, Options& o) {
   app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
       ->check(CLI::Range(1, rlpc::kMaxExtraBones))
       ->group(tools);
-  add_choice<std::optional<Prediction>>(
-      app, "--prediction", t.prediction, "auto",
-      {{"auto", std::nullopt},
-       {"none", Prediction::kNone},
-       {"parallelogram", Prediction::kParallelogram},
-       {"parallelograms", Prediction::kParallelograms},
-       {"layers", Prediction::kLayers}},
-      "Of spatial factors: auto, none, parallelogram, parallelograms (all), layers")
+  static const std::map<std::string, std::optional<Prediction>> kPredictions{
+      {"auto", std::nullopt},
+      {"none", Prediction::kNone},
+      {"parallelogram", Prediction::kParallelogram},
+      {"parallelograms", Prediction::kParallelograms},
+      {"layers", Prediction::kLayers}};
+  app.add_option_function<std::string>(
+         "--prediction",
+         [&t](const std::string& word) { t.prediction = kPredictions.at(word); },
+         "Of spatial factors: auto, none, parallelogram, parallelograms (all), layers")
+      ->check(CLI::IsMember(kPredictions).description(""))
+      ->type_name("auto|none|parallelogram|parallelograms|layers")
+      ->default_str("auto")
       ->group(tools);
   add_choice<bool>(app, "--basis-steps", t.cobra_steps, "equal",
                    {{"equal", false}, {"cobra", true}},
