@@ -40,6 +40,26 @@ class BitCost {
   }();
 
   std::uint64_t cost_ = 0;
+
+  friend class BitEstimate;
+};
+
+// The same of what is not coded after all: models stay as they are.
+class BitEstimate {
+ public:
+  void bin(const BitModel& model, bool one) {
+    const std::uint32_t p = model.probability();
+    cost_ += BitCost::kCost[(one ? p : 65536 - p) >> BitCost::kTableShift];
+  }
+  void bypass(int n, std::uint32_t /*value*/) {
+    cost_ += static_cast<std::uint64_t>(n) << BitCost::kOne;
+  }
+  double bits() const {
+    return static_cast<double>(cost_) / static_cast<double>(std::uint64_t{1} << BitCost::kOne);
+  }
+
+ private:
+  std::uint64_t cost_ = 0;
 };
 
 }  // namespace rlpc

@@ -22,12 +22,13 @@ struct BoneSettings {
   int damping_log2 = 8;
   int outer_weight = 3;
   int outer_scale = 3;
-  bool layer_steps = true;             // finer steps in coarser layers
-  bool temporal_weights = true;        // not only the orders of 8.2.2
+  bool layer_steps = true;       // finer steps in coarser layers
+  bool temporal_weights = true;  // not only the orders of 8.2.2
+  bool optimised =
+      true;  // residuals of spatial factors, by rate and distortion; else a dead zone
   bool cobra_steps = false;            // of temporal values; else of equal distortion
   std::uint32_t component_groups = 0;  // 0: as many as suit
   std::uint32_t layer_groups = 0;
-  double dead_zone = 0.08;      // 0 rounds to nearest, 0.5 truncates
   double temporal_error = 0.8;  // of a temporal value, relative to that of a spatial one
   std::size_t max_trajectories = 1024;
 };

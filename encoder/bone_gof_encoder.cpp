@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "common/bone_recon.h"
 #include "common/gof.h"
 #include "common/int_math.h"
+#include "common/slice_models.h"
+#include "encoder/bit_cost.h"
 #include "encoder/det_math.h"
 #include "encoder/matrix_products.h"
 #include "encoder/track_coding.h"
+#include "encoder/write_residual.h"
 
 namespace rlpc {
 namespace {
@@ -19,6 +23,43 @@ namespace {
 constexpr double kBytesOfSlice = 4000.0;
 // Temporal values are scaled so that their step is 2^3 units of the sums, if that can be.
 constexpr int kWantedScaleIdx = 56;
+
+// Chooses magnitudes of spatial residuals by what they cost, as if there were one slice.
+class SpatialCost {
+ public:
+  SpatialCost(const CodedMesh& mesh, std::size_t num_factors)
+      : contexts_(mesh, num_factors), models_(std::make_unique<VertexModels>()) {}
+
+  void start(std::uint32_t v) { contexts_.start(v); }
+  // One of the two next to `steps`. A bit is worth half of what it would be if no other vertex
+  // were predicted from this one.
+  std::int32_t choose(double steps) {
+    constexpr double kWorthOfBit = 0.06;  // squared steps
+    constexpr double kNearlyUp = 0.95;
+    const auto below = static_cast<std::int32_t>(steps);
+    const double part = steps - below;
+    if (part < 0.5) return below;
+    if (part > kNearlyUp) return below + 1;
+    const double more_error = part * part - (1.0 - part) * (1.0 - part);
+    return kWorthOfBit * (bits(below + 1) - bits(below)) < more_error ? below + 1 : below;
+  }
+  void code(std::int32_t residual) {
+    BitCost cost;
+    write_residual(cost, models(), contexts_.expected(), residual);
+    contexts_.update(residual);
+  }
+
+ private:
+  ResidualModels& models() { return (*models_)[contexts_.activity()]; }
+  double bits(std::int32_t magnitude) {
+    BitEstimate estimate;
+    write_residual(estimate, models(), contexts_.expected(), magnitude);
+    return estimate.bits();
+  }
+
+  VertexContexts contexts_;
+  std::unique_ptr<VertexModels> models_;
+};
 
 // Trajectories and their spatial factors.
 class TrajectoryCoder {
@@ -154,16 +195,22 @@ class TrajectoryCoder {
     std::vector<std::int64_t> predicted(count_);
     largest_.assign(count_, 0);
     const double per_step = kMaxLayerStep / step_;
+    constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
+    constexpr double kRoundUp = 0.42;
+    SpatialCost contexts(mesh_, count_);
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
+      if (settings_.optimised) contexts.start(v);
       for (std::size_t l = 0; l < count_; ++l) {
         const double difference =
             spatial_[v * count_ + l] * per_step - static_cast<double>(predicted[l]);
-        const double steps = std::abs(difference) / layer_step + 0.5 - settings_.dead_zone;
-        const auto magnitude =
-            static_cast<std::int32_t>(std::min(steps, static_cast<double>(kMaxResidual)));
+        const double steps = std::min(std::abs(difference) / layer_step, kMost);
+        const std::int32_t magnitude = settings_.optimised
+                                           ? contexts.choose(steps)
+                                           : static_cast<std::int32_t>(steps + kRoundUp);
         const std::int32_t residual = difference < 0.0 ? -magnitude : magnitude;
+        if (settings_.optimised) contexts.code(residual);
         residual_[v * count_ + l] = residual;
         const std::int32_t value = clip_signed(
             kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));

@@ -103,6 +103,7 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
   if (!tools_.outer_ring) usual_.outer_weight = 0;
   if (!tools_.outer_ring) usual_.outer_scale = 0;
   usual_.layer_steps = tools_.layer_steps;
+  usual_.optimised = preset_ != Preset::kFast;
   usual_.temporal_weights = tools_.temporal_weights;
   usual_.cobra_steps = tools_.cobra_steps;
   usual_.component_groups = tools_.component_groups;
