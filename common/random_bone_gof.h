@@ -1,4 +1,4 @@
-// Random legal GOFs of the Main profile, for tests. Fields take the ends of their ranges often.
+// Random legal GOFs of bones, for tests. Fields take the ends of their ranges often.
 #pragma once
 
 #include <algorithm>

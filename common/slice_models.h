@@ -1,4 +1,4 @@
-// Models and contexts of the Main profile (clause 9.8). The parser and the writer drive them in
+// Models and contexts of a GOF of bones (clause 9.8). The parser and the writer drive them in
 // the same way.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Writer and parser of GOFs of the Main profile against each other (clauses 6.11 and 6.12).
+// Writer and parser of GOFs of bones against each other (clauses 6.11 and 6.12).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,9 @@ class Reading {
 
   std::optional<Error> gof(const Payload& payload) {
     BitReader r(payload);
-    return error_of(parser_.gof(r, from_.gof.first_frame));
+    const GofStart start = parse_gof_start(r, from_.header, from_.gof.first_frame);
+    if (!r.error() && !start.bones_flag) return Error{Errc::kInvalid, "", "bones_flag", 0};
+    return error_of(parser_.bones(r, start));
   }
   std::optional<Error> slice(const Payload& payload) {
     BitReader r(payload);

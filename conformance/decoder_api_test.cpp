@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/small_animation.h"
+#include "conformance/sliced_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -153,11 +153,27 @@ TEST_P(Seeking, ASeekGetsPastDamage) {
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  return std::array{"Rich", "Indexed", "Plain"}[stream.index];
+  return std::array{"Rich", "Indexed", "Plain", "Mixed"}[stream.index];
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Seeking,
-                         testing::Values(rich_stream, indexed_stream, plain_stream),
+                         testing::Values(rich_stream, indexed_stream, plain_stream,
+                                         mixed_stream),
                          stream_name);
+
+// Slices of GOFs that are skipped are skipped, too; but a GOF of clusters has none.
+TEST(Decoder, DoesNotSeekPastASliceBehindAGofOfClusters) {
+  StreamBytes stream = mixed_stream();
+  const std::size_t place = unit_of_type(stream, UnitType::kGof).end();
+  const Bytes slice = write_unit(UnitType::kSlice, Bytes{0xC0});
+  stream.insert(stream.begin() + static_cast<std::ptrdiff_t>(place), slice.begin(),
+                slice.end());
+  auto decoder = open(stream);
+  ASSERT_TRUE(decoder);
+  const auto found = decoder->seek(5);
+  ASSERT_FALSE(found);
+  EXPECT_STREQ(found.error().rule, "R-UNT-05");
+  EXPECT_EQ(found.error().bit_pos, 8 * place);
+}
 
 TEST(Decoder, GivesWhatTheEncoderWasGiven) {
   MemoryFrames source = bending_tube(6, 6);

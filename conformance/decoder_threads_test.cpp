@@ -2,13 +2,14 @@
 // the same error after them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <random>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "conformance/small_animation.h"
+#include "conformance/sliced_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -58,7 +59,8 @@ Outcome decode(const StreamBytes& stream, const DecoderOptions& options) {
 }
 
 // GOFs of 7 frames, the last one of 3, without the check by the validator.
-StreamBytes stream_of(Profile profile, HashMode hash_mode) {
+template <Profile profile, HashMode hash_mode>
+StreamBytes encoded_stream() {
   MemoryFrames source = bending_tube(20, 45);
   EncoderSettings settings;
   settings.profile = profile;
@@ -76,13 +78,13 @@ StreamBytes stream_of(Profile profile, HashMode hash_mode) {
   return bytes;
 }
 
-class Threads : public testing::TestWithParam<std::tuple<Profile, HashMode>> {
+class Threads : public testing::TestWithParam<StreamBytes (*)()> {
  protected:
   void SetUp() override {
-    stream_ = stream_of(std::get<0>(GetParam()), std::get<1>(GetParam()));
+    stream_ = GetParam()();
     whole_ = decode(stream_, with_threads(1));
     ASSERT_TRUE(whole_.complete);
-    ASSERT_EQ(whole_.frames.size(), 45U);
+    ASSERT_GE(whole_.frames.size(), 14U);
   }
 
   // With 2, 3 and 9 threads as with one.
@@ -140,6 +142,17 @@ TEST_P(Threads, GiveTheSameErrorForUnitsLeftOutOrTwice) {
   }
 }
 
+TEST_P(Threads, GiveTheSameErrorForASliceBehindAnyUnit) {
+  const Bytes slice = write_unit(UnitType::kSlice, Bytes{0xC0, 0, 0, 0, 0});
+  for (const UnitPlace& unit : units_of(stream_)) {
+    SCOPED_TRACE(unit.offset);
+    StreamBytes more = stream_;
+    more.insert(more.begin() + static_cast<std::ptrdiff_t>(unit.end()), slice.begin(),
+                slice.end());
+    EXPECT_FALSE(expect_the_same(more, {}).complete);
+  }
+}
+
 TEST_P(Threads, GiveTheSameErrorForTooLittleMemory) {
   int too_little = 0;
   for (std::uint64_t bytes = 10'000; bytes < 4'000'000; bytes += bytes / 4) {
@@ -177,13 +190,25 @@ TEST_P(Threads, CountTheSameGofs) {
     ASSERT_TRUE(decoder);
     const auto gofs = decoder->parse_rest();
     ASSERT_TRUE(gofs);
-    EXPECT_EQ(*gofs, 7U);
+    const std::vector<UnitPlace> units = units_of(stream_);
+    EXPECT_EQ(*gofs, std::count_if(units.begin(), units.end(), [](const UnitPlace& unit) {
+      return unit.type == UnitType::kGof;
+    }));
   }
 }
 
+std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
+  constexpr std::array<const char*, 5> kNames{"Baseline", "BaselineFrameHashes", "Main",
+                                              "MainFrameHashes", "Mixed"};
+  return kNames.at(stream.index);
+}
 INSTANTIATE_TEST_SUITE_P(Streams, Threads,
-                         testing::Combine(testing::Values(Profile::kBaseline, Profile::kMain),
-                                          testing::Values(HashMode::kGof, HashMode::kFrame)));
+                         testing::Values(encoded_stream<Profile::kBaseline, HashMode::kGof>,
+                                         encoded_stream<Profile::kBaseline, HashMode::kFrame>,
+                                         encoded_stream<Profile::kMain, HashMode::kGof>,
+                                         encoded_stream<Profile::kMain, HashMode::kFrame>,
+                                         mixed_stream),
+                         stream_name);
 
 }  // namespace
 }  // namespace rlpc

@@ -1,17 +1,20 @@
-// A small stream of the Main profile with all of its syntax, for tests that decode thousands of
-// times. The encoder would not write it: its residuals are noise.
+// Small streams of the Main profile with all of its syntax, for tests that decode thousands of
+// times. The encoder would not write them: their residuals are noise.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "common/bone_recon.h"
+#include "common/gof_recon.h"
 #include "common/topology.h"
 #include "conformance/small_animation.h"
 #include "encoder/write_bone_gof.h"
 #include "encoder/write_connectivity.h"
+#include "encoder/write_gof.h"
 #include "encoder/write_stream.h"
 
 namespace rlpc {
@@ -25,7 +28,6 @@ class SlicedAnimation {
     header_.profile_idc = kProfileMain;
     header_.num_vertices = kVertices;
     header_.num_triangles = static_cast<std::uint32_t>(code_.triangles.size());
-    header_.num_frames = 2 * kGofFrames;
     header_.position_bits = 12;
   }
 
@@ -34,28 +36,43 @@ class SlicedAnimation {
   StreamBytes stream() {
     BoneGof cut = gof(kGofFrames, Prediction::kParallelogram);
     cut.slice_layers = {1, 1, 0};
-    return stream_of(gof(0, Prediction::kLayers), cut);
+    return stream_of({gof(0, Prediction::kLayers), cut});
   }
   // With a bone that moves no vertex, and a trajectory that is zero.
   StreamBytes idle_stream() {
     BoneGof idle = gof(kGofFrames, Prediction::kNone);
     idle.bones.push_back(bone(3));
     for (Vec3i& residual : idle.trajectories.back().residual) residual = {};
-    return stream_of(gof(0, Prediction::kParallelograms), idle);
+    return stream_of({gof(0, Prediction::kParallelograms), idle});
+  }
+  // GOFs of clusters, of bones, of clusters, and so on.
+  StreamBytes mixed_stream() {
+    std::vector<AnyGof> gofs;
+    for (std::uint32_t g = 0; g < 7; ++g) {
+      if (g % 2 == 0) {
+        gofs.emplace_back(clusters(g * kGofFrames));
+      } else {
+        gofs.emplace_back(gof(g * kGofFrames, Prediction::kLayers));
+      }
+    }
+    return stream_of(gofs);
   }
 
  private:
+  using AnyGof = std::variant<Gof, BoneGof>;
   static constexpr std::uint32_t kRings = 4;
   static constexpr std::uint32_t kVertices = 5 * kRings;
   static constexpr std::uint32_t kGofFrames = 2;
   static constexpr std::uint32_t kGroups = 2;
 
-  StreamBytes stream_of(const BoneGof& first, const BoneGof& second) const {
+  StreamBytes stream_of(const std::vector<AnyGof>& gofs) {
+    header_.num_frames = static_cast<std::uint32_t>(gofs.size()) * kGofFrames;
     StreamBytes bytes = write_stream_header(kProfileMain);
     append(bytes, UnitType::kSequenceHeader, write_sequence_header(header_));
     append(bytes, UnitType::kConnectivity, code_.payload);
-    append_gof(bytes, first);
-    append_gof(bytes, second);
+    for (const AnyGof& any : gofs) {
+      std::visit([&](const auto& gof) { append_gof(bytes, gof); }, any);
+    }
     append(bytes, UnitType::kEndOfSequence, write_end_of_sequence(0));
     return bytes;
   }
@@ -75,6 +92,37 @@ class SlicedAnimation {
     return residuals;
   }
 
+  // A cluster with a local frame, and one without.
+  Gof clusters(std::uint32_t first_frame) {
+    Gof gof;
+    gof.first_frame = first_frame;
+    gof.num_frames = kGofFrames;
+    gof.fraction_bits = 4;
+    gof.seed_step = 30;
+    gof.clusters.resize(2);
+    gof.clusters[0].lcf_flag = true;
+    gof.clusters[0].seed_vertex = {0, 7, 13};
+    gof.cluster_of_vertex.assign(kVertices, 1);
+    std::fill_n(gof.cluster_of_vertex.begin(), kVertices / 2, std::uint16_t{0});
+    for (const std::uint32_t v : gof.clusters[0].seed_vertex) {
+      gof.cluster_of_vertex[v] = kSeedCluster;
+      gof.seed_tracks.push_back({v, 0, track()});
+    }
+    const ClusterMembers members = cluster_members(gof);
+    for (std::size_t i = 0; i < 2; ++i) {
+      Component component;
+      component.scale_idx = 60;
+      component.spatial_bits = 9;
+      component.temporal_bits = 12;
+      component.temporal_predictor = 1;
+      component.spatial_predictor = SpatialPredictor::kParallelogram;
+      component.temporal_residual.assign(kGofFrames, number(100, 300));
+      component.spatial_residual.resize(3 * members.vertices[i].size());
+      for (std::int32_t& x : component.spatial_residual) x = number(-30, 30);
+      gof.clusters[i].components.push_back(component);
+    }
+    return gof;
+  }
   BoneGof gof(std::uint32_t first_frame, Prediction prediction) {
     BoneGof gof;
     gof.first_frame = first_frame;
@@ -149,6 +197,11 @@ class SlicedAnimation {
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
   }
+  void append_gof(StreamBytes& bytes, const Gof& gof) const {
+    append(bytes, UnitType::kGof, write_gof(gof, header_, topology_));
+    const GofRecon recon(header_, topology_, gof);
+    append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
+  }
   // Of the GOF as a decoder has it: without trajectories of groups whose slices are absent.
   std::vector<std::uint32_t> hashes(const CodedMesh& mesh, BoneGof gof) const {
     while (gof.slice_layers[gof.group_end.size() - 1] == 0) {
@@ -156,7 +209,10 @@ class SlicedAnimation {
       gof.vertex_residual.pop_back();
     }
     gof.trajectories.resize(gof.group_end.back() - kRestFactors);
-    const BoneRecon recon(mesh, gof, header_.position_bits);
+    return hashes(BoneRecon(mesh, gof, header_.position_bits));
+  }
+  template <class Recon>
+  static std::vector<std::uint32_t> hashes(const Recon& recon) {
     std::vector<std::uint32_t> crcs;
     std::vector<std::int32_t> positions(std::size_t{3} * kVertices);
     for (std::uint32_t f = 0; f < kGofFrames; ++f) {
@@ -174,5 +230,6 @@ class SlicedAnimation {
 };
 
 inline StreamBytes sliced_stream() { return SlicedAnimation().stream(); }
+inline StreamBytes mixed_stream() { return SlicedAnimation().mixed_stream(); }
 
 }  // namespace rlpc

@@ -102,7 +102,7 @@ Places places_of(const StreamBytes& stream) {
   const auto cutter = StreamCutter::open(memory_source(stream), {});
   EXPECT_TRUE(cutter);
   Places places;
-  for (const BoneGofEntry& gof : cutter->gofs()) {
+  for (const ListedGof& gof : cutter->gofs()) {
     places.emplace_back();
     for (const SliceEntry& s : gof.slices) {
       places.back().emplace_back(s.component_group_idx, s.layer_group_idx);
@@ -134,8 +134,22 @@ TEST(StreamCutter, LeavesOutWholeGroups) {
   EXPECT_EQ(places_of(cut_stream(stream, {0, 0})), (Places{{{0, 0}}, {{0, 0}}}));
 }
 
+TEST(StreamCutter, LeavesGofsOfClustersWhole) {
+  const StreamBytes out = cut_stream(mixed_stream(), {1, 1});
+  const Places::value_type none;
+  const Places::value_type cut{{0, 0}, {1, 0}};
+  EXPECT_EQ(places_of(out), (Places{none, cut, none, cut, none, cut, none}));
+  const std::vector<Frame> before = decode_all(mixed_stream());
+  const std::vector<Frame> after = decode_all(out);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t f = 0; f < before.size(); ++f) {
+    const bool of_bones = f / 2 % 2 == 1;
+    EXPECT_EQ(before[f] != after[f], of_bones) << f;
+  }
+}
+
 TEST(StreamCutter, WritesConformingStreamsThatDecodeAsIfCut) {
-  for (const StreamBytes& stream : {sliced_stream(), ordered_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       SCOPED_TRACE(testing::Message() << cut.max_components << ", " << cut.max_layers);
       const StreamBytes out = cut_stream(stream, cut);
@@ -185,7 +199,8 @@ TEST(StreamCutter, KeepsTheKindOfHashes) {
 }
 
 TEST(StreamCutter, CopiesAStreamThatHasNoMore) {
-  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), rich_stream()}) {
+  for (const StreamBytes& stream :
+       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream()}) {
     EXPECT_EQ(cut_stream(stream, {3, 100}), stream);
   }
 }
@@ -205,7 +220,7 @@ TEST(StreamCutter, RefusesDamagedStreams) {
 }
 
 TEST(CutDecoding, SeeksToTheFramesOfDecodingInOrder) {
-  for (const StreamBytes& stream : {sliced_stream(), ordered_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       const StreamBytes out = cut_stream(stream, cut);
       const std::vector<Frame> expected = decode_all(out);

@@ -9,8 +9,8 @@ Only the bundled animations are used. Every output goes to a temporary folder.
 import math
 import shutil
 
-from tools_testing import (INPUTS, NAMES, ToolsTest, main, read_obj, read_rlpd, run, triangle_set,
-                           write_obj)
+from tools_testing import (INPUTS, NAMES, ROOT, ToolsTest, main, read_obj, read_rlpd, run,
+                           triangle_set, write_obj)
 
 
 class RoundTrip(ToolsTest):
@@ -236,13 +236,33 @@ class Figures(ToolsTest):
         for part in ("bones", "rest positions", "spatial factors"):
             self.assertGreater(info["bits"][part], 0, part)
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("Main profile", "in a GOF: ", "frames 20 to 39", "influences, rest positions",
+        for words in ("Main profile", "GOFs of bones: 3, with ", "frames 20 to 39", "influences, rest positions",
                       f" {info['gofs'][0]['slices'][0]['bytes']} "):
             self.assertIn(words, said)
         self.assertNotIn("frames 20 to 39", self.ok("rlpcinfo", stream).out.decode())
         self.encode(stream, "--kg", 5, "--profile", "baseline")
-        self.assertNotIn("gofs", self.ok("rlpcinfo", stream, "--json").json())
-        self.assertIn("Baseline profile", self.ok("rlpcinfo", stream, "--gofs").out.decode())
+        gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
+        self.assertEqual([(g["first_frame"], g["num_frames"]) for g in gofs], [(0, 60)])
+        said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
+        for words in ("Baseline profile", "GOFs of clusters: 1, with ", "frames 0 to 59: "
+                      f"{gofs[0]['num_clusters']} clusters, {gofs[0]['num_components']} comp"):
+            self.assertIn(words, said)
+
+    def test_rlpcinfo_tells_of_both_kinds_of_gofs(self):
+        stream = ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc"
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        self.assertEqual([g.get("num_clusters") for g in info["gofs"]], [3, None, 2])
+        self.assertEqual([g.get("num_components") for g in info["gofs"]], [4, None, 3])
+        self.assertEqual([g.get("num_bones") for g in info["gofs"]], [None, 2, None])
+        self.assertEqual([len(g.get("slices", [])) for g in info["gofs"]], [0, 6, 0])
+        for part in ("bones", "clusters", "seed tracks", "rest positions"):
+            self.assertGreater(info["bits"][part], 0, part)
+        self.assertEqual(sum(info["bits"].values()), 8 * stream.stat().st_size)
+        said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
+        for words in ("GOFs of clusters: 2, with 2 to 3 clusters and 3 to 4 components",
+                      "GOFs of bones: 1, with 2 bones", "frames 4 to 8: 2 bones",
+                      "frames 9 to 11: 2 clusters, 3 components"):
+            self.assertIn(words, said)
 
     def test_the_csv_has_every_frame(self):
         report = self.encode(self.path("a.rlpc"), "--kg", 0.5, "--keep-order")

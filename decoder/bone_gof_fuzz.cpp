@@ -54,7 +54,8 @@ void decode_gof(const rlpc::SequenceHeader& header, rlpc::MeshPredictions& meshe
                 std::uint32_t first_frame, std::span<const Piece> pieces) {
   rlpc::BoneGofParser parser(header, meshes, kMaxMemoryBytes);
   rlpc::BitReader gof_bits(pieces[0]);
-  if (!parser.gof(gof_bits, first_frame)) return;
+  const rlpc::GofStart start = rlpc::parse_gof_start(gof_bits, header, first_frame);
+  if (!start.bones_flag || !parser.bones(gof_bits, start)) return;
   for (const Piece& piece : pieces.subspan(1)) {
     rlpc::BitReader slice_bits(piece);
     if (!parser.slice(slice_bits, 0)) return;

@@ -70,15 +70,17 @@ class Decoder::Impl {
   Result<bool> next_gof_unit(UnitHeader& unit);
   Result<bool> check_end(const UnitHeader& unit);
   Result<bool> load_index();
-  Result<std::uint32_t> gof_frames(const UnitHeader& unit);
-  // Goes past the slices of a GOF that is not wanted.
+  // Of a GOF that is skipped: from its first bytes alone.
+  Result<GofStart> gof_start(const UnitHeader& unit);
+  // Goes past the slices of a GOF of bones that is not wanted.
   Result<bool> skip_slices();
   // Of the next GOF unit, which begins with frames_parsed_.
   void remember_gof(const UnitHeader& unit);
   Result<bool> load_gof();
   Result<bool> find_gof(const UnitHeader& unit);
+  // Parses a GOF; goes past its unit and the slice units behind it.
   Result<FrameRecon> read_gof(const UnitHeader& unit);
-  Result<FrameRecon> read_bone_gof(const UnitHeader& unit);
+  Result<FrameRecon> read_slices(BoneGofParser& parser);
   Result<bool> load_hashes();
   void recon_band(std::uint32_t first);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
@@ -254,7 +256,7 @@ Result<bool> Decoder::Impl::check_end(const UnitHeader& unit) {
 }
 
 // 6.9: GOFs that were not met yet, from the index before the end of the sequence, if there is
-// one. parse_gof finds out if it is wrong.
+// one. parse_gof_start finds out if it is wrong.
 Result<bool> Decoder::Impl::load_index() {
   index_tried_ = true;
   constexpr std::uint64_t kEndBytes = kUnitHeaderBytes + 4 + kUnitCrcBytes;
@@ -282,19 +284,18 @@ Result<bool> Decoder::Impl::load_index() {
   return true;
 }
 
-// Number of frames of a GOF that is skipped: from its first bytes alone.
-Result<std::uint32_t> Decoder::Impl::gof_frames(const UnitHeader& unit) {
-  constexpr std::uint32_t kEnough = 16;  // both elements have at most 63 bits
+Result<GofStart> Decoder::Impl::gof_start(const UnitHeader& unit) {
+  constexpr std::uint32_t kEnough = 16;  // two codes of at most 63 bits, and a flag
   const auto bytes = units_.payload_start(unit, kEnough);
   if (!bytes) return bytes.error();
   BitReader r = units_.bits(unit, *bytes);
-  const std::uint32_t frames = parse_gof_frames(r, header_, frames_parsed_);
+  const GofStart start = parse_gof_start(r, header_, frames_parsed_);
   if (r.error()) return *r.error();
-  return frames;
+  return start;
 }
 
 Result<bool> Decoder::Impl::skip_slices() {
-  while (header_.profile_idc == kProfileMain && offset_ < units_.size()) {
+  while (offset_ < units_.size()) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
     if (unit->type() != UnitType::kSlice) break;
@@ -342,33 +343,32 @@ Result<bool> Decoder::Impl::find_gof(const UnitHeader& unit) {
       return true;
     }
   }
-  auto recon = header_.profile_idc == kProfileMain ? read_bone_gof(unit) : read_gof(unit);
+  auto recon = read_gof(unit);
   if (!recon) return recon.error();
   recon_ = std::move(*recon);
   return true;
 }
 
-// A GOF of the Baseline profile; goes past its unit.
 Result<FrameRecon> Decoder::Impl::read_gof(const UnitHeader& unit) {
+  const std::uint64_t max_memory_bytes = options_.limits.max_memory_bytes;
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  const auto gof =
-      parse_gof(r, header_, topology_, frames_parsed_, options_.limits.max_memory_bytes);
+  const GofStart start = parse_gof_start(r, header_, frames_parsed_);
+  if (r.error()) return *r.error();
+  if (start.bones_flag) {
+    BoneGofParser parser(header_, *mesh_predictions_, max_memory_bytes, options_.cut);
+    if (const auto ok = parser.bones(r, start); !ok) return ok.error();
+    offset_ = unit.end();
+    return read_slices(parser);
+  }
+  const auto gof = parse_clusters(r, header_, topology_, start, max_memory_bytes);
   if (!gof) return gof.error();
   offset_ = unit.end();
   return FrameRecon(GofRecon(header_, topology_, *gof));
 }
 
-// A GOF of the Main profile; goes past its unit and its slice units.
-Result<FrameRecon> Decoder::Impl::read_bone_gof(const UnitHeader& unit) {
-  BoneGofParser parser(header_, *mesh_predictions_, options_.limits.max_memory_bytes,
-                       options_.cut);
-  const auto payload = units_.payload(unit);
-  if (!payload) return payload.error();
-  BitReader r = units_.bits(unit, *payload);
-  if (const auto ok = parser.gof(r, frames_parsed_); !ok) return ok.error();
-  offset_ = unit.end();
+Result<FrameRecon> Decoder::Impl::read_slices(BoneGofParser& parser) {
   while (offset_ < units_.size()) {
     const auto slice = units_.header_at(offset_);
     if (!slice) return slice.error();
@@ -522,12 +522,13 @@ Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
     if (!*more || frames_parsed_ == header_.num_frames) {
       return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
     }
-    const auto frames = gof_frames(unit);
-    if (!frames) return frames.error();
-    if (frame < frames_parsed_ + *frames) break;
+    const auto start = gof_start(unit);
+    if (!start) return start.error();
+    if (frame < frames_parsed_ + start->num_frames) break;
     remember_gof(unit);
-    frames_parsed_ += *frames;
+    frames_parsed_ += start->num_frames;
     offset_ = unit.end();
+    if (!start->bones_flag) continue;
     if (auto ok = skip_slices(); !ok) return ok;
   }
   return load_gof();

@@ -59,7 +59,7 @@ nlohmann::ordered_json size_json(const StreamCutter& cutter, std::uint64_t bytes
 void print_json(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
   bool met = true;
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
-  for (const BoneGofEntry& gof : cutter.gofs()) {
+  for (const ListedGof& gof : cutter.gofs()) {
     const SliceTotals after = cutter.totals_that_stay(gof);
     met = met && !too_many_layers(o, after);
     gofs.push_back({{"first_frame", gof.first_frame},
@@ -81,7 +81,12 @@ void print_text(const ExtractOptions& o, const StreamCutter& cutter, std::uint64
               bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
               bpvf(cutter, bytes));
-  for (const BoneGofEntry& gof : cutter.gofs()) {
+  for (const ListedGof& gof : cutter.gofs()) {
+    if (!gof.has_bones()) {
+      std::printf("  frames %u to %u: of clusters, %" PRIu64 " bytes, which stay\n",
+                  gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.bytes);
+      continue;
+    }
     const SliceTotals before = gof.totals({});
     const SliceTotals after = cutter.totals_that_stay(gof);
     std::printf(

@@ -1,4 +1,4 @@
-// A GOF of any profile, ready to give its frames.
+// A GOF of clusters or of bones, ready to give its frames.
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,8 @@ constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
 void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topology,
                 std::uint32_t first_frame, std::span<const std::uint8_t> payload) {
   rlpc::BitReader r(payload);
-  const auto gof = rlpc::parse_gof(r, header, topology, first_frame, kMaxMemoryBytes);
+  const rlpc::GofStart start = rlpc::parse_gof_start(r, header, first_frame);
+  const auto gof = rlpc::parse_clusters(r, header, topology, start, kMaxMemoryBytes);
   if (!gof) return;
   const rlpc::GofRecon recon(header, topology, *gof);
   rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);

@@ -23,7 +23,7 @@ std::optional<GofsAhead::Parsed> GofsAhead::take(std::uint64_t offset,
   if (!gofs_.empty()) {
     Ahead& ahead = gofs_.front();
     const GofUnits& units = ahead.units;
-    if (units.gof.unit.offset == offset && units.first_frame == first_frame &&
+    if (units.gof.unit.offset == offset && units.start.first_frame == first_frame &&
         ahead.done.get() && ahead.recon) {
       parsed = Parsed{std::move(*ahead.recon), units.end()};
       gofs_.pop_front();
@@ -34,20 +34,18 @@ std::optional<GofsAhead::Parsed> GofsAhead::take(std::uint64_t offset,
 }
 
 void GofsAhead::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count) {
-  while (!gofs_.empty() && gofs_.front().units.first_frame != first_frame) gofs_.pop_front();
+  while (!gofs_.empty() && gofs_.front().units.start.first_frame != first_frame)
+    gofs_.pop_front();
   if (!gofs_.empty()) {
     offset = gofs_.back().units.end();
-    first_frame = gofs_.back().end_frame;
+    first_frame = gofs_.back().units.end_frame();
   }
   while (gofs_.size() < count && first_frame < header_.num_frames) {
     auto units = read(offset, first_frame);
     if (!units) return;
-    BitReader r = units_.bits(units->gof.unit, units->gof.payload);
-    const std::uint32_t num_frames = parse_gof_frames(r, header_, first_frame);
-    if (r.error()) return;
     offset = units->end();
-    first_frame += num_frames;
-    gofs_.push_back({std::move(*units), first_frame, std::nullopt, {}});
+    first_frame = units->end_frame();
+    gofs_.push_back({std::move(*units), std::nullopt, {}});
     Ahead& ahead = gofs_.back();
     ahead.done = run_apart([this, &ahead] { ahead.recon = parse(ahead.units); });
   }
@@ -56,21 +54,24 @@ void GofsAhead::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_
 // The next GOF, past ancillary units. Nothing is read behind the end of the sequence.
 std::optional<GofUnits> GofsAhead::read(std::uint64_t offset, std::uint32_t first_frame) {
   GofUnits units;
-  units.first_frame = first_frame;
   for (bool have_gof = false; offset < units_.size();) {
     const auto unit = units_.header_at(offset);
     if (!unit) return std::nullopt;
-    const bool wanted = unit->type() == (have_gof ? UnitType::kSlice : UnitType::kGof);
-    if (wanted) {
+    const bool is_gof = !have_gof && unit->type() == UnitType::kGof;
+    const bool is_slice = units.start.bones_flag && unit->type() == UnitType::kSlice;
+    if (is_gof || is_slice) {
       auto payload = units_.payload(*unit);
       if (!payload) return std::nullopt;
       GofUnits::Coded coded{*unit, std::move(*payload)};
-      if (have_gof) {
+      if (is_slice) {
         units.slices.push_back(std::move(coded));
       } else {
+        BitReader r = units_.bits(*unit, coded.payload);
+        units.start = parse_gof_start(r, header_, first_frame);
+        if (r.error()) return std::nullopt;
         units.gof = std::move(coded);
+        have_gof = true;
       }
-      have_gof = true;
     } else if (have_gof) {
       return units;
     } else if (!unit->ancillary()) {
@@ -83,13 +84,14 @@ std::optional<GofUnits> GofsAhead::read(std::uint64_t offset, std::uint32_t firs
 
 std::optional<FrameRecon> GofsAhead::parse(const GofUnits& units) const {
   BitReader r = units_.bits(units.gof.unit, units.gof.payload);
-  if (header_.profile_idc != kProfileMain) {
-    const auto gof = parse_gof(r, header_, topology_, units.first_frame, max_memory_bytes_);
+  const GofStart start = parse_gof_start(r, header_, units.start.first_frame);
+  if (!start.bones_flag) {
+    const auto gof = parse_clusters(r, header_, topology_, start, max_memory_bytes_);
     if (!gof) return std::nullopt;
     return FrameRecon(GofRecon(header_, topology_, *gof));
   }
   BoneGofParser parser(header_, *meshes_, max_memory_bytes_, cut_);
-  if (!parser.gof(r, units.first_frame)) return std::nullopt;
+  if (!parser.bones(r, start)) return std::nullopt;
   for (const auto& [unit, payload] : units.slices) {
     BitReader slice = units_.bits(unit, payload);
     if (!parser.slice(slice, unit.offset * 8)) return std::nullopt;

@@ -16,19 +16,20 @@
 
 namespace rlpc {
 
-// A GOF unit, and the slice units behind it.
+// A GOF unit, and the slice units behind that of a GOF of bones.
 struct GofUnits {
   struct Coded {
     UnitHeader unit;
     std::vector<std::uint8_t> payload;
   };
-  std::uint32_t first_frame = 0;
+  GofStart start;
   Coded gof;
   std::vector<Coded> slices;
 
   std::uint64_t end() const {
     return slices.empty() ? gof.unit.end() : slices.back().unit.end();
   }
+  std::uint32_t end_frame() const { return start.first_frame + start.num_frames; }
 };
 
 class GofsAhead {
@@ -52,7 +53,6 @@ class GofsAhead {
  private:
   struct Ahead {
     GofUnits units;
-    std::uint32_t end_frame = 0;
     std::optional<FrameRecon> recon;
     std::future<bool> done;
   };

@@ -6,7 +6,6 @@
 #include "common/influences.h"
 #include "common/int_math.h"
 #include "decoder/parse_component_header.h"
-#include "decoder/parse_gof.h"
 #include "decoder/parse_track.h"
 #include "decoder/section_reader.h"
 
@@ -122,10 +121,11 @@ void BoneGofParser::bone_section(BitReader& r) {
   section.finish();
 }
 
-Result<bool> BoneGofParser::gof(BitReader& r, std::uint32_t first_frame) {
+// 6.11 bones_of_gof( )
+Result<bool> BoneGofParser::bones(BitReader& r, const GofStart& start) {
   gof_ = {};
-  gof_.first_frame = first_frame;
-  gof_.num_frames = parse_gof_frames(r, header_, first_frame);
+  gof_.first_frame = start.first_frame;
+  gof_.num_frames = start.num_frames;
   const Level& level = header_.level();
   const std::uint32_t num_bones =
       r.ue("num_bones_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;

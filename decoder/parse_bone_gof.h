@@ -12,6 +12,7 @@
 #include "common/result.h"
 #include "common/sequence_header.h"
 #include "common/slice_models.h"
+#include "decoder/parse_gof.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
@@ -41,7 +42,7 @@ class MeshPredictions {
   std::array<CodedMesh, 4> meshes_;
 };
 
-// A GOF unit of the Main profile and the slice units behind it, one after the other. Every size
+// The unit of a GOF of bones and the slice units behind it, one after the other. Every size
 // is checked against the level, and what it needs against max_memory_bytes, before memory is
 // taken for it. Slices that the cut leaves out are as if they were absent.
 class BoneGofParser {
@@ -51,9 +52,9 @@ class BoneGofParser {
                 std::uint64_t max_memory_bytes, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
 
-  // 6.5 gof( ) and 6.11 bones_of_gof( ); `r` covers exactly the payload.
-  Result<bool> gof(BitReader& r, std::uint32_t first_frame);
-  // 6.12 slice_unit( ), after gof( ). unit_bit_pos: of the slice unit.
+  // 6.11 bones_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
+  Result<bool> bones(BitReader& r, const GofStart& start);
+  // 6.12 slice_unit( ), after bones( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
   // After the last slice: the GOF, with what absent slices are predicted to hold.
   BoneGof finish();

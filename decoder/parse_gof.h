@@ -11,15 +11,20 @@
 
 namespace rlpc {
 
-// The first two elements of a GOF: checks first_frame, returns the number of frames. The error
-// is left in `r`. first_frame < num_frames.
-std::uint32_t parse_gof_frames(BitReader& r, const SequenceHeader& header,
-                               std::uint32_t first_frame);
+// What stands in a GOF unit before its clusters or bones.
+struct GofStart {
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 1;
+  bool bones_flag = false;
+};
+// 6.5 gof( ), up to its clusters or bones. first_frame, less than num_frames of the header, is
+// what the stream has to say. The error is left in `r`.
+GofStart parse_gof_start(BitReader& r, const SequenceHeader& header, std::uint32_t first_frame);
 
-// Parses the payload of a GOF unit; `r` covers exactly the payload. Every size is checked
+// 6.5 clusters_of_gof( ): the rest of the payload, to which `r` ends. Every size is checked
 // against the level, and what its factors need against max_memory_bytes, before memory is taken
 // for it.
-Result<Gof> parse_gof(BitReader& r, const SequenceHeader& header, const Topology& topology,
-                      std::uint32_t first_frame, std::uint64_t max_memory_bytes);
+Result<Gof> parse_clusters(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                           const GofStart& start, std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

@@ -41,7 +41,8 @@ Result<Gof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
   const Topology topology =
       make_topology(5, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {3, 1, 4}});
   BitReader r(payload, 0, trace);
-  return parse_gof(r, header_of(5, 5), topology, 2, max_memory_bytes);
+  const SequenceHeader header = header_of(5, 5);
+  return parse_clusters(r, header, topology, parse_gof_start(r, header, 2), max_memory_bytes);
 }
 
 void expect_invalid(const Result<Gof>& gof, const std::string& rule,
@@ -212,7 +213,7 @@ Result<Gof> parse(const Bytes& payload, const SequenceHeader& header,
                   std::uint32_t first_frame = 0) {
   const Topology topology = make_topology(header.num_vertices, {});
   BitReader r(payload);
-  return parse_gof(r, header, topology, first_frame, kAmple);
+  return parse_clusters(r, header, topology, parse_gof_start(r, header, first_frame), kAmple);
 }
 
 // One world cluster without components.
@@ -255,6 +256,34 @@ TEST(ParseGof, EveryFixedElementIsTakenUpToItsBoundsAndNotBeyond) {
     EXPECT_TRUE(parse(plain(recipe), header_of(5, 100), 7)) << k.rule;
     k.set(recipe, 1);
     expect_invalid(parse(plain(recipe), header_of(5, 100), 7), k.rule, k.element);
+  }
+}
+
+TEST(ParseGofStart, HasAFlagForBonesInTheMainProfileAlone) {
+  for (const std::uint32_t profile_idc : {kProfileBaseline, kProfileMain}) {
+    for (const bool bones_flag : {false, true}) {
+      SequenceHeader header = header_of(5, 20);
+      header.profile_idc = profile_idc;
+      BitWriter w;
+      w.ue(3);
+      w.ue(16);
+      w.flag(bones_flag);
+      w.u(5, 21);
+      w.byte_alignment();
+      const Bytes payload = w.take();
+      BitReader r(payload);
+      const GofStart start = parse_gof_start(r, header, 3);
+      EXPECT_EQ(start.first_frame, 3U);
+      EXPECT_EQ(start.num_frames, 17U);
+      EXPECT_EQ(start.bones_flag, profile_idc == kProfileMain && bones_flag);
+      EXPECT_EQ(r.bit_pos(), profile_idc == kProfileMain ? 15U : 14U);
+      EXPECT_FALSE(r.error());
+      // All but the last three bits of these elements.
+      const Bytes prefix(payload.begin(), payload.begin() + 1);
+      BitReader cut(prefix);
+      parse_gof_start(cut, header, 3);
+      EXPECT_TRUE(cut.error());
+    }
   }
 }
 

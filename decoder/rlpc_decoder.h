@@ -54,7 +54,7 @@ struct DecoderOptions {
   std::uint32_t threads = 1;
   // Decodes as if the slices that it leaves out were not in the stream, which saves their
   // time: of them, CRC and indices alone are checked. The hashes of their GOFs do not fit, and
-  // are not compared. Nothing is left out of the Baseline profile.
+  // are not compared. Nothing is left out of GOFs of clusters.
   SliceCut cut;
 };
 

@@ -35,7 +35,8 @@ Examples
   rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
   rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
                                         less detail in less time (Main profile): what decoding
-                                        gives after rlpcinfo --extract components=12,layers=5
+                                        gives after rlpcinfo --extract components=12,layers=5.
+                                        GOFs of clusters have no slices, and stay whole
 
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
@@ -201,7 +202,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Only the component groups with up to K trajectories of a GOF");
+                 "Only the component groups with up to K trajectories of a GOF of bones");
   app.add_option("--max-layers", o.decoder.cut.max_layers,
                  "Only the layer groups with up to L vertex layers, the coarsest")
       ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1));

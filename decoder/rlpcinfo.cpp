@@ -25,14 +25,15 @@ constexpr const char* kExamples = R"(
 Examples
   rlpcinfo walk.rlpc              what is in it, and what takes how many bits
   rlpcinfo walk.rlpc --json       the same for machines
-  rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices (Main profile)
+  rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices
   rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
                                   the stream without slices of finer detail (Main profile): of
                                   each GOF, as many component groups as have 12 trajectories or
                                   fewer (0: bones and rest shape alone), and as many layer groups
                                   as have 5 layers or fewer, the coarsest (but always the first).
-                                  Nothing is encoded anew; --gofs tells what there is to choose
+                                  GOFs of clusters have no slices, and stay whole. Nothing is
+                                  encoded anew; --gofs tells what there is to choose
 
 Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
 cannot be cut; 4 input or output failed; 64 usage.)";
@@ -110,7 +111,7 @@ class BitCounter final : public rlpc::Trace {
 
   std::uint64_t bits(std::size_t part) const { return bits_[part]; }
   std::uint64_t num_units() const { return num_units_; }
-  const std::vector<rlpc::BoneGofEntry>& gofs() const { return listing_.gofs(); }
+  const std::vector<rlpc::ListedGof>& gofs() const { return listing_.gofs(); }
 
  private:
   static std::size_t part_of_unit(std::int64_t unit_type) {
@@ -168,11 +169,18 @@ double bpvf(const Summary& s, double bits) {
 }
 
 // Component groups that have slices, with that of the rest positions.
-std::uint32_t num_groups(const rlpc::BoneGofEntry& gof) {
+std::uint32_t num_groups(const rlpc::ListedGof& gof) {
   return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
 }
 
-nlohmann::ordered_json json_of(const rlpc::BoneGofEntry& gof) {
+nlohmann::ordered_json json_of(const rlpc::ListedGof& gof) {
+  if (!gof.has_bones()) {
+    return {{"first_frame", gof.first_frame},
+            {"num_frames", gof.num_frames},
+            {"num_clusters", gof.num_clusters},
+            {"num_components", gof.num_components},
+            {"bytes", gof.bytes}};
+  }
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
   for (const rlpc::SliceEntry& slice : gof.slices) {
     slices.push_back({{"component_group_idx", slice.component_group_idx},
@@ -223,27 +231,39 @@ void print_json(const Summary& s) {
       {"bytes", s.bytes},
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
-  for (const rlpc::BoneGofEntry& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
+  for (const rlpc::ListedGof& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
   if (!s.metadata.empty()) json["metadata"] = nlohmann::json::parse(s.metadata, nullptr, false);
   std::cout << json.dump(2) << "\n";
 }
 
 // "12", or "3 to 12"
 template <class Count>
-std::string range_over(const std::vector<rlpc::BoneGofEntry>& gofs, const Count& count) {
+std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Count& count) {
   const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
   const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
   const std::string high = std::to_string(count(*most));
   return count(*least) == count(*most) ? high : std::to_string(count(*least)) + " to " + high;
 }
 
-void print_bones(const std::vector<rlpc::BoneGofEntry>& gofs) {
-  using Entry = rlpc::BoneGofEntry;
+std::vector<rlpc::ListedGof> of_kind(std::vector<rlpc::ListedGof> gofs, bool has_bones) {
+  std::erase_if(gofs, [&](const rlpc::ListedGof& gof) { return gof.has_bones() != has_bones; });
+  return gofs;
+}
+
+void print_clusters(const std::vector<rlpc::ListedGof>& gofs) {
+  using Entry = rlpc::ListedGof;
+  std::printf("  GOFs of clusters: %zu, with %s clusters and %s components each\n", gofs.size(),
+              range_over(gofs, [](const Entry& g) { return g.num_clusters; }).c_str(),
+              range_over(gofs, [](const Entry& g) { return g.num_components; }).c_str());
+}
+
+void print_bones(const std::vector<rlpc::ListedGof>& gofs) {
+  using Entry = rlpc::ListedGof;
   const auto over = [&](const auto& count) { return range_over(gofs, count); };
   std::printf(
-      "  in a GOF: %s bones, %s trajectories in %s component groups, %s layers in %s "
-      "groups, %s slices\n",
-      over([](const Entry& g) { return g.num_bones; }).c_str(),
+      "  GOFs of bones: %zu, with %s bones, %s trajectories in %s component groups, %s layers "
+      "in %s groups and %s slices each\n",
+      gofs.size(), over([](const Entry& g) { return g.num_bones; }).c_str(),
       over([](const Entry& g) { return g.num_trajectories(); }).c_str(),
       over([](const Entry& g) { return g.num_component_groups; }).c_str(),
       over([](const Entry& g) { return g.num_layers; }).c_str(),
@@ -251,9 +271,15 @@ void print_bones(const std::vector<rlpc::BoneGofEntry>& gofs) {
       over([](const Entry& g) { return g.slices.size(); }).c_str());
 }
 
-// A line for each component group, a column for each layer group; and what stays of the GOF if
-// it is cut behind one of them.
-void print_slices(const rlpc::BoneGofEntry& gof) {
+// Of a GOF of bones, a line for each component group, a column for each layer group; and what
+// stays of the GOF if it is cut behind one of them.
+void print_gof(const rlpc::ListedGof& gof) {
+  if (!gof.has_bones()) {
+    std::printf("\n  frames %u to %u: %u clusters, %u components in %" PRIu64 " bytes\n",
+                gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.num_clusters,
+                gof.num_components, gof.bytes);
+    return;
+  }
   std::printf("\n  frames %u to %u: %u bones in %" PRIu64 " bytes; slices in bytes\n",
               gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.num_bones, gof.bytes);
   std::printf("  %-40s", "layers");
@@ -289,7 +315,10 @@ void print_table(const Options& o, const Summary& s) {
   std::printf("  %u vertices, %u triangles, %u frames at %u/%u per second, %u GOFs\n",
               h.num_vertices, h.num_triangles, h.num_frames, h.frame_rate.numerator,
               h.frame_rate.denominator, s.num_gofs);
-  if (!s.counter.gofs().empty()) print_bones(s.counter.gofs());
+  const auto clusters = of_kind(s.counter.gofs(), false);
+  const auto bones = of_kind(s.counter.gofs(), true);
+  if (!clusters.empty()) print_clusters(clusters);
+  if (!bones.empty()) print_bones(bones);
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
   std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
   for (std::size_t p = 0; p < parts().size(); ++p) {
@@ -301,7 +330,7 @@ void print_table(const Options& o, const Summary& s) {
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", s.metadata.c_str());
   if (o.gofs) {
-    for (const rlpc::BoneGofEntry& gof : s.counter.gofs()) print_slices(gof);
+    for (const rlpc::ListedGof& gof : s.counter.gofs()) print_gof(gof);
   }
 }
 
@@ -335,8 +364,7 @@ int main(int argc, char** argv) try {
   Options options;
   app.add_option("input", options.input, "Stream to look at")->required();
   auto* json = app.add_flag("--json", options.json, "JSON on standard output");
-  auto* gofs =
-      app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice (Main profile)");
+  auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
   auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
   auto* extract = app.add_option("--extract", options.extract,
                                  "components=K,layers=L: write the stream without some slices");

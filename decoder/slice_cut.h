@@ -1,4 +1,4 @@
-// 8.14.1 Slices that are absent: those to leave out of each GOF of the Main profile.
+// 8.14.1 Slices that are absent: those to leave out of each GOF of bones.
 #pragma once
 
 #include <cstddef>

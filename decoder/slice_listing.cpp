@@ -13,6 +13,7 @@ enum class Heard : std::uint8_t {
   kUnitSize,
   kFirstFrame,
   kFrames,
+  kClusters,
   kBones,
   kComponentGroups,
   kPrediction,
@@ -29,6 +30,7 @@ const std::map<std::string_view, Heard>& names() {
       {"unit_size", Heard::kUnitSize},
       {"first_frame", Heard::kFirstFrame},
       {"num_gof_frames_minus1", Heard::kFrames},
+      {"num_clusters_minus1", Heard::kClusters},
       {"num_bones_minus1", Heard::kBones},
       {"num_component_groups", Heard::kComponentGroups},
       {"prediction_idc", Heard::kPrediction},
@@ -44,7 +46,7 @@ const std::map<std::string_view, Heard>& names() {
 
 }  // namespace
 
-SliceTotals BoneGofEntry::totals(const SliceGroups& groups) const {
+SliceTotals ListedGof::totals(const SliceGroups& groups) const {
   SliceTotals totals;
   totals.bytes = bytes;
   for (const SliceEntry& slice : slices) {
@@ -60,7 +62,7 @@ SliceTotals BoneGofEntry::totals(const SliceGroups& groups) const {
 }
 
 // 8.14.1 Slices that are absent
-SliceGroups BoneGofEntry::groups_that_stay(const SliceCut& cut) const {
+SliceGroups ListedGof::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
   std::uint64_t trajectories = 0;
   for (const SliceEntry& slice : slices) {
@@ -79,17 +81,22 @@ void SliceListing::element(std::string_view name, std::int64_t value) {
     unit_bytes_ = kUnitHeaderBytes + number + kUnitCrcBytes;
   if (heard->second == Heard::kFirstFrame) first_frame_ = number;
   if (heard->second == Heard::kFrames) num_frames_ = number + 1;
-  if (heard->second == Heard::kBones) {
+  if (heard->second == Heard::kClusters || heard->second == Heard::kBones) {
     gofs_.emplace_back();
     gofs_.back().first_frame = first_frame_;
     gofs_.back().num_frames = num_frames_;
-    gofs_.back().num_bones = number + 1;
     gofs_.back().bytes = unit_bytes_;
   }
-  if (gofs_.empty()) return;  // a GOF of the Baseline profile
-  BoneGofEntry& gof = gofs_.back();
+  if (gofs_.empty()) return;
+  ListedGof& gof = gofs_.back();
   std::vector<std::uint32_t>& groups = gof.layer_group_size;
   switch (heard->second) {
+    case Heard::kClusters:
+      gof.num_clusters = number + 1;
+      break;
+    case Heard::kBones:
+      gof.num_bones = number + 1;
+      break;
     case Heard::kComponentGroups:
       gof.num_component_groups = number;
       break;
@@ -117,7 +124,7 @@ void SliceListing::element(std::string_view name, std::int64_t value) {
       gof.slices.back().layer_group_idx = number;
       break;
     case Heard::kScale:
-      gof.slices.back().num_trajectories += 1;
+      ++(gof.has_bones() ? gof.slices.back().num_trajectories : gof.num_components);
       break;
     default:
       break;

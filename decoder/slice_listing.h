@@ -1,4 +1,4 @@
-// What rlpcinfo tells of the GOFs of the Main profile: bones, trajectories, slices.
+// What rlpcinfo tells of GOFs: clusters and components, or bones, trajectories and slices.
 #pragma once
 
 #include <cstddef>
@@ -37,17 +37,23 @@ struct SliceTotals {
   std::uint64_t bytes = 0;       // of the GOF unit and of slice units
 };
 
-struct BoneGofEntry {
+struct ListedGof {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
+  std::uint64_t bytes = 0;  // of the GOF unit
+
+  // Of a GOF of clusters; it has nothing of what follows.
+  std::uint32_t num_clusters = 0;
+  std::uint32_t num_components = 0;  // of all clusters
+
   std::uint32_t num_bones = 0;
   std::uint32_t prediction_idc = 0;
   std::uint32_t num_component_groups = 0;
   std::uint32_t num_layers = 1;
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
-  std::uint64_t bytes = 0;                         // of the GOF unit
   std::vector<SliceEntry> slices;
 
+  bool has_bones() const { return num_bones > 0; }
   std::uint32_t num_trajectories() const { return totals({}).num_trajectories; }
   SliceTotals totals(const SliceGroups& groups) const;
   SliceGroups groups_that_stay(const SliceCut& cut) const;
@@ -58,10 +64,10 @@ class SliceListing {
  public:
   void element(std::string_view name, std::int64_t value);
   // Once all elements were heard.
-  const std::vector<BoneGofEntry>& gofs() const { return gofs_; }
+  const std::vector<ListedGof>& gofs() const { return gofs_; }
 
  private:
-  std::vector<BoneGofEntry> gofs_;
+  std::vector<ListedGof> gofs_;
   std::uint64_t unit_bytes_ = 0;
   std::uint32_t first_frame_ = 0;
   std::uint32_t num_frames_ = 0;
@@ -74,7 +80,7 @@ class ListingTrace final : public Trace {
   void element(const char* name, std::int64_t value, std::uint64_t) override {
     listing_.element(name, value);
   }
-  const std::vector<BoneGofEntry>& gofs() const { return listing_.gofs(); }
+  const std::vector<ListedGof>& gofs() const { return listing_.gofs(); }
 
  private:
   SliceListing listing_;

@@ -26,13 +26,13 @@ class SharedSource final : public ByteSource {
 }  // namespace
 
 StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,
-                           const SliceCut& cut, std::vector<BoneGofEntry> gofs)
+                           const SliceCut& cut, std::vector<ListedGof> gofs)
     : units_(std::move(units), nullptr),
       decoder_(std::move(decoder)),
       cut_(cut),
       gofs_(std::move(gofs)),
       cuts_any_(std::any_of(gofs_.begin(), gofs_.end(),
-                            [this](const BoneGofEntry& gof) { return cuts(gof); })) {}
+                            [this](const ListedGof& gof) { return cuts(gof); })) {}
 
 Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source,
                                         const SliceCut& cut) {
@@ -75,7 +75,7 @@ Result<Bytes> StreamCutter::next() {
 
 // What is in the place of a unit; nothing if it is left out.
 Result<Bytes> StreamCutter::cut_unit(const UnitHeader& unit, const Bytes& payload) {
-  const BoneGofEntry* const before = std::exchange(gof_, nullptr);
+  const ListedGof* const before = std::exchange(gof_, nullptr);
   switch (unit.type()) {
     case UnitType::kVertexOrder: {
       BitReader r = units_.bits(unit, payload);
@@ -119,7 +119,7 @@ void StreamCutter::start_gof() {
 }
 
 // 8.6.2 Hash check, of the same kind as before
-Result<Bytes> StreamCutter::new_hash(const BoneGofEntry& gof, const UnitHeader& unit,
+Result<Bytes> StreamCutter::new_hash(const ListedGof& gof, const UnitHeader& unit,
                                      const Bytes& payload) {
   BitReader r = units_.bits(unit, payload);
   const auto old = parse_gof_hash(r, gof.num_frames);

@@ -27,13 +27,13 @@ class StreamCutter {
 
   const SequenceHeader& header() const { return decoder_.header(); }
   std::uint64_t size() const { return units_.size(); }  // of the stream before
-  // Those before; none in the Baseline profile.
-  const std::vector<BoneGofEntry>& gofs() const { return gofs_; }
-  SliceTotals totals_that_stay(const BoneGofEntry& gof) const {
+  // Those before. GOFs of clusters have no slices, and stay whole.
+  const std::vector<ListedGof>& gofs() const { return gofs_; }
+  SliceTotals totals_that_stay(const ListedGof& gof) const {
     return gof.totals(gof.groups_that_stay(cut_));
   }
   // Whether a slice is left out of the GOF.
-  bool cuts(const BoneGofEntry& gof) const {
+  bool cuts(const ListedGof& gof) const {
     return totals_that_stay(gof).num_slices < gof.slices.size();
   }
   bool cuts_any() const { return cuts_any_; }
@@ -43,26 +43,26 @@ class StreamCutter {
 
  private:
   StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder, const SliceCut& cut,
-               std::vector<BoneGofEntry> gofs);
+               std::vector<ListedGof> gofs);
 
   Result<Bytes> cut_unit(const UnitHeader& unit, const Bytes& payload);
   void start_gof();
-  Result<Bytes> new_hash(const BoneGofEntry& gof, const UnitHeader& unit, const Bytes& payload);
+  Result<Bytes> new_hash(const ListedGof& gof, const UnitHeader& unit, const Bytes& payload);
   Bytes end_of_sequence();
 
   UnitReader units_;
   Decoder decoder_;  // of the stream as it is cut
   SliceCut cut_;
-  std::vector<BoneGofEntry> gofs_;
+  std::vector<ListedGof> gofs_;
   bool cuts_any_ = false;
 
   std::uint64_t offset_ = 0;   // in the stream before
   std::uint64_t written_ = 0;  // bytes of the cut stream so far
   std::vector<std::uint32_t> vertex_order_;
-  const BoneGofEntry* gof_ = nullptr;  // which the unit before belongs to
-  SliceGroups groups_;                 // of that GOF, which stay
-  std::size_t num_gofs_ = 0;           // so far
-  std::size_t num_slices_ = 0;         // of the GOF so far
+  const ListedGof* gof_ = nullptr;  // which the unit before belongs to
+  SliceGroups groups_;              // of that GOF, which stay
+  std::size_t num_gofs_ = 0;        // so far
+  std::size_t num_slices_ = 0;      // of the GOF so far
   bool has_index_ = false;
   std::uint64_t first_gof_offset_ = 0;
   std::uint64_t gof_offset_ = 0;

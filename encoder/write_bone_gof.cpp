@@ -171,11 +171,12 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   return w.take();
 }
 
-// 6.11 bones_of_gof( )
+// 6.5 gof( ) and 6.11 bones_of_gof( )
 std::vector<std::uint8_t> write_bones_of_gof(const BoneGof& gof, int position_bits) {
   BitWriter w;
   w.ue(gof.first_frame);
   w.ue(gof.num_frames - 1);
+  w.flag(true);  // bones_flag
   w.ue(static_cast<std::uint32_t>(gof.bones.size()) - 1);
   w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
   w.u(3, static_cast<std::uint32_t>(gof.weight_bits));

@@ -163,6 +163,7 @@ std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header
   BitWriter w;
   w.ue(gof.first_frame);
   w.ue(gof.num_frames - 1);
+  if (header.profile_idc == kProfileMain) w.flag(false);  // bones_flag
   w.ue(static_cast<std::uint32_t>(gof.clusters.size()) - 1);
   w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
   w.ue(gof.seed_step - 1);

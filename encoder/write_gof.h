@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// Payload of a GOF unit. All values must be legal (asserted): an encoder that emits an illegal
-// value has a bug.
+// Payload of the unit of a GOF of clusters, in a stream of either profile. All values must be
+// legal (asserted): an encoder that emits an illegal value has a bug.
 std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header,
                                     const Topology& topology);
 

@@ -1,4 +1,4 @@
-"""Random legal streams of the Main profile: bones and slices."""
+"""Random legal streams of the Main profile: GOFs of bones, with slices, and of clusters."""
 
 import random_streams
 
@@ -12,6 +12,10 @@ class MainPlan(random_streams.Plan):
         self.deep = False
         if n.chance(15):  # more layers
             self.triangles = n.between(100, 300)
+        self.bones_percent = n.pick([100, 50, 50, 0])  # of the GOFs
+        if self.bones_percent == 50:
+            self.frames = n.between(2, 12)
+        self.gof_frames = n.pick([self.frames, 3])  # at most
         self.bones = n.pick([1, 1, 2, n.between(1, 6), n.between(1, 30)])
         self.prediction = n.pick([0, 1, 2, 3, 3, 3])
         self.weight_bits = n.pick([0, 1, 5, 7])
@@ -24,10 +28,17 @@ class MainPlan(random_streams.Plan):
 
 
 class MainSource(random_streams.RandomSource):
-    """Values of the elements of bones and slices."""
+    """Values of the elements of bones and slices, and of those that clusters have, too."""
 
     def _profile_idc(self, ns, indices, arguments):
         return 1
+
+    def _num_gof_frames_minus1(self, ns, indices, arguments):
+        left = ns["NumFrames"] - ns["NumParsedFrames"]
+        return self.near(0, min(left, self.plan.gof_frames) - 1)
+
+    def _bones_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(self.plan.bones_percent))
 
     def _num_bones_minus1(self, ns, indices, arguments):
         return min(self.plan.bones, ns["MaxClusters"]) - 1
@@ -96,7 +107,7 @@ class MainSource(random_streams.RandomSource):
         return self.numbers.between(0, 2 * self.plan.components)
 
     def _temporal_predictor(self, ns, indices, arguments):
-        return self.numbers.between(0, 7)
+        return self.numbers.between(0, 7 if ns["bones_flag"] else 4)
 
     def _temporal_weight(self, ns, indices, arguments):
         return self.near(0, 511)
@@ -125,6 +136,8 @@ class MainSequence(random_streams.Sequence):
     def _gof(self):
         self._unit("GOF")
         ns = self._writer.ns
+        if not ns["bones_flag"]:
+            return
         most = ns["num_layer_groups_minus1"] + 1
         for group in range(ns["num_component_groups"] + 1):
             if self._n.chance(self._plan.cut_percent):

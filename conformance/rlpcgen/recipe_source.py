@@ -10,8 +10,8 @@ SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
 # What an element is when the recipe does not say; 0 for those that are not here.
 DEFAULTS = {"profile_idc": 0, "level_idc": 1, "frame_rate_numerator_minus1": 29,
-            "position_bits": 16, "urgent_degree": 5, "layer_step_minus1": 15,
-            "temporal_weight": 256}
+            "position_bits": 16, "urgent_degree": 5, "bones_flag": 1,
+            "layer_step_minus1": 15, "temporal_weight": 256}
 
 # Names of a recipe for absolute values: pseudo name -> (element, variable it differs from).
 _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),

@@ -281,8 +281,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Private units are ancillary ones: set ancillary_flag."},
     {"R-UNT-05", "7.2", "A unit stands where it must not.",
      "Units are written in another order than that of Table 7-1, or twice.",
-     "Order: sequence header, connectivity, vertex order, GOFs, each with its slices right "
-     "behind it, end of sequence."},
+     "Order: sequence header, connectivity, vertex order, GOFs, those of bones with their "
+     "slices right behind them, end of sequence."},
     {"R-VOR-01", "7.6", "The vertex order leads to an index that no vertex has.",
      "The differences were taken from another list than VertexOrder, or reading is out of "
      "step.",

@@ -103,7 +103,7 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
       return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
     case UnitType::kSlice: {
       const bool behind_slice = !previous_ || previous_->type() == UnitType::kSlice;
-      return units_.version_minor() > 0 && (gof_unit_ || behind_slice);
+      return units_.version_minor() > 0 && ((gof_unit_ && may_have_slices_) || behind_slice);
     }
     case UnitType::kEndOfSequence:
       return seen(UnitType::kGof);

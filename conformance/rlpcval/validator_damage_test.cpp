@@ -200,12 +200,12 @@ StreamBytes tangled_stream() {
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  constexpr std::array<const char*, 4> kNames{"Rich", "Indexed", "Tangled", "Sliced"};
+  constexpr std::array<const char*, 5> kNames{"Rich", "Indexed", "Tangled", "Sliced", "Mixed"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Damage,
                          testing::Values(rich_stream, indexed_stream, tangled_stream,
-                                         sliced_stream),
+                                         sliced_stream, mixed_stream),
                          stream_name);
 
 }  // namespace

@@ -198,9 +198,10 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::uint32_t num_layers) {
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
-  gof.section_readable = header.profile_idc == kProfileMain
-                             ? check_bones(r, header, num_layers, gof)
-                             : check_clusters(r, header);
+  const bool has_bones = header.profile_idc == kProfileMain && r.u(1, "bones_flag") != 0;
+  if (r.readable()) gof.bones_flag = has_bones;
+  gof.section_readable =
+      has_bones ? check_bones(r, header, num_layers, gof) : check_clusters(r, header);
   gof.section_readable &= good;
   return gof;
 }

@@ -29,12 +29,13 @@ struct SliceCounts {
 struct GofHeaderCheck {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;       // 0: not known
+  std::optional<bool> bones_flag;     // if it could be read, or inferred
   bool section_readable = false;      // nothing but first_frame may be wrong
-  std::optional<SliceCounts> slices;  // in the Main profile, if known
+  std::optional<SliceCounts> slices;  // of a GOF of bones, if known
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
-// of the mesh, in the Main profile; 0 if not known.
+// of the mesh, for GOFs of bones; 0 if not known.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
                                 std::uint32_t num_layers);

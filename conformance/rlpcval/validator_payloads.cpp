@@ -139,6 +139,7 @@ void StreamValidator::begin_gof(const UnitHeader& unit) {
   gofs_.push_back({unit.offset, 0});
   gof_unit_ = unit;
   gof_place_ = {report_.units, unit.type_byte, unit.offset};
+  may_have_slices_ = true;
   slice_counts_.reset();
   bone_parser_.reset();
   previous_gof_.reset();
@@ -159,6 +160,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
       mesh_predictions_ ? mesh_predictions_->get(Prediction::kLayers).num_layers() : 0;
   const GofHeaderCheck header = check_gof_header(
       r, header_->header, surplus ? std::nullopt : expected_first_frame_, num_layers);
+  may_have_slices_ = damaged || header.bones_flag.value_or(true);
   slice_counts_ = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
   previous_gof_frames_ = header.num_frames;
@@ -170,7 +172,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   if (surplus) next_frame_ = expected_first_frame_;
   previous_gof_suspect_ = damaged || connectivity_suspect_;
   findings_.suspect(previous_gof_suspect_);
-  if (header_->header.profile_idc == kProfileMain) {
+  if (header.bones_flag.value_or(false)) {
     bone_section(unit, payload, header);
   } else {
     gof_section(unit, payload, header);
@@ -185,8 +187,9 @@ void StreamValidator::gof_section(const UnitHeader& unit, const Payload& payload
     return;
   }
   BitReader r = bits_of(unit, payload);
-  auto gof = parse_gof(r, header_->header, topology_, header.first_frame,
-                       options_.limits.max_memory_bytes);
+  const GofStart start = parse_gof_start(r, header_->header, header.first_frame);
+  auto gof =
+      parse_clusters(r, header_->header, topology_, start, options_.limits.max_memory_bytes);
   if (!gof) {
     findings_.error(gof.error());
     report_.complete = false;
@@ -207,7 +210,8 @@ void StreamValidator::bone_section(const UnitHeader& unit, const Payload& payloa
   }
   bone_parser_.emplace(header_->header, *mesh_predictions_, options_.limits.max_memory_bytes);
   BitReader r = bits_of(unit, payload);
-  if (const auto read = bone_parser_->gof(r, header.first_frame); !read) {
+  const GofStart start = parse_gof_start(r, header_->header, header.first_frame);
+  if (const auto read = bone_parser_->bones(r, start); !read) {
     findings_.error(read.error());
     report_.complete = false;
     bone_parser_.reset();

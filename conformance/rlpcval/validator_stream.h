@@ -107,6 +107,7 @@ class StreamValidator {
   std::optional<BoneGof> previous_bones_;  // if its slices could be read as well
   std::optional<UnitHeader> gof_unit_;     // if it, or a slice of it, is directly before
   FindingUnit gof_place_;
+  bool may_have_slices_ = false;  // that GOF: it is one of bones, or that is not known
   std::optional<SliceCounts> slice_counts_;
   std::optional<BoneGofParser> bone_parser_;  // if the sections so far could be read
   std::vector<GofIndexCheck> indexes_;

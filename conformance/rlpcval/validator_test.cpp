@@ -54,7 +54,8 @@ Bytes unit_bytes(const StreamBytes& bytes, const UnitPlace& unit) {
 }
 
 TEST(Validator, FindsNothingInGoodStreams) {
-  for (const StreamBytes& stream : {rich_stream(), indexed_stream(), sliced_stream()}) {
+  for (const StreamBytes& stream :
+       {rich_stream(), indexed_stream(), sliced_stream(), mixed_stream()}) {
     const ValidationReport report = validate(stream);
     EXPECT_EQ(ids(report), Ids{});
     EXPECT_TRUE(report.complete);
@@ -213,8 +214,9 @@ TEST(Validator, SaysWhatIsMissingOrTooMuch) {
 // The elements of a GOF unit of bones up to its layers; and of those.
 void put_bones(BitWriter& w, std::uint32_t num_bones_minus1, std::uint32_t rest_step_minus1,
                std::uint32_t num_component_groups, std::uint32_t prediction_idc) {
-  w.ue(0);  // first_frame
-  w.ue(1);  // num_gof_frames_minus1
+  w.ue(0);       // first_frame
+  w.ue(1);       // num_gof_frames_minus1
+  w.flag(true);  // bones_flag
   w.ue(num_bones_minus1);
   w.u(5, 3);  // fraction_bits
   w.u(3, 4);  // weight_bits
@@ -298,6 +300,26 @@ TEST(Validator, SaysWhichSlicesAreMissingOrMisplaced) {
   stream = good;
   insert(stream, units_of_type(good, UnitType::kGof).at(0).offset, unit_bytes(good, slices[0]));
   EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
+}
+
+TEST(Validator, TakesNoSlicesBehindGofsOfClusters) {
+  const StreamBytes good = mixed_stream();
+  const auto gofs = units_of_type(good, UnitType::kGof);
+  const Bytes slice = unit_bytes(good, units_of_type(good, UnitType::kSlice).at(0));
+  for (const std::size_t g : {std::size_t{0}, std::size_t{2}}) {
+    StreamBytes stream = good;
+    insert(stream, gofs.at(g).end(), slice);
+    EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
+  }
+  // Of a damaged GOF unit, it is not known.
+  for (const bool cut : {false, true}) {
+    StreamBytes stream = good;
+    stream[gofs.at(1).payload()] ^= 2;  // bones_flag
+    if (cut) stream = with_payload(good, gofs.at(1), Bytes{});
+    const Ids found = ids(stream);
+    EXPECT_EQ(found.at(0), cut ? "R-BIT-01" : "R-UNT-03");
+    EXPECT_EQ(std::count(found.begin(), found.end(), "R-UNT-05"), 0);
+  }
 }
 
 TEST(Validator, TakesNoSlicesInStreamsOfVersion0) {
