@@ -536,6 +536,13 @@ class DamagedMainStreams(DamagedStreams):
                       "--keep-order", "--hash", "frame", profile="main")
 
 
+class DamagedMixedStreams(DamagedStreams):
+    """The same for a stream with GOFs of clusters and of bones."""
+
+    def stream(self):
+        return (ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc").read_bytes()
+
+
 def main():
     global BIN
     parser = argparse.ArgumentParser(description=__doc__,
