@@ -264,6 +264,16 @@ class Figures(ToolsTest):
                       "frames 9 to 11: 2 clusters, 3 components"):
             self.assertIn(words, said)
 
+    def test_cloth_of_high_rank_gets_clusters(self):
+        stream, sizes = self.path("a.rlpc"), []
+        for options, part in (((), "clusters"), (("--prediction", "layers"), "bones")):
+            self.ok("rlpcenc", INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2", "-o", stream,
+                    "--kg", 0.1, *options)
+            self.ok("rlpcdec", stream, "--verify")
+            self.assertIn(f"num_{part}", self.ok("rlpcinfo", stream, "--json").json()["gofs"][0])
+            sizes.append(stream.stat().st_size)
+        self.assertLess(sizes[0], 0.97 * sizes[1])
+
     def test_the_csv_has_every_frame(self):
         report = self.encode(self.path("a.rlpc"), "--kg", 0.5, "--keep-order")
         self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"), "--csv",

@@ -62,6 +62,8 @@ struct MainTools {
   bool cobra_steps = false;  // of basis vectors: those of Vasa and Skala 2009, (18), (19)
   std::uint32_t component_groups = 0;  // slices: 0 for the default
   std::uint32_t layer_groups = 0;
+
+  bool operator==(const MainTools&) const = default;
 };
 
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };

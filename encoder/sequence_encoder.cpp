@@ -8,12 +8,12 @@
 #include "common/crc32.h"
 #include "common/layers.h"
 #include "common/topology.h"
-#include "encoder/bone_gof_search.h"
 #include "encoder/check_settings.h"
 #include "encoder/det_math.h"
 #include "encoder/gof_search.h"
 #include "encoder/grid_choice.h"
 #include "encoder/grid_value.h"
+#include "encoder/main_gof_search.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/target_search.h"
 #include "encoder/write_connectivity.h"
@@ -69,7 +69,7 @@ class SequenceEncoder {
     GofFrames frames;
     std::unique_ptr<GofCoder> coder;
     std::optional<GofChoice> choice;  // of the Baseline profile
-    std::optional<BoneChoice> bones;  // of the Main profile
+    MainChoice main;                  // of the Main profile
   };
 
   std::optional<InputError> prepare();
@@ -207,8 +207,8 @@ std::optional<InputError> SequenceEncoder::load(std::size_t g) {
 void SequenceEncoder::make_coder(std::size_t g) {
   GofState& state = gofs_[g];
   if (header_.profile_idc == kProfileMain) {
-    state.coder = std::make_unique<BoneGofSearch>(*bone_context_, state.frames, spans_[g].first,
-                                                  settings_, state.bones);
+    state.coder = std::make_unique<MainGofSearch>(*bone_context_, *context_, state.frames,
+                                                  spans_[g].first, settings_, state.main);
   } else {
     state.coder = std::make_unique<GofSearch>(*context_, state.frames, spans_[g].first,
                                               settings_, state.choice);

@@ -437,7 +437,7 @@ class MainStreams(StreamTest):
         self.agree(encode(self.folder, soup_animation(self.folder), "--kg", "1", profile="main"))
 
     def test_slices_can_be_left_out(self):
-        data = self.encode("curtain", 6, "--kg", "0.5", "--hash", "none")
+        data = self.encode("curtain", 6, "--kg", "0.5", "--hash", "none", "--bones", "1")
         whole = list(units(data))
         slices = [i for i, (kind, _) in enumerate(whole) if kind == SLICE]
         self.assertGreater(len(slices), 1)

@@ -1,0 +1,82 @@
+#include "encoder/main_gof_search.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+// Steps of clusters that leave about the error of bones at a step of 1.
+constexpr double kStepOfClusters = 0.67;
+// One PCA of all vertices does well unless it needs this part of all trajectories that can be.
+constexpr double kHighRank = 0.3;
+// A search for clusters is worth its time if some cost less than so many times what bones do.
+constexpr double kPromising = 1.1;
+constexpr std::uint32_t kVerticesOfCluster = 56;
+
+double cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+  double bits = 0.0;
+  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
+  return squared_error(frames, encoded.frame) + kErrorPerBit * step * step * bits;
+}
+
+}  // namespace
+
+MainGofSearch::MainGofSearch(const BoneContext& bones, const EncodingContext& context,
+                             const GofFrames& frames, std::uint32_t first_frame,
+                             const EncoderSettings& settings, MainChoice& choice)
+    : context_(context),
+      frames_(frames),
+      first_frame_(first_frame),
+      settings_(settings),
+      choice_(choice),
+      bones_(bones, frames, first_frame, settings, choice.bones) {}
+
+// Whether a search is worth its time: one world of all, or many small clusters, come near. What
+// is asked for of bones is not asked for of clusters.
+bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) const {
+  if (settings_.preset == Preset::kFast || settings_.main != MainTools{}) return false;
+  if (settings_.preset == Preset::kSlow) return true;
+  const std::uint32_t most = std::min(frames_.num_vertices, 3 * frames_.num_frames);
+  if (bones.components < kHighRank * most) return false;
+  const double wanted = kPromising * cost(bones, frames_, step);
+  const std::uint32_t many = std::clamp(frames_.num_vertices / kVerticesOfCluster, 2U, 96U);
+  for (const GofChoice& trial : {GofChoice{1, true}, GofChoice{many, false}}) {
+    std::optional<GofChoice> choice = trial;
+    GofSearch search(context_, frames_, first_frame_, settings_, choice);
+    const double at = kStepOfClusters * step;
+    if (cost(search.encode(at, at), frames_, step) < wanted) return true;
+  }
+  return false;
+}
+
+EncodedGof MainGofSearch::encode_clusters(double step, double analysis_step) {
+  if (!clusters_) {
+    clusters_.emplace(context_, frames_, first_frame_, settings_, choice_.clusters);
+  }
+  return clusters_->encode(kStepOfClusters * step, kStepOfClusters * analysis_step);
+}
+
+bool MainGofSearch::needs_frames(double step, double analysis_step) const {
+  return choice_.is_far(analysis_step) || choice_.has_clusters ||
+         bones_.needs_frames(step, analysis_step);
+}
+
+EncodedGof MainGofSearch::encode(double step, double analysis_step) {
+  if (!choice_.is_far(analysis_step)) {
+    return choice_.has_clusters ? encode_clusters(step, analysis_step)
+                                : bones_.encode(step, analysis_step);
+  }
+  choice_.step = analysis_step;
+  ++choice_.times;
+  choice_.has_clusters = false;
+  EncodedGof bones = bones_.encode(step, analysis_step);
+  if (!clusters_promise(bones, step)) return bones;
+  choice_.clusters.reset();
+  clusters_.reset();
+  EncodedGof clusters = encode_clusters(step, analysis_step);
+  choice_.has_clusters = cost(clusters, frames_, step) < cost(bones, frames_, step);
+  return choice_.has_clusters ? std::move(clusters) : std::move(bones);
+}
+
+}  // namespace rlpc
