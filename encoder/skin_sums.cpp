@@ -51,7 +51,7 @@ SkinSums::SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions)
               gram[row * columns + column];
         }
       }
-      product_[b * num_bones_ + a] = sum.transpose();
+      if (b < a) product_[b * num_bones_ + a] = sum.transpose();
     }
   }
 }
