@@ -51,7 +51,7 @@ WIDEST std::vector<double> matrix_product(std::span<const double> a, std::size_t
   std::vector<double> result(num_rows * b_width, 0.0);
   for (std::size_t r = 0; r < num_rows; ++r) {
     const double* x = &a[r * a_width];
-    double* out = &result[r * b_width];
+    double* out = result.data() + r * b_width;  // b may have no columns
     std::size_t i = 0;
     for (; i + kTogether <= inner; i += kTogether) {
       const double* b0 = &b[i * b_width];
