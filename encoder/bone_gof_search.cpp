@@ -16,6 +16,7 @@
 namespace rlpc {
 namespace {
 
+constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMinVerticesOfBone = 8;
 constexpr std::uint32_t kUsualInfluences = 4;
 constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
@@ -24,11 +25,17 @@ constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
 constexpr std::uint32_t kSearchInfluences = 2;
 // Error that one bone may leave of that of one which does not turn, to be chosen unseen.
 constexpr double kRigidPart = 0.4;
-// Expected costs, relative to that without bones, at which these are looked for; and relative
-// to the least, at which they are tried.
-constexpr double kPromising = 0.85;
+// Expected costs at which bones are looked for: relative to those expected without bones, to
+// the real ones without, and to the real ones once the first bones are there. If the first are
+// very low, nothing else is tried.
+constexpr double kPromising = 0.78;
+constexpr double kPromisingOfReal = 0.85;
+constexpr double kStillPromising = 0.9;
+constexpr double kSure = 0.3;
+// Expected costs, relative to the least, of numbers of bones to be tried.
 constexpr double kNearLeast = 1.06;
 constexpr double kWorthACost = 1.2;
+constexpr double kFarAbove = 1.1;  // real costs that rise here will not fall again
 // So many bones tell whether more are worth looking at: not above this expected cost.
 constexpr std::uint32_t kEnoughBones = 20;
 constexpr double kHopeless = 0.92;
@@ -156,19 +163,23 @@ Rig BoneGofSearch::quick_choice(double step) const {
 BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double step) const {
   Promise best;
   BoneFit quick = quick_fit(influences, step);
-  const double sliding = quick.expected_sliding_cost();
+  best.sliding = quick.expected_sliding_cost();
   for (const std::uint32_t count : kFewBones) {
-    if (count * kMinVerticesOfBone > frames_.num_vertices || !quick.grow(count)) break;
-    const double part = quick.expected_cost() / sliding;
-    if (part < best.part) best = {count, part};
-    if (count >= kEnoughBones && best.part > kHopeless) break;
+    if (!grow(quick, count)) break;
+    const double expected = quick.expected_cost();
+    best.costs.push_back(expected);
+    if (expected < best.cost) {
+      best.cost = expected;
+      best.count = count;
+    }
+    if (count >= kEnoughBones && best.cost > kHopeless * best.sliding) break;
   }
   return best;
 }
 
 // Takes a rig if it costs less than the one before, with its analysis.
-double BoneGofSearch::consider(Rig rig) {
-  BoneChoice other{std::move(rig), usual_, choice_->step, choice_->times};
+double BoneGofSearch::consider(Rig rig, const BoneCounts& counts) {
+  BoneChoice other{std::move(rig), counts, usual_, choice_->step, choice_->times};
   BoneAnalysis analysis = analyse(other, other.step);
   const double now = cost(analysis, other.settings, other.step);
   if (now < least_) {
@@ -181,7 +192,7 @@ double BoneGofSearch::consider(Rig rig) {
 
 // The same of tools.
 void BoneGofSearch::consider(const BoneSettings& settings) {
-  BoneChoice other{choice_->rig, settings, choice_->step, choice_->times};
+  BoneChoice other{choice_->rig, choice_->counts, settings, choice_->step, choice_->times};
   const bool same_analysis = settings.prediction == choice_->settings.prediction &&
                              settings.layer_steps == choice_->settings.layer_steps;
   BoneAnalysis analysis =
@@ -218,16 +229,31 @@ void BoneGofSearch::choose_prediction() {
 }
 
 void BoneGofSearch::choose(double step) {
-  const int times = choice_ ? choice_->times : 0;
-  choice_ = BoneChoice{{}, usual_, step, times + 1};
+  const BoneChoice before = std::move(choice_).value_or(BoneChoice{});
+  choice_ = BoneChoice{{}, {}, usual_, step, before.times + 1};
   cached_.reset();
   if (preset_ == Preset::kFast && tools_.bones == 0) {
     choice_->rig = quick_choice(step);
     return;
   }
-  least_ = std::numeric_limits<double>::infinity();
-  choose_bones();
+  least_ = kNone;
+  if (before.counts.bones > 0 && preset_ != Preset::kSlow) {
+    choose_bones_near(before.counts, step < before.step);
+  } else {
+    choose_bones();
+  }
+  if (choice_->rig.bones.empty()) consider(sliding_rig(frames_), {});
   choose_prediction();
+}
+
+// As many bones as were best for another step, or the next number: more for a finer step.
+void BoneGofSearch::choose_bones_near(const BoneCounts& counts, bool finer) {
+  const auto at = std::find(kFewBones.begin(), kFewBones.end(), counts.bones);
+  const auto first = finer || at == kFewBones.begin() ? at : at - 1;
+  const auto end = finer ? std::min(at + 2, kFewBones.end()) : at + 1;
+  BoneFit full = fit(counts.influences, choice_->step);
+  if (!grow(full, *first)) return;
+  try_bones(full, counts.influences, std::span(first, end), counts.bones);
 }
 
 void BoneGofSearch::choose_bones() {
@@ -237,41 +263,69 @@ void BoneGofSearch::choose_bones() {
     for (std::uint32_t influences = 1; influences <= most; ++influences) {
       BoneFit full = fit(influences, step);
       full.grow(tools_.bones);
-      consider(full.rig(influences == 1 ? 1 : max_influences_));
+      consider(full.rig(influences == 1 ? 1 : max_influences_), {});
     }
     return;
   }
-  consider(sliding_rig(frames_));
-  consider(quick_fit(1, step).rig(1));
   // What does not promise much with two influences does so less with one.
   std::array<Promise, kSearchInfluences> promises;
-  double promised = kPromising;
+  double least = kNone;
   for (std::uint32_t influences = most; influences > 0; --influences) {
-    promises[influences - 1] = promise(influences, step);
-    if (promises[influences - 1].part > promised) break;
-    promised = std::min(promised, promises[influences - 1].part * kNearLeast);
+    Promise& of = promises[influences - 1];
+    of = promise(influences, step);
+    if (of.cost > std::min(kPromising * of.sliding, kNearLeast * least)) break;
+    least = std::min(least, of.cost);
+  }
+  double without = promises[most - 1].sliding;
+  if (least > kSure * without || preset_ == Preset::kSlow) {
+    consider(sliding_rig(frames_), {});
+    consider(quick_fit(1, step).rig(1), {});
+    without = least_;
   }
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
-    const Promise& promise = promises[influences - 1];
-    if (promise.part <= promised) try_bones(influences, kFewBones, promise.count);
-    if (preset_ == Preset::kSlow) try_bones(influences, kManyBones, kManyBones.back());
+    const Promise& of = promises[influences - 1];
+    if (of.cost <= std::min(kNearLeast * least, kPromisingOfReal * without)) {
+      try_promised_bones(influences, of, without);
+    }
+    if (preset_ == Preset::kSlow) {
+      BoneFit full = fit(influences, step);
+      if (!grow(full, kManyBones.front())) break;
+      try_bones(full, influences, kManyBones, kManyBones.back());
+    }
   }
 }
 
-// Growing numbers of bones, until the cost rises beyond the number that is likely the best.
-void BoneGofSearch::try_bones(std::uint32_t influences, std::span<const std::uint32_t> counts,
-                              std::uint32_t likely) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+// About as many bones as are likely the best, unless the sample was too small to tell.
+void BoneGofSearch::try_promised_bones(std::uint32_t influences, const Promise& promise,
+                                       double without) {
   BoneFit full = fit(influences, choice_->step);
+  for (std::size_t i = 0; i < promise.costs.size() && grow(full, kFewBones[i]); ++i) {
+    const double correction = full.expected_cost() / promise.costs[i];
+    if (correction * promise.cost > kStillPromising * without) return;
+    if (2 * kFewBones[i] < promise.count) continue;
+    try_bones(full, influences, std::span(kFewBones).subspan(i), promise.count);
+    return;
+  }
+}
+
+bool BoneGofSearch::grow(BoneFit& fit, std::uint32_t count) const {
+  return count * kMinVerticesOfBone <= frames_.num_vertices && fit.grow(count);
+}
+
+// Growing numbers of bones, of which the first are there, until the cost rises beyond the
+// number that is likely the best.
+void BoneGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
+                              std::span<const std::uint32_t> counts, std::uint32_t likely) {
   double expected = kNone;
   double before = kNone;
   for (const std::uint32_t count : counts) {
-    if (count * kMinVerticesOfBone > frames_.num_vertices || !full.grow(count)) break;
+    if (count != counts.front() && !grow(full, count)) break;
     const double now = full.expected_cost();
     expected = std::min(expected, now);
     if (now > kWorthACost * expected) continue;
-    const double real = consider(full.rig(influences == 1 ? 1 : max_influences_));
-    if (real > before && count >= likely) break;
+    const double real =
+        consider(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
+    if (real > before && (count >= likely || real > kFarAbove * least_)) break;
     before = real;
   }
 }

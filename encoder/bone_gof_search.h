@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,9 +24,16 @@ struct BoneContext {
   int position_bits;
 };
 
+// What bones were looked for: so many, with vertices that follow so many; 0 of one.
+struct BoneCounts {
+  std::uint32_t bones = 0;
+  std::uint32_t influences = 0;
+};
+
 // Bones and tools of a GOF, and the step that they were chosen for.
 struct BoneChoice {
   Rig rig;
+  BoneCounts counts;
   BoneSettings settings;
   double step = 0.0;
   int times = 0;  // that there was a choice
@@ -58,18 +66,23 @@ class BoneGofSearch : public GofCoder {
   BoneGof code(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
   double cost(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
   struct Promise {
-    std::uint32_t count = 0;  // bones
-    double part = 2.0;        // expected cost, of that without bones
+    std::uint32_t count = 0;                                // bones
+    double cost = std::numeric_limits<double>::infinity();  // expected
+    double sliding = 0.0;                                   // the same without bones
+    std::vector<double> costs;                              // the same of all numbers tried
   };
 
   BoneFit fit(std::size_t influences, double step) const;
   BoneFit quick_fit(std::size_t influences, double step) const;
   Promise promise(std::size_t influences, double step) const;
   Rig quick_choice(double step) const;
-  double consider(Rig rig);
+  double consider(Rig rig, const BoneCounts& counts);
   void consider(const BoneSettings& settings);
   void choose_bones();
-  void try_bones(std::uint32_t influences, std::span<const std::uint32_t> counts,
+  void choose_bones_near(const BoneCounts& counts, bool finer);
+  bool grow(BoneFit& fit, std::uint32_t count) const;
+  void try_promised_bones(std::uint32_t influences, const Promise& promise, double without);
+  void try_bones(BoneFit& full, std::uint32_t influences, std::span<const std::uint32_t> counts,
                  std::uint32_t likely);
   void choose_prediction();
   void choose(double step);

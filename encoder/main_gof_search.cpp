@@ -7,9 +7,9 @@ namespace rlpc {
 namespace {
 
 // Steps of clusters that leave about the error of bones at a step of 1.
-constexpr double kStepOfClusters = 0.67;
+constexpr double kStepOfClusters = 0.8;
 // One PCA of all vertices does well unless it needs this part of all trajectories that can be.
-constexpr double kHighRank = 0.3;
+constexpr double kHighRank = 0.4;
 // A search for clusters is worth its time if some cost less than so many times what bones do.
 constexpr double kPromising = 1.1;
 constexpr std::uint32_t kVerticesOfCluster = 56;
