@@ -1,32 +1,16 @@
 #include "encoder/local_pca.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "encoder/eigenvectors.h"
 #include "encoder/matrix_products.h"
 
 namespace rlpc {
 namespace {
 
-using Square = Eigen::MatrixXd;
-
 constexpr double kRankTolerance = 1e-13;
-
-// Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
-void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
-
-Square symmetric(const std::vector<double>& lower, std::size_t width) {
-  const auto n = static_cast<Eigen::Index>(width);
-  Square result(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      result(i, j) = lower[static_cast<std::size_t>(i) * width + static_cast<std::size_t>(j)];
-    }
-  }
-  return result;
-}
 
 std::vector<double> transpose(const TrajectoryMatrix& m) {
   std::vector<double> t(m.a.size());
@@ -53,45 +37,23 @@ std::vector<std::vector<double>> project(const std::vector<double>& rows, std::s
   return out;
 }
 
-// An eigenvector's sign is arbitrary: make its largest element positive.
-void fix_sign(std::vector<double>& v) {
-  double largest = 0.0;
-  for (const double x : v) {
-    if (std::abs(x) > std::abs(largest)) largest = x;
-  }
-  if (largest < 0.0) {
-    for (double& x : v) x = -x;
-  }
-}
-
 }  // namespace
 
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy) {
   PrincipalComponents pc;
   if (matrix.num_values == 0 || matrix.num_frames == 0) return pc;
-  fix_eigen_blocking();
   for (const double x : matrix.a) pc.total_energy += x * x;
 
   const bool by_frames = matrix.num_frames <= matrix.num_values;
   const std::vector<double> transposed = by_frames ? std::vector<double>{} : transpose(matrix);
   const std::size_t width = by_frames ? matrix.num_frames : matrix.num_values;
-  const Square g = symmetric(gram_matrix(by_frames ? matrix.a : transposed, width), width);
-  const Eigen::SelfAdjointEigenSolver<Square> solver(g);
-  const Eigen::Index size = g.rows();
   // What rounding leaves of a matrix of lower rank is no component.
   const double least = std::max(min_energy, kRankTolerance * pc.total_energy);
-  std::vector<std::vector<double>> vectors;
-  for (Eigen::Index l = size - 1; l >= 0; --l) {
-    const double energy = std::max(solver.eigenvalues()(l), 0.0);
-    pc.energy.push_back(energy);
-    if (vectors.size() >= max_components || energy <= least) continue;
-    std::vector<double> v(static_cast<std::size_t>(size));
-    for (Eigen::Index i = 0; i < size; ++i)
-      v[static_cast<std::size_t>(i)] = solver.eigenvectors()(i, l);
-    fix_sign(v);
-    vectors.push_back(std::move(v));
-  }
+  EigenPairs pairs = leading_eigenvectors(gram_matrix(by_frames ? matrix.a : transposed, width),
+                                          width, max_components, least);
+  pc.energy = std::move(pairs.values);
+  std::vector<std::vector<double>> vectors = std::move(pairs.vectors);
   if (by_frames) {
     pc.spatial = project(matrix.a, matrix.num_frames, vectors);
     pc.temporal = std::move(vectors);

@@ -20,14 +20,14 @@ struct TrajectoryMatrix {
 // The matrix is sum over l of spatial[l] * temporal[l]^T; temporal vectors are orthonormal,
 // spatial ones orthogonal with norm sigma, which falls with l.
 struct PrincipalComponents {
-  std::vector<double> energy;                 // sigma^2 of every component, descending
+  std::vector<double> energy;                 // sigma^2, descending; of all or the first
   double total_energy = 0.0;                  // squared norm of the matrix
   std::vector<std::vector<double>> temporal;  // [component][num_frames], for the leading ones
   std::vector<std::vector<double>> spatial;   // [component][num_values]
 };
 
-// Energies of all components; vectors for those with energy above min_energy, at most
-// max_components.
+// Components with energy above min_energy, at most max_components, and the energies of these at
+// least (eigenvectors.h).
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 

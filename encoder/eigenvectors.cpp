@@ -1,0 +1,188 @@
+#include "encoder/eigenvectors.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "encoder/matrix_products.h"
+
+namespace rlpc {
+namespace {
+
+using Square = Eigen::MatrixXd;
+
+// From this width on, few vectors are found faster than all.
+constexpr std::size_t kWide = 288;
+constexpr std::size_t kFewPart = 4;
+
+// Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
+void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
+
+// An eigenvector's sign is arbitrary: make its largest element positive.
+void fix_sign(std::vector<double>& v) {
+  double largest = 0.0;
+  for (const double x : v) {
+    if (std::abs(x) > std::abs(largest)) largest = x;
+  }
+  if (largest < 0.0) {
+    for (double& x : v) x = -x;
+  }
+}
+
+EigenPairs all_eigenvectors(std::span<const double> matrix, std::size_t width,
+                            std::size_t max_count, double least) {
+  fix_eigen_blocking();
+  const auto n = static_cast<Eigen::Index>(width);
+  Square square(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j)
+      square(i, j) = matrix[static_cast<std::size_t>(i * n + j)];
+  }
+  const Eigen::SelfAdjointEigenSolver<Square> solver(square);
+  EigenPairs pairs;
+  for (Eigen::Index l = n - 1; l >= 0; --l) {
+    const double value = std::max(solver.eigenvalues()(l), 0.0);
+    pairs.values.push_back(value);
+    if (pairs.vectors.size() >= max_count || value <= least) continue;
+    std::vector<double> v(width);
+    for (Eigen::Index i = 0; i < n; ++i)
+      v[static_cast<std::size_t>(i)] = solver.eigenvectors()(i, l);
+    fix_sign(v);
+    pairs.vectors.push_back(std::move(v));
+  }
+  return pairs;
+}
+
+// Subspace iteration (Rutishauser 1970): a block of vectors is multiplied by the matrix and
+// made orthonormal again, until it holds the eigenvectors of the largest values.
+class SubspaceIteration {
+ public:
+  SubspaceIteration(const std::vector<double>& lower, std::size_t width)
+      : width_(width), matrix_(lower) {
+    for (std::size_t i = 0; i < width; ++i) {
+      for (std::size_t j = 0; j < i; ++j) matrix_[j * width + i] = matrix_[i * width + j];
+    }
+  }
+
+  // None if there are too many to be found in this way.
+  std::optional<EigenPairs> find(std::size_t max_count, double least) {
+    constexpr std::size_t kFirstCount = 16;
+    constexpr double kMargin = 0.5;  // of values that are found beyond those asked for
+    constexpr std::size_t kMoreCount = 8;
+    for (std::size_t count = kFirstCount; kFewPart * count <= width_; count *= 2) {
+      widen(count);
+      for (int i = 0; i < kRounds; ++i) multiply();
+      EigenPairs pairs = rotate();
+      if (pairs.values.back() < kMargin * least || count >= max_count + kMoreCount) {
+        std::size_t wanted = 0;
+        while (wanted < std::min(count, max_count) && pairs.values[wanted] > least) ++wanted;
+        pairs.vectors.resize(wanted);
+        for (auto& v : pairs.vectors) fix_sign(v);
+        return pairs;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr int kRounds = 6;
+
+  // More vectors, of no pattern.
+  void widen(std::size_t count) {
+    while (block_.size() < count) {
+      std::vector<double>& v = block_.emplace_back(width_);
+      for (double& x : v) {
+        random_ = random_ * 6364136223846793005U + 1442695040888963407U;
+        x = static_cast<double>(random_ >> 40) * 0x1p-24 - 0.5;
+      }
+    }
+  }
+
+  std::vector<std::vector<double>> product() const {
+    const std::size_t count = block_.size();
+    std::vector<double> columns(width_ * count);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < width_; ++i) columns[i * count + k] = block_[k][i];
+    }
+    const std::vector<double> flat = matrix_product(matrix_, width_, columns, count);
+    std::vector<std::vector<double>> result(count, std::vector<double>(width_));
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < width_; ++i) result[k][i] = flat[i * count + k];
+    }
+    return result;
+  }
+
+  // Gram-Schmidt, twice for the sake of rounding; of vectors that depend on others nothing is
+  // left.
+  void multiply() {
+    block_ = product();
+    for (std::size_t k = 0; k < block_.size(); ++k) {
+      std::vector<double>& v = block_[k];
+      const double before = dot(v, v);
+      for (int again = 0; again < 2; ++again) {
+        for (std::size_t j = 0; j < k; ++j) subtract(v, dot(v, block_[j]), block_[j]);
+      }
+      constexpr double kRounding = 1e-24;
+      const double square = dot(v, v);
+      const double scale =
+          square > kRounding * before && square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
+      for (double& x : v) x *= scale;
+    }
+  }
+
+  // Turns the vectors within the space they span to be eigenvectors (Rayleigh and Ritz).
+  EigenPairs rotate() {
+    const std::size_t count = block_.size();
+    const std::vector<std::vector<double>> products = product();
+    std::vector<double> small(count * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) small[i * count + j] = dot(block_[i], products[j]);
+    }
+    EigenPairs within = all_eigenvectors(small, count, count, -1.0);
+    EigenPairs pairs{std::move(within.values), {}};
+    for (const auto& mixing : within.vectors) {
+      std::vector<double>& v = pairs.vectors.emplace_back(width_);
+      for (std::size_t k = 0; k < count; ++k) subtract(v, -mixing[k], block_[k]);
+    }
+    block_ = pairs.vectors;
+    return pairs;
+  }
+
+  // Four sums, so that additions need not wait for each other.
+  static double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    std::array<double, 4> sum{};
+    std::size_t i = 0;
+    for (; i + 4 <= a.size(); i += 4) {
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    }
+    for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
+  static void subtract(std::vector<double>& from, double factor, const std::vector<double>& v) {
+    for (std::size_t i = 0; i < v.size(); ++i) from[i] -= factor * v[i];
+  }
+
+  std::size_t width_;
+  std::vector<double> matrix_;
+  std::vector<std::vector<double>> block_;  // orthonormal, or not yet
+  std::uint64_t random_ = 1;
+};
+
+}  // namespace
+
+EigenPairs leading_eigenvectors(const std::vector<double>& matrix, std::size_t width,
+                                std::size_t max_count, double least) {
+  if (width >= kWide) {
+    if (auto few = SubspaceIteration(matrix, width).find(max_count, least)) {
+      return std::move(*few);
+    }
+  }
+  return all_eigenvectors(matrix, width, max_count, least);
+}
+
+}  // namespace rlpc
