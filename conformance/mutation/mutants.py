@@ -106,6 +106,8 @@ class Workshop:
             # What is wrong must be seen by the streams, not by the compiler.
             text = re.sub(r"^static_assert\(.*?\);.*$", "", path.read_text(encoding="utf-8"),
                           flags=re.MULTILINE)
+            # Faults are in plain loops, not in their twins.
+            text = text.replace("#define RLPC_HAVE_AVX2_LOOPS", "")
             path.write_text(text, encoding="utf-8")
         self._run("cmake", "-S", self._source, "-B", self._build, "-G", "Ninja")
         self._make()
