@@ -20,7 +20,7 @@ struct BoneFitOptions {
   double step = 1.0;  // of the quantisers, grid units: smaller errors do not matter
   std::uint32_t sample_frames = 64;      // at most so many are looked at together,
   std::uint32_t sample_vertices = 3000;  // and so many vertices
-  int exchanges = 6;                     // of bones, at each growth
+  int exchanges = 6;                     // of bones, each time these settle
 };
 
 // Finds bones, weights, rest positions, tree and pivots of at least one vertex in at least one
@@ -34,7 +34,9 @@ class BoneFit {
   BoneFit& operator=(const BoneFit&) = delete;
 
   // Adds bones up to a number; false if none was worth adding.
-  bool grow(std::size_t num_bones) { return solver_.grow(num_bones, options_.exchanges); }
+  bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
+  // Puts bones where these serve better. That takes about as long as growing.
+  void settle() { solver_.exchange_bones(options_.exchanges); }
   // What coding the GOF with these bones is expected to cost (bone_estimate.h), rest positions
   // left out; and with one that only follows the centre of the vertices.
   double expected_cost() const;

@@ -92,6 +92,7 @@ Rig fit_bones(const Animation& a, const Options& options) {
   BoneFit fit(a.frames, a.triangles,
               {.max_influences = options.max_influences, .step = options.step});
   fit.grow(options.max_bones);
+  fit.settle();
   EXPECT_LE(fit.num_bones(), options.max_bones);
   return fit.rig(options.max_influences);
 }
@@ -238,6 +239,7 @@ TEST(BoneFit, GrowsStepByStep) {
   double error = fit.rms_error();
   for (const std::size_t count : {2U, 3U}) {
     ASSERT_TRUE(fit.grow(count));
+    fit.settle();
     EXPECT_EQ(fit.num_bones(), count);
     EXPECT_LT(fit.rms_error(), error);
     error = fit.rms_error();

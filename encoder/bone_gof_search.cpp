@@ -23,14 +23,17 @@ constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
 // Bones are looked for with vertices that follow one, and with vertices that follow two: with
 // more, bones overlap, and neither they nor weights are smooth.
 constexpr std::uint32_t kSearchInfluences = 2;
-// Error that one bone may leave of that of one which does not turn, to be chosen unseen.
-constexpr double kRigidPart = 0.4;
+// Parts of the error of one bone that does not turn which one that turns leaves: below the
+// first, that is chosen unseen; above the second, the one which does not turn.
+constexpr double kRigidPart = 0.5;
+constexpr double kFlexiblePart = 1.0;
 // Expected costs at which bones are looked for: relative to those expected without bones, to
 // the real ones without, and to the real ones once the first bones are there. If the first are
 // very low, nothing else is tried.
 constexpr double kPromising = 0.78;
 constexpr double kPromisingOfReal = 0.85;
-constexpr double kStillPromising = 0.9;
+constexpr double kPromisingUnsettled = 1.0;
+constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
 // Expected costs, relative to the least, of numbers of bones to be tried.
 constexpr double kNearLeast = 1.06;
@@ -153,10 +156,16 @@ BoneFit BoneGofSearch::quick_fit(std::size_t influences, double step) const {
 }
 
 // One bone that turns, if that makes much of a difference, else one that does not.
-Rig BoneGofSearch::quick_choice(double step) const {
-  const BoneFit quick = quick_fit(1, step);
-  return quick.rms_error() < kRigidPart * quick.sliding_error() ? quick.rig(1)
-                                                                : sliding_rig(frames_);
+void BoneGofSearch::choose_one_bone() {
+  const BoneFit quick = quick_fit(1, choice_->step);
+  const double part = quick.rms_error() / quick.sliding_error();
+  if (preset_ == Preset::kFast) {
+    choice_->rig = part < kRigidPart ? quick.rig(1) : sliding_rig(frames_);
+    return;
+  }
+  const bool slow = preset_ == Preset::kSlow;
+  if (slow || part >= kRigidPart) consider(sliding_rig(frames_), {});
+  if (slow || part < kFlexiblePart) consider(quick.rig(1), {});
 }
 
 // The numbers of bones that a small sample promises most of, with vertices that follow so many.
@@ -233,7 +242,7 @@ void BoneGofSearch::choose(double step) {
   choice_ = BoneChoice{{}, {}, usual_, step, before.times + 1};
   cached_.reset();
   if (preset_ == Preset::kFast && tools_.bones == 0) {
-    choice_->rig = quick_choice(step);
+    choose_one_bone();
     return;
   }
   least_ = kNone;
@@ -242,7 +251,7 @@ void BoneGofSearch::choose(double step) {
   } else {
     choose_bones();
   }
-  if (choice_->rig.bones.empty()) consider(sliding_rig(frames_), {});
+  if (choice_->rig.bones.empty()) choose_one_bone();
   choose_prediction();
 }
 
@@ -263,6 +272,7 @@ void BoneGofSearch::choose_bones() {
     for (std::uint32_t influences = 1; influences <= most; ++influences) {
       BoneFit full = fit(influences, step);
       full.grow(tools_.bones);
+      full.settle();
       consider(full.rig(influences == 1 ? 1 : max_influences_), {});
     }
     return;
@@ -270,16 +280,17 @@ void BoneGofSearch::choose_bones() {
   // What does not promise much with two influences does so less with one.
   std::array<Promise, kSearchInfluences> promises;
   double least = kNone;
+  double sliding = 0.0;
   for (std::uint32_t influences = most; influences > 0; --influences) {
-    Promise& of = promises[influences - 1];
-    of = promise(influences, step);
+    const Promise of = promise(influences, step);
+    sliding = of.sliding;
     if (of.cost > std::min(kPromising * of.sliding, kNearLeast * least)) break;
+    promises[influences - 1] = of;
     least = std::min(least, of.cost);
   }
-  double without = promises[most - 1].sliding;
-  if (least > kSure * without || preset_ == Preset::kSlow) {
-    consider(sliding_rig(frames_), {});
-    consider(quick_fit(1, step).rig(1), {});
+  double without = sliding;
+  if (least > kSure * sliding || preset_ == Preset::kSlow) {
+    choose_one_bone();
     without = least_;
   }
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
@@ -299,17 +310,28 @@ void BoneGofSearch::choose_bones() {
 void BoneGofSearch::try_promised_bones(std::uint32_t influences, const Promise& promise,
                                        double without) {
   BoneFit full = fit(influences, choice_->step);
-  for (std::size_t i = 0; i < promise.costs.size() && grow(full, kFewBones[i]); ++i) {
-    const double correction = full.expected_cost() / promise.costs[i];
-    if (correction * promise.cost > kStillPromising * without) return;
-    if (2 * kFewBones[i] < promise.count) continue;
-    try_bones(full, influences, std::span(kFewBones).subspan(i), promise.count);
-    return;
-  }
+  std::size_t first = 0;
+  const auto promises_less = [&](double part) {
+    const double correction = full.expected_cost() / promise.costs[first];
+    return correction * promise.cost < part * without;
+  };
+  do {
+    if (!can_have(kFewBones[first]) || !full.grow(kFewBones[first])) return;
+    if (!promises_less(kPromisingUnsettled)) return;
+    full.settle();
+    if (!promises_less(kPromisingSettled)) return;
+  } while (2 * kFewBones[first] < promise.count && ++first < promise.costs.size());
+  try_bones(full, influences, std::span(kFewBones).subspan(first), promise.count);
+}
+
+bool BoneGofSearch::can_have(std::uint32_t count) const {
+  return count * kMinVerticesOfBone <= frames_.num_vertices;
 }
 
 bool BoneGofSearch::grow(BoneFit& fit, std::uint32_t count) const {
-  return count * kMinVerticesOfBone <= frames_.num_vertices && fit.grow(count);
+  if (!can_have(count) || !fit.grow(count)) return false;
+  fit.settle();
+  return true;
 }
 
 // Growing numbers of bones, of which the first are there, until the cost rises beyond the

@@ -75,11 +75,12 @@ class BoneGofSearch : public GofCoder {
   BoneFit fit(std::size_t influences, double step) const;
   BoneFit quick_fit(std::size_t influences, double step) const;
   Promise promise(std::size_t influences, double step) const;
-  Rig quick_choice(double step) const;
+  void choose_one_bone();
   double consider(Rig rig, const BoneCounts& counts);
   void consider(const BoneSettings& settings);
   void choose_bones();
   void choose_bones_near(const BoneCounts& counts, bool finer);
+  bool can_have(std::uint32_t count) const;
   bool grow(BoneFit& fit, std::uint32_t count) const;
   void try_promised_bones(std::uint32_t influences, const Promise& promise, double without);
   void try_bones(BoneFit& full, std::uint32_t influences, std::span<const std::uint32_t> counts,

@@ -35,8 +35,7 @@ BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
   improve(1);
 }
 
-bool BoneSolver::grow(std::size_t num_bones, int exchanges) {
-  constexpr std::size_t kExchangedPart = 8;
+bool BoneSolver::grow(std::size_t num_bones) {
   const std::size_t before = motions_.size();
   while (motions_.size() < num_bones) {
     const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
@@ -44,11 +43,15 @@ bool BoneSolver::grow(std::size_t num_bones, int exchanges) {
     if (added > 0) improve(kRounds);
     if (added < count) break;
   }
+  return motions_.size() > before;
+}
+
+void BoneSolver::exchange_bones(int times) {
+  constexpr std::size_t kExchangedPart = 8;
   std::size_t count = 1 + motions_.size() / kExchangedPart;
-  for (int i = 0; i < exchanges && count > 0; ++i) {
+  for (int i = 0; i < times && count > 0; ++i) {
     if (!exchange(count)) count /= 2;
   }
-  return motions_.size() > before;
 }
 
 std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertices) const {

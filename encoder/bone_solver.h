@@ -40,9 +40,10 @@ class BoneSolver {
   // The sample is kept by reference. There is one bone at first.
   BoneSolver(const BoneSample& sample, std::size_t max_influences);
 
-  // Adds bones up to a number, in several steps, then exchanges some; false if none was worth
-  // adding.
-  bool grow(std::size_t num_bones, int exchanges);
+  // Adds bones up to a number, in several steps; false if none was worth adding.
+  bool grow(std::size_t num_bones);
+  // Exchanges the bones that are missed least for new ones, as often as that is better.
+  void exchange_bones(int times);
   // Improves rest positions, too; bones cannot be added after that.
   void settle();
   // Leaves out bones that save less squared error than `worth`.

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "encoder/det_math.h"
 #include "encoder/matrix_products.h"
 
 namespace rlpc {
@@ -74,7 +75,8 @@ class SubspaceIteration {
     constexpr std::size_t kFirstCount = 16;
     constexpr double kMargin = 0.5;  // of values that are found beyond those asked for
     constexpr std::size_t kMoreCount = 8;
-    for (std::size_t count = kFirstCount; kFewPart * count <= width_; count *= 2) {
+    const std::size_t most = width_ / kFewPart;
+    for (std::size_t count = kFirstCount; count <= most; count *= 2) {
       widen(count);
       for (int i = 0; i < kRounds; ++i) multiply();
       EigenPairs pairs = rotate();
@@ -85,12 +87,21 @@ class SubspaceIteration {
         for (auto& v : pairs.vectors) fix_sign(v);
         return pairs;
       }
+      if (least > 0.0 && at_this_rate(pairs.values, least) > static_cast<double>(most)) break;
     }
     return std::nullopt;
   }
 
  private:
   static constexpr int kRounds = 6;
+
+  // The number of values above one, if they go on to fall as the second half of these does.
+  static double at_this_rate(const std::vector<double>& values, double least) {
+    const std::size_t half = values.size() / 2;
+    const double fall = det_log2(values[half] / values.back());
+    const double left = det_log2(values.back() / least);
+    return static_cast<double>(values.size()) + static_cast<double>(half) * left / fall;
+  }
 
   // More vectors, of no pattern.
   void widen(std::size_t count) {

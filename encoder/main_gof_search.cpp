@@ -10,9 +10,12 @@ namespace {
 constexpr double kStepOfClusters = 0.8;
 // One PCA of all vertices does well unless it needs this part of all trajectories that can be.
 constexpr double kHighRank = 0.4;
-// A search for clusters is worth its time if some cost less than so many times what bones do.
+// A search for clusters is worth its time if some cost less than so many times what bones do;
+// beyond the second, other steps will change nothing.
 constexpr double kPromising = 1.1;
+constexpr double kHopeless = 1.15;
 constexpr std::uint32_t kVerticesOfCluster = 56;
+constexpr std::uint32_t kSmallMesh = 1000;  // that one cluster, in world coordinates, may suit
 
 double cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
   double bits = 0.0;
@@ -32,22 +35,28 @@ MainGofSearch::MainGofSearch(const BoneContext& bones, const EncodingContext& co
       choice_(choice),
       bones_(bones, frames, first_frame, settings, choice.bones) {}
 
-// Whether a search is worth its time: one world of all, or many small clusters, come near. What
-// is asked for of bones is not asked for of clusters.
-bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) const {
+// Whether a search is worth its time: many small clusters, or one of all, come near. What is
+// asked for of bones is not asked for of clusters.
+bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) {
   if (settings_.preset == Preset::kFast || settings_.main != MainTools{}) return false;
   if (settings_.preset == Preset::kSlow) return true;
   const std::uint32_t most = std::min(frames_.num_vertices, 3 * frames_.num_frames);
   if (bones.components < kHighRank * most) return false;
-  const double wanted = kPromising * cost(bones, frames_, step);
   const std::uint32_t many = std::clamp(frames_.num_vertices / kVerticesOfCluster, 2U, 96U);
-  for (const GofChoice& trial : {GofChoice{1, true}, GofChoice{many, false}}) {
-    std::optional<GofChoice> choice = trial;
-    GofSearch search(context_, frames_, first_frame_, settings_, choice);
-    const double at = kStepOfClusters * step;
-    if (cost(search.encode(at, at), frames_, step) < wanted) return true;
+  double least = cost_of_clusters({many, false}, step);
+  if (frames_.num_vertices <= kSmallMesh) {
+    least = std::min(least, cost_of_clusters({1, true}, step));
   }
-  return false;
+  const double of_bones = cost(bones, frames_, step);
+  if (least > kHopeless * of_bones) choice_.times = MainChoice::kMostTimes;
+  return least < kPromising * of_bones;
+}
+
+double MainGofSearch::cost_of_clusters(const GofChoice& clusters, double step) const {
+  std::optional<GofChoice> choice = clusters;
+  GofSearch search(context_, frames_, first_frame_, settings_, choice);
+  const double at = kStepOfClusters * step;
+  return cost(search.encode(at, at), frames_, step);
 }
 
 EncodedGof MainGofSearch::encode_clusters(double step, double analysis_step) {

@@ -17,10 +17,10 @@ struct MainChoice {
   double step = 0.0;  // that bones and clusters were compared for
   int times = 0;      // that they were
 
+  static constexpr int kMostTimes = 4;
   // Whether they should be compared for a step.
   bool is_far(double other) const {
     constexpr double kFar = 1.25;
-    constexpr int kMostTimes = 4;
     return times == 0 || (times < kMostTimes && (other > kFar * step || other * kFar < step));
   }
 };
@@ -37,7 +37,8 @@ class MainGofSearch : public GofCoder {
   EncodedGof encode(double step, double analysis_step) override;
 
  private:
-  bool clusters_promise(const EncodedGof& bones, double step) const;
+  bool clusters_promise(const EncodedGof& bones, double step);
+  double cost_of_clusters(const GofChoice& clusters, double step) const;
   EncodedGof encode_clusters(double step, double analysis_step);
 
   const EncodingContext& context_;
