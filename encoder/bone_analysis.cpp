@@ -109,15 +109,7 @@ class BoneAnalyser {
     constexpr double kReserve = 0.4;
     const double least =
         kReserve * least_energy(step_, frames_.num_vertices, frames_.num_frames);
-    found_.pc = principal_components(displacement(), settings_.max_trajectories, least);
-    const std::size_t count = found_.pc.spatial.size();
-    found_.spatial.resize(frames_.num_vertices * count);
-    for (std::size_t l = 0; l < count; ++l) {
-      for (std::size_t v = 0; v < frames_.num_vertices; ++v) {
-        found_.spatial[v * count + l] = found_.pc.spatial[l][v];
-      }
-    }
-    found_.pc.spatial.clear();
+    found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);
   }
 

@@ -39,8 +39,7 @@ struct BoneAnalysis {
   BoneGof gof;  // without trajectories and geometry weights
   std::vector<BoneMotion> bones;
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
-  PrincipalComponents pc;
-  std::vector<double> spatial;  // pc.spatial, [num_vertices][components]
+  ComponentsByRow pc;
 };
 
 // Every coded value adds about the same squared error, step^2 / 12, to the sum over all

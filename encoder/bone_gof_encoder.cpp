@@ -125,7 +125,7 @@ class TrajectoryCoder {
     double sum = 0.0;
     const std::size_t width = analysis_.pc.temporal.size();
     for (std::size_t v = 0; v < mesh_.num_vertices(); ++v) {
-      sum += std::abs(analysis_.spatial[v * width + l]);
+      sum += std::abs(double{analysis_.pc.spatial[v * width + l]});
     }
     return std::max(sum * sum / mesh_.num_vertices(), 1e-12);
   }
@@ -178,7 +178,8 @@ class TrajectoryCoder {
         s[i] = g[i * count_ + i] > 0.0 ? s[i] / g[i * count_ + i] : 0.0;
       }
     }
-    spatial_ = matrix_product(analysis_.spatial, analysis_.pc.temporal.size(), mixing, count_);
+    const std::vector<double> spatial(analysis_.pc.spatial.begin(), analysis_.pc.spatial.end());
+    spatial_ = matrix_product(spatial, analysis_.pc.temporal.size(), mixing, count_);
   }
 
   // Residuals in closed loop.

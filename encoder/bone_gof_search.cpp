@@ -158,7 +158,8 @@ BoneFit BoneGofSearch::quick_fit(std::size_t influences, double step) const {
 // One bone that turns, if that makes much of a difference, else one that does not.
 void BoneGofSearch::choose_one_bone() {
   const BoneFit quick = quick_fit(1, choice_->step);
-  const double part = quick.rms_error() / quick.sliding_error();
+  const double sliding = quick.sliding_error();
+  const double part = sliding > 0.0 ? quick.rms_error() / sliding : 1.0;  // nothing moves
   if (preset_ == Preset::kFast) {
     choice_->rig = part < kRigidPart ? quick.rig(1) : sliding_rig(frames_);
     return;

@@ -10,8 +10,6 @@
 namespace rlpc {
 namespace {
 
-constexpr double kRankTolerance = 1e-13;
-
 std::vector<double> transpose(const TrajectoryMatrix& m) {
   std::vector<double> t(m.a.size());
   for (std::size_t i = 0; i < m.num_values; ++i) {
@@ -20,15 +18,22 @@ std::vector<double> transpose(const TrajectoryMatrix& m) {
   return t;
 }
 
+// by_element[i][k] = vectors[k][i]
+std::vector<double> by_element(const std::vector<std::vector<double>>& vectors,
+                               std::size_t width) {
+  std::vector<double> result(width * vectors.size());
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    for (std::size_t i = 0; i < width; ++i) result[i * vectors.size() + k] = vectors[k][i];
+  }
+  return result;
+}
+
 // out[k][row] = sum over i of rows[row][i] * vectors[k][i]
 std::vector<std::vector<double>> project(const std::vector<double>& rows, std::size_t width,
                                          const std::vector<std::vector<double>>& vectors) {
   const std::size_t count = vectors.size();
-  std::vector<double> by_element(width * count);
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t i = 0; i < width; ++i) by_element[i * count + k] = vectors[k][i];
-  }
-  const std::vector<double> products = matrix_product(rows, width, by_element, count);
+  const std::vector<double> products =
+      matrix_product(rows, width, by_element(vectors, width), count);
   const std::size_t num_rows = rows.size() / width;
   std::vector<std::vector<double>> out(count, std::vector<double>(num_rows));
   for (std::size_t k = 0; k < count; ++k) {
@@ -37,19 +42,29 @@ std::vector<std::vector<double>> project(const std::vector<double>& rows, std::s
   return out;
 }
 
+// What rounding leaves of a matrix of lower rank is no component.
+double least_energy(double total_energy, double min_energy) {
+  constexpr double kRankTolerance = 1e-13;
+  return std::max(min_energy, kRankTolerance * total_energy);
+}
+
+double squared_norm(const std::vector<double>& a) {
+  double sum = 0.0;
+  for (const double x : a) sum += x * x;
+  return sum;
+}
+
 }  // namespace
 
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy) {
   PrincipalComponents pc;
   if (matrix.num_values == 0 || matrix.num_frames == 0) return pc;
-  for (const double x : matrix.a) pc.total_energy += x * x;
-
+  pc.total_energy = squared_norm(matrix.a);
   const bool by_frames = matrix.num_frames <= matrix.num_values;
   const std::vector<double> transposed = by_frames ? std::vector<double>{} : transpose(matrix);
   const std::size_t width = by_frames ? matrix.num_frames : matrix.num_values;
-  // What rounding leaves of a matrix of lower rank is no component.
-  const double least = std::max(min_energy, kRankTolerance * pc.total_energy);
+  const double least = least_energy(pc.total_energy, min_energy);
   EigenPairs pairs = leading_eigenvectors(gram_matrix(by_frames ? matrix.a : transposed, width),
                                           width, max_components, least);
   pc.energy = std::move(pairs.values);
@@ -70,6 +85,35 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
     for (double& x : pc.spatial[l]) x *= sigma;
   }
   return pc;
+}
+
+ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t max_components,
+                                  double min_energy) {
+  constexpr std::size_t kRowsTogether = 512;
+  ComponentsByRow result;
+  if (matrix.num_frames > matrix.num_values) {
+    PrincipalComponents pc = principal_components(matrix, max_components, min_energy);
+    const std::vector<double> spatial = by_element(pc.spatial, matrix.num_values);
+    result.spatial.assign(spatial.begin(), spatial.end());
+    result.energy = std::move(pc.energy);
+    result.temporal = std::move(pc.temporal);
+    return result;
+  }
+  const std::size_t width = matrix.num_frames;
+  if (width == 0) return result;
+  EigenPairs pairs = leading_eigenvectors(gram_matrix(matrix.a, width), width, max_components,
+                                          least_energy(squared_norm(matrix.a), min_energy));
+  result.energy = std::move(pairs.values);
+  result.temporal = std::move(pairs.vectors);
+  const std::vector<double> vectors = by_element(result.temporal, width);
+  result.spatial.reserve(matrix.num_values * result.temporal.size());
+  for (std::size_t row = 0; row < matrix.num_values; row += kRowsTogether) {
+    const std::size_t count = std::min(kRowsTogether, matrix.num_values - row);
+    const std::vector<double> products = matrix_product(
+        std::span(matrix.row(row), count * width), width, vectors, result.temporal.size());
+    result.spatial.insert(result.spatial.end(), products.begin(), products.end());
+  }
+  return result;
 }
 
 }  // namespace rlpc

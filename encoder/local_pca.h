@@ -31,4 +31,14 @@ struct PrincipalComponents {
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 
+// The same, with little memory beside the matrix.
+struct ComponentsByRow {
+  std::vector<double> energy;
+  std::vector<std::vector<double>> temporal;  // [component][num_frames]
+  std::vector<float> spatial;                 // [num_values][component]
+};
+
+ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t max_components,
+                                  double min_energy);
+
 }  // namespace rlpc

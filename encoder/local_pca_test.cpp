@@ -220,6 +220,21 @@ TEST(PrincipalComponents, OfRepeatedTrajectoriesAreNumbers) {
   }
 }
 
+TEST(ComponentsByRow, AreThePrincipalComponents) {
+  for (const Size size : {Size{20, 10}, Size{1300, 40}, Size{30, 90}, Size{0, 4}, Size{4, 0}}) {
+    const TrajectoryMatrix m = random_matrix(8, size.num_values, size.num_frames, 6);
+    const PrincipalComponents pc = principal_components(m, 4, 0.0);
+    const ComponentsByRow same = components_by_row(m, 4, 0.0);
+    EXPECT_EQ(same.temporal, pc.temporal);
+    EXPECT_EQ(same.energy, pc.energy);
+    ASSERT_EQ(same.spatial.size(), size.num_values * pc.spatial.size());
+    for (std::size_t i = 0; i < same.spatial.size(); ++i) {
+      const std::size_t count = pc.spatial.size();
+      EXPECT_EQ(same.spatial[i], static_cast<float>(pc.spatial[i % count][i / count]));
+    }
+  }
+}
+
 TEST(PrincipalComponents, AreTheSameEveryTime) {
   const TrajectoryMatrix m = random_matrix(7, 200, 50, 50);
   const PrincipalComponents a = principal_components(m, 20, 0.0);
