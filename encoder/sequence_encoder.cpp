@@ -10,6 +10,7 @@
 #include "common/topology.h"
 #include "encoder/check_settings.h"
 #include "encoder/det_math.h"
+#include "encoder/gof_cuts.h"
 #include "encoder/gof_search.h"
 #include "encoder/grid_choice.h"
 #include "encoder/grid_value.h"
@@ -28,23 +29,6 @@ constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;
 // Below this number of GOFs, an index saves nothing.
 constexpr std::size_t kMinIndexedGofs = 16;
 constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // of index_gof_bytes
-
-struct GofSpan {
-  std::uint32_t first;
-  std::uint32_t count;
-};
-
-// Balanced GOFs, none longer than `longest`.
-std::vector<GofSpan> cut_gofs(std::uint32_t num_frames, std::uint32_t longest) {
-  const std::uint64_t count = (std::uint64_t{num_frames} + longest - 1) / longest;
-  std::vector<GofSpan> spans;
-  for (std::uint64_t g = 0; g < count; ++g) {
-    const auto first = static_cast<std::uint32_t>(num_frames * g / count);
-    const auto next = static_cast<std::uint32_t>(num_frames * (g + 1) / count);
-    spans.push_back({first, next - first});
-  }
-  return spans;
-}
 
 // One encoding of the whole sequence.
 struct SequenceTrial {
@@ -73,6 +57,8 @@ class SequenceEncoder {
   };
 
   std::optional<InputError> prepare();
+  std::optional<InputError> cut_gofs(std::uint32_t longest);
+  TargetSearch first_search() const;
   std::optional<InputError> set_level();
   std::optional<InputError> raise_level(const GofSpan& span, const EncodedGof& encoded);
   void make_coder(std::size_t g);
@@ -128,7 +114,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
 
   const std::uint32_t longest =
       settings_.gof_frames == 0 ? kDefaultGofFrames : settings_.gof_frames;
-  spans_ = cut_gofs(header_.num_frames, longest);
+  if (auto error = cut_gofs(longest)) return error;
   if (auto error = set_level()) return error;
   gofs_.resize(spans_.size());
   keep_coders_ = std::uint64_t{header_.num_vertices} * header_.num_frames * 24 <= kKeepBytes;
@@ -157,13 +143,31 @@ std::optional<InputError> SequenceEncoder::prepare() {
   return std::nullopt;
 }
 
-// The lowest level that allows this sequence.
-std::optional<InputError> SequenceEncoder::set_level() {
+// By expected cost where there is time for it, and a step to expect.
+std::optional<InputError> SequenceEncoder::cut_gofs(std::uint32_t longest) {
   if (header_.num_frames > kMaxFrames) {
     return InputError{"a sequence has at most " + std::to_string(kMaxFrames) +
                       " frames (specification, Annex B), not " +
                       std::to_string(header_.num_frames) + "; split it"};
   }
+  if (header_.profile_idc != kProfileMain || settings_.preset == Preset::kFast) {
+    spans_ = equal_gofs(header_.num_frames, longest);
+    return std::nullopt;
+  }
+  auto spans = cheapest_gofs(source_, longest,
+                             first_search().step() * exact_exp2(header_.grid.log2_step));
+  if (!spans) return spans.error();
+  spans_ = std::move(*spans);
+  return std::nullopt;
+}
+
+TargetSearch SequenceEncoder::first_search() const {
+  const double step_of_error = header_.profile_idc == kProfileMain ? 9.0 : 6.0;
+  return {settings_.target, rms_spread_, exact_exp2(-header_.grid.log2_step), step_of_error};
+}
+
+// The lowest level that allows this sequence.
+std::optional<InputError> SequenceEncoder::set_level() {
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
   for (header_.level_idc = 1; header_.level_idc <= kMaxLevelIdc; ++header_.level_idc) {
@@ -388,9 +392,7 @@ InputResult<EncodeReport> SequenceEncoder::write(const SequenceTrial& trial, dou
 
 InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
   if (auto error = prepare()) return *error;
-  const Target& target = settings_.target;
-  const double step_of_error = header_.profile_idc == kProfileMain ? 9.0 : 6.0;
-  TargetSearch search(target, rms_spread_, exact_exp2(-header_.grid.log2_step), step_of_error);
+  TargetSearch search = first_search();
   std::optional<SequenceTrial> best;
   double best_step = search.step();
   for (;;) {
