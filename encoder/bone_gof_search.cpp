@@ -35,6 +35,7 @@ constexpr double kPromisingOfReal = 0.85;
 constexpr double kPromisingUnsettled = 1.0;
 constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
+constexpr double kOfSmallMesh = 1.12;  // times these, where a trial takes little time
 // Expected costs, relative to the least, of numbers of bones to be tried.
 constexpr double kNearLeast = 1.06;
 constexpr double kWorthACost = 1.2;
@@ -312,9 +313,10 @@ void BoneGofSearch::try_promised_bones(std::uint32_t influences, const Promise& 
                                        double without) {
   BoneFit full = fit(influences, choice_->step);
   std::size_t first = 0;
+  const bool small = frames_.num_vertices <= kSmallMesh;
   const auto promises_less = [&](double part) {
     const double correction = full.expected_cost() / promise.costs[first];
-    return correction * promise.cost < part * without;
+    return correction * promise.cost < (small ? kOfSmallMesh : 1.0) * part * without;
   };
   do {
     if (!can_have(kFewBones[first]) || !full.grow(kFewBones[first])) return;
