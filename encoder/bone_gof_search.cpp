@@ -135,10 +135,7 @@ BoneGof BoneGofSearch::code(const BoneAnalysis& analysis, const BoneSettings& se
 
 double BoneGofSearch::cost(const BoneAnalysis& analysis, const BoneSettings& settings,
                            double step) const {
-  const EncodedGof encoded = encoded_gof(context_, code(analysis, settings, step));
-  double bits = 0.0;
-  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
-  return squared_error(frames_, encoded.frame) + kErrorPerBit * step * step * bits;
+  return lagrangian_cost(encoded_gof(context_, code(analysis, settings, step)), frames_, step);
 }
 
 BoneFit BoneGofSearch::fit(std::size_t influences, double step) const {

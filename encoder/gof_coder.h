@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/stream_format.h"
+#include "encoder/gof_frames.h"
 
 namespace rlpc {
 
@@ -29,6 +30,13 @@ struct EncodedGof {
   std::uint32_t components = 0;       // or trajectories
   std::uint32_t most_components = 0;  // of a cluster; all trajectories
 };
+
+// Squared error, with bits at their worth for a step.
+inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+  double bits = 0.0;
+  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
+  return squared_error(frames, encoded.frame) + kErrorPerBit * step * step * bits;
+}
 
 class GofCoder {
  public:

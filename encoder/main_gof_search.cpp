@@ -17,12 +17,6 @@ constexpr double kHopeless = 1.15;
 constexpr std::uint32_t kVerticesOfCluster = 56;
 constexpr std::uint32_t kSmallMesh = 1000;  // that one cluster, in world coordinates, may suit
 
-double cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
-  double bits = 0.0;
-  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
-  return squared_error(frames, encoded.frame) + kErrorPerBit * step * step * bits;
-}
-
 }  // namespace
 
 MainGofSearch::MainGofSearch(const BoneContext& bones, const EncodingContext& context,
@@ -47,8 +41,8 @@ bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) {
   if (frames_.num_vertices <= kSmallMesh) {
     least = std::min(least, cost_of_clusters({1, true}, step));
   }
-  const double of_bones = cost(bones, frames_, step);
-  if (least > kHopeless * of_bones) choice_.times = MainChoice::kMostTimes;
+  const double of_bones = lagrangian_cost(bones, frames_, step);
+  choice_.is_settled = least > kHopeless * of_bones;
   return least < kPromising * of_bones;
 }
 
@@ -56,7 +50,7 @@ double MainGofSearch::cost_of_clusters(const GofChoice& clusters, double step) c
   std::optional<GofChoice> choice = clusters;
   GofSearch search(context_, frames_, first_frame_, settings_, choice);
   const double at = kStepOfClusters * step;
-  return cost(search.encode(at, at), frames_, step);
+  return lagrangian_cost(search.encode(at, at), frames_, step);
 }
 
 EncodedGof MainGofSearch::encode_clusters(double step, double analysis_step) {
@@ -84,7 +78,8 @@ EncodedGof MainGofSearch::encode(double step, double analysis_step) {
   choice_.clusters.reset();
   clusters_.reset();
   EncodedGof clusters = encode_clusters(step, analysis_step);
-  choice_.has_clusters = cost(clusters, frames_, step) < cost(bones, frames_, step);
+  choice_.has_clusters =
+      lagrangian_cost(clusters, frames_, step) < lagrangian_cost(bones, frames_, step);
   return choice_.has_clusters ? std::move(clusters) : std::move(bones);
 }
 

@@ -14,14 +14,16 @@ struct MainChoice {
   std::optional<BoneChoice> bones;
   std::optional<GofChoice> clusters;  // if these are better, or may be
   bool has_clusters = false;
-  double step = 0.0;  // that bones and clusters were compared for
-  int times = 0;      // that they were
+  double step = 0.0;        // that bones and clusters were compared for
+  int times = 0;            // that they were
+  bool is_settled = false;  // so clearly that other steps will change nothing
 
-  static constexpr int kMostTimes = 4;
   // Whether they should be compared for a step.
   bool is_far(double other) const {
     constexpr double kFar = 1.25;
-    return times == 0 || (times < kMostTimes && (other > kFar * step || other * kFar < step));
+    constexpr int kMostTimes = 4;
+    if (times == 0) return true;
+    return !is_settled && times < kMostTimes && (other > kFar * step || other * kFar < step);
   }
 };
 
