@@ -114,29 +114,15 @@ class SubspaceIteration {
     }
   }
 
-  std::vector<std::vector<double>> product() const {
-    const std::size_t count = block_.size();
-    std::vector<double> columns(width_ * count);
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < width_; ++i) columns[i * count + k] = block_[k][i];
-    }
-    const std::vector<double> flat = matrix_product(matrix_, width_, columns, count);
-    std::vector<std::vector<double>> result(count, std::vector<double>(width_));
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < width_; ++i) result[k][i] = flat[i * count + k];
-    }
-    return result;
-  }
-
   // Gram-Schmidt, twice for the sake of rounding; of vectors that depend on others nothing is
   // left.
   void multiply() {
-    block_ = product();
+    block_ = project(matrix_, width_, block_);
     for (std::size_t k = 0; k < block_.size(); ++k) {
       std::vector<double>& v = block_[k];
       const double before = dot(v, v);
       for (int again = 0; again < 2; ++again) {
-        for (std::size_t j = 0; j < k; ++j) subtract(v, dot(v, block_[j]), block_[j]);
+        for (std::size_t j = 0; j < k; ++j) add(v, -dot(v, block_[j]), block_[j]);
       }
       constexpr double kRounding = 1e-24;
       const double square = dot(v, v);
@@ -149,7 +135,7 @@ class SubspaceIteration {
   // Turns the vectors within the space they span to be eigenvectors (Rayleigh and Ritz).
   EigenPairs rotate() {
     const std::size_t count = block_.size();
-    const std::vector<std::vector<double>> products = product();
+    const std::vector<std::vector<double>> products = project(matrix_, width_, block_);
     std::vector<double> small(count * count);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j <= i; ++j) small[i * count + j] = dot(block_[i], products[j]);
@@ -158,7 +144,7 @@ class SubspaceIteration {
     EigenPairs pairs{std::move(within.values), {}};
     for (const auto& mixing : within.vectors) {
       std::vector<double>& v = pairs.vectors.emplace_back(width_);
-      for (std::size_t k = 0; k < count; ++k) subtract(v, -mixing[k], block_[k]);
+      for (std::size_t k = 0; k < count; ++k) add(v, mixing[k], block_[k]);
     }
     block_ = pairs.vectors;
     return pairs;
@@ -174,8 +160,8 @@ class SubspaceIteration {
     for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
-  static void subtract(std::vector<double>& from, double factor, const std::vector<double>& v) {
-    for (std::size_t i = 0; i < v.size(); ++i) from[i] -= factor * v[i];
+  static void add(std::vector<double>& to, double factor, const std::vector<double>& v) {
+    for (std::size_t i = 0; i < v.size(); ++i) to[i] += factor * v[i];
   }
 
   std::size_t width_;

@@ -18,30 +18,6 @@ std::vector<double> transpose(const TrajectoryMatrix& m) {
   return t;
 }
 
-// by_element[i][k] = vectors[k][i]
-std::vector<double> by_element(const std::vector<std::vector<double>>& vectors,
-                               std::size_t width) {
-  std::vector<double> result(width * vectors.size());
-  for (std::size_t k = 0; k < vectors.size(); ++k) {
-    for (std::size_t i = 0; i < width; ++i) result[i * vectors.size() + k] = vectors[k][i];
-  }
-  return result;
-}
-
-// out[k][row] = sum over i of rows[row][i] * vectors[k][i]
-std::vector<std::vector<double>> project(const std::vector<double>& rows, std::size_t width,
-                                         const std::vector<std::vector<double>>& vectors) {
-  const std::size_t count = vectors.size();
-  const std::vector<double> products =
-      matrix_product(rows, width, by_element(vectors, width), count);
-  const std::size_t num_rows = rows.size() / width;
-  std::vector<std::vector<double>> out(count, std::vector<double>(num_rows));
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t r = 0; r < num_rows; ++r) out[k][r] = products[r * count + k];
-  }
-  return out;
-}
-
 // What rounding leaves of a matrix of lower rank is no component.
 double least_energy(double total_energy, double min_energy) {
   constexpr double kRankTolerance = 1e-13;
@@ -93,7 +69,7 @@ ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t ma
   ComponentsByRow result;
   if (matrix.num_frames > matrix.num_values) {
     PrincipalComponents pc = principal_components(matrix, max_components, min_energy);
-    const std::vector<double> spatial = by_element(pc.spatial, matrix.num_values);
+    const std::vector<double> spatial = as_columns(pc.spatial, matrix.num_values);
     result.spatial.assign(spatial.begin(), spatial.end());
     result.energy = std::move(pc.energy);
     result.temporal = std::move(pc.temporal);
@@ -105,7 +81,7 @@ ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t ma
                                           least_energy(squared_norm(matrix.a), min_energy));
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
-  const std::vector<double> vectors = by_element(result.temporal, width);
+  const std::vector<double> vectors = as_columns(result.temporal, width);
   result.spatial.reserve(matrix.num_values * result.temporal.size());
   for (std::size_t row = 0; row < matrix.num_values; row += kRowsTogether) {
     const std::size_t count = std::min(kRowsTogether, matrix.num_values - row);

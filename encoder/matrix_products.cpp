@@ -73,4 +73,26 @@ WIDEST std::vector<double> matrix_product(std::span<const double> a, std::size_t
   return result;
 }
 
+std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
+                               std::size_t width) {
+  std::vector<double> columns(width * vectors.size());
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    for (std::size_t i = 0; i < width; ++i) columns[i * vectors.size() + k] = vectors[k][i];
+  }
+  return columns;
+}
+
+std::vector<std::vector<double>> project(std::span<const double> rows, std::size_t width,
+                                         const std::vector<std::vector<double>>& vectors) {
+  const std::size_t count = vectors.size();
+  const std::vector<double> products =
+      matrix_product(rows, width, as_columns(vectors, width), count);
+  const std::size_t num_rows = rows.size() / width;
+  std::vector<std::vector<double>> result(count, std::vector<double>(num_rows));
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t r = 0; r < num_rows; ++r) result[k][r] = products[r * count + k];
+  }
+  return result;
+}
+
 }  // namespace rlpc

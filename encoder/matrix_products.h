@@ -19,4 +19,12 @@ std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width)
 std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
                                    std::span<const double> b, std::size_t b_width);
 
+// columns[i][k] = vectors[k][i], i < width
+std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
+                               std::size_t width);
+
+// result[k][row] = sum over i of rows[row][i] * vectors[k][i], i < width
+std::vector<std::vector<double>> project(std::span<const double> rows, std::size_t width,
+                                         const std::vector<std::vector<double>>& vectors);
+
 }  // namespace rlpc
