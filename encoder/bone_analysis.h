@@ -24,9 +24,8 @@ struct BoneSettings {
   int outer_scale = 3;
   bool layer_steps = true;       // finer steps in coarser layers
   bool temporal_weights = true;  // not only the orders of 8.2.2
-  bool optimised =
-      true;  // residuals of spatial factors, by rate and distortion; else a dead zone
-  bool cobra_steps = false;            // of temporal values; else of equal distortion
+  bool optimised = true;         // spatial residuals, by rate and distortion; else a dead zone
+  bool cobra_steps = false;      // of temporal values; else of equal distortion
   std::uint32_t component_groups = 0;  // 0: as many as suit
   std::uint32_t layer_groups = 0;
   double temporal_error = 0.8;  // of a temporal value, relative to that of a spatial one

@@ -198,20 +198,20 @@ class TrajectoryCoder {
     const double per_step = kMaxLayerStep / step_;
     constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
     constexpr double kRoundUp = 0.42;
-    SpatialCost contexts(mesh_, count_);
+    std::optional<SpatialCost> cost;
+    if (settings_.optimised) cost.emplace(mesh_, count_);
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
-      if (settings_.optimised) contexts.start(v);
+      if (cost) cost->start(v);
       for (std::size_t l = 0; l < count_; ++l) {
         const double difference =
             spatial_[v * count_ + l] * per_step - static_cast<double>(predicted[l]);
         const double steps = std::min(std::abs(difference) / layer_step, kMost);
-        const std::int32_t magnitude = settings_.optimised
-                                           ? contexts.choose(steps)
-                                           : static_cast<std::int32_t>(steps + kRoundUp);
+        const std::int32_t magnitude =
+            cost ? cost->choose(steps) : static_cast<std::int32_t>(steps + kRoundUp);
         const std::int32_t residual = difference < 0.0 ? -magnitude : magnitude;
-        if (settings_.optimised) contexts.code(residual);
+        if (cost) cost->code(residual);
         residual_[v * count_ + l] = residual;
         const std::int32_t value = clip_signed(
             kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));
