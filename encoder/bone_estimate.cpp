@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "encoder/det_math.h"
-#include "encoder/gof_coder.h"
+#include "encoder/component_cost.h"
 #include "encoder/local_pca.h"
 
 namespace rlpc {
@@ -32,8 +31,6 @@ std::vector<double> differences(const BoneSample& sample, const PrincipalCompone
 
 double expected_cost(const BoneSample& sample, const std::vector<double>& residuals,
                      std::uint32_t num_vertices, std::uint32_t num_frames, double step) {
-  // Temporal prediction leaves about this part of the energy of a temporal vector.
-  constexpr double kLeft = 0.25;
   TrajectoryMatrix matrix;
   matrix.num_values = sample.num_vertices();
   matrix.num_frames = 3 * sample.num_frames;
@@ -44,7 +41,6 @@ double expected_cost(const BoneSample& sample, const std::vector<double>& residu
   const double values = 3.0 * num_frames;
   const double of_frames = num_frames / static_cast<double>(sample.num_frames);
   const double of_all = of_frames * vertices / static_cast<double>(sample.num_vertices());
-  const double error = step * step / 12.0;
   double cost = 0.0;
   for (std::size_t l = 0; l < pc.energy.size(); ++l) {
     const double energy = of_all * pc.energy[l];
@@ -52,13 +48,7 @@ double expected_cost(const BoneSample& sample, const std::vector<double>& residu
       cost += energy;
       continue;
     }
-    const double spatial_bits =
-        0.5 * vertices * det_log2(1.0 + of_frames * difference[l] / error);
-    const double temporal_bits =
-        0.5 * values * det_log2(1.0 + kLeft * energy / (values * error));
-    const double coded = error * (vertices + values) +
-                         kErrorPerBit * step * step * (spatial_bits + temporal_bits);
-    cost += std::min(energy, coded);
+    cost += expected_component_cost(energy, vertices, values, of_frames * difference[l], step);
   }
   return cost;
 }

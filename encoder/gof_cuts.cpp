@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "encoder/det_math.h"
+#include "encoder/component_cost.h"
 #include "encoder/gof_coder.h"
 #include "encoder/local_pca.h"
 
@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;
 constexpr std::uint32_t kSampleVertices = 160;
+constexpr std::uint32_t kLeastVertices = 8;  // that tell anything
+constexpr std::uint32_t kMostFrames = kMaxSampleValues / (3 * kLeastVertices);
 constexpr std::uint32_t kSampleFrames = 16;  // of a GOF
 // GOFs of equal lengths stay unless others are expected to cost less than this part.
 constexpr double kClearlyLess = 0.97;
@@ -25,8 +27,8 @@ class GofCosts {
  public:
   GofCosts(std::uint32_t num_vertices, std::uint32_t num_frames, double step)
       : num_vertices_(num_vertices), step_(step) {
-    const auto most = static_cast<std::uint32_t>(
-        std::max<std::uint64_t>(kMaxSampleValues / (3 * std::uint64_t{num_frames}), 8));
+    const auto most =
+        static_cast<std::uint32_t>(kMaxSampleValues / (3 * std::uint64_t{num_frames}));
     const std::uint32_t count = std::min({num_vertices, kSampleVertices, most});
     for (std::uint32_t i = 0; i < count; ++i) {
       vertices_.push_back(static_cast<std::uint32_t>(std::uint64_t{i} * num_vertices / count));
@@ -84,24 +86,18 @@ class GofCosts {
   }
 
   double expected(const GofSpan& span) const {
-    // Parts of the energy that spatial and temporal prediction leave; bits of a rest position.
-    constexpr double kSpatialLeft = 0.1;
-    constexpr double kTemporalLeft = 0.25;
-    constexpr double kRestBits = 15.0;
+    constexpr double kSpatialLeft = 0.1;  // of the energy, by spatial prediction
+    constexpr double kRestBits = 15.0;    // of a rest position
     const TrajectoryMatrix matrix = displacements(span);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
     const double of_all =
         vertices * values / static_cast<double>(matrix.num_values * matrix.num_frames);
-    const double error = step_ * step_ / 12.0;
-    const double per_bit = kErrorPerBit * step_ * step_;
-    double cost = per_bit * kRestBits * vertices;
+    double cost = kErrorPerBit * step_ * step_ * kRestBits * vertices;
     for (const double sampled : principal_components(matrix, 0, 0.0).energy) {
       const double energy = of_all * sampled;
-      const double bits =
-          0.5 * vertices * det_log2(1.0 + kSpatialLeft * energy / (vertices * error)) +
-          0.5 * values * det_log2(1.0 + kTemporalLeft * energy / (values * error));
-      cost += std::min(energy, error * (vertices + values) + per_bit * bits);
+      cost += expected_component_cost(energy, vertices, values,
+                                      kSpatialLeft * energy / vertices, step_);
     }
     return cost;
   }
@@ -185,7 +181,7 @@ InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32
   const std::uint32_t num_frames = source.num_frames();
   std::vector<GofSpan> equal = equal_gofs(num_frames, longest);
   const std::uint32_t unit = longest / kUnitsOfLongest;
-  if (equal.size() < 2 || unit == 0) return equal;
+  if (equal.size() < 2 || unit == 0 || num_frames > kMostFrames) return equal;
   GofCosts costs(source.num_vertices(), num_frames, step);
   std::vector<float> xyz(std::size_t{source.num_vertices()} * 3);
   for (std::uint32_t f = 0; f < num_frames; ++f) {

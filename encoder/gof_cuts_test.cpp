@@ -113,5 +113,13 @@ TEST(CheapestGofs, OfFramesThatCannotBeReadAreAnError) {
   EXPECT_EQ(spans.error().message, "no such frame");
 }
 
+TEST(CheapestGofs, OfVeryLongSequencesAreEqualAndNotReadFor) {
+  Motion source(100'000, [](std::uint32_t, std::uint32_t, std::uint32_t) { return 1.0; });
+  source.broken = 0;
+  const auto spans = cheapest_gofs(source, 128, 0.05);
+  ASSERT_TRUE(spans);
+  EXPECT_EQ(spans->size(), equal_gofs(100'000, 128).size());
+}
+
 }  // namespace
 }  // namespace rlpc
