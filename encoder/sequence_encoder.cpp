@@ -162,7 +162,12 @@ std::optional<InputError> SequenceEncoder::cut_gofs(std::uint32_t longest) {
 }
 
 TargetSearch SequenceEncoder::first_search() const {
-  const double step_of_error = header_.profile_idc == kProfileMain ? 9.0 : 6.0;
+  double step_of_error = 6.0;
+  if (header_.profile_idc == kProfileMain && settings_.target.kind == Target::kKg) {
+    // At larger errors more components are left out, which err less than coded ones would.
+    constexpr double kUsualError = 0.1;  // per cent
+    step_of_error = 9.0 * det_exp2(0.2 * det_log2(settings_.target.value / kUsualError));
+  }
   return {settings_.target, rms_spread_, exact_exp2(-header_.grid.log2_step), step_of_error};
 }
 
