@@ -273,12 +273,14 @@ void register_all(const Animation& a) {
       [=](benchmark::State& s) { bench_encode(s, a, given, given_options); });
   for (const auto& [name, preset] :
        {std::pair{"fast", rlpc::Preset::kFast}, {"medium", rlpc::Preset::kMedium}}) {
-    rlpc::EncoderSettings target;
-    target.target = {rlpc::Target::kKg, 0.3};
-    target.preset = preset;
-    const std::string options = std::string("--kg 0.3 --preset ") + name;
-    add(std::string("EncodeTarget/kg:0.3/") + name,
-        [=](benchmark::State& s) { bench_encode(s, a, target, options); });
+    for (const char* kg : {"0.1", "0.3", "1.0"}) {
+      rlpc::EncoderSettings target;
+      target.target = {rlpc::Target::kKg, std::atof(kg)};
+      target.preset = preset;
+      const std::string options = std::string("--kg ") + kg + " --preset " + name;
+      add(std::string("EncodeTarget/kg:") + kg + "/" + name,
+          [=](benchmark::State& s) { bench_encode(s, a, target, options); });
+    }
   }
 }
 
