@@ -35,7 +35,8 @@ constexpr double kPromisingOfReal = 0.85;
 constexpr double kPromisingUnsettled = 1.0;
 constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
-constexpr double kOfSmallMesh = 1.12;  // times these, where a trial takes little time
+// Limits of promises are so much higher where a trial takes little time.
+constexpr double kHopeOfSmallMesh = 1.25;
 // Expected costs, relative to the least, of numbers of bones to be tried.
 constexpr double kNearLeast = 1.06;
 constexpr double kWorthACost = 1.2;
@@ -107,6 +108,7 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
       first_frame_(first_frame),
       tools_(settings.main),
       preset_(settings.preset),
+      hope_(frames.num_vertices <= kSmallMesh ? kHopeOfSmallMesh : 1.0),
       max_influences_(tools_.influences == 0 ? kUsualInfluences : tools_.influences),
       choice_(choice) {
   usual_.prediction = tools_.prediction.value_or(Prediction::kLayers);
@@ -283,7 +285,7 @@ void BoneGofSearch::choose_bones() {
   for (std::uint32_t influences = most; influences > 0; --influences) {
     const Promise of = promise(influences, step);
     sliding = of.sliding;
-    if (of.cost > std::min(kPromising * of.sliding, kNearLeast * least)) break;
+    if (of.cost > std::min(hope_ * kPromising * of.sliding, kNearLeast * least)) break;
     promises[influences - 1] = of;
     least = std::min(least, of.cost);
   }
@@ -294,7 +296,7 @@ void BoneGofSearch::choose_bones() {
   }
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
     const Promise& of = promises[influences - 1];
-    if (of.cost <= std::min(kNearLeast * least, kPromisingOfReal * without)) {
+    if (of.cost <= std::min(kNearLeast * least, hope_ * kPromisingOfReal * without)) {
       try_promised_bones(influences, of, without);
     }
     if (preset_ == Preset::kSlow) {
@@ -310,10 +312,9 @@ void BoneGofSearch::try_promised_bones(std::uint32_t influences, const Promise& 
                                        double without) {
   BoneFit full = fit(influences, choice_->step);
   std::size_t first = 0;
-  const bool small = frames_.num_vertices <= kSmallMesh;
   const auto promises_less = [&](double part) {
     const double correction = full.expected_cost() / promise.costs[first];
-    return correction * promise.cost < (small ? kOfSmallMesh : 1.0) * part * without;
+    return correction * promise.cost < hope_ * part * without;
   };
   do {
     if (!can_have(kFewBones[first]) || !full.grow(kFewBones[first])) return;
@@ -344,7 +345,7 @@ void BoneGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
     if (count != counts.front() && !grow(full, count)) break;
     const double now = full.expected_cost();
     expected = std::min(expected, now);
-    if (now > kWorthACost * expected) continue;
+    if (now > hope_ * kWorthACost * expected) continue;
     const double real =
         consider(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
     if (real > before && (count >= likely || real > kFarAbove * least_)) break;

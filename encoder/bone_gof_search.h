@@ -94,6 +94,7 @@ class BoneGofSearch : public GofCoder {
   MainTools tools_;
   BoneSettings usual_;
   Preset preset_;
+  double hope_;  // the higher, the less bones have to promise to be tried
   std::uint32_t max_influences_;
   std::optional<BoneChoice>& choice_;
   std::optional<Cached> cached_;
