@@ -76,16 +76,14 @@ void set_clusters(Gof& gof, const Clustering& clustering) {
   }
 }
 
-TrajectoryMatrix local_trajectories(const GofFrames& frames,
-                                    const std::vector<std::uint32_t>& vertices,
-                                    const std::vector<Lcf>& lcf) {
-  const std::size_t n = vertices.size();
+TrajectoryMatrix local_trajectories(const GofFrames& frames, const ClusterAnalysis& cluster) {
+  const std::size_t n = cluster.vertices.size();
   TrajectoryMatrix m{3 * n, frames.num_frames, std::vector<double>(3 * n * frames.num_frames)};
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     for (std::size_t i = 0; i < n; ++i) {
-      const double* p = frames.at(f, vertices[i]);
+      const double* p = frames.at(f, cluster.vertices[i]);
       std::array<double, 3> q{p[0], p[1], p[2]};
-      if (!lcf.empty()) q = world_to_local(lcf[f], p);
+      if (!cluster.lcf.empty()) q = world_to_local(cluster.lcf[f], p);
       for (std::size_t c = 0; c < 3; ++c) m.row(c * n + i)[f] = q[c];
     }
   }
@@ -195,12 +193,13 @@ RdCurve rd_curve(const ClusterAnalysis& cluster,
 }
 
 // Temporal values that fit the quantised spatial ones best, in the least-squares sense.
-void refit_temporal(const ClusterAnalysis& cluster, std::vector<QuantisedComponent>& components,
-                    double dead_zone) {
+void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
+                    std::vector<QuantisedComponent>& components, double dead_zone) {
   const std::size_t count = components.size();
-  const std::size_t num_frames = cluster.matrix.num_frames;
-  const std::size_t num_values = cluster.matrix.num_values;
   if (count == 0) return;
+  const TrajectoryMatrix matrix = local_trajectories(frames, cluster);
+  const std::size_t num_frames = matrix.num_frames;
+  const std::size_t num_values = matrix.num_values;
   Eigen::MatrixXd gram =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   std::vector<double> s(num_values * count);  // [num_values][count]
@@ -212,7 +211,7 @@ void refit_temporal(const ClusterAnalysis& cluster, std::vector<QuantisedCompone
   std::vector<double> g(count * count, 0.0);
   std::vector<double> projected(count * num_frames, 0.0);
   for (std::size_t i = 0; i < num_values; ++i) {
-    const double* a = cluster.matrix.row(i);
+    const double* a = matrix.row(i);
     const double* si = &s[i * count];
     for (std::size_t l = 0; l < count; ++l) {
       if (si[l] == 0.0) continue;
@@ -268,15 +267,16 @@ GofAnalysis analyse_gof(const EncodingContext& context, const GofFrames& frames,
     ClusterAnalysis& cluster = analysis.clusters[i];
     cluster.prediction.emplace(context.topology, members.vertices[i], gof.cluster_of_vertex,
                                members.local_index);
-    cluster.matrix = local_trajectories(frames, members.vertices[i],
-                                        recovered_frames(gof, gof.clusters[i], tracks));
-    cluster.pc =
-        principal_components(cluster.matrix, settings.max_components, settings.min_energy);
+    cluster.vertices = members.vertices[i];
+    cluster.lcf = recovered_frames(gof, gof.clusters[i], tracks);
+    cluster.pc = principal_components(local_trajectories(frames, cluster),
+                                      settings.max_components, settings.min_energy);
   }
   return analysis;
 }
 
-Gof code_gof(const GofAnalysis& analysis, const CodingSettings& settings) {
+Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
+             const CodingSettings& settings) {
   using Allocation = CodingSettings::Allocation;
   const std::size_t count = analysis.clusters.size();
   std::vector<std::vector<QuantisedComponent>> components(count);
@@ -308,7 +308,9 @@ Gof code_gof(const GofAnalysis& analysis, const CodingSettings& settings) {
   }
   for (std::size_t i = 0; i < count; ++i) {
     components[i].resize(chosen[i]);
-    if (settings.refit) refit_temporal(analysis.clusters[i], components[i], settings.dead_zone);
+    if (settings.refit) {
+      refit_temporal(frames, analysis.clusters[i], components[i], settings.dead_zone);
+    }
   }
   Gof gof = analysis.gof;
   gof.fraction_bits = choose_fraction_bits(components);

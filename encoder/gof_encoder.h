@@ -8,6 +8,7 @@
 
 #include "common/gof.h"
 #include "common/gof_recon.h"
+#include "common/lcf.h"
 #include "common/sequence_header.h"
 #include "common/topology.h"
 #include "encoder/clustering.h"
@@ -45,7 +46,8 @@ struct CodingSettings {
 };
 
 struct ClusterAnalysis {
-  TrajectoryMatrix matrix;
+  std::vector<std::uint32_t> vertices;
+  std::vector<Lcf> lcf;  // [num_frames]; empty: world coordinates
   PrincipalComponents pc;
   std::optional<SpatialPrediction> prediction;
 };
@@ -66,7 +68,8 @@ GofAnalysis analyse_gof(const EncodingContext& context, const GofFrames& frames,
                         std::uint32_t first_frame, const Clustering& clustering,
                         const AnalysisSettings& settings);
 
-// The GOF ready to be written.
-Gof code_gof(const GofAnalysis& analysis, const CodingSettings& settings);
+// The GOF ready to be written, from the frames that were analysed.
+Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
+             const CodingSettings& settings);
 
 }  // namespace rlpc

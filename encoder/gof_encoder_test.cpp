@@ -143,7 +143,7 @@ TEST(CodeGof, ErrorFollowsTheStep) {
     for (const double step : {4.0, 16.0, 64.0}) {
       CodingSettings coding;
       coding.step = step;
-      const double error = strip.error_of(code_gof(analysis, coding));
+      const double error = strip.error_of(code_gof(strip.frames, analysis, coding));
       EXPECT_LT(error, 0.75 * step) << world;
       EXPECT_GT(error, 0.02 * step) << world;
     }
@@ -158,7 +158,7 @@ TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
     CodingSettings coding;
     coding.allocation = CodingSettings::Allocation::kFixed;
     coding.components = count;
-    const Gof gof = code_gof(analysis, coding);
+    const Gof gof = code_gof(strip.frames, analysis, coding);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_EQ(gof.clusters[i].components.size(),
                 std::min<std::size_t>(count, analysis.clusters[i].pc.spatial.size()));
@@ -174,7 +174,7 @@ TEST(CodeGof, AVectorBudgetIsSharedByTheClusters) {
   coding.allocation = CodingSettings::Allocation::kVectorBudget;
   coding.components = 2;
   std::size_t sum = 0;
-  for (const Cluster& cluster : code_gof(analysis, coding).clusters) {
+  for (const Cluster& cluster : code_gof(strip.frames, analysis, coding).clusters) {
     sum += cluster.components.size();
   }
   EXPECT_LE(sum, 4U);

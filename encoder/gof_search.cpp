@@ -26,7 +26,7 @@ constexpr double kMinEnergySteps = 1.2;
 GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
                  const GofAnalysis& analysis, const CodingSettings& coding) {
   GofTrial trial;
-  trial.gof = code_gof(analysis, coding);
+  trial.gof = code_gof(frames, analysis, coding);
   trial.payload = write_gof(trial.gof, context.header, context.topology);
   const GofRecon recon(context.header, context.topology, trial.gof);
   trial.squared_error = squared_error(
@@ -153,7 +153,7 @@ EncodedGof GofSearch::encode(double step, double analysis_step) {
     cached_ = Cached{analysis_step, analyse(analysis_step, *choice_)};
   }
   EncodedGof encoded;
-  const Gof gof = code_gof(cached_->analysis, coding_settings(step));
+  const Gof gof = code_gof(frames_, cached_->analysis, coding_settings(step));
   encoded.units.push_back({UnitType::kGof, write_gof(gof, context_.header, context_.topology)});
   const auto recon = std::make_shared<GofRecon>(context_.header, context_.topology, gof);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
