@@ -32,7 +32,7 @@ constexpr double kFlexiblePart = 1.0;
 // very low, nothing else is tried.
 constexpr double kPromising = 0.78;
 constexpr double kPromisingOfReal = 0.85;
-constexpr double kPromisingUnsettled = 1.0;
+constexpr double kPromisingUnsettled = 0.93;
 constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
 // Limits of promises are so much higher where a trial takes little time.
