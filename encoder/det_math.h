@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 
 namespace rlpc {
@@ -39,6 +40,24 @@ inline double det_exp2(double x) {
   double sum = 1.0;
   for (int k = 13; k >= 1; --k) sum = 1.0 + sum * t / k;
   return sum * exact_exp2(whole);
+}
+
+// sin(x) for |x| <= pi / 2; absolute error below 1e-15.
+inline double det_sin(double x) {
+  assert(-1.5708 < x && x < 1.5708);
+  double sum = 1.0;
+  for (int k = 20; k >= 2; k -= 2) sum = 1.0 - sum * x * x / (k * (k + 1));
+  return x * sum;
+}
+
+// atan(x) for 0 <= x <= 1; absolute error below 1e-15.
+inline double det_atan(double x) {
+  assert(0.0 <= x && x <= 1.0);
+  // Twice to half the angle, which is then below pi / 16.
+  for (int i = 0; i < 2; ++i) x /= 1.0 + std::sqrt(1.0 + x * x);
+  double sum = 0.0;
+  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - sum * x * x;
+  return 4.0 * x * sum;
 }
 
 // Nearest integer, ties away from zero; |x| < 2^52.

@@ -52,6 +52,22 @@ TEST(ExactExp2, IsThePowerOfTwo) {
   for (int n = -999; n < 1000; ++n) ASSERT_EQ(exact_exp2(n), std::ldexp(1.0, n));
 }
 
+TEST(DetSin, IsThatOfTheLibrary) {
+  for (int i = -1000; i <= 1000; ++i) {
+    const double x = i * (1.5707963267948966 / 1000);
+    ASSERT_NEAR(det_sin(x), std::sin(x), 1e-15) << x;
+  }
+  EXPECT_EQ(det_sin(1e-300), 1e-300);
+}
+
+TEST(DetAtan, IsThatOfTheLibrary) {
+  for (int i = 0; i <= 1000; ++i) {
+    const double x = i / 1000.0;
+    ASSERT_NEAR(det_atan(x), std::atan(x), 1e-15) << x;
+  }
+  EXPECT_EQ(det_atan(1e-300), 1e-300);
+}
+
 TEST(RoundToInt, TiesGoAwayFromZero) {
   EXPECT_EQ(round_to_int(0.0), 0);
   EXPECT_EQ(round_to_int(0.5), 1);
