@@ -31,6 +31,7 @@ class FrameSource {
     std::uint32_t num_frames = 0;
     FrameRate frame_rate;
     std::vector<Triangle> triangles;
+    std::vector<std::string> notes{};
   };
 
   FrameSource(const FrameSource&) = delete;
@@ -42,6 +43,8 @@ class FrameSource {
   FrameRate frame_rate() const { return shape_.frame_rate; }
   // Every index is below num_vertices(). May be empty: a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
+  // For the user, a line each: what of the input was left out or joined.
+  const std::vector<std::string>& notes() const { return shape_.notes; }
 
   // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
   // success. frame < num_frames(), in any order.
