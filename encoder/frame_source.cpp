@@ -1,5 +1,6 @@
 #include "encoder/frame_source.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -7,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "encoder/gltf_source.h"
+#include "encoder/input_file.h"
 #include "encoder/obj_sequence.h"
 #include "encoder/pc2_reader.h"
 #include "encoder/rlpd_reader.h"
@@ -53,6 +56,16 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
   return FrameRate{*numerator / divisor, *denominator / divisor};
 }
 
+// Does the file begin as a .glb or .gltf file does, whatever its name is?
+bool looks_like_gltf(const std::string& path) {
+  auto file = InputFile::open(path);
+  if (!file) return false;
+  std::string text(std::min<std::uint64_t>(file->size(), 64), '\0');
+  if (file->read(0, text)) return false;
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return text.starts_with("glTF") || (first != text.npos && text[first] == '{');
+}
+
 InputResult<std::unique_ptr<FrameSource>> open_listed(
     InputResult<std::vector<std::string>> paths, const InputOptions& options) {
   if (!paths) return paths.error();
@@ -76,6 +89,12 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
   }
   std::string extension = fs::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const bool named = extension == ".glb" || extension == ".gltf";
+  const bool unknown = extension != ".rlpd" && extension != ".obj" && extension != ".pc2";
+  if (named || (unknown && looks_like_gltf(path))) return open_gltf(options);
+  if (!options.animation.empty()) {
+    return InputError{path + ": only .glb and .gltf files have animations to choose from"};
+  }
   if (extension == ".rlpd") return open_rlpd(path, options.frame_rate);
   if (extension == ".obj") return open_obj_sequence({path}, options.frame_rate);
   if (extension == ".pc2") {
@@ -83,9 +102,10 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
                       ": a point cache has no triangles; give its mesh as the input and the "
                       "cache with --points"};
   }
-  return InputError{path + (exists ? ": unknown kind of file" : ": no such file or folder") +
-                    "; expected an .obj or .rlpd file, a folder of .obj files, or a pattern "
-                    "such as walk_%04d.obj or 'walk_*.obj'"};
+  return InputError{
+      path + (exists ? ": unknown kind of file" : ": no such file or folder") +
+      "; expected an .obj, .glb, .gltf or .rlpd file, a folder of .obj files, or a pattern "
+      "such as walk_%04d.obj or 'walk_*.obj'"};
 }
 
 InputResult<FrameRate> parse_frame_rate(std::string_view text) {

@@ -65,15 +65,19 @@ class FrameSource {
 //   walk_*.obj                  the files that match (* ? [ ] in the file name), sorted
 //   likewise walk_%04d.obj               from the lowest number that exists, without gaps
 //   x.rlpd                      decoder output (Annex A)
+//   x.glb, x.gltf               the scene of a glTF 2.0 document, moved by its animations
 //
 // Frame rate: `frame_rate` if given; else that of the .rlpd header, or of a comment
 // "# frame_rate 30000/1001" in the (first) OBJ file, which our own writers leave there;
 // else 30. The sample rate of a point cache is not a frame rate: it counts frames per sample,
-// is 1 in nearly every file whatever the speed of the animation, and is not used.
+// is 1 in nearly every file whatever the speed of the animation, and is not used. Animations of
+// glTF are sampled at the frame rate.
 struct InputOptions {
   std::string path;
   std::string points;  // empty: none
   std::optional<FrameRate> frame_rate;
+  std::string animation{};  // of glTF: a name, an index from 0, or "all"; empty: the first
+  bool weld = true;         // of glTF: join vertices that coincide in every frame
 };
 
 // Checks what can be checked without reading every frame; read_frame() checks the rest.

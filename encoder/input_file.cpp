@@ -40,18 +40,22 @@ std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> 
                     std::to_string(offset) + " failed; was the file changed meanwhile?"};
 }
 
+InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size) {
+  std::string text;
+  if (size > text.max_size()) {  // possible where std::size_t has 32 bits
+    return InputError{file.path() + ": " + std::to_string(size) +
+                      " bytes are more than this machine can address; use a 64-bit one"};
+  }
+  text.resize(static_cast<std::size_t>(size));
+  if (auto error = file.read(offset, text)) return *error;
+  return text;
+}
+
 InputResult<std::string> read_whole_file(const std::string& path) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
   if (file->size() == 0) return InputError{path + ": the file is empty"};
-  std::string text;
-  if (file->size() > text.max_size()) {  // possible where std::size_t has 32 bits
-    return InputError{path + ": " + std::to_string(file->size()) +
-                      " bytes are more than this machine can address; use a 64-bit one"};
-  }
-  text.resize(static_cast<std::size_t>(file->size()));
-  if (auto error = file->read(0, text)) return *error;
-  return text;
+  return read_text(*file, 0, file->size());
 }
 
 std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {

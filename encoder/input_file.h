@@ -26,6 +26,9 @@ class InputFile {
   std::ifstream stream_;
 };
 
+// `size` bytes from `offset`, which lie in the file.
+InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size);
+
 // The whole file. Refuses an empty one.
 InputResult<std::string> read_whole_file(const std::string& path);
 
