@@ -31,12 +31,14 @@ INPUT is one of
   folder/                       every .obj in it, in numeric order
   walk_%04d.obj, 'walk_*.obj'   the files that match, in numeric order
   mesh.obj                      a single frame
+  walk.glb, walk.gltf           a glTF 2.0 scene, moved by skins, morph targets and nodes
   clip.rlpd                     decoded positions
 
 Examples
   rlpcenc cow.obj --points cow.pc2 -o cow.rlpc             good quality (KG error 0.1 %)
   rlpcenc frames/ -o walk.rlpc --kg 0.3                    smaller, visibly the same
   rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5    1.5 bits per vertex and frame
+  rlpcenc fox.glb --animation Run -o run.rlpc              one animation of a glTF file
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.001   a bound for every vertex
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all --clusters 30 \
       --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf
@@ -223,7 +225,12 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
   app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
   app.add_option("--fps", o.fps,
-                 "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input)");
+                 "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input; else 30)");
+  app.add_option("--animation", o.input.animation,
+                 "Of a glTF file: a name, an index from 0, or `all`, one after another "
+                 "(default: the first)");
+  add_off_switch(app, "--no-weld", o.input.weld,
+                 "Of a glTF file: keep vertices apart that coincide in every frame");
   add_quality_options(app, o);
   add_method_options(app, o);
   add_main_options(app, o);
@@ -314,6 +321,9 @@ int run(Options& o) {
   if (auto error = read_metadata(o)) return complain(error->message);
   auto source = rlpc::open_frame_source(o.input);
   if (!source) return complain(source.error().message);
+  for (const std::string& note : (*source)->notes()) {
+    if (!o.quiet) std::cerr << "rlpcenc: " << o.input.path << ": " << note << "\n";
+  }
   rlpc::StreamFile file(o.output);
   if (!file.write({})) return complain(file.commit()->message);  // known before the work
   rlpc::InputResult<rlpc::EncodeReport> report = rlpc::InputError{};

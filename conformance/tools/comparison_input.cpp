@@ -83,28 +83,28 @@ InputResult<ComparisonInput> open_stream(const std::string& path) {
 }
 
 // With the point cache beside it, if that explains why there are fewer frames than `frames`.
-InputResult<ComparisonInput> add_cache(ComparisonInput input, const std::string& path,
-                                       const std::string& points, std::uint32_t frames) {
+InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions& options,
+                                       std::uint32_t frames) {
   if (input.frames->num_frames() != 1 || frames == 1) return input;
-  if (!points.empty() || lower_extension(path) != ".obj") return input;
-  const std::string cache = sibling(path, ".pc2");
+  if (!options.points.empty() || lower_extension(options.path) != ".obj") return input;
+  const std::string cache = sibling(options.path, ".pc2");
   if (cache.empty()) return input;
-  return open_comparison_input(path, cache);
+  return open_comparison_input({options.path, cache, std::nullopt});
 }
 
 }  // namespace
 
-InputResult<ComparisonInput> open_comparison_input(const std::string& path,
-                                                   const std::string& points) {
-  const std::string extension = lower_extension(path);
+InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
+  const std::string extension = lower_extension(given.path);
   if (extension == ".rlpc") {
-    if (points.empty()) return open_stream(path);
-    return InputError{path + ": a stream has its own positions; leave out " + points};
+    if (given.points.empty()) return open_stream(given.path);
+    return InputError{given.path + ": a stream has its own positions; leave out " +
+                      given.points};
   }
-  InputOptions options{path, points, std::nullopt};
-  if (extension == ".pc2" && points.empty()) {
-    const std::string mesh = sibling(path, ".obj");
-    if (!mesh.empty()) options = {mesh, path, std::nullopt};
+  InputOptions options = given;
+  if (extension == ".pc2" && given.points.empty()) {
+    const std::string mesh = sibling(given.path, ".obj");
+    if (!mesh.empty()) options = {mesh, given.path, std::nullopt};
   }
   auto source = open_frame_source(options);
   if (!source) return source.error();
@@ -115,14 +115,15 @@ InputResult<ComparisonInput> open_comparison_input(const std::string& path,
   return input;
 }
 
-InputResult<ComparisonPair> open_comparison_pair(const ComparisonPaths& paths) {
-  auto a = open_comparison_input(paths.a, paths.points_a);
+InputResult<ComparisonPair> open_comparison_pair(const InputOptions& options_a,
+                                                 const InputOptions& options_b) {
+  auto a = open_comparison_input(options_a);
   if (!a) return a.error();
-  auto b = open_comparison_input(paths.b, paths.points_b);
+  auto b = open_comparison_input(options_b);
   if (!b) return b.error();
-  a = add_cache(std::move(*a), paths.a, paths.points_a, b->frames->num_frames());
+  a = add_cache(std::move(*a), options_a, b->frames->num_frames());
   if (!a) return a.error();
-  b = add_cache(std::move(*b), paths.b, paths.points_b, a->frames->num_frames());
+  b = add_cache(std::move(*b), options_b, a->frames->num_frames());
   if (!b) return b.error();
 
   const auto differ = [&](std::uint32_t na, std::uint32_t nb, const std::string& what) {

@@ -18,10 +18,9 @@ struct ComparisonInput {
   bool traversal_order = false;
 };
 
-// `points` as in InputOptions; empty: none. An .rlpc file is decoded to float32, with its
-// hashes checked; x.pc2 takes its triangles from x.obj beside it.
-InputResult<ComparisonInput> open_comparison_input(const std::string& path,
-                                                   const std::string& points);
+// An .rlpc file is decoded to float32, with its hashes checked; x.pc2 takes its triangles from
+// x.obj beside it; everything else is as for the encoder.
+InputResult<ComparisonInput> open_comparison_input(const InputOptions& given);
 
 // Both sides, with as many vertices and frames. x.obj alone is one frame; if the other side has
 // several and x.pc2 is beside it, the cache is read as well (and the name says so).
@@ -29,12 +28,7 @@ struct ComparisonPair {
   ComparisonInput a;
   ComparisonInput b;
 };
-struct ComparisonPaths {
-  std::string a;
-  std::string points_a;
-  std::string b;
-  std::string points_b;
-};
-InputResult<ComparisonPair> open_comparison_pair(const ComparisonPaths& paths);
+InputResult<ComparisonPair> open_comparison_pair(const InputOptions& options_a,
+                                                 const InputOptions& options_b);
 
 }  // namespace rlpc

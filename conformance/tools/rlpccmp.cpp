@@ -31,6 +31,8 @@ A is the original, B what was decoded. Either is one of
   clip.rlpd                       decoded positions
   mesh.obj with --points-a/-b     triangles from the mesh, positions from the point cache
   clip.pc2                        the same, with the triangles of clip.obj beside it
+  walk.glb, walk.gltf             a glTF 2.0 scene; of the original, with the same --animation,
+                                  --fps and --no-weld as for rlpcenc
   folder/, f_%04d.obj, 'f_*.obj'  one OBJ file for each frame, in numeric order
   mesh.obj                        one frame; if the other side has several and mesh.pc2 is
                                   beside it, the cache is read as well, and the report says so
@@ -54,7 +56,9 @@ Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input o
 or cannot be compared; 64 usage.)";
 
 struct Options {
-  rlpc::ComparisonPaths paths;
+  rlpc::InputOptions a;
+  rlpc::InputOptions b;
+  std::string fps;
   std::string stream;
   std::string order_map;
   std::string csv;
@@ -65,11 +69,17 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("A", o.paths.a, "The original")->required();
-  app.add_option("B", o.paths.b, "The decoded animation")->required();
-  app.add_option("--points-a,--points", o.paths.points_a,
-                 "Point cache (.pc2) with the frames of A");
-  app.add_option("--points-b", o.paths.points_b, "Point cache (.pc2) with the frames of B");
+  app.add_option("A", o.a.path, "The original")->required();
+  app.add_option("B", o.b.path, "The decoded animation")->required();
+  app.add_option("--points-a,--points", o.a.points, "Point cache (.pc2) with the frames of A");
+  app.add_option("--points-b", o.b.points, "Point cache (.pc2) with the frames of B");
+  app.add_option("--animation-a,--animation", o.a.animation,
+                 "If A is a glTF file: a name, an index from 0, or `all` (default: the first)");
+  app.add_option("--animation-b", o.b.animation, "Likewise of B");
+  app.add_option("--fps", o.fps, "Frames per second of glTF files (default: 30)");
+  app.add_flag("!--no-weld-a,!--no-weld", o.a.weld,
+               "If A is a glTF file: keep vertices apart that coincide in every frame");
+  app.add_flag("!--no-weld-b", o.b.weld, "Likewise of B");
   app.add_option("--order-map", o.order_map, "Per vertex of B, its index in A, a line each");
   app.add_option("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
       ->check(CLI::ExistingFile);
@@ -188,8 +198,13 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
   return code;
 }
 
-int run(const Options& o) {
-  const auto pair = rlpc::open_comparison_pair(o.paths);
+int run(Options& o) {
+  if (!o.fps.empty()) {
+    const auto rate = rlpc::parse_frame_rate(o.fps);
+    if (!rate) return complain("--fps: " + rate.error().message), kUsage;
+    o.a.frame_rate = o.b.frame_rate = *rate;
+  }
+  const auto pair = rlpc::open_comparison_pair(o.a, o.b);
   if (!pair) return complain(pair.error().message);
   const auto map = rlpc::match_vertices(*pair, o.order_map);
   if (!map) return complain(map.error().message);
