@@ -1,7 +1,9 @@
 """Seeds of the fuzz targets: small streams, and the payloads that are in them."""
 
+import base64
 import hashlib
 import itertools
+import json
 import struct
 import subprocess
 import sys
@@ -231,12 +233,27 @@ FROM_PARTS = {"bone_gof_fuzz": bone_gof_seeds, "connectivity_fuzz": connectivity
               "gof_fuzz": gof_seeds, "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
 
 
-def seeds_of(target, streams):
+def gltf_seeds(root):
+    """The bundled documents, as they are and as JSON with a data URI, with several settings."""
+    for path in sorted((root / "streams" / "inputs").glob("*.glb")):
+        glb = path.read_bytes()
+        size, = struct.unpack_from("<I", glb, 12)
+        document = json.loads(glb[20:20 + size])
+        data = base64.b64encode(glb[20 + size + 8:]).decode()
+        document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + data
+        for settings in (4, 7, 123):
+            yield bytes([settings]) + glb
+            yield bytes([settings]) + json.dumps(document, separators=(",", ":")).encode()
+
+
+def seeds_of(target, streams, root):
     """What a target begins with; of a target that is not known here: streams."""
     if target == "obj_fuzz":
         return OBJ_SEEDS + [obj_text(p, t) for p, t, _ in small_animations()]
     if target == "pc2_fuzz":
         return [bytes([len(p) - 1]) + pc2_bytes(p, f) for p, _, f in small_animations()]
+    if target == "gltf_fuzz":
+        return gltf_seeds(root)
     if target == "rlpd_fuzz":
         return [rlpd_bytes(p, t, f) for p, t, f in small_animations()]
     if target == "validator_fuzz":
@@ -257,5 +274,5 @@ def write_all(root, corpus, encoder, targets):
         (corpus / target / "found").mkdir(exist_ok=True)
         for old in folder.iterdir():
             old.unlink()
-        for seed in seeds_of(target, streams):
+        for seed in seeds_of(target, streams, root):
             (folder / hashlib.sha1(seed).hexdigest()).write_bytes(seed)

@@ -27,6 +27,8 @@ SETTINGS = {
         "--max-error 0.01 --preset fast --bones 6 --components 5",
     ],
 }
+# Of glTF documents; what is evaluated of them is at stake.
+GLTF = "--animation all --kg 0.5 --preset fast --clusters 4"
 # The decoded frames of the first setting are also written as floats, and encoded again.
 AGAIN = "--profile baseline --kg 1 --preset fast"
 
@@ -78,7 +80,7 @@ class Workload:
     GROUPS = ["streams", "integers", "floats", "suite"]
 
     def __init__(self, root, meshes, suite, progress):
-        """meshes: by profile."""
+        """meshes: by profile. Documents are those of streams/inputs."""
         self.root = root
         self.meshes = meshes
         self.suite = suite
@@ -91,6 +93,8 @@ class Workload:
         tools = {name: [*emulator, bin_folder / name] for name in ("rlpcenc", "rlpcdec")}
         jobs = [(self._encode, (profile, mesh), i) for profile, settings in SETTINGS.items()
                 for mesh in self.meshes[profile] for i in range(len(settings))]
+        documents = sorted((self.root / "streams" / "inputs").glob("*.glb"))
+        jobs += [(self._encode_gltf, path, 0) for path in documents]
         jobs += [(self._decode_released, path, 0) for path in self.suite]
         results = {group: {} for group in self.GROUPS}
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -123,6 +127,11 @@ class Workload:
             results += [("floats", job, digest_of([floats, floats.with_suffix(".obj")])),
                         ("streams", f"{job}, decoded, {AGAIN}", digest_of([again]))]
         return results
+
+    def _encode_gltf(self, tools, work, path, _):
+        stream = work / f"{path.stem}-gltf.rlpc"
+        met = self._call([*tools["rlpcenc"], path, "-o", stream, "-q", *GLTF.split()], (0, 2))
+        return [("streams", f"{path.stem} {GLTF}", f"{met} {digest_of([stream])}")]
 
     def _decode_released(self, tools, work, path, _):
         job = str(path.relative_to(self.root / "streams"))

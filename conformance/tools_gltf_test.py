@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""glTF as input of the tools, as people run them.
+
+    tools_gltf_test.py --bin BUILD/bin [unittest arguments, such as GltfInput]
+"""
+
+import base64
+import json
+import struct
+import sys
+
+from tools_testing import INPUTS, ROOT, ToolsTest, main, read_pc2, run
+
+sys.path.insert(0, str(ROOT / "conformance" / "tools"))
+import make_gltf  # noqa: E402
+
+TULIP = INPUTS / "tulip.glb"
+# Vertices in the order of the scene, before any are joined.
+CUP, STEM, SOIL, BEE = 4 * 13, 13 * 9, 8, 24
+FRAMES = {"Sway": 61, "Visit": 46}
+EXACT = ["--no-weld", "--keep-order", "--max-error", 0.0005, "--preset", "fast", "--quiet"]
+
+
+def parts(glb):
+    """(document, bytes of its buffer)"""
+    size, = struct.unpack_from("<I", glb, 12)
+    return json.loads(glb[20:20 + size]), glb[20 + size + 8:]
+
+
+class GltfInput(ToolsTest):
+    def frames(self, *options):
+        """Decoded positions, in the order of the scene."""
+        self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), *EXACT, *options)
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.pc2"))
+        return read_pc2(self.path("a.pc2"))
+
+    def assert_near(self, found, wanted):
+        for a, b in zip(found, wanted, strict=True):
+            self.assertAlmostEqual(a, b, delta=0.001)
+
+    def test_the_bundled_file_is_what_its_program_writes(self):
+        self.assertEqual(TULIP.read_bytes(), make_gltf.tulip())
+
+    def test_every_container_gives_the_same_stream(self):
+        document, data = parts(TULIP.read_bytes())
+        uris = {"data.gltf": "data:application/octet-stream;base64," +
+                base64.b64encode(data).decode(), "file.gltf": "tulip%20data.bin"}
+        self.path("tulip data.bin").write_bytes(data)
+        for name, uri in uris.items():
+            document["buffers"][0]["uri"] = uri
+            self.path(name).write_text(json.dumps(document, indent=1))
+        self.path("other.name").write_bytes(TULIP.read_bytes())
+        streams = []
+        for path in (TULIP, *map(self.path, (*uris, "other.name"))):
+            self.ok("rlpcenc", path, "-o", self.path("a.rlpc"), "--kg", 1, "--preset", "fast",
+                    "--quiet")
+            streams.append(self.path("a.rlpc").read_bytes())
+        self.assertEqual(streams, streams[:1] * 4)
+
+    def test_animations_are_chosen(self):
+        cases = {(): 61, ("--animation", "Sway"): 61, ("--animation", "Visit"): 46,
+                 ("--animation", "1"): 46, ("--animation", "all"): 107,
+                 ("--animation", "Visit", "--fps", "10"): 16, ("--fps", "25"): 51,
+                 ("--fps", "30000/1001"): 60}
+        for options, count in cases.items():
+            report = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--preset",
+                             "fast", "--json", *options).json()
+            self.assertEqual(report["num_frames"], count, options)
+            self.assertEqual(report["num_vertices"], 172)
+
+    def test_what_is_joined_and_left_out_is_told(self):
+        result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
+        for words in ("2 primitives are of points or lines", "172 of 225 vertices remain",
+                      "8 degenerate triangles are left out"):
+            self.assertIn(f"{TULIP}: {words}", result.err)
+        result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--no-weld",
+                         "--json")
+        self.assertEqual(result.json()["num_vertices"], CUP + STEM + SOIL + 2 * BEE)
+        self.assertNotIn("remain", result.err)
+        self.assertEqual(self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1,
+                                 "--quiet").err, "")
+
+    def test_vertices_are_where_the_document_puts_them(self):
+        frames = self.frames("--animation", "Visit")
+        self.assertEqual(len(frames), FRAMES["Visit"])
+        soil = 3 * (CUP + STEM)
+        corners = [c for x, z in make_gltf.OCTAGON for c in (0.3 * x, 0.05, -0.3 * z)]
+        bee = soil + 3 * SOIL
+        # Visit begins at 0.25 s; these are the times of its splines.
+        path = {0: (-1.5, 2, 0), 15: (-0.4, 2.2, 0.3), 30: (0.4, 2.2, 0.3), 45: (1.5, 2.5, 0)}
+        scale = {0: 0.05, 14: 0.05, 15: 0.08, 29: 0.08, 30: 0.05, 44: 0.05, 45: 0.1}
+        for f, xyz in enumerate(frames):
+            self.assert_near(xyz[soil:bee], corners)
+            visitor = xyz[bee:bee + 3 * BEE]
+            if f in path:
+                self.assert_near([sum(visitor[c::3]) / BEE for c in range(3)], path[f])
+            if f in scale:
+                onlooker = xyz[bee + 3 * BEE:]
+                self.assertAlmostEqual(max(onlooker[0::3]) - 0.7, scale[f], delta=0.001)
+
+    def test_skin_and_targets_move(self):
+        frames = self.frames("--animation", "Sway")
+        stem = slice(3 * CUP, 3 * (CUP + STEM))
+        ring = slice(stem.stop - 3 * 9, stem.stop)
+        self.assert_near(frames[0][stem], frames[30][stem])  # upright again at 1 s
+        self.assertGreater(max(abs(a - b) for a, b in zip(frames[0][ring], frames[15][ring])), 0.1)
+        self.assert_near(frames[0][stem.start:stem.start + 27], frames[15][stem.start:][:27])
+        rim = slice(3 * 3 * 13, 3 * CUP)  # the cup is open at 1 s, and not at 0 s
+        widths = [max(frames[f][rim][0::3]) - min(frames[f][rim][0::3]) for f in (0, 30)]
+        self.assertAlmostEqual(widths[0], 0.5, delta=0.002)
+        self.assertGreater(widths[1], 0.9)
+
+    def test_all_is_one_after_another(self):
+        whole = self.frames("--animation", "all")
+        each = self.frames("--animation", "Sway") + self.frames("--animation", "Visit")
+        self.assertEqual(len(whole), len(each))
+        for a, b in zip(whole, each):
+            self.assert_near(a, b)
+
+    def test_rlpccmp_reads_it_as_rlpcenc_does(self):
+        for options in ([], ["--animation", "Visit"], ["--animation", "all", "--fps", 12],
+                        ["--no-weld"]):
+            self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--order-map", self.path("map"),
+                    "--kg", 0.5, "--preset", "fast", "--quiet", *options)
+            self.ok("rlpccmp", TULIP, self.path("a.rlpc"), "--order-map", self.path("map"),
+                    "--max-kg", 0.5, *options)
+        exact = self.ok("rlpccmp", TULIP, TULIP, "--animation-a", "Visit", "--animation-b", 1,
+                        "--no-weld-a", "--no-weld-b", "--json").json()
+        self.assertEqual((exact["num_vertices"], exact["metrics"]["max_error"]), (225, 0))
+        self.fails(2, "46 frames", "rlpccmp", TULIP, TULIP, "--animation", "Visit")
+        self.fails(64, "--fps", "rlpccmp", TULIP, TULIP, "--fps", "x")
+
+
+class GltfErrors(ToolsTest):
+    def refused(self, words, data, *options):
+        self.path("bad.glb").write_bytes(data)
+        self.fails(1, ["bad.glb", *words], "rlpcenc", self.path("bad.glb"), "-o",
+                   self.path("a.rlpc"), *options)
+        self.fails(2, ["bad.glb", *words], "rlpccmp", self.path("bad.glb"), self.path("bad.glb"),
+                   *options)
+        self.assertEqual(self.files(), ["bad.glb"])
+
+    def test_what_is_wrong_is_named(self):
+        def put(*path):
+            *places, last, value = path
+
+            def change(document):
+                for place in places:
+                    document = document[place]
+                document[last] = value
+            return change
+
+        cases = [
+            (put("extensionsRequired", 0, "KHR_draco_mesh_compression"),
+             ["extensionsRequired[0]", "KHR_draco_mesh_compression", "without compression"]),
+            (put("accessors", 3, "count", 833333334), ["accessors[3].count", "833333334"]),
+            (put("bufferViews", 0, "byteLength", 10 << 30), ["bufferViews[0].byteLength"]),
+            (put("buffers", 0, "byteLength", 10 << 30), ["buffers[0].byteLength", "10737418240"]),
+            (put("nodes", 4, "children", [0]), ["nodes[", "its own ancestor"]),
+            (put("nodes", 5, "children", [4]), ["nodes[5].children", "child of nodes[3]"]),
+            (put("skins", 0, "joints", [0, 1]), ["accessors[1], element", "joints below 2"]),
+            (put("nodes", 5, "mesh", 7), ["nodes[5].mesh", "7"]),
+            (put("scenes", 0, "nodes", []), ["scenes", "triangles"]),
+        ]
+        for change, words in cases:
+            document, data = parts(TULIP.read_bytes())
+            change(document)
+            self.refused(words, make_gltf.packed(document, data))
+
+    def test_every_cut_file_is_refused(self):
+        whole = TULIP.read_bytes()
+        for size in (0, 3, 11, 19, 500, len(whole) // 2, len(whole) - 1):
+            self.refused([], whole[:size])
+
+    def test_missing_buffers(self):
+        document, _ = parts(TULIP.read_bytes())
+        for uri, words in (("none.bin", "no such file"), ("../a.bin", "in the folder"),
+                           ("/etc/hostname", "in the folder")):
+            document["buffers"][0]["uri"] = uri
+            self.refused([words], json.dumps(document).encode())
+
+    def test_options_of_gltf_only(self):
+        self.refused(['"Dance"', '"Sway", "Visit"'], TULIP.read_bytes(), "--animation", "Dance")
+        result = run("rlpcenc", INPUTS / "elephant.obj", "--animation", "Walk", "-o",
+                     self.path("a.rlpc"))
+        self.assertEqual(result.code, 1)
+        self.assertIn("only .glb and .gltf", result.err)
+
+
+if __name__ == "__main__":
+    main()
