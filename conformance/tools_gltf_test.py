@@ -9,7 +9,7 @@ import json
 import struct
 import sys
 
-from tools_testing import INPUTS, ROOT, ToolsTest, main, read_pc2, run
+from tools_testing import INPUTS, ROOT, ToolsTest, main, read_pc2
 
 sys.path.insert(0, str(ROOT / "conformance" / "tools"))
 import make_gltf  # noqa: E402
@@ -178,13 +178,26 @@ class GltfErrors(ToolsTest):
                            ("/etc/hostname", "in the folder")):
             document["buffers"][0]["uri"] = uri
             self.refused([words], json.dumps(document).encode())
+        document["buffers"][0]["uri"] = "-"  # not standard input
+        self.path("bad.gltf").write_text(json.dumps(document))
+        self.fails(1, "./-: no such file", "rlpcenc", "bad.gltf", "-o", "a.rlpc", cwd=self.folder,
+                   input=parts(TULIP.read_bytes())[1])
 
     def test_options_of_gltf_only(self):
         self.refused(['"Dance"', '"Sway", "Visit"'], TULIP.read_bytes(), "--animation", "Dance")
-        result = run("rlpcenc", INPUTS / "elephant.obj", "--animation", "Walk", "-o",
-                     self.path("a.rlpc"))
-        self.assertEqual(result.code, 1)
-        self.assertIn("only .glb and .gltf", result.err)
+        elephant = INPUTS / "elephant.obj"
+        for source in ([elephant], [elephant, "--points", INPUTS / "elephant.pc2"], [INPUTS]):
+            self.fails(1, "only .glb and .gltf", "rlpcenc", *source, "--animation", "Walk", "-o",
+                       self.path("a.rlpc"))
+
+    def test_standard_input_is_named(self):
+        whole = TULIP.read_bytes()
+        for data, words in ((whole[:500], "length: found 11284"), (b"{", "not a glTF document"),
+                            (b'{"asset":{"version":"1.0"}}', "asset.version")):
+            self.fails(1, f"standard input: {words}", "rlpcenc", "-", "-o", self.path("a.rlpc"),
+                       input=data)
+        told = self.ok("rlpcenc", "-", "-o", self.path("a.rlpc"), "--kg", 1, input=whole).err
+        self.assertIn("standard input: 172 of 225 vertices remain", told)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 #include "encoder/frame_source.h"
 
-#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -10,8 +9,9 @@
 
 #include "encoder/gltf_source.h"
 #include "encoder/input_file.h"
-#include "encoder/obj_sequence.h"
-#include "encoder/pc2_reader.h"
+#include "encoder/mesh_reader.h"
+#include "encoder/mesh_sequence.h"
+#include "encoder/point_cache.h"
 #include "encoder/rlpd_reader.h"
 
 namespace rlpc {
@@ -56,20 +56,51 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
   return FrameRate{*numerator / divisor, *denominator / divisor};
 }
 
-// Does the file begin as a .glb or .gltf file does, whatever its name is?
-bool looks_like_gltf(const std::string& path) {
-  auto file = InputFile::open(path);
-  if (!file) return false;
-  std::string text(std::min<std::uint64_t>(file->size(), 64), '\0');
-  if (file->read(0, text)) return false;
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return text.starts_with("glTF") || (first != text.npos && text[first] == '{');
-}
-
 InputResult<std::unique_ptr<FrameSource>> open_listed(
     InputResult<std::vector<std::string>> paths, const InputOptions& options) {
   if (!paths) return paths.error();
-  return open_obj_sequence(std::move(*paths), options.frame_rate);
+  return open_mesh_sequence(std::move(*paths), options.frame_rate);
+}
+
+enum class FileKind : std::uint8_t { kUnknown, kGltf, kRlpd, kMesh, kPointCache };
+
+// By the extension; if that says nothing, by how the file begins.
+FileKind kind_of(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb" || extension == ".gltf") return FileKind::kGltf;
+  if (extension == ".rlpd") return FileKind::kRlpd;
+  if (extension == ".pc2" || extension == ".mdd") return FileKind::kPointCache;
+  if (is_mesh_extension(extension)) return FileKind::kMesh;
+  const std::string begin = beginning_of(path);
+  const std::size_t first = begin.find_first_not_of(" \t\r\n");
+  if (begin.starts_with("glTF") || (first != begin.npos && begin[first] == '{')) {
+    return FileKind::kGltf;
+  }
+  if (begin.starts_with("RLPD")) return FileKind::kRlpd;
+  if (begin.starts_with("POINTCACHE2")) return FileKind::kPointCache;
+  return mesh_format_of(path).empty() ? FileKind::kUnknown : FileKind::kMesh;
+}
+
+InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options, bool exists) {
+  const std::string& path = options.path;
+  switch (kind_of(path)) {
+    case FileKind::kGltf:
+      return open_gltf(options);
+    case FileKind::kRlpd:
+      return open_rlpd(path, options.frame_rate);
+    case FileKind::kMesh:
+      return open_mesh_sequence({path}, options.frame_rate);
+    case FileKind::kPointCache:
+      return InputError{name_of_input(path) +
+                        ": a point cache has no triangles; give its mesh as the input and the "
+                        "cache with --points"};
+    default:
+      return InputError{name_of_input(path) +
+                        (exists ? ": unknown kind of file" : ": no such file or folder") +
+                        "; expected an .obj, .ply, .off, .glb, .gltf or .rlpd file, a folder "
+                        "of .obj, .ply or .off files, or a pattern such as walk_%04d.obj or "
+                        "'walk_*.obj'"};
+  }
 }
 
 }  // namespace
@@ -77,35 +108,25 @@ InputResult<std::unique_ptr<FrameSource>> open_listed(
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
   const std::string& path = options.path;
   std::error_code ec;
-  const bool exists = fs::exists(path, ec);
-  if (!options.points.empty()) return open_pc2(path, options.points, options.frame_rate);
-  if (fs::is_directory(path, ec)) return open_listed(list_obj_folder(path), options);
+  const bool exists = path == "-" || fs::exists(path, ec);
+  const bool is_gltf = options.points.empty() && kind_of(path) == FileKind::kGltf;
+  if (!options.animation.empty() && !is_gltf) {
+    return InputError{name_of_input(path) +
+                      ": only .glb and .gltf files have animations to choose from"};
+  }
+  if (!options.points.empty()) {
+    return open_point_cache(path, options.points, options.frame_rate);
+  }
+  if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
   // A file of exactly this name comes first, whatever characters are in it.
   const std::string name = fs::path(path).filename().string();
-  if (!exists && name.find('%') != name.npos)
-    return open_listed(list_obj_pattern(path), options);
+  if (!exists && name.find('%') != name.npos) {
+    return open_listed(list_mesh_pattern(path), options);
+  }
   if (!exists && name.find_first_of("*?[") != name.npos) {
-    return open_listed(list_obj_glob(path), options);
+    return open_listed(list_mesh_glob(path), options);
   }
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  const bool named = extension == ".glb" || extension == ".gltf";
-  const bool unknown = extension != ".rlpd" && extension != ".obj" && extension != ".pc2";
-  if (named || (unknown && looks_like_gltf(path))) return open_gltf(options);
-  if (!options.animation.empty()) {
-    return InputError{path + ": only .glb and .gltf files have animations to choose from"};
-  }
-  if (extension == ".rlpd") return open_rlpd(path, options.frame_rate);
-  if (extension == ".obj") return open_obj_sequence({path}, options.frame_rate);
-  if (extension == ".pc2") {
-    return InputError{path +
-                      ": a point cache has no triangles; give its mesh as the input and the "
-                      "cache with --points"};
-  }
-  return InputError{
-      path + (exists ? ": unknown kind of file" : ": no such file or folder") +
-      "; expected an .obj, .glb, .gltf or .rlpd file, a folder of .obj files, or a pattern "
-      "such as walk_%04d.obj or 'walk_*.obj'"};
+  return open_file(options, exists);
 }
 
 InputResult<FrameRate> parse_frame_rate(std::string_view text) {

@@ -60,18 +60,22 @@ class FrameSource {
 // What to read:
 //   path                points  meaning
 //   mesh.obj                    one frame
-//   mesh.obj            x.pc2   triangles from the mesh, positions from the point cache
+//   mesh.obj            x.pc2   triangles from the mesh, positions from the point cache;
+//                               also x.mdd
 //   folder                      every .obj file in it, "2" before "10"
 //   walk_*.obj                  the files that match (* ? [ ] in the file name), sorted
 //   likewise walk_%04d.obj               from the lowest number that exists, without gaps
+//   mesh.ply, mesh.off          as .obj, everywhere above; one format in a folder
 //   x.rlpd                      decoder output (Annex A)
 //   x.glb, x.gltf               the scene of a glTF 2.0 document, moved by its animations
+//   -                           standard input: any of these files
+// A name without a known extension: by how the file begins.
 //
 // Frame rate: `frame_rate` if given; else that of the .rlpd header, or of a comment
-// "# frame_rate 30000/1001" in the (first) OBJ file, which our own writers leave there;
-// else 30. The sample rate of a point cache is not a frame rate: it counts frames per sample,
-// is 1 in nearly every file whatever the speed of the animation, and is not used. Animations of
-// glTF are sampled at the frame rate.
+// "# frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), which
+// our own writers leave there; else 30. The sample rate of a point cache is not a frame rate:
+// it counts frames per sample, is 1 in nearly every file whatever the speed of the animation,
+// and is not used, nor are the times of MDD. Animations of glTF are sampled at the frame rate.
 struct InputOptions {
   std::string path;
   std::string points;  // empty: none

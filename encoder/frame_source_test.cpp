@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/obj_sequence.h"
+#include "encoder/mesh_sequence.h"
 
 namespace rlpc {
 namespace {
@@ -38,6 +38,21 @@ std::string pc2(std::uint32_t points, std::uint32_t samples, const std::vector<f
   put_f32(bytes, 1);
   put_u32(bytes, samples);
   for (const float v : values) put_f32(bytes, v);
+  return bytes;
+}
+
+void put_be(std::string& bytes, std::uint32_t value) {
+  for (int i = 3; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i));
+}
+
+// The same of LightWave, with times that nobody reads.
+std::string mdd(std::uint32_t points, std::uint32_t frames, std::size_t times,
+                const std::vector<float>& values) {
+  std::string bytes;
+  put_be(bytes, frames);
+  put_be(bytes, points);
+  for (std::size_t i = 0; i < times; ++i) put_be(bytes, 0x7FC00000);
+  for (const float v : values) put_be(bytes, std::bit_cast<std::uint32_t>(v));
   return bytes;
 }
 
@@ -152,6 +167,39 @@ TEST_F(FrameSourceTest, RefusesWhatIsNoPointCache) {
   expect_error({path("none.obj"), path("b.pc2"), {}}, "none.obj: no such file");
 }
 
+TEST_F(FrameSourceTest, ReadsAPointCacheOfLightWave) {
+  const std::vector<float> values{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 1e30F};
+  const std::string mesh = put("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const auto source = open_frame_source({mesh, put("a.MDD", mdd(3, 2, 2, values)), {}});
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ((*source)->num_frames(), 2U);
+  EXPECT_EQ((*source)->triangles(), (std::vector<Triangle>{{0, 1, 2}}));
+  std::vector<float> xyz(9);
+  for (const std::uint32_t f : {1U, 0U}) {
+    ASSERT_FALSE((*source)->read_frame(f, xyz));
+    EXPECT_EQ(xyz, std::vector<float>(values.begin() + 9 * f, values.begin() + 9 * f + 9));
+  }
+}
+
+TEST_F(FrameSourceTest, RefusesBrokenPointCachesOfLightWave) {
+  const std::string mesh = put("a.obj", kTriangle);
+  std::vector<float> values(18);
+  const std::string good = mdd(3, 2, 2, values);
+  for (std::size_t n = 0; n < good.size(); ++n) {
+    EXPECT_NE(error_of({mesh, put("b.mdd", good.substr(0, n)), {}}), "") << n;
+  }
+  expect_error({mesh, put("b.mdd", good + "x"), {}}, "89 bytes; expected 88");
+  expect_error({mesh, put("b.mdd", mdd(2, 2, 2, values)), {}}, "2 points per frame, but");
+  expect_error({mesh, put("b.mdd", mdd(3, 0, 0, {})), {}}, "0 samples");
+  expect_error({mesh, put("b.mdd", mdd(3, 0x80000000, 2, values)), {}}, "-2147483648 samples");
+  expect_error({mesh, put("b.mdd", mdd(3, 0x7FFFFFFF, 2, values)), {}},
+               "88 bytes; expected 85899345888");
+  expect_error({path("b.mdd"), "", {}}, "a point cache has no triangles");
+  values[10] = kNan;
+  expect_error({mesh, put("b.mdd", mdd(3, 2, 2, values)), {}},
+               "b.mdd: frame 1, vertex 0 (both from 0): y is not a number");
+}
+
 TEST_F(FrameSourceTest, NamesFrameAndVertexThatAreNotFinite) {
   const std::string mesh = put("a.obj", kTriangle);
   std::vector<float> values(18);
@@ -173,7 +221,7 @@ TEST_F(FrameSourceTest, SortsNumbersByValue) {
   EXPECT_TRUE(natural_less("f99999999999999999999998", "f99999999999999999999999"));
 }
 
-class ObjSequenceTest : public FrameSourceTest {
+class MeshSequenceTest : public FrameSourceTest {
  protected:
   // A frame that can be told by its first coordinate.
   static std::string frame(int number) {
@@ -193,7 +241,7 @@ class ObjSequenceTest : public FrameSourceTest {
   }
 };
 
-TEST_F(ObjSequenceTest, ReadsFolderGlobAndPattern) {
+TEST_F(MeshSequenceTest, ReadsFolderGlobAndPattern) {
   for (const int n : {1, 2, 10, 11}) put("f" + std::to_string(n) + ".OBJ", frame(n));
   put("other.txt", "not a frame");
   EXPECT_EQ(first_coordinates(folder_.string()), (std::vector<float>{1, 2, 10, 11}));
@@ -207,29 +255,56 @@ TEST_F(ObjSequenceTest, ReadsFolderGlobAndPattern) {
   EXPECT_EQ(first_coordinates(path("w_%03d.obj")), (std::vector<float>{98, 99, 100}));
 }
 
-TEST_F(ObjSequenceTest, ReadsOneFile) {
+TEST_F(MeshSequenceTest, ReadsOneFile) {
   EXPECT_EQ(first_coordinates(put("one.obj", frame(5))), (std::vector<float>{5}));
   EXPECT_EQ(first_coordinates(put("odd[1]%.obj", frame(6))), (std::vector<float>{6}));
 }
 
-TEST_F(ObjSequenceTest, NamesTheMissingFrame) {
+TEST_F(MeshSequenceTest, ReadsEveryFormat) {
+  const auto put_frame = [&](int n) {
+    const std::string x = std::to_string(n);
+    put("off" + x + ".off", "OFF 3 1 0\n" + x + " 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    put("ply" + x + ".ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "end_header\n" +
+            x + " 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  };
+  for (const int n : {9, 10, 11}) put_frame(n);
+  for (const std::string name : {"off", "ply"}) {
+    EXPECT_EQ(first_coordinates(path(name + "%d." + name)), (std::vector<float>{9, 10, 11}));
+    EXPECT_EQ(first_coordinates(path(name + "*." + name)), (std::vector<float>{9, 10, 11}));
+    fs::rename(path(name + "9." + name), path(name));  // told by its content
+    EXPECT_EQ(first_coordinates(path(name)), (std::vector<float>{9}));
+  }
+  expect_error({folder_.string(), "", {}}, "has .off and .ply files; choose with a pattern");
+  for (const int n : {9, 10, 11}) fs::remove(path("off" + std::to_string(n) + ".off"));
+  EXPECT_EQ(first_coordinates(folder_.string()), (std::vector<float>{10, 11}));
+}
+
+TEST_F(MeshSequenceTest, TellsAnObjFileByItsContent) {
+  EXPECT_EQ(first_coordinates(put("mesh", "# by hand\n" + frame(3))), (std::vector<float>{3}));
+  expect_error({put("text", "voila\n"), "", {}}, "unknown kind of file");
+}
+
+TEST_F(MeshSequenceTest, NamesTheMissingFrame) {
   for (const int n : {3, 4, 6}) put("f" + std::to_string(n) + ".obj", frame(n));
   expect_error({path("f%d.obj"), "", {}},
                "f5.obj: this frame is missing, though f6.obj exists");
 }
 
-TEST_F(ObjSequenceTest, RefusesPatternsWithoutFiles) {
+TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {
   expect_error({path("f%d.obj"), "", {}}, "no such file, for example f0.obj");
   expect_error({path("f%s.obj"), "", {}}, "expected one %d or %04d");
   expect_error({path("f%d_%d.obj"), "", {}}, "expected one %d or %04d");
   expect_error({path("none/f%d.obj"), "", {}}, "cannot list the folder");
   expect_error({path("f*.obj"), "", {}}, "no file matches");
-  expect_error({folder_.string(), "", {}}, "no .obj file in this folder");
+  expect_error({folder_.string(), "", {}}, "no .obj, .ply or .off file in this folder");
   expect_error({path("none"), "", {}}, "no such file or folder");
   expect_error({put("a.stl", "solid"), "", {}}, "unknown kind of file");
 }
 
-TEST_F(ObjSequenceTest, NamesTheFrameWhoseTopologyChanges) {
+TEST_F(MeshSequenceTest, NamesTheFrameWhoseTopologyChanges) {
   put("f1.obj", frame(1));
   put("f2.obj", frame(2));
   const std::string third = put("f3.obj", frame(3) + "v 0 0 0\n");
@@ -241,7 +316,7 @@ TEST_F(ObjSequenceTest, NamesTheFrameWhoseTopologyChanges) {
   expect_error({path("f%d.obj"), "", {}}, "has triangle 0 = f 1 3 2, but");
 }
 
-TEST_F(ObjSequenceTest, NamesTheLineOfABadFrame) {
+TEST_F(MeshSequenceTest, NamesTheLineOfABadFrame) {
   put("f1.obj", frame(1));
   put("f2.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
   expect_error({path("f%d.obj"), "", {}}, "f2.obj:3: \"nan\" is not finite");

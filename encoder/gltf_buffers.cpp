@@ -136,7 +136,9 @@ std::optional<GltfBuffers::Place> GltfBuffers::find_file(const std::string& plac
                      "a file in the folder of the document, or below it; put it there");
     return std::nullopt;
   }
-  const std::string path = (fs::path(file_.file.path()).parent_path() / relative).string();
+  const fs::path folder = fs::path(file_.file.path()).parent_path();
+  // Never "-" alone, which is standard input.
+  const std::string path = ((folder.empty() ? fs::path(".") : folder) / relative).string();
   auto known = others_.find(path);
   if (known == others_.end()) {
     auto file = InputFile::open(path);

@@ -19,7 +19,8 @@ struct GltfBuffer {
 };
 
 // Opens what is asked for when it is asked for. Files are read in the folder of the document
-// and below it only: a document cannot make the tools read anything else.
+// (of standard input: the current one) and below it only: a document cannot make the tools read
+// anything else.
 class GltfBuffers {
  public:
   GltfBuffers(std::vector<GltfBuffer> buffers, GltfFile& file, GltfErrors& errors);

@@ -138,7 +138,8 @@ double GltfClip::num_frames(const FrameRate& rate) const {
 }
 
 double GltfClip::time_of(std::uint32_t frame, const FrameRate& rate) const {
-  return start + static_cast<double>(frame) * rate.denominator / rate.numerator;
+  return static_cast<float>(start +
+                            static_cast<double>(frame) * rate.denominator / rate.numerator);
 }
 
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,

@@ -25,6 +25,7 @@ struct GltfClip {
   // Frames from the start on, as long as they are not past the end: not by more than a
   // thousandth of a frame, and than times are rounded as 32-bit floats.
   double num_frames(const FrameRate& rate) const;
+  // Rounded as the times of keys are, so that a frame at a key is exactly that key.
   double time_of(std::uint32_t frame, const FrameRate& rate) const;
 };
 

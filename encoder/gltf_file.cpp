@@ -83,7 +83,7 @@ std::string message_of(const nlohmann::json::exception& error) {
 InputResult<GltfFile> open_gltf_file(const std::string& path) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
-  if (file->size() == 0) return InputError{path + ": the file is empty"};
+  if (file->size() == 0) return InputError{file->path() + ": the file is empty"};
   const auto binary = is_binary(*file);
   if (!binary) return binary.error();
   Chunks chunks{{0, file->size()}, {}};
@@ -94,12 +94,13 @@ InputResult<GltfFile> open_gltf_file(const std::string& path) {
   }
   auto text = read_text(*file, chunks.json.offset, chunks.json.size);
   if (!text) return text.error();
+  const std::string name = file->path();
   // Parsing and destruction keep their own stacks: no depth of nesting can exhaust ours.
   try {
     auto json = std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text));
     return GltfFile{std::move(*file), std::move(json), chunks.binary};
   } catch (const nlohmann::json::exception& error) {
-    return InputError{path + ": not a glTF document: " + message_of(error)};
+    return InputError{name + ": not a glTF document: " + message_of(error)};
   }
 }
 

@@ -122,7 +122,7 @@ InputResult<GltfModel> read_gltf_model(const std::string& path, const std::strin
                                        const GltfLimits& limits) {
   auto file = open_gltf_file(path);
   if (!file) return file.error();
-  GltfErrors errors(path);
+  GltfErrors errors(file->file.path());
   GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
   if (errors) return errors.first();
   file->json.reset();

@@ -120,7 +120,8 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   if (!model) return model.error();
   FrameSource::Shape shape;
   shape.frame_rate = options.frame_rate.value_or(FrameRate{});
-  auto first_frame = first_frames(*model, shape.frame_rate, options.path, limits);
+  const std::string name = name_of_input(options.path);
+  auto first_frame = first_frames(*model, shape.frame_rate, name, limits);
   if (!first_frame) return first_frame.error();
   shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
   shape.num_frames = first_frame->back();
@@ -130,7 +131,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.notes = model->notes;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
-      std::move(shape), options.path, std::move(*model), std::move(*first_frame));
+      std::move(shape), name, std::move(*model), std::move(*first_frame));
   if (!options.weld) return source;
   return weld(std::move(source));
 }

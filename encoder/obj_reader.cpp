@@ -1,96 +1,22 @@
 #include "encoder/obj_reader.h"
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <system_error>
 #include <utility>
 
-#include "encoder/input_file.h"
+#include "encoder/mesh_text.h"
 
 namespace rlpc {
 
 namespace {
 
-// Splits text into lines and words. A backslash at the end of a line continues it; "#" at the
-// start of a word ends it. Lines end with LF, CR LF or CR.
-class Words {
- public:
-  explicit Words(std::string_view text) : text_(text) {}
-
-  bool at_end() const { return pos_ == text_.size(); }
-  std::uint64_t line() const { return line_; }
-
-  // The next word of this line; empty at its end.
-  std::string_view next() {
-    skip_blanks();
-    const std::size_t first = pos_;
-    if (first < text_.size() && text_[first] == '#') return {};
-    while (pos_ < text_.size() && !is_blank(text_[pos_]) && !is_line_end(text_[pos_]) &&
-           continuation_length() == 0) {
-      ++pos_;
-    }
-    return text_.substr(first, pos_ - first);
-  }
-
-  // What is left of this line, comment included.
-  std::string_view rest() {
-    const std::size_t first = pos_;
-    while (pos_ < text_.size() && !is_line_end(text_[pos_])) ++pos_;
-    return text_.substr(first, pos_ - first);
-  }
-
-  void next_line() {
-    while (!next().empty()) {
-    }
-    rest();
-    if (!at_end()) pos_ += line_end_length(pos_);
-    ++line_;
-  }
-
- private:
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-  std::size_t line_end_length(std::size_t at) const {
-    return text_[at] == '\r' && at + 1 < text_.size() && text_[at + 1] == '\n' ? 2 : 1;
-  }
-  // Bytes of a backslash and line end at pos_; 0 if there is none.
-  std::size_t continuation_length() const {
-    if (text_[pos_] != '\\' || pos_ + 1 >= text_.size() || !is_line_end(text_[pos_ + 1]))
-      return 0;
-    return 1 + line_end_length(pos_ + 1);
-  }
-  void skip_blanks() {
-    while (pos_ < text_.size()) {
-      if (is_blank(text_[pos_])) {
-        ++pos_;
-      } else if (const std::size_t n = continuation_length(); n > 0) {
-        pos_ += n;
-        ++line_;
-      } else {
-        return;
-      }
-    }
-  }
-
-  std::string_view text_;
-  std::size_t pos_ = 0;
-  std::uint64_t line_ = 1;
-};
-
-std::string quoted(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
-  std::string text = "\"";
-  for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (word.size() > kLongest ? "...\"" : "\"");
-}
-
 class ObjParser {
  public:
   ObjParser(std::string_view text, const std::string& name) : words_(text), name_(name) {}
 
-  InputResult<ObjMesh> parse() {
+  InputResult<SingleMesh> parse() {
     for (; !words_.at_end(); words_.next_line()) {
       const std::string_view keyword = words_.next();
       if (keyword == "v") {
@@ -138,27 +64,10 @@ class ObjParser {
       fail(words_.line(), "a vertex needs three coordinates");
       return 0;
     }
-    const char* first = word.data() + (word.front() == '+' && word.size() > 1 ? 1 : 0);
-    const char* const last = word.data() + word.size();
-    float value = 0;
-    const auto [end, ec] = std::from_chars(first, last, value);
-    if (end != last || ec == std::errc::invalid_argument) {
-      fail(words_.line(), quoted(word) + " is not a number");
-    } else if (ec == std::errc::result_out_of_range) {
-      if (rounds_to_zero(first, last)) return 0;
-      fail(words_.line(), quoted(word) + " is too large for a 32-bit float (3.4e38)");
-    } else if (!std::isfinite(value)) {
-      fail(words_.line(), quoted(word) + " is not finite; every coordinate must be");
-    }
+    std::optional<std::string> problem;
+    const float value = parse_coordinate(word, problem);
+    if (problem) fail(words_.line(), *problem);
     return value;
-  }
-
-  // Of a number that does not fit a float: too small rather than too large?
-  static bool rounds_to_zero(const char* first, const char* last) {
-    double value = 0;
-    if (std::from_chars(first, last, value).ec == std::errc()) return std::abs(value) < 1;
-    const std::string_view word(first, static_cast<std::size_t>(last - first));
-    return word.find("e-") != word.npos || word.find("E-") != word.npos;
   }
 
   // "f a b c ...": a fan from the first corner.
@@ -226,9 +135,9 @@ class ObjParser {
       mesh_.frame_rate = *rate;
   }
 
-  Words words_;
+  TextWords words_;
   const std::string& name_;
-  ObjMesh mesh_;
+  SingleMesh mesh_;
   std::optional<InputError> error_;
   std::int64_t highest_index_ = 0;
   std::uint64_t highest_line_ = 0;
@@ -236,7 +145,7 @@ class ObjParser {
 
 }  // namespace
 
-InputResult<ObjMesh> parse_obj(std::string_view text, const std::string& name) {
+InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name) {
   constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
   if (text.substr(0, kUtf8Mark.size()) == kUtf8Mark) text.remove_prefix(kUtf8Mark.size());
   if (const std::size_t zero = text.find('\0'); zero != text.npos) {
@@ -244,12 +153,6 @@ InputResult<ObjMesh> parse_obj(std::string_view text, const std::string& name) {
                       "; this is not a text file, so not an OBJ file"};
   }
   return ObjParser(text, name).parse();
-}
-
-InputResult<ObjMesh> read_obj(const std::string& path) {
-  const auto text = read_whole_file(path);
-  if (!text) return text.error();
-  return parse_obj(*text, path);
 }
 
 }  // namespace rlpc

@@ -5,23 +5,14 @@
 // are rounded correctly, so that the same file gives the same stream on every machine.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "encoder/frame_source.h"
+#include "encoder/mesh_reader.h"
 
 namespace rlpc {
 
-struct ObjMesh {
-  std::vector<float> xyz;               // 3 per vertex, at least one vertex, all finite
-  std::vector<Triangle> triangles;      // polygons as fans from their first corner
-  std::optional<FrameRate> frame_rate;  // of a comment "# frame_rate N/D"
-};
-
 // `name` stands in error messages.
-InputResult<ObjMesh> parse_obj(std::string_view text, const std::string& name);
-InputResult<ObjMesh> read_obj(const std::string& path);
+InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace rlpc

@@ -131,10 +131,10 @@ TEST(ObjReader, RefusesWhatIsNotText) {
 }
 
 TEST(ObjReader, RefusesMissingAndEmptyFiles) {
-  const auto missing = read_obj("no_such_file.obj");
+  const auto missing = read_mesh("no_such_file.obj");
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("no_such_file.obj: no such file"), std::string::npos);
-  const auto folder = read_obj(".");
+  const auto folder = read_mesh(".");
   ASSERT_FALSE(folder);
   EXPECT_NE(folder.error().message.find("not a regular file"), std::string::npos);
 }

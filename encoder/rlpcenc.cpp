@@ -16,6 +16,7 @@
 #endif
 
 #include "encoder/frame_source.h"
+#include "encoder/input_file.h"
 #include "encoder/progress_bar.h"
 #include "encoder/report_json.h"
 #include "encoder/rlpc_encoder.h"
@@ -27,12 +28,14 @@ enum ExitCode : int { kDone = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };
 
 constexpr const char* kExamples = R"(
 INPUT is one of
-  mesh.obj --points cache.pc2   triangles from the mesh, positions from the point cache
-  folder/                       every .obj in it, in numeric order
+  mesh.obj --points cache.pc2   triangles from the mesh, positions from the point cache (PC2, MDD)
+  folder/                       every .obj in it (or .ply, .off), in numeric order
   walk_%04d.obj, 'walk_*.obj'   the files that match, in numeric order
-  mesh.obj                      a single frame
+  mesh.obj                      a single frame (also .ply, .off)
   walk.glb, walk.gltf           a glTF 2.0 scene, moved by skins, morph targets and nodes
   clip.rlpd                     decoded positions
+  -                             any such file from standard input
+Formats are told by the extension; where it says nothing, by how the file begins.
 
 Examples
   rlpcenc cow.obj --points cow.pc2 -o cow.rlpc             good quality (KG error 0.1 %)
@@ -221,9 +224,11 @@ void add_extra_options(CLI::App& app, Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("input", o.input.path, "Animation to encode")->required();
+  app.add_option("input", o.input.path, "Animation to encode; - for standard input")
+      ->required();
   app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
-  app.add_option("--points", o.input.points, "Point cache (.pc2) with the frames of INPUT");
+  app.add_option("--points", o.input.points,
+                 "Point cache (.pc2, .mdd) with the frames of INPUT");
   app.add_option("--fps", o.fps,
                  "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input; else 30)");
   app.add_option("--animation", o.input.animation,
@@ -321,8 +326,9 @@ int run(Options& o) {
   if (auto error = read_metadata(o)) return complain(error->message);
   auto source = rlpc::open_frame_source(o.input);
   if (!source) return complain(source.error().message);
+  const std::string name = rlpc::name_of_input(o.input.path);
   for (const std::string& note : (*source)->notes()) {
-    if (!o.quiet) std::cerr << "rlpcenc: " << o.input.path << ": " << note << "\n";
+    if (!o.quiet) std::cerr << "rlpcenc: " << name << ": " << note << "\n";
   }
   rlpc::StreamFile file(o.output);
   if (!file.write({})) return complain(file.commit()->message);  // known before the work

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "decoder/float_position.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/input_file.h"
+#include "encoder/mesh_reader.h"
 
 namespace rlpc {
 
@@ -18,17 +20,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string lower_extension(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return extension;
-}
-
-// The file of the same stem with another extension, if there is one.
-std::string sibling(const std::string& path, const char* extension) {
+// The first file of the same stem with one of other extensions, if there is one.
+std::string sibling(const std::string& path, std::initializer_list<const char*> extensions) {
   std::error_code ec;
-  const fs::path other = fs::path(path).replace_extension(extension);
-  return fs::is_regular_file(other, ec) ? other.string() : "";
+  for (const char* const extension : extensions) {
+    const fs::path other = fs::path(path).replace_extension(extension);
+    if (fs::is_regular_file(other, ec)) return other.string();
+  }
+  return "";
 }
 
 // A stream as a sequence of float32 frames.
@@ -86,8 +85,10 @@ InputResult<ComparisonInput> open_stream(const std::string& path) {
 InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions& options,
                                        std::uint32_t frames) {
   if (input.frames->num_frames() != 1 || frames == 1) return input;
-  if (!options.points.empty() || lower_extension(options.path) != ".obj") return input;
-  const std::string cache = sibling(options.path, ".pc2");
+  if (!options.points.empty() || !is_mesh_extension(lower_extension(options.path))) {
+    return input;
+  }
+  const std::string cache = sibling(options.path, {".pc2", ".mdd"});
   if (cache.empty()) return input;
   return open_comparison_input({options.path, cache, std::nullopt});
 }
@@ -102,8 +103,8 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
                       given.points};
   }
   InputOptions options = given;
-  if (extension == ".pc2" && given.points.empty()) {
-    const std::string mesh = sibling(given.path, ".obj");
+  if ((extension == ".pc2" || extension == ".mdd") && given.points.empty()) {
+    const std::string mesh = sibling(given.path, {".obj", ".ply", ".off"});
     if (!mesh.empty()) options = {mesh, given.path, std::nullopt};
   }
   auto source = open_frame_source(options);

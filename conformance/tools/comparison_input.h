@@ -18,8 +18,8 @@ struct ComparisonInput {
   bool traversal_order = false;
 };
 
-// An .rlpc file is decoded to float32, with its hashes checked; x.pc2 takes its triangles from
-// x.obj beside it; everything else is as for the encoder.
+// An .rlpc file is decoded to float32, with its hashes checked; x.pc2 and x.mdd take their
+// triangles from x.obj (or .ply, .off) beside it; everything else is as for the encoder.
 InputResult<ComparisonInput> open_comparison_input(const InputOptions& given);
 
 // Both sides, with as many vertices and frames. x.obj alone is one frame; if the other side has

@@ -30,12 +30,14 @@ A is the original, B what was decoded. Either is one of
   clip.rlpc                       a stream: decoded, its hashes checked, its bits counted
   clip.rlpd                       decoded positions
   mesh.obj with --points-a/-b     triangles from the mesh, positions from the point cache
-  clip.pc2                        the same, with the triangles of clip.obj beside it
+  clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or .ply, .off)
+                                  beside it
   walk.glb, walk.gltf             a glTF 2.0 scene; of the original, with the same --animation,
                                   --fps and --no-weld as for rlpcenc
-  folder/, f_%04d.obj, 'f_*.obj'  one OBJ file for each frame, in numeric order
-  mesh.obj                        one frame; if the other side has several and mesh.pc2 is
-                                  beside it, the cache is read as well, and the report says so
+  folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file for each frame, in numeric order
+  mesh.obj                        one frame; if the other side has several and mesh.pc2 (.mdd)
+                                  is beside it, the cache is read as well, and the report says
+                                  so
 
 Vertices of a stream are in the order of the input only if it was encoded with --keep-order. For
 all others, give --order-map the file that rlpcenc wrote with the option of that name.
@@ -71,15 +73,18 @@ struct Options {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("A", o.a.path, "The original")->required();
   app.add_option("B", o.b.path, "The decoded animation")->required();
-  app.add_option("--points-a,--points", o.a.points, "Point cache (.pc2) with the frames of A");
-  app.add_option("--points-b", o.b.points, "Point cache (.pc2) with the frames of B");
+  app.add_option("--points-a,--points", o.a.points,
+                 "Point cache (.pc2, .mdd) with the frames of A");
+  app.add_option("--points-b", o.b.points, "Point cache (.pc2, .mdd) with the frames of B");
   app.add_option("--animation-a,--animation", o.a.animation,
                  "If A is a glTF file: a name, an index from 0, or `all` (default: the first)");
   app.add_option("--animation-b", o.b.animation, "Likewise of B");
   app.add_option("--fps", o.fps, "Frames per second of glTF files (default: 30)");
-  app.add_flag("!--no-weld-a,!--no-weld", o.a.weld,
-               "If A is a glTF file: keep vertices apart that coincide in every frame");
-  app.add_flag("!--no-weld-b", o.b.weld, "Likewise of B");
+  app.add_flag_callback(
+      "--no-weld-a,--no-weld", [&o] { o.a.weld = false; },
+      "If A is a glTF file: keep vertices apart that coincide in every frame");
+  app.add_flag_callback(
+      "--no-weld-b", [&o] { o.b.weld = false; }, "Likewise of B");
   app.add_option("--order-map", o.order_map, "Per vertex of B, its index in A, a line each");
   app.add_option("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
       ->check(CLI::ExistingFile);

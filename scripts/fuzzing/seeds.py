@@ -67,6 +67,29 @@ def obj_text(points, triangles):
     return ("\n".join(lines) + "\n").encode()
 
 
+def mesh_files(form, points, triangles):
+    """OFF, or PLY in its three encodings."""
+    rows = ["%.6g %.6g %.6g" % p for p in points] + ["3 %d %d %d" % t for t in triangles]
+    text = ("\n".join(rows) + "\n").encode()
+    if form == "off":
+        yield b"COFF\n%d %d 0\n" % (len(points), len(triangles)) + text
+        return
+    header = (b"ply\nformat %%s 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
+              b"property float z\nelement face %d\nproperty list uchar int vertex_indices\n"
+              b"end_header\n" % (len(points), len(triangles)))
+    yield header % b"ascii" + text
+    for order, name in ("<", b"binary_little_endian"), (">", b"binary_big_endian"):
+        yield header % name + b"".join(struct.pack(order + "3f", *p) for p in points) + b"".join(
+            struct.pack(order + "B3i", 3, *t) for t in triangles)
+
+
+def mdd_bytes(points, frames):
+    head = struct.pack(">ii", frames, len(points))
+    head += b"".join(struct.pack(">f", f / 30) for f in range(frames))
+    return head + b"".join(struct.pack(">3f", *p) for f in range(frames)
+                           for p in moved(points, f))
+
+
 def pc2_bytes(points, frames):
     head = b"POINTCACHE2\0" + struct.pack("<iiffi", 1, len(points), 0, 1, frames)
     return head + b"".join(struct.pack("<3f", *p) for f in range(frames)
@@ -250,6 +273,10 @@ def seeds_of(target, streams, root):
     """What a target begins with; of a target that is not known here: streams."""
     if target == "obj_fuzz":
         return OBJ_SEEDS + [obj_text(p, t) for p, t, _ in small_animations()]
+    if target in ("off_fuzz", "ply_fuzz"):
+        return [b for p, t, _ in small_animations() for b in mesh_files(target[:3], p, t)]
+    if target == "mdd_fuzz":
+        return [bytes([len(p) - 1]) + mdd_bytes(p, f) for p, _, f in small_animations()]
     if target == "pc2_fuzz":
         return [bytes([len(p) - 1]) + pc2_bytes(p, f) for p, _, f in small_animations()]
     if target == "gltf_fuzz":

@@ -1,4 +1,4 @@
-#include "encoder/obj_sequence.h"
+#include "encoder/mesh_sequence.h"
 
 #include <fnmatch.h>
 
@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "encoder/obj_reader.h"
+#include "encoder/mesh_reader.h"
 
 namespace rlpc {
 
@@ -55,12 +55,6 @@ InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Pred
   return paths;
 }
 
-bool has_obj_extension(const std::string& name) {
-  std::string extension = fs::path(name).extension().string();
-  for (char& c : extension) c = c == 'O' ? 'o' : c == 'B' ? 'b' : c == 'J' ? 'j' : c;
-  return extension == ".obj";
-}
-
 // A file name with one "%d", "%4d" or "%04d" in it.
 struct NumberedName {
   std::string prefix;
@@ -102,14 +96,14 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
   return result;
 }
 
-class ObjSequence : public FrameSource {
+class MeshSequence : public FrameSource {
  public:
-  ObjSequence(Shape shape, std::vector<std::string> paths)
+  MeshSequence(Shape shape, std::vector<std::string> paths)
       : FrameSource(std::move(shape)), paths_(std::move(paths)) {}
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    const auto mesh = read_obj(paths_[frame]);
+    const auto mesh = read_mesh(paths_[frame]);
     if (!mesh) return mesh.error();
     if (auto error = compare_with_first(frame, *mesh)) return error;
     std::copy(mesh->xyz.begin(), mesh->xyz.end(), xyz.begin());
@@ -117,7 +111,8 @@ class ObjSequence : public FrameSource {
   }
 
  private:
-  std::optional<InputError> compare_with_first(std::uint32_t frame, const ObjMesh& mesh) const {
+  std::optional<InputError> compare_with_first(std::uint32_t frame,
+                                               const SingleMesh& mesh) const {
     const auto differs = [&](const std::string& here, const std::string& there) {
       return InputError{paths_[frame] + ": frame " + std::to_string(frame) + " (from 0) has " +
                         here + ", but " + paths_[0] + " has " + there +
@@ -139,7 +134,7 @@ class ObjSequence : public FrameSource {
     return std::nullopt;
   }
 
-  // As in the files: counted from 1.
+  // Counted from 1, as in OBJ files.
   static std::string corners(const Triangle& t) {
     std::string text;
     for (const std::uint32_t v : t) text += " " + std::to_string(std::uint64_t{v} + 1);
@@ -170,12 +165,22 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a < b;  // equal but for leading zeros
 }
 
-InputResult<std::vector<std::string>> list_obj_folder(const std::string& folder) {
-  return list_matching(folder, has_obj_extension,
-                       folder + ": no .obj file in this folder; expected one per frame");
+InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {
+  auto paths = list_matching(
+      folder, [](const std::string& name) { return is_mesh_extension(lower_extension(name)); },
+      folder + ": no .obj, .ply or .off file in this folder; expected one per frame");
+  if (!paths) return paths;
+  const std::string extension = lower_extension(paths->front());
+  for (const std::string& path : *paths) {
+    if (lower_extension(path) == extension) continue;
+    return InputError{folder + ": has " + extension + " and " + lower_extension(path) +
+                      " files; choose with a pattern, as in " +
+                      (fs::path(folder) / ("*" + extension)).string()};
+  }
+  return paths;
 }
 
-InputResult<std::vector<std::string>> list_obj_glob(const std::string& glob) {
+InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob) {
   const fs::path path(glob);
   const std::string pattern = path.filename().string();
   return list_matching(
@@ -183,10 +188,10 @@ InputResult<std::vector<std::string>> list_obj_glob(const std::string& glob) {
       [&](const std::string& name) {
         return fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0;
       },
-      glob + ": no file matches; expected one OBJ file per frame");
+      glob + ": no file matches; expected one file per frame");
 }
 
-InputResult<std::vector<std::string>> list_obj_pattern(const std::string& pattern) {
+InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern) {
   const fs::path path(pattern);
   const auto name = parse_pattern(path.filename().string());
   if (!name) {
@@ -217,19 +222,15 @@ InputResult<std::vector<std::string>> list_obj_pattern(const std::string& patter
   return paths;
 }
 
-InputResult<std::unique_ptr<FrameSource>> open_obj_sequence(
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
     std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate) {
   assert(!paths.empty());
-  auto first = read_obj(paths[0]);
+  auto first = read_mesh(paths[0]);
   if (!first) return first.error();
-
-  FrameSource::Shape shape;
-  shape.num_vertices = static_cast<std::uint32_t>(first->xyz.size() / 3);
-  shape.num_frames = static_cast<std::uint32_t>(paths.size());
-  shape.frame_rate = frame_rate.value_or(first->frame_rate.value_or(FrameRate{}));
-  shape.triangles = std::move(first->triangles);
+  auto shape =
+      shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
   return std::unique_ptr<FrameSource>(
-      std::make_unique<ObjSequence>(std::move(shape), std::move(paths)));
+      std::make_unique<MeshSequence>(std::move(shape), std::move(paths)));
 }
 
 }  // namespace rlpc

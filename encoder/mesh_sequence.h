@@ -1,4 +1,4 @@
-// Animations stored as one OBJ file per frame.
+// Animations stored as one file per frame: OBJ, PLY, OFF.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,18 @@
 
 namespace rlpc {
 
-// Files of a sequence in frame order. None found, or a gap in a numbered sequence, is an error.
-InputResult<std::vector<std::string>> list_obj_folder(const std::string& folder);
-InputResult<std::vector<std::string>> list_obj_glob(const std::string& glob);
-InputResult<std::vector<std::string>> list_obj_pattern(const std::string& pattern);
+// Files of a sequence in frame order. None found, a gap in a numbered sequence, or a folder
+// of several formats, is an error.
+InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder);
+InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob);
+InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern);
 
 // Orders runs of digits by their value: "frame2" before "frame10".
 bool natural_less(std::string_view a, std::string_view b);
 
 // One file per frame, at least one. The first is read now, each other when its frame is asked
 // for; its vertex count and triangles must then equal those of the first.
-InputResult<std::unique_ptr<FrameSource>> open_obj_sequence(
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
     std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate);
 
 }  // namespace rlpc

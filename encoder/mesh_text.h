@@ -1,0 +1,48 @@
+// Words and numbers of the mesh formats that are text.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace rlpc {
+
+// Splits text into lines and words. A backslash at the end of a line continues it; "#" at the
+// start of a word ends it. Lines end with LF, CR LF or CR.
+class TextWords {
+ public:
+  explicit TextWords(std::string_view text, std::uint64_t first_line = 1)
+      : text_(text), line_(first_line) {}
+
+  bool at_end() const { return pos_ == text_.size(); }
+  std::uint64_t line() const { return line_; }
+  // The next word of this line; empty at its end.
+  std::string_view next();
+  // The next word of this line or of the first after it that has one; empty at the end.
+  std::string_view next_of_any_line();
+  // What is left of this line, comment included.
+  std::string_view rest();
+  void next_line();
+  // Bytes from the start of the text.
+  std::size_t position() const { return pos_; }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+  std::size_t line_end_length(std::size_t at) const;
+  std::size_t continuation_length() const;
+  void skip_blanks();
+
+  std::string_view text_;
+  std::size_t pos_ = 0;
+  std::uint64_t line_;
+};
+
+// In quotes, printable, and not too long for an error message.
+std::string quoted(std::string_view word);
+
+// All of `word` as a finite float, rounded correctly; else `problem` says what it is instead.
+float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
+
+}  // namespace rlpc
