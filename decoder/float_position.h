@@ -1,4 +1,5 @@
-// The float value of a decoded position (clause 7.3): the only floating point of a decoder.
+// The float value of a decoded position (clause 7.3), and times: the only floating point of a
+// decoder.
 #pragma once
 
 #include <bit>
@@ -17,6 +18,12 @@ inline float float_position(const Grid& grid, std::size_t axis, std::int32_t pos
       std::bit_cast<double>(static_cast<std::uint64_t>(1023 + grid.log2_step) << 52);
   const std::int64_t steps = std::int64_t{position} + grid.origin[axis];
   return static_cast<float>(static_cast<double>(steps) * power);
+}
+
+// Seconds since frame 0.
+inline float frame_time(FrameRate frame_rate, std::uint32_t frame) {
+  return static_cast<float>(static_cast<double>(frame) * frame_rate.denominator /
+                            frame_rate.numerator);
 }
 
 }  // namespace rlpc

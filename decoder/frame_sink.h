@@ -38,6 +38,9 @@ class FrameSink {
   virtual std::optional<OutputError> finish() = 0;
 };
 
+// What is written; kByName: what the name of the file says.
+enum class SinkFormat : std::uint8_t { kByName, kRlpd, kPc2, kMdd, kGlb, kObj, kPly };
+
 struct SinkOptions {
   std::uint32_t num_vertices = 0;
   std::uint32_t num_frames = 0;
@@ -46,16 +49,20 @@ struct SinkOptions {
   std::vector<Triangle> triangles;  // every index below num_vertices
   // .rlpd only: finish() accepts fewer frames, and the file holds exactly those.
   bool keep_partial = false;
-  // OBJ sequences only: number of the first file.
+  // Mesh sequences only: number of the first file.
   std::uint32_t first_number = 0;
+  SinkFormat format = SinkFormat::kByName;
+  bool ascii = false;  // PLY as text
 };
 
-// By the form of `path`:
-//   out/frame_%04d.obj  OBJ sequence (also %d, or another width)
+// By options.format, or else by the form of `path`:
+//   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
-//   x.pc2               point cache; x.obj beside it holds triangles and first frame
-//   x.obj               if there is only one frame
+//   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame
+//   x.glb               glTF: one mesh, moved by morph targets
+//   x.obj, x.ply        if there is only one frame
 //   anything else       a folder of OBJ files, frame_0000.obj, frame_0001.obj, ...
+// "-" is standard output, for formats of one file; options.format must then say which.
 // Refuses x.obj for several frames, and extensions of files that it cannot write.
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options);
@@ -63,14 +70,21 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
 // The formats one by one. A device or pipe (/dev/stdout) as path is written directly.
 OutputResult<std::unique_ptr<FrameSink>> open_rlpd_sink(const std::string& path,
                                                         SinkOptions options);
-OutputResult<std::unique_ptr<FrameSink>> open_pc2_sink(const std::string& path,
-                                                       SinkOptions options);
-OutputResult<std::unique_ptr<FrameSink>> open_single_obj_sink(const std::string& path,
-                                                              SinkOptions options);
+// kPc2 or kMdd.
+OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               SinkOptions options);
+// Positions must fit a float, and the file 4 GB.
+OutputResult<std::unique_ptr<FrameSink>> open_gltf_sink(const std::string& path,
+                                                        SinkOptions options);
+// kObj or kPly, here and below.
+OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               const SinkOptions& options);
 // `pattern` has one %d or %04d in its last part. If its folder does not exist it appears whole,
 // at the end; if it does, files with the numbers of this sequence are replaced and all others
 // are left alone.
-OutputResult<std::unique_ptr<FrameSink>> open_obj_sink(const std::string& pattern,
-                                                       SinkOptions options);
+OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& pattern,
+                                                        SinkFormat format, SinkOptions options);
 
 }  // namespace rlpc

@@ -27,6 +27,7 @@ OutputError output_error(const std::string& path, const std::string& what, int c
 }
 
 OutputResult<OutputFile> OutputFile::create(const std::string& path) {
+  if (path == "-") return OutputFile("standard output", "", "", stdout);
   std::error_code ec;
   const auto type = fs::status(path, ec).type();
   if (type == fs::file_type::directory) {
@@ -108,6 +109,14 @@ void append_i32(std::string& bytes, std::int32_t value) {
 
 void append_f32(std::string& bytes, float value) {
   append_u32(bytes, std::bit_cast<std::uint32_t>(value));
+}
+
+void append_u32_be(std::string& bytes, std::uint32_t value) {
+  for (int i = 3; i >= 0; --i) bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
+}
+
+void append_f32_be(std::string& bytes, float value) {
+  append_u32_be(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
 }  // namespace rlpc

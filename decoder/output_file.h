@@ -16,7 +16,7 @@ namespace rlpc {
 class OutputFile {
  public:
   // Creates a temporary file beside `path`. A path that exists and is not a regular file (a
-  // device, a pipe) is opened directly; a symbolic link is followed.
+  // device, a pipe) is opened directly; a symbolic link is followed; "-" is standard output.
   static OutputResult<OutputFile> create(const std::string& path);
 
   OutputFile(OutputFile&& other) noexcept;
@@ -54,5 +54,8 @@ OutputError output_error(const std::string& path, const std::string& what, int c
 void append_u32(std::string& bytes, std::uint32_t value);
 void append_i32(std::string& bytes, std::int32_t value);
 void append_f32(std::string& bytes, float value);
+// Big-endian ones.
+void append_u32_be(std::string& bytes, std::uint32_t value);
+void append_f32_be(std::string& bytes, float value);
 
 }  // namespace rlpc

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -25,12 +26,15 @@ namespace {
 constexpr const char* kExamples = R"(
 OUT is one of
   clip.rlpd               integer positions and their grid: exact, what conformance compares
-  clip.pc2                point cache, with clip.obj beside it for the triangles
-  out/frame_%04d.obj      one OBJ file for each frame
-  out                     a folder of OBJ files
+  clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
+  clip.glb                glTF: the first frame, and the others as morph targets
+  out/frame_%04d.obj      one OBJ file for each frame; likewise .ply (binary, or --ascii)
+  out                     a folder of OBJ files (--format ply: of PLY files)
+  -                       standard output, with --format rlpd or glb; of one frame, obj or ply
 
 Examples
   rlpcdec walk.rlpc -o walk.pc2
+  rlpcdec walk.rlpc -o walk.glb
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
   rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
   rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
@@ -49,6 +53,8 @@ struct Options {
   std::string input;
   std::string output;
   std::string frames;
+  rlpc::SinkFormat format = rlpc::SinkFormat::kByName;
+  bool ascii = false;
   bool verify_only = false;
   bool no_hashes = false;
   bool json = false;
@@ -162,6 +168,8 @@ int decode(const Options& o) {
                               header.grid,
                               {decoder->triangles().begin(), decoder->triangles().end()}};
     options.first_number = span->first;
+    options.format = o.format;
+    options.ascii = o.ascii;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) return complain(opened.error().message, rlpc::kExitIo);
     sink = std::move(*opened);
@@ -199,6 +207,16 @@ void add_options(CLI::App& app, Options& o) {
   auto* output = app.add_option("-o,--output", o.output, "What to write, see below");
   app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
       ->excludes(output);
+  static const std::map<std::string, rlpc::SinkFormat> kFormats{
+      {"rlpd", rlpc::SinkFormat::kRlpd}, {"pc2", rlpc::SinkFormat::kPc2},
+      {"mdd", rlpc::SinkFormat::kMdd},   {"glb", rlpc::SinkFormat::kGlb},
+      {"obj", rlpc::SinkFormat::kObj},   {"ply", rlpc::SinkFormat::kPly}};
+  app.add_option_function<std::string>(
+         "--format", [&o](const std::string& word) { o.format = kFormats.at(word); },
+         "Format of OUT (default: by its name)")
+      ->check(CLI::IsMember(kFormats).description(""))
+      ->type_name("rlpd|pc2|mdd|glb|obj|ply");
+  app.add_flag("--ascii", o.ascii, "PLY files as text");
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
   app.add_option("--max-components", o.decoder.cut.max_components,
@@ -236,6 +254,15 @@ int main(int argc, char** argv) try {
   }
   if (options.output.empty() && !options.verify_only) {
     return complain("give -o OUT, or --verify to write nothing", rlpc::kExitUsage);
+  }
+  if (options.output == "-") {
+    if (options.format == rlpc::SinkFormat::kByName) {
+      return complain("-o -: give --format, as in --format glb", rlpc::kExitUsage);
+    }
+    if (options.json) {
+      return complain("--json and the output cannot both go to standard output",
+                      rlpc::kExitUsage);
+    }
   }
   options.decoder.verify_hashes = !options.no_hashes;
   return decode(options);

@@ -1,6 +1,7 @@
 #include "encoder/gltf_model.h"
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace rlpc {
@@ -116,6 +117,20 @@ class ModelReader {
   std::uint64_t num_without_triangles_ = 0;
 };
 
+// Extras may be anything, so that nothing in them is an error.
+std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
+  const nlohmann::json* value = &root;
+  for (const char* const key : {"asset", "extras", "frame_rate"}) {
+    if (!value->is_object()) return std::nullopt;
+    const auto member = value->find(key);
+    if (member == value->end()) return std::nullopt;
+    value = &*member;
+  }
+  if (!value->is_string()) return std::nullopt;
+  const auto rate = parse_frame_rate(value->get_ref<const std::string&>());
+  return rate ? std::optional(*rate) : std::nullopt;
+}
+
 }  // namespace
 
 InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
@@ -125,9 +140,11 @@ InputResult<GltfModel> read_gltf_model(const std::string& path, const std::strin
   GltfErrors errors(file->file.path());
   GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
   if (errors) return errors.first();
+  const auto frame_rate = frame_rate_of(*file->json);
   file->json.reset();
   GltfModel model = ModelReader(std::move(document), *file, limits, errors).read(animation);
   if (errors) return errors.first();
+  model.frame_rate = frame_rate;
   return model;
 }
 

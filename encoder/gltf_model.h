@@ -47,7 +47,8 @@ struct GltfModel {
   std::vector<GltfGeometry> geometries;
   std::vector<Instance> instances;
   std::uint64_t num_vertices = 0;
-  std::vector<std::string> notes;  // as FrameSource has them
+  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer does
+  std::vector<std::string> notes;       // as FrameSource has them
 };
 
 // `animation` as in InputOptions.

@@ -119,7 +119,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   auto model = read_gltf_model(options.path, options.animation, limits);
   if (!model) return model.error();
   FrameSource::Shape shape;
-  shape.frame_rate = options.frame_rate.value_or(FrameRate{});
+  shape.frame_rate = options.frame_rate.value_or(model->frame_rate.value_or(FrameRate{}));
   const std::string name = name_of_input(options.path);
   auto first_frame = first_frames(*model, shape.frame_rate, name, limits);
   if (!first_frame) return first_frame.error();

@@ -1,4 +1,4 @@
-// Point cache with its mesh: X.pc2 and X.obj.
+// Point cache with its mesh: X.pc2 or X.mdd, and X.obj.
 #include <cassert>
 #include <filesystem>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include "decoder/float_position.h"
 #include "decoder/frame_sink.h"
-#include "decoder/obj_text.h"
+#include "decoder/mesh_bytes.h"
 #include "decoder/output_file.h"
 
 namespace rlpc {
@@ -15,12 +15,16 @@ namespace {
 
 constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  // of the format
 
-class Pc2Sink : public FrameSink {
+class PointCacheSink : public FrameSink {
  public:
-  Pc2Sink(SinkOptions options, OutputFile points, OutputFile mesh)
-      : options_(std::move(options)), points_(std::move(points)), mesh_(std::move(mesh)) {}
+  PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points, OutputFile mesh)
+      : mdd_(format == SinkFormat::kMdd),
+        options_(std::move(options)),
+        points_(std::move(points)),
+        mesh_(std::move(mesh)) {}
 
   std::optional<OutputError> write_header() {
+    if (mdd_) return write_mdd_header();
     std::string bytes("POINTCACHE2\0", 12);
     append_u32(bytes, 1);
     append_u32(bytes, options_.num_vertices);
@@ -34,11 +38,14 @@ class Pc2Sink : public FrameSink {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
     if (written_++ == 0) {
-      if (auto error = write_mesh(positions)) return error;
+      if (auto error = mesh_.write(MeshBytes(SinkFormat::kObj, options_).frame(positions))) {
+        return error;
+      }
     }
     bytes_.clear();
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      append_f32(bytes_, float_position(options_.grid, i % 3, positions[i]));
+      const float x = float_position(options_.grid, i % 3, positions[i]);
+      mdd_ ? append_f32_be(bytes_, x) : append_f32(bytes_, x);
     }
     return points_.write(bytes_);
   }
@@ -55,14 +62,18 @@ class Pc2Sink : public FrameSink {
   }
 
  private:
-  std::optional<OutputError> write_mesh(std::span<const std::int32_t> positions) {
-    std::string text;
-    append_obj_frame_rate(text, options_.frame_rate);
-    append_obj_vertices(text, options_.grid, positions);
-    append_obj_faces(text, options_.triangles);
-    return mesh_.write(text);
+  // Frames, points, and the times of the frames in seconds.
+  std::optional<OutputError> write_mdd_header() {
+    std::string bytes;
+    append_u32_be(bytes, options_.num_frames);
+    append_u32_be(bytes, options_.num_vertices);
+    for (std::uint32_t f = 0; f < options_.num_frames; ++f) {
+      append_f32_be(bytes, frame_time(options_.frame_rate, f));
+    }
+    return points_.write(bytes);
   }
 
+  bool mdd_;
   SinkOptions options_;
   OutputFile points_;
   OutputFile mesh_;
@@ -72,8 +83,9 @@ class Pc2Sink : public FrameSink {
 
 }  // namespace
 
-OutputResult<std::unique_ptr<FrameSink>> open_pc2_sink(const std::string& path,
-                                                       SinkOptions options) {
+OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               SinkOptions options) {
   if (options.num_vertices > kMaxCount || options.num_frames > kMaxCount) {
     return OutputError{path + ": a point cache holds at most 2147483647 vertices and frames"};
   }
@@ -82,8 +94,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_pc2_sink(const std::string& path,
   auto mesh =
       OutputFile::create(std::filesystem::path(path).replace_extension(".obj").string());
   if (!mesh) return mesh.error();
-  auto sink =
-      std::make_unique<Pc2Sink>(std::move(options), std::move(*points), std::move(*mesh));
+  auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
+                                               std::move(*mesh));
   if (auto error = sink->write_header()) return *error;
   return std::unique_ptr<FrameSink>(std::move(sink));
 }

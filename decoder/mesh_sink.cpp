@@ -1,11 +1,11 @@
-// One OBJ file per frame.
+// One mesh file per frame: OBJ, PLY.
 #include <cassert>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "decoder/frame_sink.h"
-#include "decoder/obj_text.h"
+#include "decoder/mesh_bytes.h"
 #include "decoder/output_file.h"
 
 namespace rlpc {
@@ -46,17 +46,17 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
   return result;
 }
 
-class ObjSink : public FrameSink {
+class MeshSink : public FrameSink {
  public:
-  ObjSink(SinkOptions options, fs::path folder, NumberedName name, fs::path temporary)
-      : options_(std::move(options)),
+  MeshSink(SinkFormat format, SinkOptions options, fs::path folder, NumberedName name,
+           fs::path temporary)
+      : mesh_(format, options),
+        options_(std::move(options)),
         folder_(std::move(folder)),
         name_(std::move(name)),
-        temporary_(std::move(temporary)) {
-    append_obj_faces(faces_, options_.triangles);
-  }
+        temporary_(std::move(temporary)) {}
 
-  ~ObjSink() override {
+  ~MeshSink() override {
     std::error_code ec;
     if (!temporary_.empty()) fs::remove_all(temporary_, ec);
   }
@@ -64,14 +64,10 @@ class ObjSink : public FrameSink {
   std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
-    text_.clear();
-    append_obj_frame_rate(text_, options_.frame_rate);
-    append_obj_vertices(text_, options_.grid, positions);
-    text_ += faces_;
     auto file = OutputFile::create((temporary_ / file_name(written_)).string());
     if (!file) return file.error();
     ++written_;
-    if (auto error = file->write(text_)) return error;
+    if (auto error = file->write(mesh_.frame(positions))) return error;
     if (auto error = file->close()) return error;
     return file->commit();
   }
@@ -98,27 +94,22 @@ class ObjSink : public FrameSink {
     return name_.with(std::uint64_t{options_.first_number} + frame);
   }
 
+  MeshBytes mesh_;
   SinkOptions options_;
   fs::path folder_;
   NumberedName name_;
   fs::path temporary_;  // empty once it has become folder_
-  std::string faces_;
-  std::string text_;
   std::uint32_t written_ = 0;
 };
 
 // A single frame: one file.
-class SingleObjSink : public FrameSink {
+class SingleMeshSink : public FrameSink {
  public:
-  SingleObjSink(SinkOptions options, OutputFile file)
-      : options_(std::move(options)), file_(std::move(file)) {}
+  SingleMeshSink(SinkFormat format, const SinkOptions& options, OutputFile file)
+      : mesh_(format, options), file_(std::move(file)) {}
 
   std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
-    std::string text;
-    append_obj_frame_rate(text, options_.frame_rate);
-    append_obj_vertices(text, options_.grid, positions);
-    append_obj_faces(text, options_.triangles);
-    return file_.write(text);
+    return file_.write(mesh_.frame(positions));
   }
 
   std::optional<OutputError> finish() override {
@@ -127,23 +118,25 @@ class SingleObjSink : public FrameSink {
   }
 
  private:
-  SinkOptions options_;
+  MeshBytes mesh_;
   OutputFile file_;
 };
 
 }  // namespace
 
-OutputResult<std::unique_ptr<FrameSink>> open_single_obj_sink(const std::string& path,
-                                                              SinkOptions options) {
+OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               const SinkOptions& options) {
   assert(options.num_frames == 1);
   auto file = OutputFile::create(path);
   if (!file) return file.error();
   return std::unique_ptr<FrameSink>(
-      std::make_unique<SingleObjSink>(std::move(options), std::move(*file)));
+      std::make_unique<SingleMeshSink>(format, options, std::move(*file)));
 }
 
-OutputResult<std::unique_ptr<FrameSink>> open_obj_sink(const std::string& pattern,
-                                                       SinkOptions options) {
+OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& pattern,
+                                                        SinkFormat format,
+                                                        SinkOptions options) {
   const fs::path path(pattern);
   auto name = parse_pattern(path.filename().string());
   if (!name) {
@@ -154,12 +147,12 @@ OutputResult<std::unique_ptr<FrameSink>> open_obj_sink(const std::string& patter
   fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code ec;
   if (fs::exists(folder, ec) && !fs::is_directory(folder, ec)) {
-    return OutputError{folder.string() + ": is a file; a folder of OBJ files cannot go there"};
+    return OutputError{folder.string() + ": is a file; a folder of files cannot go there"};
   }
   auto temporary = create_temporary_folder(folder.string());
   if (!temporary) return temporary.error();
-  return std::unique_ptr<FrameSink>(std::make_unique<ObjSink>(
-      std::move(options), std::move(folder), std::move(*name), std::move(*temporary)));
+  return std::unique_ptr<FrameSink>(std::make_unique<MeshSink>(
+      format, std::move(options), std::move(folder), std::move(*name), std::move(*temporary)));
 }
 
 }  // namespace rlpc
