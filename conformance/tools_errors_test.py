@@ -46,7 +46,7 @@ class BadInput(ToolsTest):
         self.refused("mesh.obj", self.obj("# nothing\n"))
         self.refused("mesh.obj", self.obj(bytes(range(256)) * 40))
         self.refused("mesh.obj", self.obj(b"v 0 0 0\nv \xff\xfe 0 0\n"))
-        self.refused("mesh.txt", self.obj(TRIANGLE, "mesh.txt"))
+        self.refused("mesh.txt", self.obj("to be a mesh\n", "mesh.txt"))
         self.path("empty").mkdir()
         self.refused("empty", self.path("empty"))
 

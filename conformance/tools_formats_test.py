@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""File formats of the tools, in and out, as people run them.
+
+    tools_formats_test.py --bin BUILD/bin [unittest arguments, such as FormatsIn]
+"""
+
+import struct
+
+from tools_testing import ToolsTest, main, read_rlpd
+
+OUTPUTS = ("a.rlpd", "a.pc2", "a.mdd", "a.glb", "obj", "ply/f%d.ply", "text/f_%04d.ply")
+ENCODE = ["--preset", "fast", "--kg", 0.5, "--quiet"]
+
+
+def ply(xyz, polygons, encoding):
+    """A frame with a colour for each vertex, and the polygons as they are."""
+    header = (f"ply\nformat {encoding} 1.0\nelement vertex {len(xyz) // 3}\n"
+              "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+              f"element face {len(polygons)}\nproperty list uchar int vertex_indices\nend_header\n")
+    points = [xyz[i:i + 3] for i in range(0, len(xyz), 3)]
+    if encoding == "ascii":
+        body = "".join("%.9g %.9g %.9g 255\n" % tuple(p) for p in points)
+        body += "".join(" ".join(map(str, (len(p), *p))) + "\n" for p in polygons)
+        return (header + body).encode()
+    order = "<" if "little" in encoding else ">"
+    return header.encode() + b"".join(struct.pack(order + "3fB", *p, 255) for p in points) + b"".join(
+        struct.pack(f"{order}B{len(p)}i", len(p), *p) for p in polygons)
+
+
+def off(xyz, polygons):
+    lines = ["OFF", f"{len(xyz) // 3} {len(polygons)} 0"]
+    lines += ["%.9g %.9g %.9g" % tuple(xyz[i:i + 3]) for i in range(0, len(xyz), 3)]
+    lines += [" ".join(map(str, (len(p), *p))) for p in polygons]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def mdd(frames):
+    head = struct.pack(f">ii{len(frames)}f", len(frames), len(frames[0]) // 3,
+                       *(f / 30 for f in range(len(frames))))
+    return head + b"".join(struct.pack(f">{len(xyz)}f", *xyz) for xyz in frames)
+
+
+class FormatsIn(ToolsTest):
+    def stream(self, *source, **options):
+        self.ok("rlpcenc", *source, "-o", self.path("out.rlpc"), *ENCODE, **options)
+        return self.path("out.rlpc").read_bytes()
+
+    def test_every_format_gives_the_same_stream(self):
+        triangles, frames = self.clip(12)
+        wanted = self.stream(self.path("clip.obj"), "--points", self.path("clip.pc2"))
+        self.path("clip.mdd").write_bytes(mdd(frames))
+        mesh = off(frames[0], triangles)
+        self.path("clip.off").write_bytes(mesh)
+        self.assertEqual(
+            self.stream(self.path("clip.off"), "--points", self.path("clip.mdd")), wanted)
+        self.assertEqual(self.stream("-", "--points", self.path("clip.mdd"), input=mesh), wanted)
+        writers = {"off": lambda xyz: off(xyz, triangles)}
+        for encoding in ("ascii", "binary_little_endian", "binary_big_endian"):
+            writers[encoding] = lambda xyz, e=encoding: ply(xyz, triangles, e)
+        for name, write in writers.items():
+            self.path(name).mkdir()
+            extension = "off" if name == "off" else "PLY"
+            for f, xyz in enumerate(frames, start=1):
+                (self.path(name) / f"f{f}.{extension}").write_bytes(write(xyz))
+            self.assertEqual(self.stream(self.path(name)), wanted, name)
+            self.assertEqual(self.stream(self.path(name) / f"f%d.{extension}"), wanted, name)
+
+    def test_polygons_become_the_same_triangles_in_every_format(self):
+        xyz = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0.5, 1.5, 0, 0, 1, 0]
+        polygon = [(0, 1, 2, 3, 4)]
+        text = "".join("v %g %g %g\n" % tuple(xyz[i:i + 3]) for i in range(0, 15, 3))
+        self.path("a.obj").write_text(text + "f 1 2 3 4 5\n")
+        wanted = self.stream(self.path("a.obj"))
+        for data in (off(xyz, polygon), ply(xyz, polygon, "ascii"),
+                     ply(xyz, polygon, "binary_big_endian"), self.path("a.obj").read_bytes()):
+            self.assertEqual(self.stream("-", input=data), wanted)
+
+    def test_broken_files_are_named(self):
+        self.clip(2)
+        out = ["-o", self.path("out.rlpc")]
+        good = ply([0.0] * 9, [(0, 1, 2)], "binary_little_endian")
+        huge = good.replace(b"vertex 3", b"vertex 3000000000")
+        for name, data, words in (
+                ("a.ply", good[:-1], ["a.ply: byte", "complete?"]),
+                ("a.ply", huge, ["a.ply: element \"vertex\"", "39000000000 bytes"]),
+                ("a.ply", ply([0.0] * 8 + [float("nan")], [], "ascii"), ["a.ply:13:", "nan"]),
+                ("a.off", b"OFF\n900000000 1 0\n0 0 0\n", ["a.off:2:", "complete?"])):
+            self.path(name).write_bytes(data)
+            self.fails(1, words, "rlpcenc", self.path(name), *out)
+        self.path("a.mdd").write_bytes(struct.pack(">ii", 2000000000, 538))
+        self.fails(1, ["a.mdd: 8 bytes", "truncated"], "rlpcenc", self.path("clip.obj"), "--points",
+                   self.path("a.mdd"), *out)
+        self.fails(1, "standard input: the file is empty", "rlpcenc", "-", "--points",
+                   self.path("clip.pc2"), *out, input=b"")
+        self.fails(1, "standard input: unknown kind of file", "rlpcenc", "-", *out, input=b"hello")
+
+
+class FormatsOut(ToolsTest):
+    def setUp(self):
+        super().setUp()
+        self.clip(12)
+        self.ok("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "--fps", "24",
+                "-o", self.path("a.rlpc"), *ENCODE)
+
+    def test_what_is_written_reads_back_exactly(self):
+        streams = []
+        for name in OUTPUTS:
+            out = self.path(name)
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", out,
+                    *(["--ascii"] if "text" in name else []))
+            source = [out, "--no-weld"]
+            if name in ("a.pc2", "a.mdd"):
+                source = [self.path("a.obj"), "--points", out]
+            self.ok("rlpcenc", *source, "-o", self.path("b.rlpc"), *ENCODE)
+            streams.append(self.path("b.rlpc").read_bytes())
+        # Not only the positions: frame rate and triangles too.
+        self.assertEqual(streams, streams[:1] * len(OUTPUTS))
+
+    def test_standard_output(self):
+        for name, options in (("a.glb", []), ("a.rlpd", []), ("a.ply", ["--frames", "3"]),
+                              ("a.obj", ["--frames", "3"])):
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path(name), *options)
+            piped = self.ok("rlpcdec", self.path("a.rlpc"), "-o", "-", "--format", name[2:],
+                            *options)
+            self.assertEqual(piped.out, self.path(name).read_bytes(), name)
+        again = self.ok("rlpcenc", "-", "-o", "-", *ENCODE, input=self.path("a.glb").read_bytes())
+        self.path("b.rlpc").write_bytes(again.out)
+        self.ok("rlpcdec", self.path("b.rlpc"), "-o", self.path("b.rlpd"))
+        self.assertEqual(len(read_rlpd(self.path("b.rlpd"))[2]), 12)
+
+    def test_the_format_may_differ_from_the_name(self):
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("out"), "--format", "ply")
+        self.assertTrue((self.path("out") / "frame_0011.ply").is_file())
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("data.bin"), "--format", "glb")
+        self.assertEqual(self.path("data.bin").read_bytes()[:4], b"glTF")
+
+    def test_what_cannot_be_written_is_told(self):
+        stream = self.path("a.rlpc")
+        self.fails(64, "give --format", "rlpcdec", stream, "-o", "-")
+        self.fails(64, "--json", "rlpcdec", stream, "-o", "-", "--format", "glb", "--json")
+        self.fails(4, "without the mesh", "rlpcdec", stream, "-o", "-", "--format", "mdd")
+        self.fails(4, "one frame of .ply", "rlpcdec", stream, "-o", "-", "--format", "ply")
+        self.fails(4, "holds one frame", "rlpcdec", stream, "-o", self.path("x.ply"))
+        self.fails(4, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.glb"))
+        self.fails(4, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.ply"),
+                   "--format", "rlpd")
+        self.assertEqual(self.files(), ["a.rlpc", "clip.obj", "clip.pc2"])
+
+
+if __name__ == "__main__":
+    main()
