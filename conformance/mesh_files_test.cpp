@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "decoder/float_position.h"
-#include "decoder/frame_sink.h"
-#include "encoder/frame_source.h"
+#include "decoder/output/frame_sink.h"
 #include "encoder/grid_value.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc {
 namespace {

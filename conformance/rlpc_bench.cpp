@@ -24,7 +24,7 @@
 
 #include "common/pca.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace {

@@ -16,8 +16,8 @@
 
 #include "common/stream_format.h"
 #include "decoder/describe_error.h"
-#include "decoder/frame_sink.h"
-#include "decoder/output_file.h"
+#include "decoder/output/frame_sink.h"
+#include "decoder/output/output_file.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "decoder/describe_error.h"
-#include "decoder/output_file.h"
+#include "decoder/output/output_file.h"
 #include "decoder/stream_cutter.h"
 
 namespace rlpc {

@@ -18,7 +18,7 @@
 
 #include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
-#include "decoder/frame_sink.h"
+#include "decoder/output/frame_sink.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "common/mesh.h"
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc {
 

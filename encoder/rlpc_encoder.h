@@ -20,7 +20,7 @@
 #include "common/bone_gof.h"
 #include "common/mesh.h"
 #include "common/sequence_header.h"
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 #include "encoder/metrics.h"
 
 namespace rlpc {

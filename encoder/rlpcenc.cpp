@@ -15,8 +15,8 @@
 #include <malloc.h>
 #endif
 
-#include "encoder/frame_source.h"
-#include "encoder/input_file.h"
+#include "encoder/input/frame_source.h"
+#include "encoder/input/input_file.h"
 #include "encoder/progress_bar.h"
 #include "encoder/report_json.h"
 #include "encoder/rlpc_encoder.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc {
 

@@ -16,7 +16,7 @@
 
 #include "conformance/peers/byte_stream.h"
 #include "conformance/peers/peer_codecs.h"
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc::peers {
 namespace {

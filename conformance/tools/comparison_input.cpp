@@ -11,8 +11,8 @@
 #include "decoder/describe_error.h"
 #include "decoder/float_position.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/input_file.h"
-#include "encoder/mesh_reader.h"
+#include "encoder/input/input_file.h"
+#include "encoder/input/mesh_reader.h"
 
 namespace rlpc {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "encoder/frame_source.h"
+#include "encoder/input/frame_source.h"
 
 namespace rlpc {
 

@@ -1,0 +1,126 @@
+#include "decoder/output/frame_sink.h"
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace rlpc {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NamedFormat {
+  std::string_view extension;
+  SinkFormat format;
+};
+
+constexpr std::array<NamedFormat, 6> kFormats{{{".rlpd", SinkFormat::kRlpd},
+                                               {".pc2", SinkFormat::kPc2},
+                                               {".mdd", SinkFormat::kMdd},
+                                               {".glb", SinkFormat::kGlb},
+                                               {".obj", SinkFormat::kObj},
+                                               {".ply", SinkFormat::kPly}}};
+
+// Extensions that stand for a file of a kind that cannot be written, not for a folder.
+constexpr std::array<std::string_view, 8> kOtherFiles{".stl", ".fbx", ".abc",  ".gltf",
+                                                      ".off", ".txt", ".rlpc", ".zip"};
+
+std::string_view extension_of(SinkFormat format) {
+  for (const NamedFormat& f : kFormats) {
+    if (f.format == format) return f.extension;
+  }
+  return "";
+}
+
+SinkFormat format_of_extension(std::string_view extension) {
+  for (const NamedFormat& f : kFormats) {
+    if (f.extension == extension) return f.format;
+  }
+  return SinkFormat::kByName;
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
+
+bool is_mesh(SinkFormat format) {
+  return format == SinkFormat::kObj || format == SinkFormat::kPly;
+}
+
+OutputResult<std::unique_ptr<FrameSink>> open_one_file(const std::string& path,
+                                                       SinkFormat format, SinkOptions options) {
+  switch (format) {
+    case SinkFormat::kRlpd:
+      return open_rlpd_sink(path, std::move(options));
+    case SinkFormat::kGlb:
+      return open_gltf_sink(path, std::move(options));
+    case SinkFormat::kPc2:
+    case SinkFormat::kMdd:
+      return open_point_cache_sink(path, format, std::move(options));
+    default:
+      return open_single_mesh_sink(path, format, options);
+  }
+}
+
+OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions options) {
+  const SinkFormat format = options.format;
+  const std::string name = "standard output: ";
+  if (format == SinkFormat::kByName) {
+    return OutputError{name + "has no name to tell the format; give it"};
+  }
+  if (format == SinkFormat::kPc2 || format == SinkFormat::kMdd) {
+    return OutputError{name + "a point cache is of no use without the mesh beside it"};
+  }
+  if (is_mesh(format) && options.num_frames > 1) {
+    return OutputError{name + "takes one frame of " + std::string(extension_of(format)) +
+                       ", not several"};
+  }
+  return open_one_file("-", format, std::move(options));
+}
+
+}  // namespace
+
+OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
+                                                         SinkOptions options) {
+  if (path == "-") return open_standard_output(std::move(options));
+  const bool by_name = options.format == SinkFormat::kByName;
+  const fs::path name = fs::path(path).filename();
+  const std::string extension = lower_extension(name);
+  const SinkFormat named = format_of_extension(extension);
+  const SinkFormat format = by_name ? named : options.format;
+  if (name.string().find('%') != std::string::npos) {
+    if (format != SinkFormat::kByName && !is_mesh(format)) {
+      return OutputError{path + ": a name with a number is for .obj and .ply files; " +
+                         std::string(extension_of(format)) + " takes all frames in one"};
+    }
+    return open_mesh_sink(path, is_mesh(format) ? format : SinkFormat::kObj,
+                          std::move(options));
+  }
+  if (format != SinkFormat::kByName && !is_mesh(format)) {
+    return open_one_file(path, format, std::move(options));
+  }
+  if (is_mesh(named)) {
+    if (options.num_frames == 1) return open_one_file(path, format, std::move(options));
+    const std::string kind = named == SinkFormat::kObj ? "OBJ" : "PLY";
+    return OutputError{path + ": one " + kind +
+                       " file holds one frame; give a folder, a name with a number as in "
+                       "frame_%04d" +
+                       extension + ", or X.pc2 (which also writes X.obj)"};
+  }
+  for (const std::string_view other : kOtherFiles) {
+    if (extension == other) {
+      return OutputError{path + ": cannot write " + extension +
+                         " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
+                         "frame_%04d.ply or a folder"};
+    }
+  }
+  const SinkFormat frames = by_name ? SinkFormat::kObj : format;
+  const std::string pattern = "frame_%04d" + std::string(extension_of(frames));
+  return open_mesh_sink((fs::path(path) / pattern).string(), frames, std::move(options));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,158 @@
+// One mesh file per frame: OBJ, PLY.
+#include <cassert>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "decoder/output/frame_sink.h"
+#include "decoder/output/mesh_bytes.h"
+#include "decoder/output/output_file.h"
+
+namespace rlpc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// File names with a number in them, made from "frame_%04d.obj".
+struct NumberedName {
+  std::string prefix;
+  std::string suffix;
+  std::size_t width = 0;
+
+  std::string with(std::uint64_t number) const {
+    std::string digits = std::to_string(number);
+    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+    return prefix + digits + suffix;
+  }
+};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::optional<NumberedName> parse_pattern(const std::string& name) {
+  const std::size_t percent = name.find('%');
+  if (percent == name.npos) return std::nullopt;
+  NumberedName result;
+  std::size_t pos = percent + 1;
+  const bool zeros = pos < name.size() && name[pos] == '0';
+  while (pos < name.size() && is_digit(name[pos]) && result.width < 100) {
+    result.width = 10 * result.width + static_cast<std::size_t>(name[pos++] - '0');
+  }
+  if (pos == name.size() || name[pos] != 'd' || result.width > 19) return std::nullopt;
+  if (!zeros && result.width > 0) return std::nullopt;  // would pad with blanks
+  result.prefix = name.substr(0, percent);
+  result.suffix = name.substr(pos + 1);
+  if (result.suffix.find('%') != name.npos) return std::nullopt;
+  return result;
+}
+
+class MeshSink : public FrameSink {
+ public:
+  MeshSink(SinkFormat format, SinkOptions options, fs::path folder, NumberedName name,
+           fs::path temporary)
+      : mesh_(format, options),
+        options_(std::move(options)),
+        folder_(std::move(folder)),
+        name_(std::move(name)),
+        temporary_(std::move(temporary)) {}
+
+  ~MeshSink() override {
+    std::error_code ec;
+    if (!temporary_.empty()) fs::remove_all(temporary_, ec);
+  }
+
+  std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
+    assert(positions.size() == 3 * std::size_t{options_.num_vertices});
+    assert(written_ < options_.num_frames);
+    auto file = OutputFile::create((temporary_ / file_name(written_)).string());
+    if (!file) return file.error();
+    ++written_;
+    if (auto error = file->write(mesh_.frame(positions))) return error;
+    if (auto error = file->close()) return error;
+    return file->commit();
+  }
+
+  std::optional<OutputError> finish() override {
+    assert(written_ == options_.num_frames);
+    std::error_code ec;
+    if (!fs::exists(folder_, ec)) {
+      fs::rename(temporary_, folder_, ec);
+      if (ec) return output_error(folder_.string(), "name the finished folder", ec.value());
+      temporary_.clear();
+      return std::nullopt;
+    }
+    for (std::uint32_t i = 0; i < written_; ++i) {
+      const fs::path target = folder_ / file_name(i);
+      fs::rename(temporary_ / file_name(i), target, ec);
+      if (ec) return output_error(target.string(), "name the finished file", ec.value());
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::string file_name(std::uint32_t frame) const {
+    return name_.with(std::uint64_t{options_.first_number} + frame);
+  }
+
+  MeshBytes mesh_;
+  SinkOptions options_;
+  fs::path folder_;
+  NumberedName name_;
+  fs::path temporary_;  // empty once it has become folder_
+  std::uint32_t written_ = 0;
+};
+
+// A single frame: one file.
+class SingleMeshSink : public FrameSink {
+ public:
+  SingleMeshSink(SinkFormat format, const SinkOptions& options, OutputFile file)
+      : mesh_(format, options), file_(std::move(file)) {}
+
+  std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
+    return file_.write(mesh_.frame(positions));
+  }
+
+  std::optional<OutputError> finish() override {
+    if (auto error = file_.close()) return error;
+    return file_.commit();
+  }
+
+ private:
+  MeshBytes mesh_;
+  OutputFile file_;
+};
+
+}  // namespace
+
+OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               const SinkOptions& options) {
+  assert(options.num_frames == 1);
+  auto file = OutputFile::create(path);
+  if (!file) return file.error();
+  return std::unique_ptr<FrameSink>(
+      std::make_unique<SingleMeshSink>(format, options, std::move(*file)));
+}
+
+OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& pattern,
+                                                        SinkFormat format,
+                                                        SinkOptions options) {
+  const fs::path path(pattern);
+  auto name = parse_pattern(path.filename().string());
+  if (!name) {
+    return OutputError{pattern +
+                       ": expected one %d or %04d (any width) in the file name, as in "
+                       "out/frame_%04d.obj"};
+  }
+  fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code ec;
+  if (fs::exists(folder, ec) && !fs::is_directory(folder, ec)) {
+    return OutputError{folder.string() + ": is a file; a folder of files cannot go there"};
+  }
+  auto temporary = create_temporary_folder(folder.string());
+  if (!temporary) return temporary.error();
+  return std::unique_ptr<FrameSink>(std::make_unique<MeshSink>(
+      format, std::move(options), std::move(folder), std::move(*name), std::move(*temporary)));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,61 @@
+// A file that takes its name only once it is complete.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "decoder/output/frame_sink.h"
+
+namespace rlpc {
+
+class OutputFile {
+ public:
+  // Creates a temporary file beside `path`. A path that exists and is not a regular file (a
+  // device, a pipe) is opened directly; a symbolic link is followed; "-" is standard output.
+  static OutputResult<OutputFile> create(const std::string& path);
+
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();  // removes the file unless commit() succeeded
+
+  std::optional<OutputError> write(std::string_view bytes);
+  // Flushes and closes: from here on nothing but the name can fail.
+  std::optional<OutputError> close();
+  // After close(): gives the file its name.
+  std::optional<OutputError> commit();
+  // The name as the caller gave it.
+  const std::string& path() const { return path_; }
+
+ private:
+  OutputFile(std::string path, std::string target, std::string temporary, std::FILE* file)
+      : path_(std::move(path)),
+        target_(std::move(target)),
+        temporary_(std::move(temporary)),
+        file_(file) {}
+
+  std::string path_;
+  std::string target_;
+  std::string temporary_;  // empty: written directly, or committed
+  std::FILE* file_ = nullptr;
+};
+
+// A folder beside `path` with a name that did not exist, or inside it if `path` is a folder.
+OutputResult<std::string> create_temporary_folder(const std::string& path);
+
+// "PATH: cannot WHAT: REASON" with the reason of `code`, an errno value.
+OutputError output_error(const std::string& path, const std::string& what, int code);
+
+// Little-endian numbers of a binary file.
+void append_u32(std::string& bytes, std::uint32_t value);
+void append_i32(std::string& bytes, std::int32_t value);
+void append_f32(std::string& bytes, float value);
+// Big-endian ones.
+void append_u32_be(std::string& bytes, std::uint32_t value);
+void append_f32_be(std::string& bytes, float value);
+
+}  // namespace rlpc

@@ -1,0 +1,103 @@
+// Point cache with its mesh: X.pc2 or X.mdd, and X.obj.
+#include <cassert>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "decoder/float_position.h"
+#include "decoder/output/frame_sink.h"
+#include "decoder/output/mesh_bytes.h"
+#include "decoder/output/output_file.h"
+
+namespace rlpc {
+
+namespace {
+
+constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  // of the format
+
+class PointCacheSink : public FrameSink {
+ public:
+  PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points, OutputFile mesh)
+      : mdd_(format == SinkFormat::kMdd),
+        options_(std::move(options)),
+        points_(std::move(points)),
+        mesh_(std::move(mesh)) {}
+
+  std::optional<OutputError> write_header() {
+    if (mdd_) return write_mdd_header();
+    std::string bytes("POINTCACHE2\0", 12);
+    append_u32(bytes, 1);
+    append_u32(bytes, options_.num_vertices);
+    append_f32(bytes, 0);  // start
+    append_f32(bytes, 1);  // frames per sample
+    append_u32(bytes, options_.num_frames);
+    return points_.write(bytes);
+  }
+
+  std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
+    assert(positions.size() == 3 * std::size_t{options_.num_vertices});
+    assert(written_ < options_.num_frames);
+    if (written_++ == 0) {
+      if (auto error = mesh_.write(MeshBytes(SinkFormat::kObj, options_).frame(positions))) {
+        return error;
+      }
+    }
+    bytes_.clear();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const float x = float_position(options_.grid, i % 3, positions[i]);
+      mdd_ ? append_f32_be(bytes_, x) : append_f32(bytes_, x);
+    }
+    return points_.write(bytes_);
+  }
+
+  std::optional<OutputError> finish() override {
+    assert(written_ == options_.num_frames);
+    for (OutputFile* file : {&points_, &mesh_}) {
+      if (auto error = file->close()) return error;
+    }
+    for (OutputFile* file : {&mesh_, &points_}) {
+      if (auto error = file->commit()) return error;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // Frames, points, and the times of the frames in seconds.
+  std::optional<OutputError> write_mdd_header() {
+    std::string bytes;
+    append_u32_be(bytes, options_.num_frames);
+    append_u32_be(bytes, options_.num_vertices);
+    for (std::uint32_t f = 0; f < options_.num_frames; ++f) {
+      append_f32_be(bytes, frame_time(options_.frame_rate, f));
+    }
+    return points_.write(bytes);
+  }
+
+  bool mdd_;
+  SinkOptions options_;
+  OutputFile points_;
+  OutputFile mesh_;
+  std::string bytes_;
+  std::uint32_t written_ = 0;
+};
+
+}  // namespace
+
+OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string& path,
+                                                               SinkFormat format,
+                                                               SinkOptions options) {
+  if (options.num_vertices > kMaxCount || options.num_frames > kMaxCount) {
+    return OutputError{path + ": a point cache holds at most 2147483647 vertices and frames"};
+  }
+  auto points = OutputFile::create(path);
+  if (!points) return points.error();
+  auto mesh =
+      OutputFile::create(std::filesystem::path(path).replace_extension(".obj").string());
+  if (!mesh) return mesh.error();
+  auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
+                                               std::move(*mesh));
+  if (auto error = sink->write_header()) return *error;
+  return std::unique_ptr<FrameSink>(std::move(sink));
+}
+
+}  // namespace rlpc

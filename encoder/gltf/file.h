@@ -1,0 +1,29 @@
+// The container of a glTF 2.0 document: .gltf is JSON, .glb JSON and one binary chunk.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "encoder/input/frame_source.h"
+#include "encoder/input/input_file.h"
+
+namespace rlpc {
+
+struct GltfFile {
+  struct Chunk {
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+
+  InputFile file;
+  std::shared_ptr<const nlohmann::json> json;
+  std::optional<Chunk> binary;  // of a .glb, within the file
+};
+
+// The content tells which of the two it is, not the name.
+InputResult<GltfFile> open_gltf_file(const std::string& path);
+
+}  // namespace rlpc

@@ -1,0 +1,139 @@
+#include "encoder/input/frame_source.h"
+
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "encoder/gltf/source.h"
+#include "encoder/input/input_file.h"
+#include "encoder/input/mesh_reader.h"
+#include "encoder/input/mesh_sequence.h"
+#include "encoder/input/point_cache.h"
+#include "encoder/input/rlpd_reader.h"
+
+namespace rlpc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// All of `text` as a number below 2^32.
+std::optional<std::uint32_t> parse_u32(std::string_view text) {
+  std::uint32_t value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, ec] = std::from_chars(text.data(), last, value);
+  if (ec != std::errc() || end != last) return std::nullopt;
+  return value;
+}
+
+// "29.97" as 2997 / 100; at most 9 digits after the point.
+std::optional<FrameRate> parse_decimal(std::string_view text) {
+  const std::size_t point = text.find('.');
+  const std::string_view fraction = text.substr(point + 1);
+  if (fraction.size() > 9) return std::nullopt;
+  const auto whole = parse_u32(text.substr(0, point));
+  const auto digits = fraction.empty() ? std::optional<std::uint32_t>(0) : parse_u32(fraction);
+  if (!whole || !digits) return std::nullopt;
+  std::uint64_t denominator = 1;
+  for (std::size_t i = 0; i < fraction.size(); ++i) denominator *= 10;
+  const std::uint64_t numerator = *whole * denominator + *digits;
+  const std::uint64_t divisor = std::gcd(numerator, denominator);
+  if (numerator / divisor > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+  return FrameRate{static_cast<std::uint32_t>(numerator / divisor),
+                   static_cast<std::uint32_t>(denominator / divisor)};
+}
+
+std::optional<FrameRate> parse_fraction(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const auto numerator = parse_u32(text.substr(0, slash));
+  const auto denominator =
+      slash == text.npos ? std::optional<std::uint32_t>(1) : parse_u32(text.substr(slash + 1));
+  if (!numerator || !denominator || *denominator == 0) return std::nullopt;
+  const std::uint32_t divisor = std::gcd(*numerator, *denominator);
+  return FrameRate{*numerator / divisor, *denominator / divisor};
+}
+
+InputResult<std::unique_ptr<FrameSource>> open_listed(
+    InputResult<std::vector<std::string>> paths, const InputOptions& options) {
+  if (!paths) return paths.error();
+  return open_mesh_sequence(std::move(*paths), options.frame_rate);
+}
+
+enum class FileKind : std::uint8_t { kUnknown, kGltf, kRlpd, kMesh, kPointCache };
+
+// By the extension; if that says nothing, by how the file begins.
+FileKind kind_of(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb" || extension == ".gltf") return FileKind::kGltf;
+  if (extension == ".rlpd") return FileKind::kRlpd;
+  if (extension == ".pc2" || extension == ".mdd") return FileKind::kPointCache;
+  if (is_mesh_extension(extension)) return FileKind::kMesh;
+  const std::string begin = beginning_of(path);
+  const std::size_t first = begin.find_first_not_of(" \t\r\n");
+  if (begin.starts_with("glTF") || (first != begin.npos && begin[first] == '{')) {
+    return FileKind::kGltf;
+  }
+  if (begin.starts_with("RLPD")) return FileKind::kRlpd;
+  if (begin.starts_with("POINTCACHE2")) return FileKind::kPointCache;
+  return mesh_format_of(path).empty() ? FileKind::kUnknown : FileKind::kMesh;
+}
+
+InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options, bool exists) {
+  const std::string& path = options.path;
+  switch (kind_of(path)) {
+    case FileKind::kGltf:
+      return open_gltf(options);
+    case FileKind::kRlpd:
+      return open_rlpd(path, options.frame_rate);
+    case FileKind::kMesh:
+      return open_mesh_sequence({path}, options.frame_rate);
+    case FileKind::kPointCache:
+      return InputError{name_of_input(path) +
+                        ": a point cache has no triangles; give its mesh as the input and the "
+                        "cache with --points"};
+    default:
+      return InputError{name_of_input(path) +
+                        (exists ? ": unknown kind of file" : ": no such file or folder") +
+                        "; expected an .obj, .ply, .off, .glb, .gltf or .rlpd file, a folder "
+                        "of .obj, .ply or .off files, or a pattern such as walk_%04d.obj or "
+                        "'walk_*.obj'"};
+  }
+}
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
+  const std::string& path = options.path;
+  std::error_code ec;
+  const bool exists = path == "-" || fs::exists(path, ec);
+  const bool is_gltf = options.points.empty() && kind_of(path) == FileKind::kGltf;
+  if (!options.animation.empty() && !is_gltf) {
+    return InputError{name_of_input(path) +
+                      ": only .glb and .gltf files have animations to choose from"};
+  }
+  if (!options.points.empty()) {
+    return open_point_cache(path, options.points, options.frame_rate);
+  }
+  if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
+  // A file of exactly this name comes first, whatever characters are in it.
+  const std::string name = fs::path(path).filename().string();
+  if (!exists && name.find('%') != name.npos) {
+    return open_listed(list_mesh_pattern(path), options);
+  }
+  if (!exists && name.find_first_of("*?[") != name.npos) {
+    return open_listed(list_mesh_glob(path), options);
+  }
+  return open_file(options, exists);
+}
+
+InputResult<FrameRate> parse_frame_rate(std::string_view text) {
+  const auto rate = text.find('.') != text.npos ? parse_decimal(text) : parse_fraction(text);
+  if (rate && rate->numerator > 0) return *rate;
+  return InputError{"frame rate \"" + std::string(text) +
+                    "\": expected frames per second as in 25, 30000/1001 or 29.97"};
+}
+
+}  // namespace rlpc

@@ -1,0 +1,132 @@
+#include "encoder/input/input_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <sstream>
+#include <system_error>
+
+namespace rlpc {
+
+namespace {
+
+const std::string& standard_input() {
+  static const std::string kBytes{std::istreambuf_iterator<char>(std::cin), {}};
+  return kBytes;
+}
+
+}  // namespace
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : path;
+}
+
+InputResult<InputFile> InputFile::open(const std::string& path) {
+  InputFile file;
+  file.path_ = name_of_input(path);
+  if (path == "-") {
+    file.size_ = standard_input().size();
+    file.stream_ = std::make_unique<std::istringstream>(standard_input());
+    return file;
+  }
+  std::error_code ec;
+  const auto status = std::filesystem::status(path, ec);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    return InputError{path + ": no such file; check the name and the folder"};
+  }
+  if (status.type() != std::filesystem::file_type::regular) {
+    return InputError{path + ": not a regular file" + (ec ? " (" + ec.message() + ")" : "")};
+  }
+  file.size_ = std::filesystem::file_size(path, ec);
+  if (ec) return InputError{path + ": cannot find its size: " + ec.message()};
+  errno = 0;
+  file.stream_ = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*file.stream_) {
+    return InputError{path + ": cannot be opened: " + std::generic_category().message(errno)};
+  }
+  return file;
+}
+
+std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> bytes) {
+  assert(offset <= size_ && bytes.size() <= size_ - offset);
+  stream_->clear();
+  stream_->seekg(static_cast<std::streamoff>(offset));
+  stream_->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (*stream_) return std::nullopt;
+  return InputError{path_ + ": reading " + std::to_string(bytes.size()) + " bytes at byte " +
+                    std::to_string(offset) + " failed; was the file changed meanwhile?"};
+}
+
+std::string beginning_of(const std::string& path) {
+  auto file = InputFile::open(path);
+  if (!file) return {};
+  std::string text(std::min<std::uint64_t>(file->size(), 64), '\0');
+  if (file->read(0, text)) return {};
+  return text;
+}
+
+InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size) {
+  std::string text;
+  if (size > text.max_size()) {  // possible where std::size_t has 32 bits
+    return InputError{file.path() + ": " + std::to_string(size) +
+                      " bytes are more than this machine can address; use a 64-bit one"};
+  }
+  text.resize(static_cast<std::size_t>(size));
+  if (auto error = file.read(offset, text)) return *error;
+  return text;
+}
+
+InputResult<std::string> read_whole_file(const std::string& path) {
+  auto file = InputFile::open(path);
+  if (!file) return file.error();
+  if (file->size() == 0) return InputError{file->path() + ": the file is empty"};
+  return read_text(*file, 0, file->size());
+}
+
+std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i-- > 0;) {
+    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
+  }
+  return value;
+}
+
+std::int32_t load_i32(std::span<const char> bytes, std::size_t offset) {
+  return static_cast<std::int32_t>(load_u32(bytes, offset));
+}
+
+float load_f32(std::span<const char> bytes, std::size_t offset) {
+  return std::bit_cast<float>(load_u32(bytes, offset));
+}
+
+std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
+  }
+  return value;
+}
+
+float load_f32_be(std::span<const char> bytes, std::size_t offset) {
+  return std::bit_cast<float>(load_u32_be(bytes, offset));
+}
+
+std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
+                                       std::span<const float> xyz) {
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    if (std::isfinite(xyz[i])) continue;
+    return InputError{path + ": frame " + std::to_string(frame) + ", vertex " +
+                      std::to_string(i / 3) + " (both from 0): " + "xyz"[i % 3] + " is " +
+                      (std::isnan(xyz[i]) ? "not a number" : "infinite") +
+                      "; every coordinate must be finite"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rlpc

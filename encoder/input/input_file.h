@@ -1,0 +1,55 @@
+// A regular file, or standard input as "-", that is read at offsets; every failure names it.
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc {
+
+class InputFile {
+ public:
+  // Standard input is read whole when it is first opened, and may be opened again.
+  static InputResult<InputFile> open(const std::string& path);
+
+  const std::string& path() const { return path_; }  // as name_of_input() gives it
+  std::uint64_t size() const { return size_; }
+  // Fills `bytes`; offset + bytes.size() <= size().
+  std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
+
+ private:
+  std::string path_;
+  std::uint64_t size_ = 0;
+  std::unique_ptr<std::istream> stream_;
+};
+
+// The path, or "standard input" for "-".
+std::string name_of_input(const std::string& path);
+
+// The first bytes, 64 at most; none if it cannot be read.
+std::string beginning_of(const std::string& path);
+
+// `size` bytes from `offset`, which lie in the file.
+InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size);
+
+// The whole file. Refuses an empty one.
+InputResult<std::string> read_whole_file(const std::string& path);
+
+// Little-endian numbers of a binary file; the caller has checked the length.
+std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset);
+std::int32_t load_i32(std::span<const char> bytes, std::size_t offset);
+float load_f32(std::span<const char> bytes, std::size_t offset);
+// Big-endian ones.
+std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset);
+float load_f32_be(std::span<const char> bytes, std::size_t offset);
+
+// Error for the first value of a frame that is NaN or infinite.
+std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
+                                       std::span<const float> xyz);
+
+}  // namespace rlpc

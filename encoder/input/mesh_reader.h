@@ -1,0 +1,36 @@
+// One mesh from one file: what a frame of a sequence is, and what a point cache moves.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc {
+
+struct SingleMesh {
+  std::vector<float> xyz;               // 3 per vertex, at least one vertex, all finite
+  std::vector<Triangle> triangles;      // polygons as fans from their first corner
+  std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
+};
+
+// By extension, in small letters: ".obj", ".ply", ".off".
+bool is_mesh_extension(const std::string& extension);
+
+// ".obj", ".ply" or ".off": by the extension of the file; if that says nothing, by how it
+// begins; empty: neither does.
+std::string mesh_format_of(const std::string& path);
+
+InputResult<SingleMesh> read_mesh(const std::string& path);
+
+// Of a source with the triangles of `mesh`. The frame rate: the one given, else that of the
+// mesh, else the default.
+FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
+                            const std::optional<FrameRate>& frame_rate);
+
+// Of the last part of `path`, in small letters: ".obj" of "a/B.OBJ".
+std::string lower_extension(const std::string& path);
+
+}  // namespace rlpc

@@ -1,0 +1,18 @@
+// OFF: vertices and polygons of the text form; colours, normals and texture coordinates after
+// the positions are skipped.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "encoder/input/mesh_reader.h"
+
+namespace rlpc {
+
+// Does the text begin with OFF, or OFF after letters for what else a vertex has (STCN4n)?
+bool looks_like_off(std::string_view text);
+
+// `name` stands in error messages.
+InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name);
+
+}  // namespace rlpc

@@ -1,0 +1,18 @@
+// PLY: the positions and polygons of the elements "vertex" and "face"; everything else is
+// skipped. Text and binary of both byte orders.
+//
+// As strict as the OBJ reader; and the file must hold what its header announces, no more and no
+// less.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "encoder/input/mesh_reader.h"
+
+namespace rlpc {
+
+// `name` stands in error messages.
+InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name);
+
+}  // namespace rlpc

@@ -1,0 +1,23 @@
+// Point caches (PC2, MDD): the positions of an animation whose triangles are in a mesh file.
+//
+// PC2: "POINTCACHE2\0", int32 version = 1, int32 points, float start, float sample rate, int32
+// samples; then x, y, z of each point of each sample; 32-bit, little-endian.
+// MDD: int32 frames, int32 points, a float time for each frame; then x, y, z of each point of
+// each frame; 32-bit, big-endian.
+// Start, sample rate and times are not used (see InputOptions).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc {
+
+// A file that does not begin as a PC2 file and is called .mdd is taken for MDD.
+InputResult<std::unique_ptr<FrameSource>> open_point_cache(
+    const std::string& mesh_path, const std::string& points_path,
+    const std::optional<FrameRate>& frame_rate);
+
+}  // namespace rlpc

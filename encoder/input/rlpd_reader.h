@@ -1,0 +1,16 @@
+// Decoder output (Annex A) as input.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc {
+
+// Reads the frames that are present, which may be fewer than the header announces.
+InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
+                                                    const std::optional<FrameRate>& frame_rate);
+
+}  // namespace rlpc

@@ -1,0 +1,124 @@
+#include "encoder/input/weld.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+
+namespace {
+
+using Position = std::array<float, 3>;
+
+Position position(std::span<const float> xyz, std::uint32_t vertex) {
+  const std::size_t first = 3 * std::size_t{vertex};
+  return {xyz[first], xyz[first + 1], xyz[first + 2]};
+}
+
+// A group of vertices that were together so far, and a place where some of them are now.
+struct Part {
+  std::uint32_t leader = 0;
+  Position place{};
+  bool operator==(const Part&) const = default;
+};
+
+struct PartHash {
+  std::size_t operator()(const Part& part) const {
+    std::uint64_t hash = part.leader;
+    for (const float x : part.place) {
+      const float zero_is_zero = x + 0.0F;  // -0 equals 0
+      hash = (hash ^ std::bit_cast<std::uint32_t>(zero_is_zero)) * 0x9E3779B97F4A7C15;
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+// Splits the groups by one frame. leader[v] is the first vertex of the group of v.
+void split(std::span<const float> xyz, std::vector<std::uint32_t>& leader) {
+  std::unordered_map<Part, std::uint32_t, PartHash> leader_of;
+  for (std::uint32_t v = 0; v < leader.size(); ++v) {
+    const Position place = position(xyz, v);
+    if (place == position(xyz, leader[v])) continue;
+    // The first to leave leads all that leave to the same place.
+    leader[v] = leader_of.try_emplace({leader[v], place}, v).first->second;
+  }
+}
+
+class WeldedSource : public FrameSource {
+ public:
+  WeldedSource(Shape shape, std::unique_ptr<FrameSource> source,
+               std::vector<std::uint32_t> vertices)
+      : FrameSource(std::move(shape)),
+        source_(std::move(source)),
+        vertices_(std::move(vertices)),
+        all_(3 * std::size_t{source_->num_vertices()}) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    if (auto error = source_->read_frame(frame, all_)) return error;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      const Position place = position(all_, vertices_[v]);
+      for (std::size_t c = 0; c < 3; ++c) xyz[3 * v + c] = place[c];
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::vector<std::uint32_t> vertices_;  // of the source
+  std::vector<float> all_;
+};
+
+}  // namespace
+
+void drop_degenerate(FrameSource::Shape& shape) {
+  const std::size_t dropped = std::erase_if(shape.triangles, [](const Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  });
+  if (dropped == 0) return;
+  shape.notes.push_back(std::to_string(dropped) + " degenerate triangle" +
+                        (dropped == 1 ? " is" : "s are") + " left out");
+}
+
+InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source) {
+  std::vector<std::uint32_t> leader(source->num_vertices());  // one group
+  std::vector<float> xyz(3 * leader.size());
+  for (std::uint32_t f = 0; f < source->num_frames(); ++f) {
+    if (auto error = source->read_frame(f, xyz)) return *error;
+    split(xyz, leader);
+  }
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint32_t> welded(leader.size());
+  for (std::uint32_t v = 0; v < leader.size(); ++v) {
+    if (leader[v] == v) vertices.push_back(v);
+    welded[v] =
+        leader[v] == v ? static_cast<std::uint32_t>(vertices.size() - 1) : welded[leader[v]];
+  }
+  FrameSource::Shape shape;
+  shape.num_vertices = static_cast<std::uint32_t>(vertices.size());
+  shape.num_frames = source->num_frames();
+  shape.frame_rate = source->frame_rate();
+  shape.triangles = source->triangles();
+  for (Triangle& t : shape.triangles) {
+    for (std::uint32_t& v : t) v = welded[v];
+  }
+  shape.notes = source->notes();
+  if (vertices.size() < welded.size()) {
+    shape.notes.push_back(std::to_string(vertices.size()) + " of " +
+                          std::to_string(welded.size()) +
+                          " vertices remain, as each other one coincides with one of them in "
+                          "every frame");
+  }
+  drop_degenerate(shape);
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<WeldedSource>(std::move(shape), std::move(source), std::move(vertices)));
+}
+
+}  // namespace rlpc
