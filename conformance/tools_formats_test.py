@@ -75,6 +75,13 @@ class FormatsIn(ToolsTest):
                      ply(xyz, polygon, "binary_big_endian"), self.path("a.obj").read_bytes()):
             self.assertEqual(self.stream("-", input=data), wanted)
 
+    def test_a_long_header_is_read_in_time(self):
+        names = "".join(f"property float p{i}\n" for i in range(500000))
+        head = "ply\nformat ascii 1.0\nelement vertex 1\n"
+        self.path("a.ply").write_text(f"{head}{names}property float p0\nend_header\n")
+        self.fails(1, "a.ply:500004: a second property \"p0\"", "rlpcenc", self.path("a.ply"), "-o",
+                   self.path("out.rlpc"))
+
     def test_broken_files_are_named(self):
         self.clip(2)
         out = ["-o", self.path("out.rlpc")]

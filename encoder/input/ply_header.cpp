@@ -2,6 +2,8 @@
 
 #include <array>
 #include <charconv>
+#include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -116,17 +118,17 @@ class HeaderParser {
 
   void parse_element(TextWords& words) {
     PlyElement element;
-    element.name = words.next();
+    const std::string_view name = words.next();
+    element.name = name;
     const std::string_view count = words.next();
     const char* const last = count.data() + count.size();
     const auto [end, ec] = std::from_chars(count.data(), last, element.count);
     if (ec != std::errc() || end != last) {
-      return fail("element " + quoted(element.name) + ": " + quoted(count) +
+      return fail("element " + quoted(name) + ": " + quoted(count) +
                   " of them; expected a number from 0 to 4294967295");
     }
-    for (const PlyElement& other : header_.elements) {
-      if (other.name == element.name) fail("a second element " + quoted(element.name));
-    }
+    if (!elements_.insert(name).second) fail("a second element " + quoted(name));
+    properties_.clear();
     header_.elements.push_back(std::move(element));
   }
 
@@ -142,11 +144,10 @@ class HeaderParser {
       type = words.next();
     }
     property.type = parse_type(type);
-    property.name = words.next();
-    if (property.name.empty()) fail("a property without a name");
-    for (const PlyProperty& other : header_.elements.back().properties) {
-      if (other.name == property.name) fail("a second property " + quoted(property.name));
-    }
+    const std::string_view name = words.next();
+    property.name = name;
+    if (name.empty()) fail("a property without a name");
+    if (!properties_.insert(name).second) fail("a second property " + quoted(name));
     header_.elements.back().properties.push_back(std::move(property));
   }
 
@@ -171,6 +172,8 @@ class HeaderParser {
   bool has_format_ = false;
   bool at_end_header_ = false;
   PlyHeader header_;
+  std::set<std::string_view> elements_;    // their names, in text_
+  std::set<std::string_view> properties_;  // of the last element
   std::optional<InputError> error_;
 };
 
