@@ -97,6 +97,9 @@ class FormatsIn(ToolsTest):
         self.path("a.mdd").write_bytes(struct.pack(">ii", 2000000000, 538))
         self.fails(1, ["a.mdd: 8 bytes", "truncated"], "rlpcenc", self.path("clip.obj"), "--points",
                    self.path("a.mdd"), *out)
+        self.path("far.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2e30 0\nf 1 2 3\n")
+        self.fails(1, "far.obj: frame 0 (from 0) has coordinates beyond 2^100", "rlpcenc",
+                   self.path("far.obj"), *out)
         self.fails(1, "standard input: the file is empty", "rlpcenc", "-", "--points",
                    self.path("clip.pc2"), *out, input=b"")
         self.fails(1, "standard input: unknown kind of file", "rlpcenc", "-", *out, input=b"hello")

@@ -54,8 +54,8 @@ InputResult<Extent> measure_extent(FrameSource& source) {
     for (std::size_t c = 0; c < 3; ++c) {
       if (std::max(-extent.min[c], extent.max[c]) <= kMaxCoordinate) continue;
       return InputError{
-          "frame " + std::to_string(f) +
-          " has coordinates beyond 2^100 (about 1.3e30); scale the animation down"};
+          source.file_of(f) + ": frame " + std::to_string(f) +
+          " (from 0) has coordinates beyond 2^100 (about 1.3e30); scale the animation down"};
     }
   }
   extent.rms_spread = std::sqrt(spread / (3.0 * static_cast<double>(n) * source.num_frames()));

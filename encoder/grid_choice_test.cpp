@@ -27,6 +27,9 @@ class Frames final : public FrameSource {
     std::copy(frames_[frame].begin(), frames_[frame].end(), xyz.begin());
     return std::nullopt;
   }
+  std::string file_of(std::uint32_t frame) const override {
+    return "f" + std::to_string(frame) + ".obj";
+  }
 
  private:
   static Shape shape_of(const std::vector<std::vector<float>>& frames) {
@@ -150,7 +153,7 @@ TEST(MeasureExtent, IsTheBoxOverAllFramesAndTheSpreadAboutTheirMeans) {
   EXPECT_DOUBLE_EQ(extent->rms_spread, std::sqrt(18.0 / 12.0));
 }
 
-TEST(MeasureExtent, RefusesCoordinatesBeyondTwoToThe100AndNamesTheFrame) {
+TEST(MeasureExtent, RefusesCoordinatesBeyondTwoToThe100AndNamesFileAndFrame) {
   const float most = 0x1p100F;
   Frames fits({{0, 0, 0}, {most, -most, 0}});
   EXPECT_TRUE(measure_extent(fits));
@@ -158,8 +161,9 @@ TEST(MeasureExtent, RefusesCoordinatesBeyondTwoToThe100AndNamesTheFrame) {
     Frames frames({{0, 0, 0}, {1, 2, 3}, {0, x, 0}});
     const auto extent = measure_extent(frames);
     ASSERT_FALSE(extent);
-    EXPECT_NE(extent.error().message.find("frame 2"), std::string::npos);
-    EXPECT_NE(extent.error().message.find("2^100"), std::string::npos);
+    EXPECT_TRUE(extent.error().message.starts_with(
+        "f2.obj: frame 2 (from 0) has coordinates beyond 2^100"))
+        << extent.error().message;
   }
 }
 

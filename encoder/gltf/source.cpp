@@ -89,6 +89,8 @@ class GltfSource : public FrameSource {
     return check_finite(path_, frame, xyz);
   }
 
+  std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
+
  private:
   const std::vector<double>& weights_of(std::uint32_t node, const GltfPose& pose) const {
     const auto moved = pose.weights.find(node);

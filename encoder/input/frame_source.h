@@ -49,6 +49,8 @@ class FrameSource {
   // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
   // success. frame < num_frames(), in any order.
   virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
+  // For messages: the name of the file that holds a frame.
+  virtual std::string file_of(std::uint32_t /*frame*/) const { return "input"; }
 
  protected:
   explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}

@@ -200,6 +200,16 @@ TEST_F(FrameSourceTest, RefusesBrokenPointCachesOfLightWave) {
                "b.mdd: frame 1, vertex 0 (both from 0): y is not a number");
 }
 
+TEST_F(FrameSourceTest, KnowsTheFileOfAFrame) {
+  const std::string mesh = put("f1.obj", kTriangle);
+  const std::string next = put("f2.obj", kTriangle);
+  EXPECT_EQ((*open_frame_source({path("f%d.obj"), "", {}}))->file_of(1), next);
+  const std::string points = put("a.pc2", pc2(3, 1, std::vector<float>(9)));
+  EXPECT_EQ((*open_frame_source({mesh, points, {}}))->file_of(0), points);
+  const std::string decoded = put("a.rlpd", rlpd(1, 1, 0, {}, {0, 0, 0}));
+  EXPECT_EQ((*open_frame_source({decoded, "", {}}))->file_of(0), decoded);
+}
+
 TEST_F(FrameSourceTest, NamesFrameAndVertexThatAreNotFinite) {
   const std::string mesh = put("a.obj", kTriangle);
   std::vector<float> values(18);

@@ -110,6 +110,8 @@ class MeshSequence : public FrameSource {
     return std::nullopt;
   }
 
+  std::string file_of(std::uint32_t frame) const override { return paths_[frame]; }
+
  private:
   std::optional<InputError> compare_with_first(std::uint32_t frame,
                                                const SingleMesh& mesh) const {

@@ -118,6 +118,8 @@ class PointCache : public FrameSource {
     return check_finite(file_.path(), frame, xyz);
   }
 
+  std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
+
  private:
   InputFile file_;
   Layout layout_;

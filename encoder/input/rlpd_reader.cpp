@@ -126,6 +126,8 @@ class RlpdSource : public FrameSource {
     return check_finite(file_.path(), frame, xyz);
   }
 
+  std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
+
  private:
   InputFile file_;
   RlpdHeader header_;

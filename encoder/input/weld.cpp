@@ -70,6 +70,8 @@ class WeldedSource : public FrameSource {
     return std::nullopt;
   }
 
+  std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
+
  private:
   std::unique_ptr<FrameSource> source_;
   std::vector<std::uint32_t> vertices_;  // of the source
