@@ -54,6 +54,9 @@ class FormatsIn(ToolsTest):
         self.assertEqual(
             self.stream(self.path("clip.off"), "--points", self.path("clip.mdd")), wanted)
         self.assertEqual(self.stream("-", "--points", self.path("clip.mdd"), input=mesh), wanted)
+        for cache in ("clip.mdd", "clip.pc2"):
+            data = self.path(cache).read_bytes()
+            self.assertEqual(self.stream(self.path("clip.off"), "--points", "-", input=data), wanted)
         writers = {"off": lambda xyz: off(xyz, triangles)}
         for encoding in ("ascii", "binary_little_endian", "binary_big_endian"):
             writers[encoding] = lambda xyz, e=encoding: ply(xyz, triangles, e)
@@ -97,6 +100,10 @@ class FormatsIn(ToolsTest):
         self.path("a.mdd").write_bytes(struct.pack(">ii", 2000000000, 538))
         self.fails(1, ["a.mdd: 8 bytes", "truncated"], "rlpcenc", self.path("clip.obj"), "--points",
                    self.path("a.mdd"), *out)
+        data = self.path("clip.pc2").read_bytes()
+        for bad in (data[1:], b"", data[:1]):
+            self.fails(1, ["standard input: does not begin with POINTCACHE2", "as MDD"], "rlpcenc",
+                       self.path("clip.obj"), "--points", "-", *out, input=bad)
         self.path("far.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2e30 0\nf 1 2 3\n")
         self.fails(1, "far.obj: frame 0 (from 0) has coordinates beyond 2^100", "rlpcenc",
                    self.path("far.obj"), *out)

@@ -228,7 +228,7 @@ void add_options(CLI::App& app, Options& o) {
       ->required();
   app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
   app.add_option("--points", o.input.points,
-                 "Point cache (.pc2, .mdd) with the frames of INPUT");
+                 "Point cache (.pc2, .mdd) with the frames of INPUT; - for standard input");
   app.add_option("--fps", o.fps,
                  "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input; else 30)");
   app.add_option("--animation", o.input.animation,

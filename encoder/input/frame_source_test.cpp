@@ -200,6 +200,24 @@ TEST_F(FrameSourceTest, RefusesBrokenPointCachesOfLightWave) {
                "b.mdd: frame 1, vertex 0 (both from 0): y is not a number");
 }
 
+TEST_F(FrameSourceTest, TellsAPointCacheByWhatIsInIt) {
+  const std::string mesh = put("a.obj", kTriangle);
+  const std::vector<float> values{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const std::string good = mdd(3, 2, 2, values);
+  for (const std::string& bytes : {good, pc2(3, 2, values)}) {
+    const auto source = open_frame_source({mesh, put("cache", bytes), {}});
+    ASSERT_TRUE(source) << source.error().message;
+    std::vector<float> xyz(9);
+    ASSERT_FALSE((*source)->read_frame(1, xyz));
+    EXPECT_EQ(xyz, std::vector<float>(values.begin() + 9, values.end()));
+  }
+  for (const std::string& bytes : {std::string(), good.substr(0, 87), good + "x", "x" + good,
+                                   mdd(2, 3, 3, values), mdd(3, 0, 0, {})}) {
+    expect_error({mesh, put("cache", bytes), {}},
+                 "nor does it fit " + mesh + ", of 3 vertices, as MDD");
+  }
+}
+
 TEST_F(FrameSourceTest, KnowsTheFileOfAFrame) {
   const std::string mesh = put("f1.obj", kTriangle);
   const std::string next = put("f2.obj", kTriangle);

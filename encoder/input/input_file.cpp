@@ -5,11 +5,11 @@
 #include <cassert>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <sstream>
 #include <system_error>
 
 namespace rlpc {
@@ -32,7 +32,6 @@ InputResult<InputFile> InputFile::open(const std::string& path) {
   file.path_ = name_of_input(path);
   if (path == "-") {
     file.size_ = standard_input().size();
-    file.stream_ = std::make_unique<std::istringstream>(standard_input());
     return file;
   }
   std::error_code ec;
@@ -55,6 +54,11 @@ InputResult<InputFile> InputFile::open(const std::string& path) {
 
 std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> bytes) {
   assert(offset <= size_ && bytes.size() <= size_ - offset);
+  if (!stream_) {
+    std::copy_n(standard_input().begin() + static_cast<std::ptrdiff_t>(offset), bytes.size(),
+                bytes.begin());
+    return std::nullopt;
+  }
   stream_->clear();
   stream_->seekg(static_cast<std::streamoff>(offset));
   stream_->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

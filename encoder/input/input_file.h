@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <istream>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,7 +25,7 @@ class InputFile {
  private:
   std::string path_;
   std::uint64_t size_ = 0;
-  std::unique_ptr<std::istream> stream_;
+  std::unique_ptr<std::ifstream> stream_;  // none: standard input
 };
 
 // The path, or "standard input" for "-".

@@ -39,9 +39,7 @@ InputResult<Layout> read_pc2_header(InputFile& file) {
   if (file.size() < header.size()) return too_short(file, header.size());
   if (auto error = file.read(0, header)) return *error;
   if (std::string_view(header.data(), kPc2Magic.size()) != kPc2Magic) {
-    return InputError{file.path() +
-                      ": does not begin with POINTCACHE2; not a PC2 point cache (and one of "
-                      "LightWave is called .mdd)"};
+    return InputError{file.path() + ": does not begin with POINTCACHE2; not a PC2 point cache"};
   }
   const std::int32_t version = load_i32(header, 12);
   if (version != 1) {
@@ -63,16 +61,6 @@ InputResult<Layout> read_mdd_header(InputFile& file) {
     layout.first_byte = kMddHeaderBytes + 4 * static_cast<std::uint64_t>(layout.frames);
   }
   return layout;
-}
-
-InputResult<Layout> read_header(InputFile& file) {
-  std::array<char, kPc2Magic.size()> magic{};
-  if (file.size() >= magic.size()) {
-    if (auto error = file.read(0, magic)) return *error;
-  }
-  const bool is_pc2 = std::string_view(magic.data(), magic.size()) == kPc2Magic;
-  if (!is_pc2 && lower_extension(file.path()) == ".mdd") return read_mdd_header(file);
-  return read_pc2_header(file);
 }
 
 // Compares the header with the mesh and with the size of the file.
@@ -100,6 +88,26 @@ std::optional<InputError> check_layout(const InputFile& file, const Layout& layo
                       (file.size() < expected ? "truncated" : "too long")};
   }
   return std::nullopt;
+}
+
+InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
+                                std::uint32_t num_vertices) {
+  std::array<char, kPc2Magic.size()> magic{};
+  if (file.size() >= magic.size()) {
+    if (auto error = file.read(0, magic)) return *error;
+  }
+  const bool is_pc2 = std::string_view(magic.data(), magic.size()) == kPc2Magic;
+  const std::string extension = lower_extension(file.path());
+  if (is_pc2 || extension == ".pc2") return read_pc2_header(file);
+  auto layout = read_mdd_header(file);
+  if (extension == ".mdd") return layout;
+  // Nothing tells MDD but that the numbers fit.
+  if (layout && !check_layout(file, *layout, mesh_path, num_vertices)) return layout;
+  return InputError{file.path() +
+                    ": does not begin with POINTCACHE2, so it is no PC2 point cache; nor does "
+                    "it fit " +
+                    name_of_input(mesh_path) + ", of " + to_string(num_vertices) +
+                    " vertices, as MDD"};
 }
 
 class PointCache : public FrameSource {
@@ -138,9 +146,9 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   if (!mesh) return mesh.error();
   auto file = InputFile::open(points_path);
   if (!file) return file.error();
-  const auto layout = read_header(*file);
-  if (!layout) return layout.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
+  const auto layout = read_header(*file, mesh_path, num_vertices);
+  if (!layout) return layout.error();
   if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate);

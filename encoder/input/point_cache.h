@@ -15,7 +15,8 @@
 
 namespace rlpc {
 
-// A file that does not begin as a PC2 file and is called .mdd is taken for MDD.
+// PC2 is told by how the file begins, MDD by the extension; a file without either (standard
+// input) is MDD if its header fits the mesh and its length.
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
     const std::optional<FrameRate>& frame_rate);
