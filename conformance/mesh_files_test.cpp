@@ -76,7 +76,7 @@ class MeshFiles : public testing::Test {
 
     const bool cache = path.ends_with(".pc2") || path.ends_with(".mdd");
     InputOptions input{cache ? (folder_ / "x.obj").string() : path, cache ? path : "", {}};
-    input.weld = false;
+    input.weld = !path.ends_with(".glb");
     const auto source = open_frame_source(input);
     ASSERT_TRUE(source) << source.error().message;
     ASSERT_EQ((*source)->num_frames(), 12U);

@@ -85,6 +85,18 @@ class FormatsIn(ToolsTest):
         self.fails(1, "a.ply:500004: a second property \"p0\"", "rlpcenc", self.path("a.ply"), "-o",
                    self.path("out.rlpc"))
 
+    def test_options_of_other_formats_are_refused(self):
+        self.clip(2)
+        mesh, points = self.path("clip.obj"), self.path("clip.pc2")
+        stream = self.path("out.rlpc")
+        self.stream(mesh, "--points", points)
+        words = "clip.obj: only of .glb and .gltf files are vertices joined"
+        self.fails(1, words, "rlpcenc", mesh, "--points", points, "--no-weld", "-o", stream)
+        self.fails(2, words, "rlpccmp", points, stream, "--no-weld")
+        self.fails(2, "out.rlpc: only of .glb", "rlpccmp", points, stream, "--no-weld-b")
+        self.fails(2, "out.rlpc: only .glb", "rlpccmp", points, stream, "--animation-b", "Walk")
+        self.fails(64, "--fps: neither A nor B", "rlpccmp", points, stream, "--fps", 25)
+
     def test_broken_files_are_named(self):
         self.clip(2)
         out = ["-o", self.path("out.rlpc")]
@@ -125,7 +137,7 @@ class FormatsOut(ToolsTest):
             out = self.path(name)
             self.ok("rlpcdec", self.path("a.rlpc"), "-o", out,
                     *(["--ascii"] if "text" in name else []))
-            source = [out, "--no-weld"]
+            source = [out, "--no-weld"] if name == "a.glb" else [out]
             if name in ("a.pc2", "a.mdd"):
                 source = [self.path("a.obj"), "--points", out]
             self.ok("rlpcenc", *source, "-o", self.path("b.rlpc"), *ENCODE)
@@ -155,6 +167,10 @@ class FormatsOut(ToolsTest):
         stream = self.path("a.rlpc")
         self.fails(64, "give --format", "rlpcdec", stream, "-o", "-")
         self.fails(64, "--json", "rlpcdec", stream, "-o", "-", "--format", "glb", "--json")
+        self.fails(64, "--ascii", "rlpcdec", stream, "-o", self.path("a.rlpd"), "--ascii")
+        self.fails(64, "--ascii", "rlpcdec", stream, "-o", self.path("frames"), "--ascii")
+        self.fails(64, "--ascii", "rlpcdec", stream, "--verify", "--ascii")
+        self.fails(64, "--format", "rlpcdec", stream, "--verify", "--format", "ply")
         self.fails(4, "without the mesh", "rlpcdec", stream, "-o", "-", "--format", "mdd")
         self.fails(4, "one frame of .ply", "rlpcdec", stream, "-o", "-", "--format", "ply")
         self.fails(4, "holds one frame", "rlpcdec", stream, "-o", self.path("x.ply"))

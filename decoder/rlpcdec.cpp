@@ -205,8 +205,9 @@ int decode(const Options& o) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("input", o.input, "Stream to decode; - for standard input")->required();
   auto* output = app.add_option("-o,--output", o.output, "What to write, see below");
-  app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
-      ->excludes(output);
+  auto* verify =
+      app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
+          ->excludes(output);
   static const std::map<std::string, rlpc::SinkFormat> kFormats{
       {"rlpd", rlpc::SinkFormat::kRlpd}, {"pc2", rlpc::SinkFormat::kPc2},
       {"mdd", rlpc::SinkFormat::kMdd},   {"glb", rlpc::SinkFormat::kGlb},
@@ -215,8 +216,9 @@ void add_options(CLI::App& app, Options& o) {
          "--format", [&o](const std::string& word) { o.format = kFormats.at(word); },
          "Format of OUT (default: by its name)")
       ->check(CLI::IsMember(kFormats).description(""))
-      ->type_name("rlpd|pc2|mdd|glb|obj|ply");
-  app.add_flag("--ascii", o.ascii, "PLY files as text");
+      ->type_name("rlpd|pc2|mdd|glb|obj|ply")
+      ->excludes(verify);
+  app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify);
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
   app.add_option("--max-components", o.decoder.cut.max_components,
@@ -263,6 +265,11 @@ int main(int argc, char** argv) try {
       return complain("--json and the output cannot both go to standard output",
                       rlpc::kExitUsage);
     }
+  }
+  if (options.ascii &&
+      rlpc::sink_format(options.output, options.format) != rlpc::SinkFormat::kPly) {
+    return complain("--ascii: is for PLY files, which " + options.output + " is not",
+                    rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
   return decode(options);

@@ -98,6 +98,7 @@ InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions
 InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
   const std::string extension = lower_extension(given.path);
   if (extension == ".rlpc") {
+    if (auto error = check_gltf_options(given)) return *error;
     if (given.points.empty()) return open_stream(given.path);
     return InputError{given.path + ": a stream has its own positions; leave out " +
                       given.points};
@@ -105,7 +106,10 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
   InputOptions options = given;
   if ((extension == ".pc2" || extension == ".mdd") && given.points.empty()) {
     const std::string mesh = sibling(given.path, {".obj", ".ply", ".off"});
-    if (!mesh.empty()) options = {mesh, given.path, std::nullopt};
+    if (!mesh.empty()) {
+      options.path = mesh;
+      options.points = given.path;
+    }
   }
   auto source = open_frame_source(options);
   if (!source) return source.error();

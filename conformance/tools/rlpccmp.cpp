@@ -211,6 +211,9 @@ int run(Options& o) {
   }
   const auto pair = rlpc::open_comparison_pair(o.a, o.b);
   if (!pair) return complain(pair.error().message);
+  if (!o.fps.empty() && !rlpc::is_gltf(o.a) && !rlpc::is_gltf(o.b)) {
+    return complain("--fps: neither A nor B is a glTF file"), kUsage;
+  }
   const auto map = rlpc::match_vertices(*pair, o.order_map);
   if (!map) return complain(map.error().message);
   Rate rate{pair->b.stream_bytes, 0.0};

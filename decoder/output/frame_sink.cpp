@@ -73,7 +73,9 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
     return OutputError{name + "has no name to tell the format; give it"};
   }
   if (format == SinkFormat::kPc2 || format == SinkFormat::kMdd) {
-    return OutputError{name + "a point cache is of no use without the mesh beside it"};
+    return OutputError{name +
+                       "a point cache is of no use without the mesh beside it; write .rlpd or "
+                       ".glb there"};
   }
   if (is_mesh(format) && options.num_frames > 1) {
     return OutputError{name + "takes one frame of " + std::string(extension_of(format)) +
@@ -84,25 +86,27 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
 
 }  // namespace
 
+SinkFormat sink_format(const std::string& path, SinkFormat given) {
+  if (given != SinkFormat::kByName) return given;
+  const SinkFormat named = format_of_extension(lower_extension(path));
+  return named != SinkFormat::kByName ? named : SinkFormat::kObj;
+}
+
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options) {
   if (path == "-") return open_standard_output(std::move(options));
-  const bool by_name = options.format == SinkFormat::kByName;
+  const SinkFormat format = sink_format(path, options.format);
   const fs::path name = fs::path(path).filename();
-  const std::string extension = lower_extension(name);
-  const SinkFormat named = format_of_extension(extension);
-  const SinkFormat format = by_name ? named : options.format;
   if (name.string().find('%') != std::string::npos) {
-    if (format != SinkFormat::kByName && !is_mesh(format)) {
+    if (!is_mesh(format)) {
       return OutputError{path + ": a name with a number is for .obj and .ply files; " +
                          std::string(extension_of(format)) + " takes all frames in one"};
     }
-    return open_mesh_sink(path, is_mesh(format) ? format : SinkFormat::kObj,
-                          std::move(options));
+    return open_mesh_sink(path, format, std::move(options));
   }
-  if (format != SinkFormat::kByName && !is_mesh(format)) {
-    return open_one_file(path, format, std::move(options));
-  }
+  if (!is_mesh(format)) return open_one_file(path, format, std::move(options));
+  const std::string extension = lower_extension(name);
+  const SinkFormat named = format_of_extension(extension);
   if (is_mesh(named)) {
     if (options.num_frames == 1) return open_one_file(path, format, std::move(options));
     const std::string kind = named == SinkFormat::kObj ? "OBJ" : "PLY";
@@ -118,9 +122,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
                          "frame_%04d.ply or a folder"};
     }
   }
-  const SinkFormat frames = by_name ? SinkFormat::kObj : format;
-  const std::string pattern = "frame_%04d" + std::string(extension_of(frames));
-  return open_mesh_sink((fs::path(path) / pattern).string(), frames, std::move(options));
+  const std::string pattern = "frame_%04d" + std::string(extension_of(format));
+  return open_mesh_sink((fs::path(path) / pattern).string(), format, std::move(options));
 }
 
 }  // namespace rlpc

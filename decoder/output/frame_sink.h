@@ -55,6 +55,9 @@ struct SinkOptions {
   bool ascii = false;  // PLY as text
 };
 
+// `given`, or else by the form of `path`; never kByName.
+SinkFormat sink_format(const std::string& path, SinkFormat given);
+
 // By options.format, or else by the form of `path`:
 //   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)

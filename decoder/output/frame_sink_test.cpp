@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "decoder/float_position.h"
@@ -145,6 +146,18 @@ TEST_F(FrameSinkTest, WritesASingleFrameAsOneObj) {
   EXPECT_FALSE((*sink)->finish());
   EXPECT_EQ(files(), (Names{"a.obj"}));
   EXPECT_NE(write(path("b.obj")).find("one OBJ file holds one frame"), std::string::npos);
+}
+
+TEST_F(FrameSinkTest, TellsTheFormatByTheFormOfThePath) {
+  using enum SinkFormat;
+  const std::vector<std::pair<std::string, SinkFormat>> named{
+      {"a.rlpd", kRlpd}, {"a.PC2", kPc2}, {"a.mdd", kMdd},           {"a.glb", kGlb},
+      {"a.ply", kPly},   {"a.obj", kObj}, {"o.ut/f_%04d.ply", kPly}, {"a.ply/out", kObj},
+      {"out", kObj},     {"-", kObj}};
+  for (const auto& [path, format] : named) {
+    EXPECT_EQ(sink_format(path, kByName), format) << path;
+    EXPECT_EQ(sink_format(path, kMdd), kMdd) << path;
+  }
 }
 
 TEST_F(FrameSinkTest, LeavesNothingBehindWithoutFinish) {

@@ -105,15 +105,24 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
 
 }  // namespace
 
+bool is_gltf(const InputOptions& options) {
+  return options.points.empty() && kind_of(options.path) == FileKind::kGltf;
+}
+
+std::optional<InputError> check_gltf_options(const InputOptions& options) {
+  if ((options.animation.empty() && options.weld) || is_gltf(options)) return std::nullopt;
+  return InputError{name_of_input(options.path) +
+                    (options.weld
+                         ? ": only .glb and .gltf files have animations to choose from"
+                         : ": only of .glb and .gltf files are vertices joined; all are kept "
+                           "here without asking")};
+}
+
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
   const std::string& path = options.path;
   std::error_code ec;
   const bool exists = path == "-" || fs::exists(path, ec);
-  const bool is_gltf = options.points.empty() && kind_of(path) == FileKind::kGltf;
-  if (!options.animation.empty() && !is_gltf) {
-    return InputError{name_of_input(path) +
-                      ": only .glb and .gltf files have animations to choose from"};
-  }
+  if (auto error = check_gltf_options(options)) return *error;
   if (!options.points.empty()) {
     return open_point_cache(path, options.points, options.frame_rate);
   }

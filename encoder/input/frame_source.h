@@ -89,6 +89,10 @@ struct InputOptions {
 // Checks what can be checked without reading every frame; read_frame() checks the rest.
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options);
 
+bool is_gltf(const InputOptions& options);
+// Error: options of glTF (animation, no welding) are set for other input.
+std::optional<InputError> check_gltf_options(const InputOptions& options);
+
 // "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
 InputResult<FrameRate> parse_frame_rate(std::string_view text);
 

@@ -218,6 +218,16 @@ TEST_F(FrameSourceTest, TellsAPointCacheByWhatIsInIt) {
   }
 }
 
+TEST_F(FrameSourceTest, RefusesOptionsOfGltfForOtherFiles) {
+  const std::string mesh = put("a.obj", kTriangle);
+  const std::string points = put("a.pc2", pc2(3, 1, std::vector<float>(9)));
+  for (const std::string& cache : {std::string(), points}) {
+    expect_error({mesh, cache, {}, "Walk"},
+                 mesh + ": only .glb and .gltf files have animation");
+    expect_error({mesh, cache, {}, "", false}, mesh + ": only of .glb and .gltf files are");
+  }
+}
+
 TEST_F(FrameSourceTest, KnowsTheFileOfAFrame) {
   const std::string mesh = put("f1.obj", kTriangle);
   const std::string next = put("f2.obj", kTriangle);
