@@ -2,7 +2,8 @@
 """The layer rules: who may include, import or link whom.
 
 common includes neither side; encoder and decoder never reach each other, nor conformance;
-Eigen stays in the encoder; the specification interpreter and the judge are plain Python.
+readers and writers of mesh files know nothing of coding; Eigen stays in the encoder; the
+specification interpreter and the judge are plain Python.
 """
 
 import argparse
@@ -19,6 +20,12 @@ OURS = {
     "decoder": {"common", "decoder"},
     "encoder": {"common", "encoder"},
     "conformance": {"common", "decoder", "encoder", "conformance"},
+}
+# What readers and writers of mesh files may include of their own layer: folders, and files.
+FORMATS = {
+    "decoder/output": {"decoder/output", "decoder/float_position.h"},
+    "encoder/gltf": {"encoder/gltf", "encoder/input", "encoder/det_math.h"},
+    "encoder/input": {"encoder/gltf", "encoder/input", "encoder/grid_value.h"},
 }
 TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
 PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
@@ -55,6 +62,10 @@ def check_ours(root, layer, path, included):
         return f"{layer}/ must not include {first}/ (it includes \"{included}\")"
     if not (root / included).is_file():
         return f'"{included}" does not exist'
+    folder = path.parent.relative_to(root).as_posix()
+    if folder in FORMATS and first != "common" and not FORMATS[folder] & {
+            included, pathlib.PurePosixPath(included).parent.as_posix()}:
+        return f"{folder}/ must know nothing of coding (it includes \"{included}\")"
     if path.name.startswith("parse_") and pathlib.Path(included).name.startswith("recon_"):
         return f'parsing must not know reconstruction (it includes "{included}")'
     return None

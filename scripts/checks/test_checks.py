@@ -110,6 +110,17 @@ class Layers(TreeTest):
                      "decoder/parse_x.cpp": '#include "decoder/recon_x.h"\n'},
                     "parsing must not know reconstruction")
 
+    def test_readers_and_writers_of_files_know_nothing_of_coding(self):
+        tree = {"encoder/gof.h": "", "encoder/det_math.h": "", "common/a.h": "",
+                "encoder/input/i.h": '#include "common/a.h"\n',
+                "encoder/gltf/g.h": '#include "encoder/det_math.h"\n#include "encoder/input/i.h"\n',
+                "encoder/e.cpp": '#include "encoder/gltf/g.h"\n#include "encoder/gof.h"\n'}
+        self.run_on(tree)
+        self.run_on({**tree, "encoder/gltf/h.cpp": '#include "encoder/gof.h"\n'},
+                    "encoder/gltf/h.cpp:1", "encoder/gltf/ must know nothing of coding")
+        self.run_on({"decoder/p.h": "", "decoder/output/o.cpp": '#include "decoder/p.h"\n'},
+                    "decoder/output/ must know nothing of coding")
+
     def test_libraries_are_not_linked_across(self):
         self.run_on({"decoder/CMakeLists.txt": "# not rlpc_encoder\n"})
         self.run_on({"decoder/CMakeLists.txt": "\ntarget_link_libraries(t rlpc_encoder)\n"},
