@@ -290,6 +290,30 @@ class Figures(ToolsTest):
                                delta=1e-12)
         psnr = [float(row[head.index("psnr_db")]) for row in rows]
         self.assertAlmostEqual(sum(psnr) / 60, metrics["mean_psnr_db"], delta=1e-9)
+        surface = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"),
+                          "--json").json()["surface"]
+        column = {name: [float(row[i]) for row in rows] for i, name in enumerate(head)}
+        spatial, temporal = sum(column["sted_spatial"]) / 60, sum(column["sted_temporal"]) / 58
+        self.assertGreater(min(spatial, temporal), 0)
+        self.assertAlmostEqual(surface["sted"], math.hypot(spatial, temporal), delta=1e-12)
+        angles = column["max_normal_angle_degrees"]
+        self.assertEqual(surface["max_normal_angle_degrees"], max(angles))
+        self.assertEqual(surface["max_normal_angle_frame"], angles.index(max(angles)))
+
+    def test_sted_and_normals_grow_with_the_error(self):
+        found = []
+        for kg in (0.1, 0.3, 1):
+            self.encode(self.path("a.rlpc"), "--kg", kg, "--keep-order")
+            surface = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"),
+                              "--json").json()["surface"]
+            found.append([surface[name] for name in ("sted_spatial", "sted_temporal", "sted",
+                                                     "mean_normal_angle_degrees")])
+        for finer, coarser in zip(found, found[1:]):
+            for a, b in zip(finer, coarser):
+                self.assertLess(a, b, found)
+        same = self.ok("rlpccmp", self.path("a.rlpc"), self.path("a.rlpc"), "--json").json()
+        self.assertEqual((same["surface"]["sted"], same["surface"]["max_normal_angle_degrees"]),
+                         (0, 0))
 
     def test_gates_decide_the_exit_code(self):
         report = self.encode(self.path("a.rlpc"), "--kg", 0.5, "--keep-order")

@@ -5,6 +5,7 @@
 
 #include "encoder/metrics.h"
 #include "encoder/rlpc_encoder.h"
+#include "encoder/surface_metrics.h"
 
 namespace rlpc {
 
@@ -19,6 +20,18 @@ inline nlohmann::ordered_json metrics_json(const Metrics& m) {
           {"max_error_vertex", m.max_error_vertex},
           {"diagonal", m.diagonal},
           {"mean_psnr_db", m.mean_psnr_db}};
+}
+
+inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
+  return {{"sted", m.sted},
+          {"sted_spatial", m.sted_spatial},
+          {"sted_temporal", m.sted_temporal},
+          {"sted_dt", SurfaceAccumulator::kDt},
+          {"sted_c", SurfaceAccumulator::kTemporalWeight},
+          {"mean_normal_angle_degrees", m.mean_normal_angle},
+          {"max_normal_angle_degrees", m.max_normal_angle},
+          {"max_normal_angle_frame", m.max_normal_frame},
+          {"max_normal_angle_triangle", m.max_normal_triangle}};
 }
 
 inline nlohmann::ordered_json report_json(const EncodeReport& r) {

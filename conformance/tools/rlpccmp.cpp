@@ -20,6 +20,7 @@
 #include "encoder/progress_bar.h"
 #include "encoder/report_json.h"
 #include "encoder/stream_file.h"
+#include "encoder/surface_metrics.h"
 
 namespace {
 
@@ -53,6 +54,13 @@ KG error    100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
 RMS         root of the mean squared distance of a vertex, in units
 PSNR        of Ramanathan, Kassim and Tan 2008, 3.2: -10 log10 of the squared error over the
             vertices that moved, relative to the largest displacement; mean over the frames
+STED        spatio-temporal edge difference, after Vasa and Skala 2011: with ed = |l - l'| / l of
+            an edge, the deviation of ed, weighted by l, from its mean over the edges that meet
+            in a vertex; mean over vertices and frames (spatial part). Likewise of the virtual
+            edges sqrt(distance^2 + (0.01 d)^2) from a vertex to itself one frame before and
+            behind, d the diagonal of A's first frame (temporal part). Root of the sum of
+            squares of both. Neighbourhood and time window 1, dt = 0.01, c = 1
+normals     angle between the normals of a triangle in A and B; mean by area in A
 
 Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input or output failed
 or cannot be compared; 64 usage.)";
@@ -104,9 +112,14 @@ int complain(const std::string& message) {
   return kFailed;
 }
 
+struct Distortion {
+  rlpc::Metrics metrics;
+  rlpc::SurfaceMetrics surface;
+};
+
 // Frames are fed in the vertex order of A, as the encoder feeds its own.
-rlpc::InputResult<rlpc::Metrics> compare(const rlpc::ComparisonPair& pair,
-                                         const std::vector<std::uint32_t>& map, bool progress) {
+rlpc::InputResult<Distortion> compare(const rlpc::ComparisonPair& pair,
+                                      const std::vector<std::uint32_t>& map, bool progress) {
   rlpc::FrameSource& a = *pair.a.frames;
   rlpc::FrameSource& b = *pair.b.frames;
   const std::size_t values = 3 * std::size_t{a.num_vertices()};
@@ -114,6 +127,7 @@ rlpc::InputResult<rlpc::Metrics> compare(const rlpc::ComparisonPair& pair,
   std::vector<float> decoded(values);
   std::vector<float> in_order(values);
   rlpc::MetricsAccumulator metrics(a.num_vertices());
+  rlpc::SurfaceAccumulator surface(a.num_vertices(), a.triangles());
   rlpc::ProgressBar bar("comparing", progress);
   for (std::uint32_t f = 0; f < a.num_frames(); ++f) {
     if (auto error = a.read_frame(f, original)) return *error;
@@ -124,9 +138,10 @@ rlpc::InputResult<rlpc::Metrics> compare(const rlpc::ComparisonPair& pair,
       }
     }
     metrics.add_frame(original, in_order);
+    surface.add_frame(original, in_order);
     bar.show((f + 1.0) / a.num_frames());
   }
-  return metrics.result();
+  return Distortion{metrics.result(), surface.result()};
 }
 
 // The shortest digits that give the value back.
@@ -142,13 +157,18 @@ double kg_error_percent(const rlpc::FrameMetrics& frame) {
   return frame.squared_error > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
-std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::Metrics& m) {
-  std::string text = "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db\n";
-  for (std::size_t f = 0; f < m.frames.size(); ++f) {
-    const rlpc::FrameMetrics& frame = m.frames[f];
+std::optional<rlpc::InputError> write_csv(const std::string& path, const Distortion& d) {
+  std::string text =
+      "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db,sted_spatial,"
+      "sted_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
+  for (std::size_t f = 0; f < d.metrics.frames.size(); ++f) {
+    const rlpc::FrameMetrics& frame = d.metrics.frames[f];
+    const rlpc::FrameSurface& surface = d.surface.frames[f];
     text += std::to_string(f) + "," + digits(kg_error_percent(frame)) + "," +
             digits(frame.rms_error) + "," + digits(frame.max_error) + "," +
-            std::to_string(frame.max_error_vertex) + "," + digits(frame.psnr_db) + "\n";
+            std::to_string(frame.max_error_vertex) + "," + digits(frame.psnr_db) + "," +
+            digits(surface.sted_spatial) + "," + digits(surface.sted_temporal) + "," +
+            digits(surface.mean_normal_angle) + "," + digits(surface.max_normal_angle) + "\n";
   }
   rlpc::StreamFile file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -160,7 +180,7 @@ struct Rate {
   double bpvf = 0.0;
 };
 
-void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::Metrics& m) {
+void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const Distortion& d) {
   nlohmann::ordered_json json = {{"a", pair.a.name},
                                  {"b", pair.b.name},
                                  {"num_vertices", pair.a.frames->num_vertices()},
@@ -169,11 +189,13 @@ void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::
     json["bytes"] = rate.bytes;
     json["bpvf"] = rate.bpvf;
   }
-  json["metrics"] = rlpc::metrics_json(m);
+  json["metrics"] = rlpc::metrics_json(d.metrics);
+  json["surface"] = rlpc::surface_json(d.surface);
   std::cout << json.dump(2) << "\n";
 }
 
-void print_report(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::Metrics& m) {
+void print_report(const rlpc::ComparisonPair& pair, const Rate& rate, const Distortion& d) {
+  const rlpc::Metrics& m = d.metrics;
   std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", pair.a.name.c_str(),
               pair.b.name.c_str(), pair.a.frames->num_vertices(), pair.a.frames->num_frames());
   if (rate.bytes > 0) {
@@ -189,6 +211,12 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc
   } else {
     std::printf("  PSNR      infinite: every frame is exact\n");
   }
+  const rlpc::SurfaceMetrics& s = d.surface;
+  std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
+              s.sted_spatial, s.sted_temporal);
+  std::printf("  normals   %.4g degrees off in the mean, largest %.4g, frame %u, triangle %u\n",
+              s.mean_normal_angle, s.max_normal_angle, s.max_normal_frame,
+              s.max_normal_triangle);
 }
 
 int check_gates(const Options& o, const rlpc::Metrics& m) {
@@ -224,17 +252,17 @@ int run(Options& o) {
   }
   rate.bpvf = rlpc::bits_per_vertex_per_frame(rate.bytes, pair->a.frames->num_vertices(),
                                               pair->a.frames->num_frames());
-  const auto metrics = compare(*pair, *map, !o.quiet);
-  if (!metrics) return complain(metrics.error().message);
+  const auto distortion = compare(*pair, *map, !o.quiet);
+  if (!distortion) return complain(distortion.error().message);
   if (!o.csv.empty()) {
-    if (const auto error = write_csv(o.csv, *metrics)) return complain(error->message);
+    if (const auto error = write_csv(o.csv, *distortion)) return complain(error->message);
   }
   if (o.json) {
-    print_json(*pair, rate, *metrics);
+    print_json(*pair, rate, *distortion);
   } else if (!o.quiet && o.csv != "-") {
-    print_report(*pair, rate, *metrics);
+    print_report(*pair, rate, *distortion);
   }
-  return check_gates(o, *metrics);
+  return check_gates(o, distortion->metrics);
 }
 
 }  // namespace
