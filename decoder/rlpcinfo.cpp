@@ -2,18 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cinttypes>
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "decoder/bit_counter.h"
 #include "decoder/describe_error.h"
 #include "decoder/extract_verb.h"
 #include "decoder/rlpc_decoder.h"
@@ -38,110 +36,6 @@ Examples
 Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
 cannot be cut; 4 input or output failed; 64 usage.)";
 
-// Parts of a stream, in the order of the table.
-struct Part {
-  std::string_view name;
-  std::vector<std::string_view> elements;
-};
-constexpr std::size_t kNumParts = 14;
-const std::array<Part, kNumParts>& parts() {
-  static const std::array<Part, kNumParts> kParts{{
-      {"unit headers and CRCs",
-       {"version_major", "version_minor", "ancillary_flag", "unit_type", "unit_size",
-        "unit_crc"}},
-      {"sequence header", {"sequence_header"}},
-      {"connectivity", {"connectivity"}},
-      {"vertex order", {"vertex_order"}},
-      {"GOF headers", {"gof"}},
-      {"bones",
-       {"bone_parent_plus1", "bone_pivot", "rotation_flag", "origin_flag", "rotation_step_idx",
-        "rotation_order_minus1", "rotation_residual", "origin_step_idx", "origin_order",
-        "origin_residual"}},
-      {"influences",
-       {"extra_bone_flag", "extra_bone", "extra_bone_weight_minus1", "weight_residual"}},
-      {"rest positions", {"vertex_residual"}},
-      {"clusters", {"lcf_flag", "seed_vertex", "cluster_predicted_flag", "cluster_idx"}},
-      {"seed tracks", {"seed_residual"}},
-      {"component headers",
-       {"num_components_delta", "num_group_components_minus1", "scale_idx_delta",
-        "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor", "temporal_weight",
-        "spatial_predictor"}},
-      {"temporal factors", {"temporal_residual", "trajectory_residual"}},
-      {"spatial factors", {"spatial_residual"}},
-      {"hashes, index, metadata", {"other"}},
-  }};
-  return kParts;
-}
-
-constexpr std::size_t kRestPart = 7;
-constexpr std::size_t kSpatialPart = 12;
-constexpr std::size_t kAncillaryPart = 13;
-
-// Adds up the bits from each element to the next.
-class BitCounter final : public rlpc::Trace {
- public:
-  explicit BitCounter(bool print) : print_(print) {
-    for (std::size_t p = 0; p < parts().size(); ++p) {
-      for (const std::string_view name : parts()[p].elements) part_of_[name] = p;
-    }
-  }
-
-  void begin(const char* structure, std::uint64_t bit_pos) override {
-    close(bit_pos);
-    if (print_) std::printf("%10" PRIu64 "  %s( )\n", bit_pos, structure);
-    if (std::string_view(structure) == "unit") ++num_units_;
-  }
-  void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override {
-    close(bit_pos);
-    if (print_) std::printf("%10" PRIu64 "    %s = %" PRId64 "\n", bit_pos, name, value);
-    if (std::string_view(name) == "ancillary_flag") ancillary_ = value != 0;
-    if (std::string_view(name) == "unit_type") {
-      unit_part_ = ancillary_ ? kAncillaryPart : part_of_unit(value);
-    }
-    if (std::string_view(name) == "component_group_idx") rest_positions_ = value == 0;
-    const auto part = part_of_.find(name);
-    open_part_ = part == part_of_.end() ? unit_part_ : part->second;
-    if (open_part_ == kRestPart && !rest_positions_) open_part_ = kSpatialPart;
-    listing_.element(name, value);
-  }
-  void close(std::uint64_t bit_pos) {
-    if (bit_pos > last_) bits_[open_part_] += bit_pos - last_;
-    last_ = bit_pos;
-  }
-
-  std::uint64_t bits(std::size_t part) const { return bits_[part]; }
-  std::uint64_t num_units() const { return num_units_; }
-  const std::vector<rlpc::ListedGof>& gofs() const { return listing_.gofs(); }
-
- private:
-  static std::size_t part_of_unit(std::int64_t unit_type) {
-    switch (unit_type) {
-      case 1:
-        return 1;
-      case 2:
-        return 2;
-      case 3:
-        return 3;
-      case 4:
-      case 6:
-        return 4;
-      default:
-        return kAncillaryPart;
-    }
-  }
-
-  bool print_;
-  std::map<std::string_view, std::size_t> part_of_;
-  std::array<std::uint64_t, kNumParts> bits_{};
-  std::size_t open_part_ = 0;
-  bool ancillary_ = false;
-  bool rest_positions_ = false;  // in a slice of them
-  std::size_t unit_part_ = 0;
-  std::uint64_t last_ = 0;
-  std::uint64_t num_units_ = 0;
-  rlpc::SliceListing listing_;
-};
-
 struct Options {
   std::string input;
   bool json = false;
@@ -158,7 +52,7 @@ int complain(const Options& o, const rlpc::Error& error) {
 
 struct Summary {
   const rlpc::SequenceHeader& header;
-  const BitCounter& counter;
+  const rlpc::BitCounter& counter;
   std::uint64_t bytes;
   std::uint32_t num_gofs;
   const std::string& metadata;
@@ -215,7 +109,8 @@ nlohmann::ordered_json json_of(const rlpc::ListedGof& gof) {
 void print_json(const Summary& s) {
   const rlpc::SequenceHeader& h = s.header;
   nlohmann::ordered_json bits = nlohmann::ordered_json::object();
-  for (std::size_t p = 0; p < parts().size(); ++p) bits[parts()[p].name] = s.counter.bits(p);
+  const auto& names = rlpc::stream_part_names();
+  for (std::size_t p = 0; p < names.size(); ++p) bits[names[p]] = s.counter.bits()[p];
   nlohmann::ordered_json json = {
       {"profile_idc", h.profile_idc},
       {"level_idc", h.level_idc},
@@ -321,11 +216,12 @@ void print_table(const Options& o, const Summary& s) {
   if (!bones.empty()) print_bones(bones);
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
   std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
-  for (std::size_t p = 0; p < parts().size(); ++p) {
-    const auto bits = static_cast<double>(s.counter.bits(p));
+  const auto& names = rlpc::stream_part_names();
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const auto bits = static_cast<double>(s.counter.bits()[p]);
     if (bits == 0.0) continue;
-    std::printf("  %-26s %12.0f %6.2f %% %10.4f\n", parts()[p].name.data(), bits,
-                100.0 * bits / total, bpvf(s, bits));
+    std::printf("  %-26s %12.0f %6.2f %% %10.4f\n", names[p].data(), bits, 100.0 * bits / total,
+                bpvf(s, bits));
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", s.metadata.c_str());
@@ -335,7 +231,7 @@ void print_table(const Options& o, const Summary& s) {
 }
 
 int inform(const Options& o) {
-  BitCounter counter(o.trace);
+  rlpc::BitCounter counter(o.trace);
   auto source = rlpc::file_source(o.input);
   if (!source) return complain(o, source.error());
   const std::uint64_t bytes = (*source)->size();
@@ -345,7 +241,7 @@ int inform(const Options& o) {
   if (!decoder) return complain(o, decoder.error());
   const auto num_gofs = decoder->parse_rest();
   if (!num_gofs) return complain(o, num_gofs.error());
-  counter.close(8 * bytes);
+  counter.finish(8 * bytes);
   const Summary summary{decoder->header(), counter, bytes, *num_gofs, decoder->metadata()};
   if (o.trace) return rlpc::kExitDone;
   if (o.json) {
