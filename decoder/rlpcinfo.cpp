@@ -5,8 +5,10 @@
 #include <cinttypes>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +16,9 @@
 #include "decoder/bit_counter.h"
 #include "decoder/describe_error.h"
 #include "decoder/extract_verb.h"
+#include "decoder/output/output_file.h"
+#include "decoder/report/html_page.h"
+#include "decoder/report/rate_report.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/slice_listing.h"
 
@@ -24,6 +29,8 @@ Examples
   rlpcinfo walk.rlpc              what is in it, and what takes how many bits
   rlpcinfo walk.rlpc --json       the same for machines
   rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices
+  rlpcinfo walk.rlpc --html walk.html
+                                  the same as a page with charts, for a browser
   rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
                                   the stream without slices of finer detail (Main profile): of
@@ -41,6 +48,7 @@ struct Options {
   bool json = false;
   bool gofs = false;
   bool trace = false;
+  std::string html;
   std::string extract;
   std::string output;
 };
@@ -48,6 +56,11 @@ struct Options {
 int complain(const Options& o, const rlpc::Error& error) {
   std::cerr << "rlpcinfo: " << o.input << ": " << rlpc::describe_error(error) << "\n";
   return rlpc::exit_code(error.code);
+}
+
+int complain(const rlpc::OutputError& error) {
+  std::cerr << "rlpcinfo: " << error.message << "\n";
+  return rlpc::kExitIo;
 }
 
 struct Summary {
@@ -230,7 +243,47 @@ void print_table(const Options& o, const Summary& s) {
   }
 }
 
+std::string frame_rate_text(const rlpc::SequenceHeader& h) {
+  const rlpc::FrameRate& rate = h.frame_rate;
+  const std::string numerator = std::to_string(rate.numerator);
+  return rate.denominator == 1 ? numerator : numerator + "/" + std::to_string(rate.denominator);
+}
+
+std::string page_text(const Options& o, const Summary& s) {
+  const rlpc::SequenceHeader& h = s.header;
+  rlpc::HtmlPage page(std::filesystem::path(o.input).filename().string());
+  const bool main = h.profile_idc == rlpc::kProfileMain;
+  page.add_fact("profile",
+                (main ? "Main, level " : "Baseline, level ") + std::to_string(h.level_idc));
+  page.add_fact("mesh", rlpc::grouped_text(h.num_vertices) + " vertices, " +
+                            rlpc::grouped_text(h.num_triangles) + " triangles");
+  page.add_fact("frames",
+                rlpc::grouped_text(h.num_frames) + " at " + frame_rate_text(h) + " per second");
+  page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
+                            std::to_string(h.position_bits) + " bits");
+  if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
+  const rlpc::StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter};
+  const double total = 8.0 * static_cast<double>(s.bytes);
+  const double seconds =
+      static_cast<double>(h.num_frames) * h.frame_rate.denominator / h.frame_rate.numerator;
+  page.add_key_figures(
+      {{rlpc::number_text(bpvf(s, total)), "bits per vertex and frame"},
+       {rlpc::grouped_text(s.bytes), "bytes"},
+       {rlpc::number_text(total / seconds / 1000, 3), "kbit per second"},
+       {rlpc::number_text(96 / bpvf(s, total), 3) + " : 1", "against 32-bit floats"},
+       {std::to_string(s.num_gofs), s.num_gofs == 1 ? "group of frames" : "groups of frames"}});
+  rlpc::add_rate_section(page, rates);
+  rlpc::add_gof_section(page, rates);
+  return page.text();
+}
+
 int inform(const Options& o) {
+  std::optional<rlpc::OutputFile> page;
+  if (!o.html.empty()) {
+    auto file = rlpc::OutputFile::create(o.html);
+    if (!file) return complain(file.error());
+    page.emplace(std::move(*file));
+  }
   rlpc::BitCounter counter(o.trace);
   auto source = rlpc::file_source(o.input);
   if (!source) return complain(o, source.error());
@@ -244,9 +297,13 @@ int inform(const Options& o) {
   counter.finish(8 * bytes);
   const Summary summary{decoder->header(), counter, bytes, *num_gofs, decoder->metadata()};
   if (o.trace) return rlpc::kExitDone;
+  if (page) {
+    if (const auto error = rlpc::write_and_commit(*page, page_text(o, summary)))
+      return complain(*error);
+  }
   if (o.json) {
     print_json(summary);
-  } else {
+  } else if (!page) {
     print_table(o, summary);
   }
   return rlpc::kExitDone;
@@ -261,12 +318,13 @@ int main(int argc, char** argv) try {
   app.add_option("input", options.input, "Stream to look at")->required();
   auto* json = app.add_flag("--json", options.json, "JSON on standard output");
   auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
+  auto* html = app.add_option("--html", options.html, "Write a page with charts");
   auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
   auto* extract = app.add_option("--extract", options.extract,
                                  "components=K,layers=L: write the stream without some slices");
   auto* output = app.add_option("-o,--output", options.output, "Where --extract writes to");
-  trace->excludes(json);
-  extract->needs(output)->excludes(gofs)->excludes(trace);
+  trace->excludes(json)->excludes(html);
+  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
   output->needs(extract);
   app.footer(kExamples);
   try {

@@ -2,20 +2,21 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "conformance/tools/comparison_input.h"
+#include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
+#include "decoder/output/output_file.h"
+#include "decoder/report/mesh_view.h"
 #include "encoder/metrics.h"
 #include "encoder/progress_bar.h"
 #include "encoder/report_json.h"
@@ -48,6 +49,7 @@ Examples
   rlpccmp cow.obj cow.rlpc --points-a cow.pc2 --order-map cow.order
   rlpccmp cow.obj cow.rlpd --points-a cow.pc2 --order-map cow.order --stream cow.rlpc
   rlpccmp frames/ walk.rlpc --csv errors.csv             encoded with --keep-order
+  rlpccmp cow.obj cow.rlpc --html cow.html               error on the mesh, and over time
   rlpccmp old.rlpc new.rlpc --max-kg 0.01 --quiet        a test for scripts
 
 KG error    100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
@@ -72,6 +74,7 @@ struct Options {
   std::string stream;
   std::string order_map;
   std::string csv;
+  std::string html;
   std::optional<double> max_kg;
   std::optional<double> max_error;
   bool json = false;
@@ -97,6 +100,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
       ->check(CLI::ExistingFile);
   app.add_option("--csv", o.csv, "Write the errors of each frame; - for standard output");
+  app.add_option("--html", o.html,
+                 "Write a page with charts, and the mesh with its error as colour");
   app.add_option("--max-kg", o.max_kg, "Exit code 1 if the KG error is above, per cent")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--max-error", o.max_error,
@@ -112,14 +117,11 @@ int complain(const std::string& message) {
   return kFailed;
 }
 
-struct Distortion {
-  rlpc::Metrics metrics;
-  rlpc::SurfaceMetrics surface;
-};
-
-// Frames are fed in the vertex order of A, as the encoder feeds its own.
-rlpc::InputResult<Distortion> compare(const rlpc::ComparisonPair& pair,
-                                      const std::vector<std::uint32_t>& map, bool progress) {
+// Frames are fed in the vertex order of A, as the encoder feeds its own. `view`: takes those
+// that it shows; null: none.
+rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
+                                            const std::vector<std::uint32_t>& map,
+                                            rlpc::MeshView* view, bool progress) {
   rlpc::FrameSource& a = *pair.a.frames;
   rlpc::FrameSource& b = *pair.b.frames;
   const std::size_t values = 3 * std::size_t{a.num_vertices()};
@@ -139,9 +141,10 @@ rlpc::InputResult<Distortion> compare(const rlpc::ComparisonPair& pair,
     }
     metrics.add_frame(original, in_order);
     surface.add_frame(original, in_order);
+    if (view != nullptr && view->shows(f)) view->add_frame(original, in_order);
     bar.show((f + 1.0) / a.num_frames());
   }
-  return Distortion{metrics.result(), surface.result()};
+  return rlpc::Distortion{metrics.result(), surface.result()};
 }
 
 // The shortest digits that give the value back.
@@ -151,20 +154,14 @@ std::string digits(double value) {
   return {text, ec == std::errc() ? end : text};
 }
 
-// As Metrics::kg_error_percent, of one frame.
-double kg_error_percent(const rlpc::FrameMetrics& frame) {
-  if (frame.spread > 0) return 100 * std::sqrt(frame.squared_error) / std::sqrt(frame.spread);
-  return frame.squared_error > 0 ? std::numeric_limits<double>::infinity() : 0;
-}
-
-std::optional<rlpc::InputError> write_csv(const std::string& path, const Distortion& d) {
+std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::Distortion& d) {
   std::string text =
       "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db,sted_spatial,"
       "sted_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
   for (std::size_t f = 0; f < d.metrics.frames.size(); ++f) {
     const rlpc::FrameMetrics& frame = d.metrics.frames[f];
     const rlpc::FrameSurface& surface = d.surface.frames[f];
-    text += std::to_string(f) + "," + digits(kg_error_percent(frame)) + "," +
+    text += std::to_string(f) + "," + digits(rlpc::kg_error_percent(frame)) + "," +
             digits(frame.rms_error) + "," + digits(frame.max_error) + "," +
             std::to_string(frame.max_error_vertex) + "," + digits(frame.psnr_db) + "," +
             digits(surface.sted_spatial) + "," + digits(surface.sted_temporal) + "," +
@@ -180,7 +177,7 @@ struct Rate {
   double bpvf = 0.0;
 };
 
-void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const Distortion& d) {
+void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::Distortion& d) {
   nlohmann::ordered_json json = {{"a", pair.a.name},
                                  {"b", pair.b.name},
                                  {"num_vertices", pair.a.frames->num_vertices()},
@@ -194,7 +191,8 @@ void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const Distor
   std::cout << json.dump(2) << "\n";
 }
 
-void print_report(const rlpc::ComparisonPair& pair, const Rate& rate, const Distortion& d) {
+void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
+                  const rlpc::Distortion& d) {
   const rlpc::Metrics& m = d.metrics;
   std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", pair.a.name.c_str(),
               pair.b.name.c_str(), pair.a.frames->num_vertices(), pair.a.frames->num_frames());
@@ -252,10 +250,27 @@ int run(Options& o) {
   }
   rate.bpvf = rlpc::bits_per_vertex_per_frame(rate.bytes, pair->a.frames->num_vertices(),
                                               pair->a.frames->num_frames());
-  const auto distortion = compare(*pair, *map, !o.quiet);
+  const rlpc::FrameSource& a = *pair->a.frames;
+  std::optional<rlpc::OutputFile> page;
+  std::optional<rlpc::MeshView> view;
+  if (!o.html.empty()) {
+    auto file = rlpc::OutputFile::create(o.html);
+    if (!file) return complain(file.error().message);
+    page.emplace(std::move(*file));
+    view.emplace(a.num_vertices(), a.num_frames(), a.triangles(), a.frame_rate());
+  }
+  const auto distortion = compare(*pair, *map, view ? &*view : nullptr, !o.quiet);
   if (!distortion) return complain(distortion.error().message);
   if (!o.csv.empty()) {
     if (const auto error = write_csv(o.csv, *distortion)) return complain(error->message);
+  }
+  if (page) {
+    const std::string stream =
+        o.stream.empty() && pair->b.stream_bytes > 0 ? o.b.path : o.stream;
+    const auto text = rlpc::comparison_page_text({*pair, *distortion, *view, stream});
+    if (!text) return complain(text.error().message);
+    if (const auto error = rlpc::write_and_commit(*page, *text))
+      return complain(error->message);
   }
   if (o.json) {
     print_json(*pair, rate, *distortion);

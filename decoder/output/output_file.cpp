@@ -87,6 +87,12 @@ std::optional<OutputError> OutputFile::commit() {
   return std::nullopt;
 }
 
+std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes) {
+  if (auto error = file.write(bytes)) return error;
+  if (auto error = file.close()) return error;
+  return file.commit();
+}
+
 OutputResult<std::string> create_temporary_folder(const std::string& path) {
   std::error_code ec;
   const bool inside = fs::is_directory(path, ec);

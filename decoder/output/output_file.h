@@ -44,6 +44,9 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+// All that is to be in the file; it takes its name.
+std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes);
+
 // A folder beside `path` with a name that did not exist, or inside it if `path` is a folder.
 OutputResult<std::string> create_temporary_folder(const std::string& path);
 

@@ -1,0 +1,31 @@
+// What rlpccmp found, as one page for a browser.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "conformance/tools/comparison_input.h"
+#include "decoder/report/mesh_view.h"
+#include "encoder/metrics.h"
+#include "encoder/surface_metrics.h"
+
+namespace rlpc {
+
+struct Distortion {
+  Metrics metrics;
+  SurfaceMetrics surface;
+};
+
+struct ComparisonPage {
+  const ComparisonPair& pair;
+  const Distortion& distortion;
+  const MeshView& view;  // with its frames
+  std::string stream;    // the file that B was decoded from; empty: unknown
+};
+
+InputResult<std::string> comparison_page_text(const ComparisonPage& comparison);
+
+// Of one frame, as Metrics::kg_error_percent of all.
+double kg_error_percent(const FrameMetrics& frame);
+
+}  // namespace rlpc

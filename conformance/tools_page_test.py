@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""The pages of rlpcinfo and rlpccmp: what is in them, and what a browser makes of them.
+
+    tools_page_test.py --bin BUILD/bin [unittest arguments, such as PagesInBrowser]
+"""
+
+import base64
+import json
+import re
+import shutil
+import struct
+import subprocess
+import unittest
+import zlib
+
+from tools_testing import INPUTS, NAMES, ROOT, ToolsTest, limited, main, read_pc2, write_pc2
+
+BROWSER = shutil.which("chromium")
+
+
+class PageTest(ToolsTest):
+    def has(self, words, page, present=True):
+        """As assertIn, but pages are long."""
+        self.assertTrue((words in page) == present, words)
+
+    def compare(self, name="elephant", *options):
+        """The text of the page of rlpccmp."""
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--gof", 20, "--order-map",
+                    self.path("a.order"), name=name)
+        self.ok("rlpccmp", INPUTS / f"{name}.obj", "--points-a", INPUTS / f"{name}.pc2",
+                self.path("a.rlpc"), "--order-map", self.path("a.order"), "--html",
+                self.path("a.html"), *options)
+        return self.path("a.html").read_text()
+
+    def inform(self, stream, *options):
+        self.ok("rlpcinfo", stream, "--html", self.path("info.html"), *options)
+        return self.path("info.html").read_text()
+
+
+class Pages(PageTest):
+    def block(self, page, name):
+        return re.search(f'id="{name}">([^<]*)<', page).group(1)
+
+    def test_nothing_comes_from_elsewhere(self):
+        self.compare()
+        for page in (self.path("a.html").read_text(), self.inform(self.path("a.rlpc"))):
+            self.assertEqual(re.findall(r"(?i)[a-z]+://|src=|href=|@import|url\(|fetch\(", page),
+                             [])
+
+    def test_positions_and_errors_are_those_of_the_animation(self):
+        page = self.compare("curtain")
+        info = json.loads(self.block(page, "mesh-info"))
+        self.assertEqual((info["vertices"], info["frames"], info["stride"]), (400, 82, 1))
+        originals = read_pc2(INPUTS / "curtain.pc2")
+        levels = struct.unpack(f"<{3 * 400 * 82}H",
+                               base64.b64decode(self.block(page, "mesh-original")))
+        for i, level in enumerate(levels):
+            value = originals[i // 1200][i % 1200]
+            shown = info["low"][i % 3] + info["step"][i % 3] * level
+            self.assertLessEqual(abs(value - shown), 0.51 * info["step"][i % 3])
+        errors = base64.b64decode(self.block(page, "mesh-errors"))
+        self.assertEqual((len(errors), max(errors)), (400 * 82, 255))
+        report = self.ok("rlpccmp", INPUTS / "curtain.obj", self.path("a.rlpc"), "--order-map",
+                         self.path("a.order"), "--json").json()["metrics"]
+        self.assertAlmostEqual(info["largest"], report["max_error"], delta=1e-6)
+        frame, vertex = divmod(errors.index(255), 400)
+        self.assertEqual((frame, vertex), (report["max_error_frame"], report["max_error_vertex"]))
+        triangles = base64.b64decode(self.block(page, "mesh-triangles"))
+        self.assertEqual(len(triangles), 12 * 722)
+
+    def test_figures_are_those_of_the_report(self):
+        page = self.compare()
+        report = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"), "--order-map",
+                         self.path("a.order"), "--json").json()
+        self.has(f"<b>{report['metrics']['kg_error_percent']:#.3g} %</b>", page)
+        self.has(f"<b>{report['surface']['sted']:#.3g}</b>", page)
+        self.has(f"<b>{report['bpvf']:#.4g}</b>", page)
+        info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
+        for page in (page, self.inform(self.path("a.rlpc"))):
+            for part, bits in info["bits"].items():
+                row = re.search(rf"</i>{part}</td><td>([0-9,]+)</td>", page)
+                self.assertEqual(row is not None, bits > 0, part)
+                if row:
+                    self.assertEqual(int(row.group(1).replace(",", "")), (bits + 4) // 8)
+        charts = [json.loads(text.replace("&quot;", '"'))
+                  for text in re.findall(r'data-chart="([^"]*)"', page)]
+        self.assertEqual(charts[0]["bars"], [[0, 20], [20, 20], [40, 20]])
+        for g, gof in enumerate(info["gofs"]):
+            size = gof["bytes"] + sum(n["bytes"] for n in gof["slices"])
+            shown = sum(values[g] for values in charts[0]["values"]) * 538 * 20 / 8
+            self.assertLessEqual(size, shown * 1.001)  # there are hashes, too
+            self.assertLess(shown, size + 40)
+
+    def test_both_kinds_of_gofs_are_listed(self):
+        page = self.inform(ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc")
+        for words in ("<th>bones</th>", "<th>clusters</th>", "Slices of frames 4 – 8"):
+            self.has(words, page)
+        self.has("Slices of frames 0", page, False)
+        self.encode(self.path("a.rlpc"), "--kg", 5, "--profile", "baseline")
+        page = self.inform(self.path("a.rlpc"))
+        self.has("<th>clusters</th>", page)
+        self.has("<th>bones</th>", page, False)
+
+    def test_without_a_stream_there_is_no_rate(self):
+        self.ok("rlpccmp", INPUTS / "elephant.obj", INPUTS / "elephant.obj", "--html",
+                self.path("a.html"))
+        page = self.path("a.html").read_text()
+        self.has("Error along the frames", page)
+        self.has("<h2>Rate</h2>", page, False)
+        self.has("∞", page)  # PSNR
+        self.assertEqual(re.findall(r">-?(?:nan|inf)\b", page), [])
+
+    def test_large_animations_show_some_frames(self):
+        frames = read_pc2(INPUTS / "elephant.pc2")
+        write_pc2(self.path("long.pc2"), (frames * 45)[:2600])  # 18 MB in 13 bytes a vertex
+        long = [INPUTS / "elephant.obj", "--points-a", self.path("long.pc2"), INPUTS / "elephant.obj",
+                "--points-b", self.path("long.pc2")]
+        self.ok("rlpccmp", *long, "--html", self.path("a.html"), "-q")
+        page = self.path("a.html").read_text()
+        self.has("One of every 2 frames is shown", page)
+        self.has("the largest of 3 each", page)
+        info = json.loads(self.block(page, "mesh-info"))
+        self.assertEqual((info["frames"], info["stride"], info["all_frames"]), (1300, 2, 2600))
+        self.assertLess(len(page), 24 << 20)
+
+    def test_pages_appear_when_they_are_whole(self):
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--keep-order")
+        compare = (INPUTS / "elephant.obj", self.path("a.rlpc"), "-q")
+        for tool, arguments, code in (("rlpccmp", compare, 2),
+                                      ("rlpcinfo", compare[1:2], 4)):
+            for place in ("none/a.html", "."):
+                self.fails(code, str(self.path(place)), tool, *arguments, "--html", self.path(place))
+            self.path("old.html").write_text("old")
+            self.fails(code, "old.html", tool, *arguments, "--html", self.path("old.html"),
+                       **limited(4096))
+            self.assertEqual(self.path("old.html").read_text(), "old")
+        self.path("bad.rlpc").write_bytes(self.path("a.rlpc").read_bytes()[:-20])
+        self.fails(1, "", "rlpcinfo", self.path("bad.rlpc"), "--html", self.path("bad.html"))
+        self.fails(64, "", "rlpcinfo", self.path("a.rlpc"), "--trace", "--html", self.path("b.html"))
+        self.assertEqual(self.files(), ["a.rlpc", "bad.rlpc", "old.html"])
+
+
+def png_pixels(path):
+    """(width, height, set of some of the bytes of its rows): is anything there?"""
+    data = path.read_bytes()
+    width, height = struct.unpack_from(">II", data, 16)
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += 12 + size
+    return width, height, set(zlib.decompress(packed)[::97])
+
+
+@unittest.skipUnless(BROWSER, "no chromium here (Debian package chromium): pages are not tried")
+class PagesInBrowser(PageTest):
+    def browse(self, page, fragment, *args):
+        """Standard output; nothing may be logged by the page."""
+        done = subprocess.run(
+            [BROWSER, "--headless", "--no-sandbox", "--hide-scrollbars", "--use-angle=swiftshader",
+             "--enable-unsafe-swiftshader", "--enable-logging=stderr",
+             f"--user-data-dir={self.folder / 'profile'}", "--virtual-time-budget=3000", *args,
+             f"{self.path(page).as_uri()}#{fragment}"],
+            capture_output=True, text=True, timeout=100, check=True)
+        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+        self.assertEqual(said, [])
+        return done.stdout
+
+    def canvas(self, dom):
+        tag = re.search(r'<canvas id="view"[^>]*>', dom).group(0)
+        return {name: int(value) for name, value in re.findall(r'([a-z-]+)="(\d+)"', tag)}
+
+    def test_the_viewer_draws(self):
+        for name in NAMES:
+            covered = {}
+            self.compare(name)
+            both = ("frame=30&show=both&edges",) if name == NAMES[0] else ()
+            for fragment in ("frame=30", *both):
+                dom = self.browse("a.html", fragment, "--dump-dom")
+                canvas = self.canvas(dom)
+                self.assertEqual(canvas["data-frame"], 30)
+                self.has("frame 30 / ", dom)
+                covered[fragment] = canvas["data-covered-pixels"]
+                share = covered[fragment] / (canvas["width"] * canvas["height"])
+                self.assertTrue(0.02 < share < 0.9, (name, fragment, share))
+            self.assertEqual(len(re.findall('<path class="now" d="M', dom)), 7)
+            self.assertEqual(len(set(covered.values())), len(covered))
+
+    def test_pages_are_drawn_light_and_dark(self):
+        self.compare()
+        self.inform(self.path("a.rlpc"))
+        pictures = set()
+        for page in ("a.html", "info.html"):
+            for dark in ((), ("--blink-settings=preferredColorScheme=0",)):
+                image = self.path("shot.png")
+                self.browse(page, "", f"--screenshot={image}", "--window-size=1240,900", *dark)
+                got, height, colours = png_pixels(image)
+                self.assertEqual((got, height), (1240, 900))
+                self.assertGreater(len(colours), 30)
+                pictures.add(image.read_bytes())
+        self.assertEqual(len(pictures), 4)
+
+    def test_pages_fit_a_narrow_window(self):
+        """In a frame, as windows have a least width."""
+        self.compare()
+        self.inform(self.path("a.rlpc"))
+        for page in ("a.html", "info.html"):
+            for width in (1240, 340):
+                self.path("frame.html").write_text(
+                    f'<iframe id="f" style="width:{width}px;border:0" src="{page}" onload="'
+                    "document.title = 'width ' + f.contentDocument.documentElement.scrollWidth\">"
+                    "</iframe>")
+                dom = self.browse("frame.html", "", "--dump-dom", "--allow-file-access-from-files")
+                self.assertEqual(re.search(r"<title>width (\d+)", dom).group(1), str(width), page)
+
+    def test_charts_tell_values(self):
+        """A pointer over the first chart, as the page itself would see it."""
+        self.compare()
+        page = self.path("a.html")
+        page.write_text(page.read_text().replace("</body>", """<script>
+          const svg = document.querySelector("figure[data-chart] svg");
+          const box = svg.getBoundingClientRect();
+          const place = {clientX: box.left + box.width / 2, clientY: box.top + 50, bubbles: true};
+          svg.dispatchEvent(new PointerEvent("pointermove", place));
+          svg.dispatchEvent(new MouseEvent("click", place));
+          </script></body>"""))
+        dom = self.browse("a.html", "frame=3", "--dump-dom")
+        tip = re.search(r'<div class="tip"[^>]*>(.*?)</figure>', dom, re.DOTALL).group(1)
+        self.assertRegex(tip, r"<div>frame (2[5-9]|3\d)</div>")
+        self.assertRegex(tip, r"RMS: 0\.\d+.*largest: 0\.\d+")
+        shown = re.search(r'<output id="frame"[^>]*>frame (\d+)', dom).group(1)
+        self.has(f"<div>frame {shown}</div>", tip)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+// An animation to turn and play within a page, its error as colour: positions in 16 bits,
+// errors in 8, for a viewer that is part of the page.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh.h"
+
+namespace rlpc {
+
+class MeshView {
+ public:
+  // Of the triangles and frames in a page, before they become text (4/3 of it).
+  static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+
+  MeshView(std::uint32_t num_vertices, std::uint32_t num_frames,
+           std::span<const Triangle> triangles, FrameRate frame_rate,
+           std::size_t max_bytes = kMaxBytes);
+
+  // Every how many frames one is shown, so that all stay within max_bytes; 0: not even one
+  // fits.
+  std::uint32_t stride() const { return stride_; }
+  bool shows(std::uint32_t frame) const { return stride_ > 0 && frame % stride_ == 0; }
+  // Those that are shown, in order. Both 3 * num_vertices values.
+  void add_frame(std::span<const float> original, std::span<const float> decoded);
+
+  // What is left out, in words; empty: nothing.
+  std::string note() const;
+  // For a page with use_viewer(); after all frames. `diagonal`: what errors are set against.
+  std::string html(double diagonal) const;
+
+ private:
+  std::string frames_html(const std::vector<float>& values, const char* id,
+                          const float (&low)[3], const double (&step)[3]) const;
+  std::string errors_html(float largest) const;
+
+  std::uint32_t num_vertices_;
+  std::uint32_t num_frames_;
+  std::vector<Triangle> triangles_;
+  FrameRate frame_rate_;
+  std::uint32_t stride_ = 0;
+  std::vector<float> original_;  // frame after frame
+  std::vector<float> decoded_;
+  std::vector<float> errors_;  // distances
+};
+
+}  // namespace rlpc

@@ -1,0 +1,184 @@
+#include "decoder/report/rate_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "decoder/report/svg_chart.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kMaxBars = 300;
+constexpr std::size_t kMaxGofRows = 200;
+constexpr std::size_t kMaxSliceTables = 20;
+
+// Of the parts, in their order; alike on all pages. Those of the plots of scripts/compare come
+// first to what is mostly large.
+constexpr std::array<const char*, kNumStreamParts> kColours{
+    "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00",
+    "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#c4c9d1"};
+
+// Parts that are there, largest first within a column of a table; bits of each.
+std::vector<ChartSeries> part_series(const PartSizes& bits) {
+  std::vector<ChartSeries> series;
+  for (std::size_t p = 0; p < kNumStreamParts; ++p) {
+    if (bits[p] == 0) continue;
+    series.push_back(
+        {std::string(stream_part_names()[p]), kColours[p], {static_cast<double>(bits[p])}});
+  }
+  std::stable_sort(series.begin(), series.end(), [](const auto& a, const auto& b) {
+    return a.values.front() > b.values.front();
+  });
+  return series;
+}
+
+std::string cell(const std::string& text) { return "<td>" + escape_html(text) + "</td>"; }
+
+std::string frames_text(const ListedGof& gof) {
+  return std::to_string(gof.first_frame) + " – " +
+         std::to_string(gof.first_frame + gof.num_frames - 1);
+}
+
+std::uint64_t sum(const PartSizes& bits) {
+  std::uint64_t total = 0;
+  for (const std::uint64_t part : bits) total += part;
+  return total;
+}
+
+// A line for each component group, a column for each layer group, and what stays of the GOF if
+// it is cut behind one of them.
+std::string slice_table(const ListedGof& gof) {
+  std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
+  const std::size_t columns = gof.layer_group_size.size();
+  for (const std::uint32_t layers : gof.layer_group_size) {
+    html += "<th>" + std::to_string(layers) + (layers == 1 ? " layer</th>" : " layers</th>");
+  }
+  html += "<th>GOF to here</th></tr></thead>\n";
+  std::uint32_t group = 0;
+  for (auto slice = gof.slices.begin(); slice != gof.slices.end(); ++group) {
+    html += "<tr>";
+    html += cell(group == 0 ? "influences, rest positions"
+                            : "group " + std::to_string(group) +
+                                  ", trajectories: " + std::to_string(slice->num_trajectories));
+    for (std::size_t layers = 0; layers < columns; ++layers) {
+      const bool present = slice != gof.slices.end() && slice->component_group_idx == group;
+      html += cell(present ? grouped_text(slice->bytes) : "");
+      if (present) ++slice;
+    }
+    html += cell(grouped_text(gof.totals({group + 1, SliceCut::kAll}).bytes)) + "</tr>\n";
+  }
+  html += "<tr>" + cell("GOF to here");
+  for (std::uint32_t layers = 0; layers < columns; ++layers) {
+    html += cell(grouped_text(gof.totals({SliceCut::kAll, layers + 1}).bytes));
+  }
+  return html + cell("") + "</tr>\n</table></div>\n";
+}
+
+std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>& series) {
+  const double total = 8.0 * static_cast<double>(rates.bytes);
+  std::string html =
+      "<div class=\"card wide\"><table>\n<thead><tr><th>part</th><th>bytes</th>"
+      "<th>share</th><th>bpvf</th></tr></thead>\n";
+  const auto row = [&](const std::string& name, double bits) {
+    html += "<tr><td>" + name + "</td>" +
+            cell(grouped_text(static_cast<std::uint64_t>(std::llround(bits / 8)))) +
+            cell(number_text(100 * bits / total, 3) + " %") +
+            cell(number_text(rates.bpvf(bits))) + "</tr>\n";
+  };
+  for (const ChartSeries& s : series) {
+    row("<i class=\"swatch\" style=\"background:" + s.colour + "\"></i>" + escape_html(s.name),
+        s.values.front());
+  }
+  row("<b>all</b>", total);
+  return html + "</table></div>\n";
+}
+
+std::string gof_rate_chart(const StreamRates& rates) {
+  const std::vector<ListedGof>& gofs = rates.counter->gofs();
+  const std::vector<PartSizes>& bits = rates.counter->gof_bits();
+  const std::size_t together = (gofs.size() + kMaxBars - 1) / kMaxBars;
+  std::vector<Bar> bars;
+  std::vector<PartSizes> bar_bits;
+  PartSizes all{};
+  for (std::size_t g = 0; g < gofs.size(); ++g) {
+    if (g % together == 0) {
+      bars.push_back({gofs[g].first_frame, 0});
+      bar_bits.emplace_back();
+    }
+    bars.back().num_frames += gofs[g].num_frames;
+    for (std::size_t p = 0; p < kNumStreamParts; ++p) {
+      bar_bits.back()[p] += bits[g][p];
+      all[p] += bits[g][p];
+    }
+  }
+  std::vector<ChartSeries> series;
+  for (std::size_t p = 0; p < kNumStreamParts; ++p) {
+    if (all[p] == 0) continue;
+    ChartSeries s{std::string(stream_part_names()[p]), kColours[p], {}};
+    for (std::size_t b = 0; b < bars.size(); ++b) {
+      s.values.push_back(static_cast<double>(bar_bits[b][p]) /
+                         (static_cast<double>(rates.num_vertices) * bars[b].num_frames));
+    }
+    series.push_back(std::move(s));
+  }
+  const std::string title =
+      together == 1 ? "Rate of each GOF" : "Rate of " + std::to_string(together) + " GOFs each";
+  return stacked_bars(title, "bits per vertex and frame", bars, series);
+}
+
+}  // namespace
+
+void add_rate_section(HtmlPage& page, const StreamRates& rates) {
+  const std::vector<ChartSeries> series = part_series(rates.counter->bits());
+  page.add_section(
+      "Rate",
+      "Everything in the file is counted. bpvf: bits per vertex and frame. GOF: group of "
+      "frames, with its slices and hashes.",
+      stacked_line(series) + "<div class=\"charts\">\n" + part_table(rates, series) +
+          gof_rate_chart(rates) + "</div>\n");
+}
+
+void add_gof_section(HtmlPage& page, const StreamRates& rates) {
+  const std::vector<ListedGof>& gofs = rates.counter->gofs();
+  const auto has_bones = [](const ListedGof& gof) { return gof.has_bones(); };
+  const bool any_bones = std::any_of(gofs.begin(), gofs.end(), has_bones);
+  const bool any_clusters = !std::all_of(gofs.begin(), gofs.end(), has_bones);
+  std::string html = "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
+  if (any_bones) html += "<th>bones</th><th>trajectories</th><th>layers</th><th>slices</th>";
+  if (any_clusters) html += "<th>clusters</th><th>components</th>";
+  html += "<th>bytes</th><th>bpvf</th></tr></thead>\n";
+  const auto count = [](std::uint64_t n) { return cell(n == 0 ? "" : grouped_text(n)); };
+  for (std::size_t g = 0; g < std::min(gofs.size(), kMaxGofRows); ++g) {
+    const ListedGof& gof = gofs[g];
+    const std::uint64_t bits = sum(rates.counter->gof_bits()[g]);
+    html += "<tr>" + cell(frames_text(gof));
+    if (any_bones) {
+      html += count(gof.num_bones) + count(gof.num_trajectories()) +
+              count(gof.has_bones() ? gof.num_layers : 0) + count(gof.slices.size());
+    }
+    if (any_clusters) html += count(gof.num_clusters) + count(gof.num_components);
+    html += count(bits / 8) +
+            cell(number_text(static_cast<double>(bits) /
+                             (static_cast<double>(rates.num_vertices) * gof.num_frames))) +
+            "</tr>\n";
+  }
+  html += "</table></div>\n";
+  if (gofs.size() > kMaxGofRows) {
+    html += "<p class=\"note\">The first " + std::to_string(kMaxGofRows) + " of " +
+            std::to_string(gofs.size()) + ". rlpcinfo --gofs lists all.</p>\n";
+  }
+  for (std::size_t g = 0; g < std::min(gofs.size(), kMaxSliceTables); ++g) {
+    if (gofs[g].slices.empty()) continue;
+    html += "<details class=\"card\"><summary>Slices of frames " +
+            escape_html(frames_text(gofs[g])) + "</summary>\n" + slice_table(gofs[g]) +
+            "</details>\n";
+  }
+  page.add_section("Groups of frames",
+                   "A GOF decodes alone. One of bones can be cut to fewer components or layers "
+                   "without encoding anew (rlpcinfo --extract).",
+                   html);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,28 @@
+// What takes how many bits of a stream, for a page.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "decoder/bit_counter.h"
+#include "decoder/report/html_page.h"
+
+namespace rlpc {
+
+struct StreamRates {
+  std::uint64_t num_vertices = 0;
+  std::uint64_t num_frames = 0;
+  std::uint64_t bytes = 0;
+  const BitCounter* counter = nullptr;  // not owned; finished
+
+  double bpvf(double bits) const {
+    return bits / (static_cast<double>(num_vertices) * static_cast<double>(num_frames));
+  }
+};
+
+// Shares of all parts, and the rate of each GOF along the frames.
+void add_rate_section(HtmlPage& page, const StreamRates& rates);
+// A line for each GOF, and what is in its slices.
+void add_gof_section(HtmlPage& page, const StreamRates& rates);
+
+}  // namespace rlpc

@@ -1,0 +1,113 @@
+// What pages are made of.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "decoder/report/html_page.h"
+#include "decoder/report/mesh_view.h"
+#include "decoder/report/svg_chart.h"
+
+namespace rlpc {
+namespace {
+
+std::string encoded(const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  return base64(bytes);
+}
+
+// RFC 4648, section 10.
+TEST(Report, Base64IsThatOfTheStandard) {
+  const std::vector<std::string> texts{"", "f", "fo", "foo", "foob", "fooba", "foobar"};
+  const std::vector<std::string> expected{"",         "Zg==",     "Zm8=",    "Zm9v",
+                                          "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+  for (std::size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(encoded(texts[i]), expected[i]);
+  EXPECT_EQ(base64(std::vector<std::uint8_t>{0xFF, 0xEF, 0xBE}), "/+++");
+}
+
+TEST(Report, NumbersHaveTheDigitsThatCount) {
+  EXPECT_EQ(number_text(0), "0");
+  EXPECT_EQ(number_text(1), "1.000");
+  EXPECT_EQ(number_text(0.012345), "0.01235");
+  EXPECT_EQ(number_text(-12.3456), "-12.35");
+  EXPECT_EQ(number_text(0.99996), "1.000");
+  EXPECT_EQ(number_text(99.96, 3), "100");
+  EXPECT_EQ(number_text(123456.7), "123457");
+  EXPECT_EQ(number_text(1.5e-9, 3), "1.50e-09");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "∞");
+  EXPECT_EQ(grouped_text(0), "0");
+  EXPECT_EQ(grouped_text(999), "999");
+  EXPECT_EQ(grouped_text(1000), "1,000");
+  EXPECT_EQ(grouped_text(1234567), "1,234,567");
+}
+
+TEST(Report, NamesCannotBecomeMarkup) {
+  HtmlPage page("<script>alert('a & b')</script>");
+  page.add_fact("name", "\"<b>\"");
+  const std::string text = page.text();
+  EXPECT_EQ(text.find("<script>alert"), std::string::npos);
+  EXPECT_NE(text.find("&lt;script&gt;alert(&#39;a &amp; b&#39;)"), std::string::npos);
+  EXPECT_NE(text.find("&quot;&lt;b&gt;&quot;"), std::string::npos);
+}
+
+TEST(Report, LongLinesShowTheLargestOfSeveralFrames) {
+  ChartSeries series{"error", "red", std::vector<double>(2500, 1.0)};
+  series.values[1234] = 7;
+  const std::string html = line_chart("Errors", "units", {series});
+  EXPECT_NE(html.find("the largest of 3 each"), std::string::npos);
+  EXPECT_NE(html.find("7.0"), std::string::npos);
+  EXPECT_EQ(line_chart("Errors", "units", {{"e", "red", {1, 2}}}).find("largest of"),
+            std::string::npos);
+}
+
+TEST(Report, InfiniteValuesInterruptALine) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::string html = line_chart("E", "u", {{"e", "red", {1, 2, inf, 3, 4}}});
+  const std::size_t path = html.find("class=\"line\" d=\"");
+  ASSERT_NE(path, std::string::npos);
+  const std::string d = html.substr(path, html.find("stroke", path) - path);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'M'), 2);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'L'), 2);
+  EXPECT_NE(html.find("null"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(Report, ViewsLeaveOutFramesAboveTheirLimit) {
+  const std::vector<Triangle> triangles{{0, 1, 2}};
+  const FrameRate rate;
+  const auto stride = [&](std::uint32_t frames, std::size_t bytes) {
+    return MeshView(3, frames, triangles, rate, bytes).stride();
+  };
+  EXPECT_EQ(stride(10, 12 + 39 * 10), 1U);
+  EXPECT_EQ(stride(10, 12 + 39 * 10 - 1), 2U);
+  EXPECT_EQ(stride(10, 12 + 39), 10U);
+  EXPECT_EQ(stride(10, 12 + 38), 0U);
+  const MeshView none(3, 10, triangles, rate, 50);
+  EXPECT_FALSE(none.shows(0));
+  EXPECT_NE(none.note().find("too large"), std::string::npos);
+  const MeshView half(3, 10, triangles, rate, 12 + 39 * 10 - 1);
+  EXPECT_TRUE(half.shows(0) && half.shows(8));
+  EXPECT_FALSE(half.shows(1) || half.shows(9));
+  EXPECT_NE(half.note().find("every 2 frames"), std::string::npos);
+  EXPECT_EQ(MeshView(3, 10, triangles, rate).note(), "");
+}
+
+TEST(Report, ViewsHoldPositionsAndErrorsInLevels) {
+  MeshView view(2, 1, {}, FrameRate{});
+  view.add_frame(std::vector<float>{0, 0, 5, 1, 0, 5}, std::vector<float>{0, 0, 5, 1, 2, 5});
+  const std::string html = view.html(1);
+  // x 0 and 65535, y 0, z has no extent.
+  EXPECT_NE(html.find("id=\"mesh-original\">" +
+                      encoded(std::string("\0\0\0\0\0\0\xFF\xFF\0\0\0\0", 12)) + "<"),
+            std::string::npos);
+  EXPECT_NE(html.find("id=\"mesh-decoded\">" +
+                      encoded(std::string("\0\0\0\0\0\0\xFF\xFF\xFF\xFF\0\0", 12)) + "<"),
+            std::string::npos);
+  EXPECT_NE(html.find("id=\"mesh-errors\">" + encoded(std::string("\0\xFF", 2)) + "<"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace rlpc

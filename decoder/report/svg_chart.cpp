@@ -1,0 +1,226 @@
+#include "decoder/report/svg_chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "decoder/report/html_page.h"
+
+namespace rlpc {
+namespace {
+
+constexpr double kWidth = 560;
+constexpr double kHeight = 270;
+constexpr double kLeft = 64;
+constexpr double kRight = 14;
+constexpr double kTop = 14;
+constexpr double kBottom = 42;
+constexpr std::size_t kMaxPoints = 1000;  // of a line
+
+std::string pixel(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+std::string text_at(double x, double y, const char* anchor, std::string_view words) {
+  return "<text x=\"" + pixel(x) + "\" y=\"" + pixel(y) + "\" text-anchor=\"" + anchor + "\">" +
+         escape_html(words) + "</text>\n";
+}
+
+// From 0 to `last`, with ticks at round numbers.
+class Axis {
+ public:
+  Axis(double last, double first_pixel, double last_pixel)
+      : last_(last), first_pixel_(first_pixel), last_pixel_(last_pixel) {}
+
+  double at(double value) const {
+    return first_pixel_ + value / last_ * (last_pixel_ - first_pixel_);
+  }
+  std::vector<double> ticks(int most, double least_step) const {
+    const double rough = std::max(last_ / most, least_step);
+    const double unit = std::pow(10.0, std::floor(std::log10(rough)));
+    double step = 10 * unit;
+    for (const double m : {5.0, 2.0, 1.0}) {
+      if (m * unit >= rough * (1 - 1e-9)) step = m * unit;
+    }
+    std::vector<double> values;
+    for (int i = 0; i * step <= last_ * (1 + 1e-9); ++i) values.push_back(i * step);
+    return values;
+  }
+
+ private:
+  double last_;
+  double first_pixel_;
+  double last_pixel_;
+};
+
+struct Frames {
+  Axis x;
+  Axis y;
+};
+
+Frames axes(double last_frame, double highest) {
+  return {Axis(last_frame, kLeft, kWidth - kRight),
+          Axis(highest > 0 ? 1.06 * highest : 1, kHeight - kBottom, kTop)};
+}
+
+std::string tick_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string grid(const Frames& axes, std::string_view x_label) {
+  std::string svg;
+  for (const double value : axes.y.ticks(5, 0)) {
+    const std::string y = pixel(axes.y.at(value));
+    svg += "<path class=\"grid\" d=\"M" + pixel(kLeft) + " " + y + "H" +
+           pixel(kWidth - kRight) + "\"/>\n" +
+           text_at(kLeft - 8, axes.y.at(value) + 4, "end", tick_text(value));
+  }
+  for (const double value : axes.x.ticks(8, 1)) {
+    svg += text_at(axes.x.at(value), kHeight - kBottom + 18, "middle", tick_text(value));
+  }
+  return svg + text_at((kLeft + kWidth - kRight) / 2, kHeight - 4, "middle", x_label);
+}
+
+std::string legend(const std::vector<ChartSeries>& series) {
+  std::string html = "<div class=\"legend\">";
+  for (const ChartSeries& s : series) {
+    html +=
+        "<span><i style=\"background:" + s.colour + "\"></i>" + escape_html(s.name) + "</span>";
+  }
+  return html + "</div>\n";
+}
+
+std::string figure(std::string_view title, std::string_view unit, const std::string& svg,
+                   const std::vector<ChartSeries>& series, nlohmann::ordered_json data) {
+  data["left"] = kLeft;
+  data["right"] = kWidth - kRight;
+  data["top"] = kTop;
+  data["bottom"] = kHeight - kBottom;
+  for (const ChartSeries& s : series) data["names"].push_back(s.name);
+  std::string html = "<figure class=\"card chart\" data-chart=\"";
+  html +=
+      escape_html(data.dump()) + "\">\n<figcaption><b>" + escape_html(title) + "</b> <span>";
+  html += escape_html(unit) + "</span></figcaption>\n<svg viewBox=\"0 0 " + tick_text(kWidth) +
+          " " + tick_text(kHeight) + "\" role=\"img\" aria-label=\"" + escape_html(title) +
+          "\">\n";
+  return html + svg + "</svg>\n" + legend(series) + "</figure>\n";
+}
+
+// The largest of every `group` values.
+std::vector<double> grouped(const std::vector<double>& values, std::size_t group) {
+  std::vector<double> largest;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i % group == 0) {
+      largest.push_back(values[i]);
+    } else if (!(largest.back() >= values[i])) {  // so that a number takes the place of none
+      largest.back() = values[i];
+    }
+  }
+  return largest;
+}
+
+double rounded(double value) {  // to the digits that are shown
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return std::strtod(text, nullptr);
+}
+
+std::string line(const ChartSeries& series, const Frames& axes, std::size_t group) {
+  std::string path;
+  bool open = false;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    if (!std::isfinite(series.values[i])) {
+      open = false;
+      continue;
+    }
+    path += open ? "L" : "M";
+    path += pixel(axes.x.at(static_cast<double>(i * group))) + " " +
+            pixel(axes.y.at(series.values[i]));
+    open = true;
+    ++points;
+  }
+  if (points == 1) path += "h0.1";  // a dot, with round ends
+  return "<path class=\"line\" d=\"" + path + "\" stroke=\"" + series.colour + "\"/>\n";
+}
+
+}  // namespace
+
+std::string line_chart(std::string_view title, std::string_view unit,
+                       const std::vector<ChartSeries>& series) {
+  const std::size_t num_frames = series.front().values.size();
+  const std::size_t group = (num_frames + kMaxPoints - 1) / kMaxPoints;
+  std::vector<ChartSeries> shown = series;
+  double highest = 0;
+  nlohmann::ordered_json data = {{"group", group}, {"frames", num_frames}};
+  for (ChartSeries& s : shown) {
+    s.values = grouped(s.values, group);
+    nlohmann::ordered_json values = nlohmann::ordered_json::array();
+    for (const double value : s.values) {
+      if (std::isfinite(value)) highest = std::max(highest, value);
+      values.push_back(rounded(value));  // infinite: null
+    }
+    data["values"].push_back(std::move(values));
+  }
+  const double last = std::max<double>(1, static_cast<double>(num_frames) - 1);
+  data["last"] = last;
+  const Frames frames = axes(last, highest);
+  const std::string label =
+      group == 1 ? "frame" : "frame; the largest of " + std::to_string(group) + " each";
+  std::string svg = grid(frames, label);
+  for (const ChartSeries& s : shown) svg += line(s, frames, group);
+  return figure(title, unit, svg, shown, std::move(data));
+}
+
+std::string stacked_bars(std::string_view title, std::string_view unit,
+                         const std::vector<Bar>& bars, const std::vector<ChartSeries>& series) {
+  double highest = 0;
+  nlohmann::ordered_json data;
+  for (std::size_t b = 0; b < bars.size(); ++b) {
+    double sum = 0;
+    for (const ChartSeries& s : series) sum += s.values[b];
+    highest = std::max(highest, sum);
+    data["bars"].push_back({bars[b].first_frame, bars[b].num_frames});
+  }
+  const double end = bars.back().first_frame + bars.back().num_frames;
+  data["last"] = end;
+  const Frames frames = axes(end, highest);
+  std::string svg = grid(frames, "frame");
+  std::vector<double> below(bars.size(), 0.0);
+  for (const ChartSeries& s : series) {
+    nlohmann::ordered_json values = nlohmann::ordered_json::array();
+    std::string path;
+    for (std::size_t b = 0; b < bars.size(); ++b) {
+      values.push_back(rounded(s.values[b]));
+      const double left = frames.x.at(bars[b].first_frame);
+      const double right = frames.x.at(bars[b].first_frame + bars[b].num_frames);
+      const double gap = right - left > 4 ? 1 : 0;  // between bars that are wide enough
+      path += "M" + pixel(left) + " " + pixel(frames.y.at(below[b])) + "V" +
+              pixel(frames.y.at(below[b] + s.values[b])) + "H" + pixel(right - gap) + "V" +
+              pixel(frames.y.at(below[b])) + "z";
+      below[b] += s.values[b];
+    }
+    data["values"].push_back(std::move(values));
+    svg += "<path d=\"" + path + "\" fill=\"" + s.colour + "\"/>\n";
+  }
+  return figure(title, unit, svg, series, std::move(data));
+}
+
+std::string stacked_line(const std::vector<ChartSeries>& series) {
+  double sum = 0;
+  for (const ChartSeries& s : series) sum += s.values.front();
+  std::string html = "<div class=\"stack\">";
+  for (const ChartSeries& s : series) {
+    const double share = 100 * s.values.front() / sum;
+    html += "<i style=\"background:" + s.colour + ";width:" + number_text(share) +
+            "%\" title=\"" + escape_html(s.name) + ": " + number_text(share, 3) + " %\"></i>";
+  }
+  return html + "</div>\n";
+}
+
+}  // namespace rlpc
