@@ -9,8 +9,8 @@ Only the bundled animations are used. Every output goes to a temporary folder.
 import math
 import shutil
 
-from tools_testing import (INPUTS, NAMES, ROOT, ToolsTest, main, read_obj, read_rlpd, run,
-                           triangle_set, write_obj)
+from tools_testing import (INPUTS, NAMES, ROOT, ToolsTest, main, read_obj, read_pc2, read_rlpd,
+                           run, triangle_set, write_obj, write_pc2)
 
 
 class RoundTrip(ToolsTest):
@@ -374,6 +374,69 @@ class Targets(ToolsTest):
     def test_several_gofs(self):
         self.check("--kg", (0.1, 0.3), lambda report: report["metrics"]["kg_error_percent"], NAMES,
                    "--gof", 10)
+
+    def test_quality_in_words(self):
+        for name in NAMES:
+            streams = {}
+            for word, kg in (("preview", 1), ("good", 0.1), ("fine", 0.03),
+                             ("visually-lossless", 0.01)):
+                self.encode(self.path("word.rlpc"), "--quality", word, name=name)
+                self.encode(self.path("kg.rlpc"), "--kg", kg, name=name)
+                streams[word] = self.path("word.rlpc").read_bytes()
+                self.assertEqual(streams[word], self.path("kg.rlpc").read_bytes(), word)
+            self.encode(self.path("none.rlpc"), name=name)
+            self.assertEqual(self.path("none.rlpc").read_bytes(), streams["good"])
+        for other in (("--kg", 1), ("--bpvf", 1), ("--max-error", 1)):
+            self.fails(64, "--quality", "rlpcenc", INPUTS / "elephant.obj", "-o",
+                       self.path("a.rlpc"), "--quality", "good", *other)
+        self.fails(64, "visually-lossless", "rlpcenc", INPUTS / "elephant.obj", "-o",
+                   self.path("a.rlpc"), "--quality", "best")
+
+    def test_errors_that_are_seen_are_told(self):
+        elephant = ("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
+                    self.path("a.rlpc"), "--preset", "fast", "--json")
+        for options, visible, told in ((("--kg", 1), True, True), (("--bpvf", 1), True, True),
+                                       (("--quality", "preview"), True, False),
+                                       (("--kg", 1, "-q"), True, False),
+                                       (("--quality", "good"), False, False)):
+            result = self.ok(*elephant, *options)
+            self.assertEqual("the error may be seen" in result.err, told, options)
+            found = result.json()["visibility"]
+            self.assertEqual(found["visible"], visible, options)
+            self.assertAlmostEqual(
+                found["rms_error_percent_of_edge"] * found["median_edge_length"] / 100,
+                result.json()["metrics"]["rms_error"], delta=1e-12)
+        frame, triangles = read_obj(INPUTS / "elephant.obj")
+        edges = {tuple(sorted((t[i], t[i - 1]))) for t in triangles for i in range(3)}
+        lengths = sorted(math.dist(frame[3 * a:3 * a + 3], frame[3 * b:3 * b + 3])
+                         for a, b in edges)
+        self.assertAlmostEqual(found["median_edge_length"], lengths[len(lengths) // 2], delta=1e-6)
+
+    def test_a_dry_run_writes_nothing_and_tells_the_size(self):
+        elephant = ("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2",
+                    "--preset", "fast", "--quality", "good")
+        dry = self.ok(*elephant, "--dry-run", "--json").json()
+        self.assertEqual(self.files(), [])
+        self.assertEqual(dry.pop("dry_run"), {"exact": True, "frames_encoded": 60})
+        self.assertEqual(dry, self.ok(*elephant, "-o", self.path("a.rlpc"), "--json").json())
+        self.assertEqual(dry["bytes"], self.path("a.rlpc").stat().st_size)
+        said = self.ok(*elephant, "--dry-run").out.decode()
+        self.assertIn(f"  {dry['bytes']} bytes", said)
+        self.assertIn("nothing is written", said)
+        self.assertNotIn("about", said)
+        frames = [[x + 0.01 * (f % 7) for x in frame]
+                  for f, frame in enumerate(read_pc2(INPUTS / "elephant.pc2") * 20)]
+        write_pc2(self.path("long.pc2"), frames)
+        long = (*elephant[:3], self.path("long.pc2"), "--preset", "fast", "--kg", 2)
+        dry = self.ok(*long, "--dry-run", "--json").json()
+        self.assertEqual(dry["dry_run"], {"exact": False, "frames_encoded": 1024})
+        self.assertEqual(dry["num_frames"], 1200)
+        size = self.ok(*long, "-o", self.path("a.rlpc"), "--json").json()["bytes"]
+        self.assertLess(abs(dry["bytes"] / size - 1), 0.1)
+        self.assertIn(f"  about {dry['bytes']} bytes", self.ok(*long, "--dry-run").out.decode())
+        for options in (("-o", self.path("x.rlpc")), ("--order-map", self.path("x.order"))):
+            self.fails(64, "--dry-run", *elephant, "--dry-run", *options)
+        self.fails(64, "--output", *elephant)
 
     def test_out_of_reach(self):
         result = self.fails(2, "out of reach", "rlpcenc", INPUTS / "elephant.obj", "--points",

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "encoder/metrics.h"
+#include "encoder/quality.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/surface_metrics.h"
 
@@ -32,6 +33,12 @@ inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
           {"max_normal_angle_degrees", m.max_normal_angle},
           {"max_normal_angle_frame", m.max_normal_frame},
           {"max_normal_angle_triangle", m.max_normal_triangle}};
+}
+
+inline nlohmann::ordered_json visibility_json(const Visibility& v) {
+  return {{"median_edge_length", v.median_edge},
+          {"rms_error_percent_of_edge", v.error_percent},
+          {"visible", v.visible()}};
 }
 
 inline nlohmann::ordered_json report_json(const EncodeReport& r) {

@@ -10,14 +10,17 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+#include "encoder/dry_run.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/progress_bar.h"
+#include "encoder/quality.h"
 #include "encoder/report_json.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/stream_file.h"
@@ -39,13 +42,24 @@ Formats are told by the extension; where it says nothing, by how the file begins
 
 Examples
   rlpcenc cow.obj --points cow.pc2 -o cow.rlpc             good quality (KG error 0.1 %)
-  rlpcenc frames/ -o walk.rlpc --kg 0.3                    smaller, visibly the same
+  rlpcenc frames/ -o walk.rlpc --quality fine              for close looks
+  rlpcenc frames/ --kg 0.3 --dry-run                       how large would it be?
   rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5    1.5 bits per vertex and frame
   rlpcenc fox.glb --animation Run -o run.rlpc              one animation of a glTF file
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.001   a bound for every vertex
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all --clusters 30 \
       --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo --frame lcf
                                                            the RLPCA paper's settings
+
+--quality is a KG error in a word. What the mean triangle turns by, on animations of all kinds:
+  preview            1 %     2 to 9 degrees: dents are seen, motion is right
+  good               0.1 %   a quarter to one degree: hardly seen; the default
+  fine               0.03 %  below 0.4 degrees
+  visually-lossless  0.01 %  below 0.13 degrees: half a step of a display of 8 bits
+A warning tells if the RMS error is above 3 % of the median length of edges (about one degree).
+
+--dry-run encodes up to 1024 frames to tell the exact size. Of longer animations, it encodes eight
+stretches, and says `about`.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was out of reach; 64 usage.)";
 
@@ -56,9 +70,11 @@ struct Options {
   std::string gof = "128";
   std::string metadata_path;
   std::string order_map;
+  std::string quality;
   double kg = 0.0;
   double bpvf = 0.0;
   double max_error = 0.0;
+  bool dry_run = false;
   bool json = false;
   bool quiet = false;
   rlpc::EncoderSettings settings;
@@ -88,7 +104,13 @@ CLI::Option* add_off_switch(CLI::App& app, const std::string& name, bool& value,
 
 void add_quality_options(CLI::App& app, Options& o) {
   using rlpc::Preset;
-  const std::string quality = "Quality (one of; default --kg 0.1)";
+  const std::string quality = "Quality (one of; default --quality good)";
+  std::vector<std::string> words;
+  for (const rlpc::NamedQuality& q : rlpc::kQualities) words.emplace_back(q.word);
+  auto* word = app.add_option("--quality", o.quality, "In words, by KG error: see below")
+                   ->check(CLI::IsMember(words).description(""))
+                   ->type_name(CLI::detail::join(words, "|"))
+                   ->group(quality);
   auto* kg = app.add_option("--kg", o.kg, "KG error in per cent")->group(quality);
   auto* bpvf = app.add_option("--bpvf", o.bpvf, "Bits per vertex and frame")->group(quality);
   auto* max_error =
@@ -97,6 +119,7 @@ void add_quality_options(CLI::App& app, Options& o) {
   for (auto* option : {kg, bpvf, max_error}) option->check(CLI::PositiveNumber);
   kg->excludes(bpvf)->excludes(max_error);
   bpvf->excludes(max_error);
+  word->excludes(kg)->excludes(bpvf)->excludes(max_error);
   add_choice<Preset>(
       app, "--preset", o.settings.preset, "medium",
       {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
@@ -210,6 +233,7 @@ void add_extra_options(CLI::App& app, Options& o) {
   app.add_flag("--keep-order", o.settings.keep_order, "Restore the vertex order of INPUT")
       ->group(extras);
   app.add_option("--order-map", o.order_map, "Write, per decoded vertex, its index in INPUT")
+      ->excludes("--dry-run")
       ->group(extras);
   add_choice<HashMode>(
       app, "--hash", o.settings.hash_mode, "gof",
@@ -226,7 +250,10 @@ void add_extra_options(CLI::App& app, Options& o) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("input", o.input.path, "Animation to encode; - for standard input")
       ->required();
-  app.add_option("-o,--output", o.output, "Stream to write; - for standard output")->required();
+  auto* output =
+      app.add_option("-o,--output", o.output, "Stream to write; - for standard output");
+  app.add_flag("--dry-run", o.dry_run, "Tell the expected size and error; write nothing")
+      ->excludes(output);
   app.add_option("--points", o.input.points,
                  "Point cache (.pc2, .mdd) with the frames of INPUT; - for standard input");
   app.add_option("--fps", o.fps,
@@ -252,6 +279,9 @@ int complain(const std::string& message) {
 // Settings that take more than CLI11's own conversions. False: usage.
 bool finish_settings(Options& o) {
   rlpc::EncoderSettings& s = o.settings;
+  if (o.output.empty() && !o.dry_run) {
+    return complain("--output is required (or --dry-run)"), false;
+  }
   if (o.json && o.output == "-") {
     return complain("--json and the stream cannot both go to standard output"), false;
   }
@@ -269,10 +299,13 @@ bool finish_settings(Options& o) {
              false;
     }
   }
+  for (const rlpc::NamedQuality& q : rlpc::kQualities) {
+    if (o.quality == q.word) s.target = {rlpc::Target::kKg, q.kg_error_percent};
+  }
   if (o.kg > 0.0) s.target = {rlpc::Target::kKg, o.kg};
   if (o.bpvf > 0.0) s.target = {rlpc::Target::kBpvf, o.bpvf};
   if (o.max_error > 0.0) s.target = {rlpc::Target::kMaxError, o.max_error};
-  const bool asked = o.kg > 0.0 || o.bpvf > 0.0 || o.max_error > 0.0;
+  const bool asked = !o.quality.empty() || o.kg > 0.0 || o.bpvf > 0.0 || o.max_error > 0.0;
   if (s.baseline.qu > 0 && !asked) s.target = {rlpc::Target::kNone, 0.0};
   return true;
 }
@@ -307,17 +340,69 @@ std::optional<rlpc::InputError> write_order_map(const std::string& path,
   return file.commit();
 }
 
-void print_report(const Options& o, const rlpc::EncodeReport& r) {
+// `about`: the number of frames that a size is extrapolated from; 0: it is exact.
+void print_report(const Options& o, const rlpc::EncodeReport& r, std::uint32_t about) {
   const rlpc::Metrics& m = r.metrics;
-  std::printf("%s: %u vertices, %u triangles, %u frames, level %u\n", o.output.c_str(),
+  const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
+  std::printf("%s: %u vertices, %u triangles, %u frames, level %u\n", name.c_str(),
               r.header.num_vertices, r.header.num_triangles, r.header.num_frames,
               r.header.level_idc);
-  std::printf("  %llu bytes, %.4f bits per vertex and frame\n",
+  std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", about > 0 ? "about " : "",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
+  if (about > 0) std::printf("  as encoded in eight stretches of %u frames in all:\n", about);
   std::printf("  KG error %.4f %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
   std::printf("  %u GOFs, %u clusters, %u components, %u trial%s\n", r.num_gofs, r.clusters,
               r.components, r.trials, r.trials == 1 ? "" : "s");
+}
+
+int report_target(const Options& o, const rlpc::EncodeReport& report) {
+  if (report.target_met) return kDone;
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest. Try a "
+            << (o.bpvf > 0.0 ? "higher --bpvf, or a longer --gof" : "larger error") << ".\n";
+  return kTargetMissed;
+}
+
+// Who asks for a preview, or more than there is, knows.
+void warn_if_visible(const Options& o, const rlpc::EncodeReport& report,
+                     const rlpc::Visibility& v) {
+  if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
+  std::fprintf(stderr,
+               "rlpcenc: the error may be seen: RMS %.3g %% of the median length of edges "
+               "(above %.3g %%). Try %s.\n",
+               v.error_percent, rlpc::Visibility::kVisiblePercent,
+               o.bpvf > 0.0 ? "a higher --bpvf" : "a smaller error");
+}
+
+// `about`, of numbers: how many frames they were found with; 0: exact, of all.
+int tell(const Options& o, rlpc::FrameSource& source, const rlpc::EncodeReport& report,
+         std::uint32_t about) {
+  const auto visibility = rlpc::measure_visibility(source, report.metrics);
+  if (!visibility) return complain(visibility.error().message);
+  if (o.json) {
+    auto json = rlpc::report_json(report);
+    if (*visibility) json["visibility"] = rlpc::visibility_json(**visibility);
+    if (o.dry_run) {
+      json["dry_run"] = {{"exact", about == 0},
+                         {"frames_encoded", about == 0 ? report.header.num_frames : about}};
+    }
+    std::cout << json.dump(2) << "\n";
+  } else if (!o.quiet && o.output != "-") {
+    print_report(o, report, about);
+  }
+  if (*visibility) warn_if_visible(o, report, **visibility);
+  return report_target(o, report);
+}
+
+int run_dry(const Options& o, rlpc::FrameSource& source) {
+  rlpc::InputResult<rlpc::Expectation> expected = rlpc::InputError{};
+  {
+    rlpc::ProgressBar bar("encoding", !o.quiet);
+    expected =
+        rlpc::expect_encoding(source, o.settings, [&](double fraction) { bar.show(fraction); });
+  }
+  if (!expected) return complain(expected.error().message);
+  return tell(o, source, expected->report, expected->exact() ? 0 : expected->frames_encoded);
 }
 
 int run(Options& o) {
@@ -330,6 +415,7 @@ int run(Options& o) {
   for (const std::string& note : (*source)->notes()) {
     if (!o.quiet) std::cerr << "rlpcenc: " << name << ": " << note << "\n";
   }
+  if (o.dry_run) return run_dry(o, **source);
   rlpc::StreamFile file(o.output);
   if (!file.write({})) return complain(file.commit()->message);  // known before the work
   rlpc::InputResult<rlpc::EncodeReport> report = rlpc::InputError{};
@@ -344,15 +430,7 @@ int run(Options& o) {
   if (const auto error = ended ? file.commit() : std::nullopt) return complain(error->message);
   if (!report) return complain(report.error().message);
   if (auto error = write_order_map(o.order_map, *report)) return complain(error->message);
-  if (o.json) {
-    std::cout << rlpc::report_json(*report).dump(2) << "\n";
-  } else if (!o.quiet && o.output != "-") {
-    print_report(o, *report);
-  }
-  if (report->target_met) return kDone;
-  std::cerr << "rlpcenc: the target is out of reach; this is the closest. Try a "
-            << (o.bpvf > 0.0 ? "higher --bpvf, or a longer --gof" : "larger error") << ".\n";
-  return kTargetMissed;
+  return tell(o, **source, *report, 0);
 }
 
 // Blocks as large as a GOF's go back to the system when they are freed. glibc would keep them,
