@@ -186,6 +186,14 @@ class PagesInBrowser(PageTest):
             self.assertEqual(len(re.findall('<path class="now" d="M', dom)), 7)
             self.assertEqual(len(set(covered.values())), len(covered))
 
+    def test_points_and_single_frames_are_drawn(self):
+        self.path("points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n")
+        self.path("moved.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2 0.1\nv 0 0 3\n")
+        self.ok("rlpccmp", self.path("points.obj"), self.path("moved.obj"), "--html",
+                self.path("a.html"))
+        self.assertGreater(self.canvas(self.browse("a.html", "", "--dump-dom"))
+                           ["data-covered-pixels"], 20)
+
     def test_pages_are_drawn_light_and_dark(self):
         self.compare()
         self.inform(self.path("a.rlpc"))

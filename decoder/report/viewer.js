@@ -97,6 +97,7 @@ void main() {
   vec4 p = view * vec4(position, 1.0);
   seen = p.xyz; turned = mat3(view) * normal; error = level * level;
   gl_Position = projection * p;
+  gl_PointSize = 3.0;
   if (ink.a > 0.0) gl_Position.z -= 5e-4 * gl_Position.w;  // edges, before their triangles
 }`;
 const FRAGMENT = `#version 300 es
@@ -108,7 +109,7 @@ out vec4 colour;
 void main() {
   if (ink.a > 0.0) { colour = ink; return; }
   vec3 n = flatShading || dot(turned, turned) == 0.0 ? cross(dFdx(seen), dFdy(seen)) : turned;
-  n = normalize(n);
+  n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0, 0.0, 1.0);  // of points: towards us
   if (dot(n, seen) > 0.0) n = -n;
   float key = max(dot(n, normalize(vec3(0.45, 0.7, 0.9))), 0.0);
   float fill = max(dot(n, normalize(vec3(-0.8, -0.1, 0.5))), 0.0);
