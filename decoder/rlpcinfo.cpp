@@ -30,7 +30,7 @@ Examples
   rlpcinfo walk.rlpc --json       the same for machines
   rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices
   rlpcinfo walk.rlpc --html walk.html
-                                  the same as a page with charts, for a browser
+                                  and as a page with charts, for a browser
   rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
                                   the stream without slices of finer detail (Main profile): of
@@ -303,7 +303,7 @@ int inform(const Options& o) {
   }
   if (o.json) {
     print_json(summary);
-  } else if (!page) {
+  } else {
     print_table(o, summary);
   }
   return rlpc::kExitDone;
@@ -318,7 +318,7 @@ int main(int argc, char** argv) try {
   app.add_option("input", options.input, "Stream to look at")->required();
   auto* json = app.add_flag("--json", options.json, "JSON on standard output");
   auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
-  auto* html = app.add_option("--html", options.html, "Write a page with charts");
+  auto* html = app.add_option("--html", options.html, "Write a page with charts, too");
   auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
   auto* extract = app.add_option("--extract", options.extract,
                                  "components=K,layers=L: write the stream without some slices");

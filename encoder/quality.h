@@ -13,9 +13,9 @@ namespace rlpc {
 // vertices, characters, cloth and machines (mean by area of the angle between normals before
 // and after; what it changes in the shading of a matte surface, at most, is its sine):
 //   preview            2.3 to 9.2 degrees: dents are seen, motion is right
-//   good               0.23 to 1.3 degrees: 2 % of full light, about what eyes tell apart
+//   good               0.2 to 1.3 degrees: 2 % of full light, about what eyes tell apart
 //   fine               0.07 to 0.38 degrees: 0.7 %
-//   visually-lossless  below 0.13 degrees: 0.2 %, half a step of a display of 8 bits
+//   visually-lossless  0.02 to 0.13 degrees: 0.2 %, half a step of a display of 8 bits
 struct NamedQuality {
   const char* word;
   double kg_error_percent;

@@ -53,7 +53,7 @@ Examples
 
 --quality is a KG error in a word. What the mean triangle turns by, on animations of all kinds:
   preview            1 %     2 to 9 degrees: dents are seen, motion is right
-  good               0.1 %   a quarter to one degree: hardly seen; the default
+  good               0.1 %   0.2 to 1.3 degrees: hardly seen; the default
   fine               0.03 %  below 0.4 degrees
   visually-lossless  0.01 %  below 0.13 degrees: half a step of a display of 8 bits
 A warning tells if the RMS error is above 3 % of the median length of edges (about one degree).
