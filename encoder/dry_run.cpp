@@ -9,7 +9,7 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kStretches = 8;
-constexpr std::uint32_t kStretchFrames = 128;
+constexpr std::uint64_t kStretchFrames = 128;
 
 // Some stretches of a sequence, one after the other.
 class StretchSource final : public FrameSource {
@@ -32,7 +32,7 @@ class StretchSource final : public FrameSource {
 };
 
 // GOFs of the sample are then those of the settings.
-std::uint64_t stretch_frames(std::uint32_t gof_frames) {
+std::uint64_t stretch_frames(std::uint64_t gof_frames) {
   if (gof_frames == 0 || gof_frames >= kStretchFrames) {
     return std::max(gof_frames, kStretchFrames);
   }

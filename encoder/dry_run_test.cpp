@@ -21,9 +21,10 @@ class Waves final : public FrameSource {
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     last_ = std::max(last_, frame);
     const double height = frame < num_frames() / 2 ? 0.3 : 0.6;
-    for (std::uint32_t v = 0; v < kSide * kSide; ++v) {
-      const double x = v % kSide;
-      const double y = v / kSide;
+    for (std::size_t v = 0; v < num_vertices(); ++v) {
+      const std::size_t row = v / kSide;
+      const auto x = static_cast<double>(v % kSide);
+      const auto y = static_cast<double>(row);
       xyz[3 * v] = static_cast<float>(x);
       xyz[3 * v + 1] = static_cast<float>(y);
       xyz[3 * v + 2] = static_cast<float>(height * std::sin(0.9 * x + 0.21 * frame) +

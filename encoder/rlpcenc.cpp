@@ -106,6 +106,7 @@ void add_quality_options(CLI::App& app, Options& o) {
   using rlpc::Preset;
   const std::string quality = "Quality (one of; default --quality good)";
   std::vector<std::string> words;
+  words.reserve(rlpc::kQualities.size());
   for (const rlpc::NamedQuality& q : rlpc::kQualities) words.emplace_back(q.word);
   auto* word = app.add_option("--quality", o.quality, "In words, by KG error: see below")
                    ->check(CLI::IsMember(words).description(""))
