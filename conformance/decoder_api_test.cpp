@@ -327,6 +327,51 @@ TEST(Hashes, AWrongOneIsReportedWithItsFrame) {
   EXPECT_EQ(frame_index, 6U);
 }
 
+// Frames that are compared with a hash, for each frame from `first` on.
+std::vector<std::uint32_t> compared_from(Decoder& decoder, std::uint32_t first) {
+  EXPECT_TRUE(decoder.seek(first));
+  Frame frame = frame_buffer(decoder);
+  std::vector<std::uint32_t> compared;
+  while (decoder.position() < decoder.header().num_frames) {
+    EXPECT_TRUE(decoder.next_frame(frame));
+    compared.push_back(decoder.compared_frames());
+  }
+  return compared;
+}
+
+TEST(Hashes, ThoseOfAGofCoverItsFramesIfTheyCameInOrder) {
+  auto decoder = open(plain_stream());
+  ASSERT_TRUE(decoder);
+  // Zeros, but the length of each GOF at its end.
+  const std::vector<std::uint32_t> all = compared_from(*decoder, 0);
+  std::size_t end = 0;
+  while (end < all.size()) {
+    const auto last = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(end), all.end(),
+                                   [](std::uint32_t count) { return count > 0; });
+    ASSERT_NE(last, all.end());
+    end += *last;
+    ASSERT_EQ(end, static_cast<std::size_t>(last - all.begin()) + 1);
+  }
+  EXPECT_GT(all.back(), 1U);
+  const std::uint32_t first_of_last = 18 - all.back();
+  const std::vector<std::uint32_t> of_last(all.begin() + first_of_last, all.end());
+  EXPECT_EQ(compared_from(*decoder, first_of_last), of_last);
+  EXPECT_EQ(compared_from(*decoder, first_of_last + 1),
+            std::vector<std::uint32_t>(all.back() - 1, 0));
+  EXPECT_EQ(compared_from(*decoder, first_of_last), of_last);  // the GOF that is loaded, again
+}
+
+TEST(Hashes, ThoseOfFramesCoverOneEach) {
+  auto decoder = open(rich_stream());
+  ASSERT_TRUE(decoder);
+  EXPECT_EQ(compared_from(*decoder, 2), (std::vector<std::uint32_t>{1, 1, 1, 1}));
+  DecoderOptions options;
+  options.verify_hashes = false;
+  auto none = open(rich_stream(), options);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(compared_from(*none, 2), (std::vector<std::uint32_t>{0, 0, 0, 0}));
+}
+
 TEST(Hashes, AWrongOneOfAGofIsReportedWithItsLastFrame) {
   StreamBytes stream = plain_stream();
   stream[unit_of_type(stream, UnitType::kGofHash).payload() + 1] ^= 1;

@@ -59,6 +59,7 @@ class Decoder::Impl {
   const std::string& metadata() const { return metadata_; }
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
+  std::uint32_t compared_frames() const { return compared_frames_; }
 
  private:
   Result<bool> read_sequence_header();
@@ -118,6 +119,7 @@ class Decoder::Impl {
   std::optional<GofHash> hash_;
   std::uint32_t running_crc_ = 0;
   std::uint32_t hashed_frames_ = 0;  // consecutive frames of the GOF in running_crc_
+  std::uint32_t compared_frames_ = 0;
   // Frames of the GOF in decoded order, as they were reconstructed together.
   std::vector<std::int32_t> band_;
   std::uint32_t band_first_ = 0;
@@ -407,15 +409,16 @@ Result<bool> Decoder::Impl::verify_hash(std::span<const std::int32_t> positions)
   const std::uint32_t f = position_ - gof_first_frame_;
   const Error mismatch{Errc::kInvalid, "R-HSH-02", "position_crc", offset_ * 8};
   if (hash_->per_frame_flag) {
+    compared_frames_ = 1;
     if (crc32_of_positions(positions) != hash_->position_crc[f]) return mismatch;
     return true;
   }
   if (hashed_frames_ != f) return true;
   running_crc_ = crc32_of_positions(positions, running_crc_);
   ++hashed_frames_;
-  if (hashed_frames_ == recon_->num_frames() && running_crc_ != hash_->position_crc[0]) {
-    return mismatch;
-  }
+  if (hashed_frames_ < recon_->num_frames()) return true;
+  compared_frames_ = hashed_frames_;
+  if (running_crc_ != hash_->position_crc[0]) return mismatch;
   return true;
 }
 
@@ -435,6 +438,7 @@ void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
 
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
   assert(positions.size() == 3 * std::size_t{header_.num_vertices});
+  compared_frames_ = 0;
   if (failure_) return *failure_;
   const auto more = decode_frame(positions);
   if (!more) fail(more.error());
@@ -493,6 +497,10 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
       fail(ok.error());
       return ok;
     }
+  }
+  if (frame == gof_first_frame_) {  // once more from its beginning
+    running_crc_ = 0;
+    hashed_frames_ = 0;
   }
   position_ = frame;
   next_band_frames_ = 1;
@@ -570,5 +578,6 @@ const std::string& Decoder::metadata() const { return impl_->metadata(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }
 std::uint32_t Decoder::position() const { return impl_->position(); }
 bool Decoder::was_cut() const { return impl_->was_cut(); }
+std::uint32_t Decoder::compared_frames() const { return impl_->compared_frames(); }
 
 }  // namespace rlpc

@@ -87,6 +87,10 @@ class Decoder {
   std::uint32_t position() const;
   // Whether DecoderOptions::cut left slices out of a GOF so far.
   bool was_cut() const;
+  // How many frames, up to the one that next_frame decoded last, it has just compared with a
+  // hash of the stream: 1 if each has its own, those of a GOF with its last one if they were
+  // decoded in order, else 0. They fit it unless next_frame said otherwise (R-HSH-02).
+  std::uint32_t compared_frames() const;
 
  private:
   class Impl;
