@@ -71,7 +71,7 @@ class VertexWeights {
     const std::int64_t of_ring = n > 0 ? div_round((16 + a) << 10, n) : 0;
     const std::int64_t of_outer = m > 0 ? -div_round(a << 10, m) : 0;
     std::fill_n(weights_.begin(), ring_size_, of_ring);
-    std::fill(weights_.begin() + n, weights_.end(), of_outer);
+    std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(n), weights_.end(), of_outer);
     const std::int64_t left = kOne - n * of_ring - m * of_outer;
     if (n > 0) weights_[0] += left;
   }

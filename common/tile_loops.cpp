@@ -6,6 +6,7 @@
 #include "common/int_math.h"
 #include "common/lcf.h"
 #include "common/tile_loops_avx2.h"
+#include "common/tile_loops_wasm.h"
 
 namespace rlpc {
 namespace {
@@ -58,6 +59,10 @@ std::span<const TileLoops> tile_loops() {
   static const std::array<TileLoops, 2> kLoops{kPlain, kTileLoopsAvx2};
   static const std::size_t kCount = __builtin_cpu_supports("avx2") != 0 ? 2 : 1;
   return std::span(kLoops).first(kCount);
+#elif defined(RLPC_HAVE_WASM_LOOPS)
+  static constexpr std::array<TileLoops, 2> kLoops{
+      kPlain, {sum_products_wasm, add_weighted, weighted_places, positions}};
+  return kLoops;
 #else
   static constexpr std::array<TileLoops, 1> kLoops{kPlain};
   return kLoops;

@@ -1,6 +1,6 @@
 // The inner loops of reconstruction (8.5.3 and 8.14.3), over the vertices of a tile. Plain
-// loops are the definition; where compiler and machine have AVX2, twins do the same faster. All
-// is exact, so that both give the same integers.
+// loops are the definition; where compiler and machine have AVX2, or the vectors of
+// WebAssembly, twins do the same faster. All is exact, so that both give the same integers.
 #pragma once
 
 #include <array>

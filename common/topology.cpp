@@ -30,7 +30,7 @@ void sort_pairs(std::uint32_t num_vertices, std::vector<std::pair<std::uint32_t,
   for (const auto& pair : pairs) by_vertex[end[pair.first]++] = pair;
   std::uint32_t begin = 0;
   for (std::size_t v = 0; v < num_vertices; ++v) {
-    std::sort(by_vertex.begin() + begin, by_vertex.begin() + end[v]);
+    std::sort(by_vertex.data() + begin, by_vertex.data() + end[v]);
     begin = end[v];
   }
   pairs = std::move(by_vertex);

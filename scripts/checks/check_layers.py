@@ -30,7 +30,7 @@ FORMATS = {
 TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
 PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
 LIBRARIES = {
-    "common": {"zlib.h", "immintrin.h"},
+    "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
     "decoder": TOOLS | {"tiny_gltf.h"},
     "encoder": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},
     "conformance": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"} | PEERS,
