@@ -7,9 +7,10 @@ import re
 import shutil
 import subprocess
 
+import zlib_source
+
 SANITIZERS = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
 GOOGLETEST = pathlib.Path("/usr/src/googletest")
-DEBIAN_KEY = pathlib.Path("/usr/share/keyrings/debian-archive-keyring.gpg")
 
 
 class NotRun(Exception):
@@ -141,33 +142,11 @@ class Builder:
                 shutil.copy(work / name, target / folder)
 
     def _zlib_source(self, out):
-        """Debian's source package, by apt-get with lists of its own: no architecture and no
-        source of the system changes, and no privilege is needed."""
-        work = self.out / "zlib-source"
-        unpacked = sorted(work.glob("zlib-*/configure"))
-        if unpacked:
-            return unpacked[0].parent
-        if not shutil.which("apt-get") or not shutil.which("dpkg-source"):
-            raise NotRun("no zlib for it: needs apt-get and dpkg-dev")
-        codename = re.search(r"^VERSION_CODENAME=(\w+)",
-                             pathlib.Path("/etc/os-release").read_text(), re.MULTILINE)
-        if not codename or not DEBIAN_KEY.exists():
-            raise NotRun("no zlib for it: its source comes from Debian")
-        for folder in ["lists/partial", "cache/archives/partial"]:
-            (work / folder).mkdir(parents=True, exist_ok=True)
-        (work / "debian.sources").write_text(
-            "Types: deb-src\nURIs: http://deb.debian.org/debian\n"
-            f"Suites: {codename.group(1)}\nComponents: main\nSigned-By: {DEBIAN_KEY}\n")
-        apt = ["apt-get", "-q", "-o", f"Dir::State::Lists={work / 'lists'}",
-               "-o", f"Dir::Cache={work / 'cache'}",
-               "-o", f"Dir::Etc::SourceList={work / 'debian.sources'}",
-               "-o", "Dir::Etc::SourceParts=-", "-o", f"APT::Sandbox::User={os.getuid()}"]
         try:
-            self._run(out, [*apt, "update"])
-            self._run(out, [*apt, "source", "zlib"], cwd=work)
-        except BuildFailed as failure:
-            raise NotRun(f"the source of zlib cannot be fetched: {failure}") from failure
-        return next(work.glob("zlib-*/configure")).parent
+            return zlib_source.fetch(self.out / "zlib-source",
+                                     lambda command, cwd: self._run(out, command, cwd=cwd))
+        except (zlib_source.Unavailable, BuildFailed) as failure:
+            raise NotRun(f"no zlib for it: {failure}") from failure
 
     @staticmethod
     def _run(out, command, **options):
