@@ -2,9 +2,9 @@
 // decoder.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "common/mesh.h"
 
@@ -14,8 +14,9 @@ namespace rlpc {
 // exact, so the product is exact in double (its exponent stays within -150 to 147) and is
 // rounded once, to float. -150 <= grid.log2_step <= 120.
 inline float float_position(const Grid& grid, std::size_t axis, std::int32_t position) {
-  const auto power =
-      std::bit_cast<double>(static_cast<std::uint64_t>(1023 + grid.log2_step) << 52);
+  const auto bits = static_cast<std::uint64_t>(1023 + grid.log2_step) << 52;
+  double power = 0;
+  std::memcpy(&power, &bits, sizeof power);  // std::bit_cast, which Emscripten's library lacks
   const std::int64_t steps = std::int64_t{position} + grid.origin[axis];
   return static_cast<float>(static_cast<double>(steps) * power);
 }
