@@ -18,6 +18,7 @@
 
 #include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
+#include "decoder/html_verb.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -37,6 +38,8 @@ Examples
   rlpcdec walk.rlpc -o walk.glb
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
   rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
+  rlpcdec walk.rlpc --html walk.html    a page that plays it in a browser, without a network
+                                        (scripts/player builds the player)
   rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
                                         less detail in less time (Main profile): what decoding
                                         gives after rlpcinfo --extract components=12,layers=5.
@@ -59,6 +62,7 @@ struct Options {
   bool no_hashes = false;
   bool json = false;
   bool quiet = false;
+  rlpc::HtmlRequest html;
   rlpc::DecoderOptions decoder;
 };
 
@@ -141,10 +145,19 @@ void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames
   }
 }
 
+int write_html(const Options& o, rlpc::ByteSource& source) {
+  rlpc::HtmlRequest request = o.html;
+  request.input = o.input;
+  request.decoder = o.decoder;
+  request.quiet = o.quiet;
+  return rlpc::write_html(request, source);
+}
+
 int decode(const Options& o) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = open_input(o.input);
   if (!source) return complain(o, source.error());
+  if (!o.html.output.empty()) return write_html(o, **source);
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
   if (!decoder) return complain(o, decoder.error());
   const rlpc::SequenceHeader& header = decoder->header();
@@ -208,6 +221,16 @@ void add_options(CLI::App& app, Options& o) {
   auto* verify =
       app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
           ->excludes(output);
+  auto* html = app.add_option("--html", o.html.output, "Page to write that plays the stream")
+                   ->excludes(output)
+                   ->excludes(verify);
+  app.add_option("--reference", o.html.reference,
+                 "With --html: a finer stream of the same animation; the page colours the mesh "
+                 "by its distance from it")
+      ->needs(html);
+  app.add_option("--player", o.html.player,
+                 "With --html: page of the player (default: as installed, or as built)")
+      ->needs(html);
   static const std::map<std::string, rlpc::SinkFormat> kFormats{
       {"rlpd", rlpc::SinkFormat::kRlpd}, {"pc2", rlpc::SinkFormat::kPc2},
       {"mdd", rlpc::SinkFormat::kMdd},   {"glb", rlpc::SinkFormat::kGlb},
@@ -217,8 +240,9 @@ void add_options(CLI::App& app, Options& o) {
          "Format of OUT (default: by its name)")
       ->check(CLI::IsMember(kFormats).description(""))
       ->type_name("rlpd|pc2|mdd|glb|obj|ply")
-      ->excludes(verify);
-  app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify);
+      ->excludes(verify)
+      ->excludes(html);
+  app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify)->excludes(html);
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
   app.add_option("--max-components", o.decoder.cut.max_components,
@@ -254,8 +278,8 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
-  if (options.output.empty() && !options.verify_only) {
-    return complain("give -o OUT, or --verify to write nothing", rlpc::kExitUsage);
+  if (options.output.empty() && options.html.output.empty() && !options.verify_only) {
+    return complain("give -o OUT, --html OUT, or --verify to write nothing", rlpc::kExitUsage);
   }
   if (options.output == "-") {
     if (options.format == rlpc::SinkFormat::kByName) {

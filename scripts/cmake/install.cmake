@@ -34,6 +34,10 @@ foreach(tool rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval)
   endif()
 endforeach()
 
+# If scripts/player has built it.
+install(FILES ${PROJECT_SOURCE_DIR}/build/player/player.html
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/rlpc OPTIONAL)
+
 install(CODE "
   set(RLPC_SOURCE_DIR \"${PROJECT_SOURCE_DIR}\")
   set(RLPC_BINARY_DIR \"${PROJECT_BINARY_DIR}\")

@@ -1,0 +1,82 @@
+#include "decoder/html_verb.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <utility>
+
+#include "decoder/describe_error.h"
+#include "decoder/player_page.h"
+
+namespace rlpc {
+namespace {
+
+int complain(const std::string& message, int code) {
+  std::cerr << "rlpcdec: " << message << "\n";
+  return code;
+}
+
+int complain(const std::string& input, const Error& error) {
+  return complain(input + ": " + describe_error(error), exit_code(error.code));
+}
+
+// For a decoder, which owns its source, to look at one that goes on to be used.
+class Borrowed final : public ByteSource {
+ public:
+  explicit Borrowed(ByteSource& source) : source_(source) {}
+  std::uint64_t size() const override { return source_.size(); }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    return source_.read(offset, out);
+  }
+
+ private:
+  ByteSource& source_;
+};
+
+Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
+  return Decoder::open(std::make_unique<Borrowed>(source), options);
+}
+
+bool same_mesh(const Decoder& a, const Decoder& b) {
+  const auto triangles = a.triangles();
+  return a.header().num_vertices == b.header().num_vertices &&
+         a.header().num_frames == b.header().num_frames &&
+         std::equal(triangles.begin(), triangles.end(), b.triangles().begin(),
+                    b.triangles().end());
+}
+
+}  // namespace
+
+int write_html(const HtmlRequest& request, ByteSource& stream) {
+  const auto player = read_player(request.player);
+  if (!player) return complain(player.error().message, kExitIo);
+  const auto decoder = look_at(stream, request.decoder);
+  if (!decoder) return complain(request.input, decoder.error());
+  std::unique_ptr<ByteSource> reference;
+  if (!request.reference.empty()) {
+    auto opened = file_source(request.reference);
+    if (!opened) return complain(request.reference, opened.error());
+    reference = std::move(*opened);
+    const auto other = look_at(*reference, request.decoder);
+    if (!other) return complain(request.reference, other.error());
+    if (!same_mesh(*decoder, *other)) {
+      return complain(request.reference + ": not a stream of the same frames, vertices and " +
+                          "triangles as " + request.input,
+                      kExitUsage);
+    }
+  }
+  const std::string name = std::filesystem::path(request.input).filename().string();
+  const PageStreams streams{name, &stream, reference.get()};
+  if (const auto error = write_player_page(request.output, *player, streams)) {
+    return complain(error->message, kExitIo);
+  }
+  if (!request.quiet) {
+    std::fprintf(stderr, "%s: plays %u frames of %u vertices; open it in a browser\n",
+                 request.output.c_str(), decoder->header().num_frames,
+                 decoder->header().num_vertices);
+  }
+  return kExitDone;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,63 @@
+// What the page says in words and numbers.
+import { State, kStateNames } from "./frame_states.js";
+
+const kProfiles = { 0: "Baseline", 1: "Main" };
+
+export function grouped(number) {
+  return Math.round(number).toLocaleString("en").replaceAll(",", "\u2009");
+}
+
+export function ofSize(bytes) {
+  if (bytes < 1000) return `${bytes} B`;
+  const step = bytes < 1e6 ? [1e3, "kB"] : bytes < 1e9 ? [1e6, "MB"] : [1e9, "GB"];
+  return `${(bytes / step[0]).toPrecision(3)} ${step[1]}`;
+}
+
+export function framesPerSecond(header) {
+  return header.frame_rate_numerator / header.frame_rate_denominator;
+}
+
+/** [name, value] of a stream. */
+export function streamFacts(header, bytes) {
+  const { num_vertices: vertices, num_frames: frames } = header;
+  const fps = framesPerSecond(header);
+  const rate = (8 * bytes) / (vertices * frames);
+  return [
+    ["Mesh", `${grouped(vertices)} vertices, ${grouped(header.num_triangles)} triangles`],
+    ["Frames", `${grouped(frames)} at ${+fps.toFixed(2)} per second, ${(frames / fps).toFixed(1)} s`],
+    ["Size", `${ofSize(bytes)}, floats have ${ofSize(12 * vertices * frames)}`],
+    ["Rate", `${rate.toPrecision(3)} bits per vertex and frame`],
+    ["Profile", `${kProfiles[header.profile_idc] ?? header.profile_idc}, level ${header.level_idc}`],
+    ["Decoding", ""],
+  ];
+}
+
+const kStateTexts = {
+  [State.open]: "decoding",
+  [State.decoded]: "not checked yet",
+  [State.agrees]: "bit-exact",
+  [State.differs]: "hash mismatch",
+  [State.error]: "cannot be decoded",
+};
+
+export function showState(element, states, frame, error) {
+  const state = states.states[frame];
+  element.dataset.state = kStateNames[state];
+  const crc = states.crcs[frame].toString(16).padStart(8, "0");
+  const has = state !== State.open && (state !== State.error || states.crcs[frame] !== 0);
+  const [title, detail, count] = element.children;
+  const hasNone = state === State.decoded && states.isComplete;
+  title.textContent = hasNone ? "no hash to check" : kStateTexts[state];
+  detail.textContent = error?.text ?? (has ? `frame ${frame}, CRC ${crc}` : `frame ${frame}`);
+  const wrong = states.count(State.differs) + states.count(State.error);
+  count.textContent =
+    `${grouped(states.count(State.agrees))} of ${grouped(states.states.length)} frames equal to their hash` +
+    (wrong > 0 ? `, ${grouped(wrong)} wrong` : "");
+}
+
+/** The shortest of 1, 2, 5 x 10^k that is at least `value`. */
+export function roundedUp(value) {
+  if (!(value > 0)) return 0;
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * [1, 2, 5, 10].find((digit) => digit * power >= value * 0.999999);
+}

@@ -1,0 +1,57 @@
+// What is known of each frame: whether it was decoded, and fits the hashes of the stream.
+
+export const State = { open: 0, decoded: 1, agrees: 2, differs: 3, error: 4 };
+export const kStateNames = ["open", "decoded", "agrees", "differs", "error"];
+const kColours = ["#0000", "#6d7a8a", "#55c58a", "#ef6a5b", "#ef6a5b"];
+
+export class FrameStates {
+  constructor(numFrames, canvas) {
+    this.states = new Uint8Array(numFrames);
+    this.crcs = new Uint32Array(numFrames);
+    this.canvas = canvas;
+    this.isDrawn = false;
+    this.isComplete = false; // every frame was decoded in order
+  }
+
+  count(wanted) {
+    return this.states.reduce((sum, state) => sum + (state === wanted), 0);
+  }
+
+  receive({ frame, error, differs, compared, crc }) {
+    this.isDrawn = false;
+    if (crc === undefined) {
+      this.states[frame] = State.error;
+      return;
+    }
+    this.crcs[frame] = crc;
+    if (compared > 0) {
+      this.states.fill(differs ? State.differs : State.agrees, frame + 1 - compared, frame + 1);
+    } else if (this.states[frame] === State.open) {
+      this.states[frame] = State.decoded;
+    }
+    if (error) this.states[frame] = State.error; // behind the last frame
+  }
+
+  /** A strip as wide as the time line; of frames that share a pixel, the worst is shown. */
+  draw() {
+    const width = Math.round(this.canvas.clientWidth * devicePixelRatio);
+    if (this.isDrawn && this.canvas.width === width) return;
+    this.isDrawn = true;
+    this.canvas.width = width;
+    this.canvas.height = 1;
+    const context = this.canvas.getContext("2d");
+    const { states } = this;
+    for (let x = 0; x < width; ++x) {
+      const first = Math.floor((x * states.length) / width);
+      const last = Math.max(first + 1, Math.floor(((x + 1) * states.length) / width));
+      let least = State.error;
+      let most = State.open;
+      for (let f = first; f < last; ++f) {
+        least = Math.min(least, states[f]);
+        most = Math.max(most, states[f]);
+      }
+      context.fillStyle = kColours[most >= State.differs ? most : least];
+      context.fillRect(x, 0, 1, 1);
+    }
+  }
+}

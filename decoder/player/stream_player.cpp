@@ -1,0 +1,89 @@
+#include "decoder/player/stream_player.h"
+
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+// Of the 4 GiB that a page can address, room for two decoders and what is drawn.
+constexpr std::uint64_t kMaxMemoryBytes = std::uint64_t{3} << 29;
+
+}  // namespace
+
+Placement placement_of(const SequenceHeader& header) {
+  return {std::ldexp(1.0, 1 - header.position_bits), {}};
+}
+
+Placement placement_in(const SequenceHeader& header, const SequenceHeader& other) {
+  const double unit = placement_of(other).scale;
+  Placement placement{std::ldexp(unit, header.grid.log2_step - other.grid.log2_step), {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    placement.offset[c] = header.grid.origin[c] * placement.scale - other.grid.origin[c] * unit;
+  }
+  return placement;
+}
+
+StreamPlayer::StreamPlayer(OpenSource open_source, std::uint32_t stream,
+                           std::uint64_t num_bytes)
+    : open_source_(open_source), stream_(stream), num_bytes_(num_bytes) {}
+
+std::optional<Decoder> StreamPlayer::open_decoder(bool verify_hashes) {
+  DecoderOptions options;
+  options.verify_hashes = verify_hashes;
+  options.limits.max_memory_bytes = kMaxMemoryBytes;
+  auto decoder = Decoder::open(open_source_(stream_, num_bytes_), options);
+  if (decoder) return std::move(*decoder);
+  error_ = decoder.error();
+  return std::nullopt;
+}
+
+bool StreamPlayer::open() {
+  decoder_ = open_decoder(true);
+  if (!decoder_) return false;
+  placement_ = placement_of(decoder_->header());
+  positions_.resize(3 * std::size_t{decoder_->header().num_vertices});
+  coordinates_.resize(positions_.size());
+  return true;
+}
+
+bool StreamPlayer::decode_with(std::optional<Decoder>& decoder, std::uint32_t frame) {
+  if (failed_ || decoder->position() != frame) {
+    if (const auto ok = decoder->seek(frame); !ok) {
+      error_ = ok.error();
+      return false;
+    }
+  }
+  const auto more = decoder->next_frame(positions_);
+  if (!more) error_ = more.error();
+  return static_cast<bool>(more);
+}
+
+bool StreamPlayer::decode(std::uint32_t frame) {
+  hash_differs_ = false;
+  failed_ = !decode_with(decoder_, frame);
+  if (failed_) {
+    hash_differs_ = std::string_view(error_.rule) == "R-HSH-02";
+    if (!hash_differs_) return false;
+    if (!unchecked_) unchecked_ = open_decoder(false);
+    if (!unchecked_ || !decode_with(unchecked_, frame)) return false;
+  }
+  set_coordinates();
+  return true;
+}
+
+bool StreamPlayer::finish() {
+  const auto more = decoder_->next_frame(positions_);
+  if (!more) error_ = more.error();
+  return static_cast<bool>(more);
+}
+
+void StreamPlayer::set_coordinates() {
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    coordinates_[i] =
+        static_cast<float>(positions_[i] * placement_.scale + placement_.offset[i % 3]);
+  }
+}
+
+}  // namespace rlpc

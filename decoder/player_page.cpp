@@ -1,0 +1,117 @@
+#include "decoder/player_page.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "decoder/output/output_file.h"
+
+namespace rlpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where the player has room for streams.
+constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
+// An element for each, as strings of browsers have limits; a multiple of 3, so that only the
+// last one is padded.
+constexpr std::size_t kPartBytes = std::size_t{3} << 20;
+
+// RFC 4648, section 4
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t bits = 0;
+    for (std::size_t b = 0; b < 3; ++b) bits = bits << 8 | (b < count ? bytes[i + b] : 0U);
+    for (std::size_t d = 0; d < 4; ++d) {
+      text += d <= count ? kDigits[(bits >> (18 - 6 * d)) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+// As text of a script element, which `</` could end.
+std::string description(const std::string& name) {
+  std::string json = nlohmann::json{{"name", name}}.dump(
+      -1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) {
+    json.replace(at, 1, "\\u003c");
+  }
+  return "<script type=\"application/json\" id=\"stream-description\">" + json + "</script>\n";
+}
+
+std::optional<OutputError> write_stream(OutputFile& file, ByteSource& source,
+                                        const std::string& kind) {
+  std::vector<std::uint8_t> part;
+  for (std::uint64_t at = 0; at < source.size(); at += part.size()) {
+    part.resize(
+        static_cast<std::size_t>(std::min<std::uint64_t>(kPartBytes, source.size() - at)));
+    if (!source.read(at, part)) return OutputError{file.path() + ": cannot read the " + kind};
+    const std::string text =
+        "<script type=\"text/plain\" class=\"" + kind + "\">" + base64(part) + "</script>\n";
+    if (auto error = file.write(text)) return error;
+  }
+  return std::nullopt;
+}
+
+std::vector<fs::path> places_of_player() {
+  std::error_code ec;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", ec).parent_path();
+  return {folder.parent_path() / "share" / "rlpc" / "player.html",         // bin/ beside share/
+          folder.parent_path().parent_path() / "player" / "player.html"};  // build/release/bin/
+}
+
+}  // namespace
+
+OutputResult<std::string> read_player(const std::string& path) {
+  std::vector<fs::path> places{path};
+  if (path.empty()) places = places_of_player();
+  for (const fs::path& place : places) {
+    std::ifstream file(place, std::ios::binary);
+    if (!file) continue;
+    std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    if (text.find(kPlace) != std::string::npos) return text;
+    return OutputError{place.string() + ": not the page that scripts/player builds"};
+  }
+  if (!path.empty()) return OutputError{path + ": cannot read the player"};
+  return OutputError{
+      "no player here: `scripts/player` builds it, then `cmake --install` installs it too; or "
+      "give its page with --player"};
+}
+
+std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,
+                                             const PageStreams& streams) {
+  for (const ByteSource* source : {streams.stream, streams.reference}) {
+    if (source != nullptr && source->size() > kMaxPageStreamBytes) {
+      return OutputError{path + ": a page holds streams of up to " +
+                         std::to_string(kMaxPageStreamBytes >> 20) + " MiB, not of " +
+                         std::to_string(source->size() >> 20)};
+    }
+  }
+  auto file = OutputFile::create(path);
+  if (!file) return file.error();
+  const std::size_t place = player.find(kPlace);
+  const std::string_view text = player;
+  if (auto error = file->write(text.substr(0, place))) return error;
+  if (auto error = file->write(description(streams.name))) return error;
+  if (auto error = write_stream(*file, *streams.stream, "stream")) return error;
+  if (streams.reference != nullptr) {
+    if (auto error = write_stream(*file, *streams.reference, "reference")) return error;
+  }
+  if (auto error = file->write(text.substr(place + kPlace.size()))) return error;
+  if (auto error = file->close()) return error;
+  return file->commit();
+}
+
+}  // namespace rlpc
