@@ -17,6 +17,10 @@ export function framesPerSecond(header) {
   return header.frame_rate_numerator / header.frame_rate_denominator;
 }
 
+export function ofTime(ms) {
+  return ms < 10 ? `${ms.toPrecision(2)} ms` : `${grouped(ms)} ms`;
+}
+
 /** [name, value] of a stream. */
 export function streamFacts(header, bytes) {
   const { num_vertices: vertices, num_frames: frames } = header;
@@ -40,6 +44,11 @@ const kStateTexts = {
   [State.error]: "cannot be decoded",
 };
 
+/** Nothing is laid out anew if it is the text that is there. */
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 export function showState(element, states, frame, error) {
   const state = states.states[frame];
   element.dataset.state = kStateNames[state];
@@ -47,12 +56,16 @@ export function showState(element, states, frame, error) {
   const has = state !== State.open && (state !== State.error || states.crcs[frame] !== 0);
   const [title, detail, count] = element.children;
   const hasNone = state === State.decoded && states.isComplete;
-  title.textContent = hasNone ? "no hash to check" : kStateTexts[state];
-  detail.textContent = error?.text ?? (has ? `frame ${frame}, CRC ${crc}` : `frame ${frame}`);
-  const wrong = states.count(State.differs) + states.count(State.error);
-  count.textContent =
-    `${grouped(states.count(State.agrees))} of ${grouped(states.states.length)} frames equal to their hash` +
-    (wrong > 0 ? `, ${grouped(wrong)} wrong` : "");
+  setText(title, hasNone ? "no hash to check" : kStateTexts[state]);
+  setText(detail, error?.text ?? (has ? `frame ${frame}, CRC ${crc}` : `frame ${frame}`));
+  const counts = [
+    [State.differs, "do not fit their hash"],
+    [State.error, "cannot be decoded"],
+  ].map(([state, text]) => [states.counts[state], text]).filter(([number]) => number > 0);
+  setText(count, [
+    `${grouped(states.counts[State.agrees])} of ${grouped(states.states.length)} frames equal to their hash`,
+    ...counts.map(([number, text]) => `${grouped(number)} ${text}`),
+  ].join("\n"));
 }
 
 /** The shortest of 1, 2, 5 x 10^k that is at least `value`. */

@@ -7,29 +7,35 @@ const kColours = ["#0000", "#6d7a8a", "#55c58a", "#ef6a5b", "#ef6a5b"];
 export class FrameStates {
   constructor(numFrames, canvas) {
     this.states = new Uint8Array(numFrames);
+    this.counts = [numFrames, 0, 0, 0, 0]; // of frames in each state
     this.crcs = new Uint32Array(numFrames);
     this.canvas = canvas;
     this.isDrawn = false;
     this.isComplete = false; // every frame was decoded in order
   }
 
-  count(wanted) {
-    return this.states.reduce((sum, state) => sum + (state === wanted), 0);
+  /** first <= frame < end */
+  set(first, end, state) {
+    for (let frame = first; frame < end; ++frame) {
+      --this.counts[this.states[frame]];
+      ++this.counts[state];
+      this.states[frame] = state;
+    }
   }
 
   receive({ frame, error, differs, compared, crc }) {
     this.isDrawn = false;
     if (crc === undefined) {
-      this.states[frame] = State.error;
+      this.set(frame, frame + 1, State.error);
       return;
     }
     this.crcs[frame] = crc;
     if (compared > 0) {
-      this.states.fill(differs ? State.differs : State.agrees, frame + 1 - compared, frame + 1);
+      this.set(frame + 1 - compared, frame + 1, differs ? State.differs : State.agrees);
     } else if (this.states[frame] === State.open) {
-      this.states[frame] = State.decoded;
+      this.set(frame, frame + 1, State.decoded);
     }
-    if (error) this.states[frame] = State.error; // behind the last frame
+    if (error) this.set(frame, frame + 1, State.error); // behind the last frame
   }
 
   /** A strip as wide as the time line; of frames that share a pixel, the worst is shown. */

@@ -1,7 +1,7 @@
 // The page: a stream, a scene, and the controls between them.
 import { DecodingThread } from "./decoding_thread.js";
 import { describedStream, takeBlob } from "./embedded.js";
-import { framesPerSecond, grouped, roundedUp, showState, streamFacts } from "./facts.js";
+import { framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts } from "./facts.js";
 import { FrameStates } from "./frame_states.js";
 import { Playback } from "./playback.js";
 import { Scene } from "./scene.js";
@@ -103,6 +103,8 @@ class Player {
       this.thread.recycle(this.scene.showFrame(reply));
       if (reply.distances) this.showDeviation(reply);
     }
+    this.say(reply.coordinates ? "" : `Frame ${reply.frame} cannot be decoded`);
+    $("view").toggleAttribute("data-stale", !reply.coordinates);
     this.shownFrame = reply.frame;
   }
 
@@ -134,7 +136,7 @@ class Player {
     this.states.draw();
     showState($("hash"), this.states, frame, this.errors.get(frame));
     const ms = this.ms.sum / Math.max(this.ms.frames, 1);
-    $("fact-list").lastChild.textContent = `${ms.toPrecision(2)} ms a frame`;
+    $("fact-list").lastChild.textContent = `${ofTime(ms)} a frame`;
   }
 
   say(text) {
