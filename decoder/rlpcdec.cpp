@@ -261,6 +261,9 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(1, 256));
   app.add_flag("--json", o.json, "Report as JSON on standard output");
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
+  for (const char* name : {"--frames", "--max-components", "--max-layers", "--json"}) {
+    html->excludes(app.get_option(name));  // a page has all of the stream, and no report
+  }
   app.footer(kExamples);
 }
 

@@ -10,6 +10,7 @@ import argparse
 import base64
 import hashlib
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -187,6 +188,21 @@ class Writing(InFolder):
             self.assertEqual(done.returncode, 4)
             self.assertIn(text, done.stderr)
 
+    def test_a_stream_too_long_for_a_page(self):
+        stream = self.folder / "sparse.rlpc"
+        shutil.copy(self.stream, stream)
+        os.truncate(stream, 2**29 + 1)
+        done, out = self.page(stream)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"up to 512 MiB", done.stderr)
+        self.assertFalse(out.exists())
+
+    def test_options_that_a_page_has_no_use_for(self):
+        for option in (["--frames", "0-3"], ["--max-layers", "2"], ["--json"], ["--verify"]):
+            done, out = self.page(self.stream, *option)
+            self.assertEqual(done.returncode, 64, option)
+            self.assertFalse(out.exists())
+
     def test_what_is_not_a_stream(self):
         done, out = self.page(self.player)
         self.assertEqual(done.returncode, 1)
@@ -286,7 +302,10 @@ class Browser(InFolder):
         self.browser.wait_for(f"player.shownFrame === {frame}")
 
     def wait_for_check(self):
+        """And until the page says so, which it does with the next picture."""
         self.browser.wait_for("player.states.isComplete")
+        self.browser.evaluate("new Promise((next) => requestAnimationFrame(() => "
+                              "requestAnimationFrame(() => next(true))))")
 
     def states(self):
         return self.browser.evaluate("[...player.states.states]")
@@ -383,8 +402,8 @@ class Browser(InFolder):
         self.browser.wait_for("document.getElementById('hash').dataset.state === 'error'")
         self.assertIn("R-UNT-", self.text("hash"))
         self.browser.evaluate("player.seek(50)")
-        self.wait_for_frame(50)
-        self.assertIn("bit-exact", self.text("hash"))
+        self.browser.wait_for("document.getElementById('hash').dataset.state === 'agrees'")
+        self.assertIn("frame 50", self.text("hash"))
 
     def test_distance_from_a_reference(self):
         coarse = self.encode("coarse.rlpc", "--kg", "2")
