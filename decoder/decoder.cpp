@@ -4,17 +4,18 @@
 #include <utility>
 #include <vector>
 
-#include "common/crc32.h"
 #include "common/stream_format.h"
 #include "common/topology.h"
-#include "decoder/apart.h"
+#include "decoder/find_gof_index.h"
+#include "decoder/frame_band.h"
 #include "decoder/frame_recon.h"
 #include "decoder/gofs_ahead.h"
+#include "decoder/hash_check.h"
 #include "decoder/parse_bone_gof.h"
 #include "decoder/parse_connectivity.h"
+#include "decoder/parse_end_of_sequence.h"
 #include "decoder/parse_gof.h"
 #include "decoder/parse_gof_hash.h"
-#include "decoder/parse_gof_index.h"
 #include "decoder/parse_metadata.h"
 #include "decoder/parse_sequence_header.h"
 #include "decoder/parse_vertex_order.h"
@@ -34,8 +35,6 @@ Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
                "unit_type", unit.offset * 8};
 }
 
-// Frames that a thread reconstructs at a time: factors are read from memory once for them.
-constexpr std::uint32_t kBandFrames = 4;
 constexpr std::uint32_t kMaxThreads = 256;
 
 }  // namespace
@@ -43,9 +42,10 @@ constexpr std::uint32_t kMaxThreads = 256;
 class Decoder::Impl {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
-      : units_(std::move(source), options.trace), options_(options) {
+      : units_(std::move(source), options.trace),
+        options_(options),
+        band_(std::clamp(options.threads, 1U, kMaxThreads)) {
     options_.threads = std::clamp(options.threads, 1U, kMaxThreads);
-    next_band_frames_ = kBandFrames * options_.threads;
   }
 
   Result<bool> open();
@@ -59,7 +59,7 @@ class Decoder::Impl {
   const std::string& metadata() const { return metadata_; }
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
-  std::uint32_t compared_frames() const { return compared_frames_; }
+  std::uint32_t compared_frames() const { return hash_check_.compared_frames(); }
 
  private:
   Result<bool> read_sequence_header();
@@ -70,7 +70,6 @@ class Decoder::Impl {
   // Goes to the next GOF unit or to the end of the sequence, past everything in between.
   Result<bool> next_gof_unit(UnitHeader& unit);
   Result<bool> check_end(const UnitHeader& unit);
-  Result<bool> load_index();
   // Of a GOF that is skipped: from its first bytes alone.
   Result<GofStart> gof_start(const UnitHeader& unit);
   // Goes past the slices of a GOF of bones that is not wanted.
@@ -83,7 +82,6 @@ class Decoder::Impl {
   Result<FrameRecon> read_gof(const UnitHeader& unit);
   Result<FrameRecon> read_slices(BoneGofParser& parser);
   Result<bool> load_hashes();
-  void recon_band(std::uint32_t first);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
   Result<bool> seek_gof(std::uint32_t frame);
   // Whatever is loaded may not fit the position any more.
@@ -92,7 +90,6 @@ class Decoder::Impl {
     recon_.reset();
     ahead_.reset();
   }
-  Result<bool> verify_hash(std::span<const std::int32_t> positions);
   void to_output_order(std::span<const std::int32_t> decoded,
                        std::span<std::int32_t> positions) const;
 
@@ -116,15 +113,8 @@ class Decoder::Impl {
   std::optional<FrameRecon> recon_;
   std::uint32_t gof_first_frame_ = 0;
   std::uint32_t position_ = 0;
-  std::optional<GofHash> hash_;
-  std::uint32_t running_crc_ = 0;
-  std::uint32_t hashed_frames_ = 0;  // consecutive frames of the GOF in running_crc_
-  std::uint32_t compared_frames_ = 0;
-  // Frames of the GOF in decoded order, as they were reconstructed together.
-  std::vector<std::int32_t> band_;
-  std::uint32_t band_first_ = 0;
-  std::uint32_t band_frames_ = 0;
-  std::uint32_t next_band_frames_ = 0;
+  HashCheck hash_check_;
+  FrameBand band_;
   std::optional<GofsAhead> ahead_;  // with several threads
 };
 
@@ -243,8 +233,7 @@ Result<bool> Decoder::Impl::check_end(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  r.u(32, "index_distance");
-  r.expect_end();
+  parse_end_of_sequence(r);
   units_.flush_trace();
   if (r.error()) return *r.error();
   if (frames_parsed_ != header_.num_frames) {
@@ -255,35 +244,6 @@ Result<bool> Decoder::Impl::check_end(const UnitHeader& unit) {
   }
   ended_ = true;
   return false;
-}
-
-// 6.9: GOFs that were not met yet, from the index before the end of the sequence, if there is
-// one. parse_gof_start finds out if it is wrong.
-Result<bool> Decoder::Impl::load_index() {
-  index_tried_ = true;
-  constexpr std::uint64_t kEndBytes = kUnitHeaderBytes + 4 + kUnitCrcBytes;
-  if (units_.size() < offset_ + kEndBytes) return false;
-  const auto end = units_.header_at(units_.size() - kEndBytes);
-  if (!end || end->type() != UnitType::kEndOfSequence) return false;
-  const auto end_payload = units_.payload(*end);
-  if (!end_payload) return end_payload.error();
-  const std::uint32_t distance = units_.bits(*end, *end_payload).u(32, "index_distance");
-  if (distance == 0) return false;
-  if (distance > end->offset) {
-    return Error{Errc::kInvalid, "R-END-03", "index_distance", end->payload_offset() * 8};
-  }
-  const auto unit = units_.header_at(end->offset - distance);
-  if (!unit) return unit.error();
-  if (unit->type() != UnitType::kGofIndex || unit->end() != end->offset) {
-    return Error{Errc::kInvalid, "R-END-03", "index_distance", end->payload_offset() * 8};
-  }
-  const auto payload = units_.payload(*unit);
-  if (!payload) return payload.error();
-  BitReader r = units_.bits(*unit, *payload);
-  auto gofs = parse_gof_index(r, header_.num_frames);
-  if (!gofs) return gofs.error();
-  gofs_ = std::move(*gofs);
-  return true;
 }
 
 Result<GofStart> Decoder::Impl::gof_start(const UnitHeader& unit) {
@@ -321,7 +281,7 @@ Result<bool> Decoder::Impl::load_gof() {
     return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
   }
   recon_.reset();
-  band_frames_ = 0;
+  band_.clear();
   if (auto ok = find_gof(unit); !ok) return ok;
   remember_gof(unit);
   gof_first_frame_ = frames_parsed_;
@@ -387,9 +347,7 @@ Result<FrameRecon> Decoder::Impl::read_slices(BoneGofParser& parser) {
 
 // 6.7: a hash unit belongs to the GOF before it.
 Result<bool> Decoder::Impl::load_hashes() {
-  hash_.reset();
-  running_crc_ = 0;
-  hashed_frames_ = 0;
+  hash_check_ = {};
   if (!options_.verify_hashes || offset_ == units_.size()) return true;
   const auto unit = units_.header_at(offset_);
   if (!unit) return unit.error();
@@ -399,26 +357,8 @@ Result<bool> Decoder::Impl::load_hashes() {
   BitReader r = units_.bits(*unit, *payload);
   auto hash = parse_gof_hash(r, recon_->num_frames());
   if (!hash) return hash.error();
-  if (!recon_->is_cut()) hash_ = std::move(*hash);
+  if (!recon_->is_cut()) hash_check_ = {std::move(*hash), recon_->num_frames()};
   offset_ = unit->end();
-  return true;
-}
-
-// 8.6.2 Hash check. A hash of the whole GOF needs all of its frames in order.
-Result<bool> Decoder::Impl::verify_hash(std::span<const std::int32_t> positions) {
-  const std::uint32_t f = position_ - gof_first_frame_;
-  const Error mismatch{Errc::kInvalid, "R-HSH-02", "position_crc", offset_ * 8};
-  if (hash_->per_frame_flag) {
-    compared_frames_ = 1;
-    if (crc32_of_positions(positions) != hash_->position_crc[f]) return mismatch;
-    return true;
-  }
-  if (hashed_frames_ != f) return true;
-  running_crc_ = crc32_of_positions(positions, running_crc_);
-  ++hashed_frames_;
-  if (hashed_frames_ < recon_->num_frames()) return true;
-  compared_frames_ = hashed_frames_;
-  if (running_crc_ != hash_->position_crc[0]) return mismatch;
   return true;
 }
 
@@ -438,7 +378,6 @@ void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
 
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
   assert(positions.size() == 3 * std::size_t{header_.num_vertices});
-  compared_frames_ = 0;
   if (failure_) return *failure_;
   const auto more = decode_frame(positions);
   if (!more) fail(more.error());
@@ -452,39 +391,13 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
     if (auto more = load_gof(); !more || !*more) return more;
   }
   const std::uint32_t f = position_ - gof_first_frame_;
-  if (f < band_first_ || f >= band_first_ + band_frames_) recon_band(f);
-  const auto decoded = std::span<const std::int32_t>(band_).subspan(
-      (f - band_first_) * positions.size(), positions.size());
-  if (hash_) {
-    if (auto ok = verify_hash(decoded); !ok) return ok;
+  const auto decoded = band_.frame(*recon_, f, positions.size());
+  if (!hash_check_.add_frame(f, decoded)) {
+    return Error{Errc::kInvalid, "R-HSH-02", "position_crc", offset_ * 8};
   }
   to_output_order(decoded, positions);
   ++position_;
   return true;
-}
-
-// Reconstructs frames of the GOF from `first` on: a band for each thread, but a single frame
-// after a seek, and then more and more.
-void Decoder::Impl::recon_band(std::uint32_t first) {
-  const std::uint32_t most = kBandFrames * options_.threads;
-  const std::size_t frame_size = 3 * std::size_t{header_.num_vertices};
-  band_first_ = first;
-  band_frames_ = std::min(next_band_frames_, recon_->num_frames() - first);
-  next_band_frames_ = std::min(2 * next_band_frames_, most);
-  band_.resize(band_frames_ * frame_size);
-  const auto recon = [&](std::uint32_t begin) {
-    const std::uint32_t count = std::min(kBandFrames, band_frames_ - begin);
-    recon_->frames(first + begin, count,
-                   std::span(band_).subspan(begin * frame_size, count * frame_size));
-  };
-  std::vector<std::future<bool>> others;
-  for (std::uint32_t begin = kBandFrames; begin < band_frames_; begin += kBandFrames) {
-    others.push_back(run_apart([&recon, begin] { recon(begin); }));
-  }
-  recon(0);
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    if (!others[i].get()) recon(static_cast<std::uint32_t>(i + 1) * kBandFrames);
-  }
 }
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
@@ -498,22 +411,22 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
       return ok;
     }
   }
-  if (frame == gof_first_frame_) {  // once more from its beginning
-    running_crc_ = 0;
-    hashed_frames_ = 0;
-  }
+  if (frame == gof_first_frame_) hash_check_.restart();
   position_ = frame;
-  next_band_frames_ = 1;
+  band_.begin_small();
   return true;
 }
 
 Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
   recon_.reset();
-  band_frames_ = 0;
+  band_.clear();
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
-    if (auto ok = load_index(); !ok) return ok;
+    index_tried_ = true;
+    auto gofs = find_gof_index(units_, offset_, header_.num_frames);
+    if (!gofs) return gofs.error();
+    if (!gofs->empty()) gofs_ = std::move(*gofs);
   }
   const auto after =
       std::upper_bound(gofs_.begin(), gofs_.end(), frame,
