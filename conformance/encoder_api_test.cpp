@@ -276,6 +276,22 @@ TEST(Encoder, TakesInputsAtTheEdge) {
   }
 }
 
+// Factors of the finest steps would not fit their widths; then steps are as fine as they can be.
+TEST(Encoder, IsExactWhereMoreThanThatIsAskedFor) {
+  for (const std::uint32_t bones : {1U, 4U}) {
+    for (const Prediction prediction : {Prediction::kNone, Prediction::kLayers}) {
+      MemoryFrames source = bending_tube(40, 30);
+      EncoderSettings settings;
+      settings.main.bones = bones;
+      settings.main.prediction = prediction;
+      settings.target = {Target::kBpvf, 100.0};
+      const auto report = encode(source, settings, discard);
+      ASSERT_TRUE(report) << report.error().message;
+      EXPECT_LT(report->metrics.kg_error_percent, 0.0005);
+    }
+  }
+}
+
 TEST(Encoder, SameInputAndSettingsGiveTheSameBytes) {
   EXPECT_EQ(rich_stream(), rich_stream());
   EXPECT_EQ(indexed_stream(), indexed_stream());

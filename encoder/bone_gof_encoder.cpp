@@ -24,6 +24,12 @@ constexpr double kBytesOfSlice = 4000.0;
 // Temporal values are scaled so that their step is 2^3 units of the sums, if that can be.
 constexpr int kWantedScaleIdx = 56;
 
+// Products of steps, in eighths of an octave, have a scale_idx up to this one.
+constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;
+// Wanted values up to these fit their widths, whatever they are rounded to.
+constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);
+constexpr double kMostSpatial = (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;
+
 // Chooses magnitudes of spatial residuals by what they cost, as if there were one slice.
 class SpatialCost {
  public:
@@ -78,29 +84,44 @@ class TrajectoryCoder {
   }
 
   BoneGof code() {
-    count_ = num_trajectories(analysis_, step_);
-    if (count_ > 0) {
-      code_temporal();
-      fit_spatial();
-      code_spatial();
-      scale();
+    while (!code_trajectories()) {
     }
     cut_slices();
     return std::move(gof_);
   }
 
  private:
+  // False: some values do not fit their widths, and steps have become coarser for the next try.
+  bool code_trajectories() {
+    count_ = num_trajectories(analysis_, step_);
+    gof_.trajectories.clear();
+    if (count_ == 0) return true;
+    code_temporal();
+    fit_spatial();
+    code_spatial();
+    constexpr double kReserve = 1.02;
+    if (excess_ > 1.0) {
+      step_ *= kReserve * excess_;
+      return false;
+    }
+    return scale();
+  }
+
   // Temporal values, each vector with the step at which its error is as large as the others'.
   void code_temporal() {
     TrackState state(gof_.num_frames);
     gof_.trajectories.resize(count_);
     decoded_.assign(count_, std::vector<double>(3 * num_frames_));
     eighths_.resize(count_);
+    indices_.clear();
     std::vector<std::array<double, 3>> values(num_frames_);
     for (std::size_t l = 0; l < count_; ++l) {
       // The product of both steps is 2^(eighths / 8), of which the stream keeps the exponent.
       const double wanted = step_ * std::sqrt(settings_.temporal_error / importance(l)) * step_;
-      eighths_[l] = static_cast<int>(round_to_int(8.0 * det_log2(wanted)));
+      const double least = step_ * largest(analysis_.pc.temporal[l]) / kMostTemporal;
+      eighths_[l] =
+          std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),
+                     least_eighths_, kMostEighths);
       const double unit = power_of_eighths(eighths_[l]) / step_;
       for (std::size_t f = 0; f < num_frames_; ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -195,6 +216,7 @@ class TrajectoryCoder {
     std::vector<std::int32_t> values(spatial_.size());
     std::vector<std::int64_t> predicted(count_);
     largest_.assign(count_, 0);
+    double most = 0.0;
     const double per_step = kMaxLayerStep / step_;
     constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
     constexpr double kRoundUp = 0.42;
@@ -205,8 +227,9 @@ class TrajectoryCoder {
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
       if (cost) cost->start(v);
       for (std::size_t l = 0; l < count_; ++l) {
-        const double difference =
-            spatial_[v * count_ + l] * per_step - static_cast<double>(predicted[l]);
+        const double wanted = spatial_[v * count_ + l] * per_step;
+        most = std::max(most, std::abs(wanted));
+        const double difference = wanted - static_cast<double>(predicted[l]);
         const double steps = std::min(std::abs(difference) / layer_step, kMost);
         const std::int32_t magnitude =
             cost ? cost->choose(steps) : static_cast<std::int32_t>(steps + kRoundUp);
@@ -219,6 +242,7 @@ class TrajectoryCoder {
         largest_[l] = std::max(largest_[l], value < 0 ? ~value : value);
       }
     }
+    excess_ = most / kMostSpatial;
   }
 
   // Slices that a stream can be cut at: as many as cost little beside what they hold.
@@ -280,8 +304,9 @@ class TrajectoryCoder {
     gof_.num_component_groups = static_cast<std::uint32_t>(ends.size());
   }
 
-  // Widths and scales: the sums get as many fractional bits as all temporal factors need.
-  void scale() {
+  // Widths and scales: the sums get as many fractional bits as all temporal factors need. False
+  // where scales are too far apart; then the finest temporal steps have become coarser.
+  bool scale() {
     std::vector<int> idx(count_);
     int fraction_bits = 0;
     for (std::size_t l = 0; l < count_; ++l) {
@@ -295,25 +320,46 @@ class TrajectoryCoder {
     const int most = *std::max_element(idx.begin(), idx.end());
     fraction_bits = std::clamp(fraction_bits, 0, kMaxFractionBits);
     while (fraction_bits > 0 && most + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
+    const int lacking = -(*std::min_element(idx.begin(), idx.end()) + 8 * fraction_bits);
+    if (lacking > 0) {
+      least_eighths_ = *std::min_element(eighths_.begin(), eighths_.end()) + lacking;
+      return false;
+    }
+    while (!set_temporal_widths(idx, fraction_bits)) --fraction_bits;
     gof_.fraction_bits = fraction_bits;
+    return true;
+  }
+
+  // False: some are beyond the widest, and sums should have fewer fractional bits.
+  bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits) {
     for (std::size_t l = 0; l < count_; ++l) {
       Trajectory& t = gof_.trajectories[l];
-      t.scale_idx = std::clamp(idx[l] + 8 * fraction_bits, 0, kMaxScaleIdx);
+      t.scale_idx = idx[l] + 8 * fraction_bits;
       std::int64_t largest = 0;
       for (const Vec3i& value : indices_[l]) {
         for (const std::int32_t x : value) {
-          const std::int64_t scaled = scale_temporal(x, t.scale_idx, kMaxTemporalBits);
+          const std::int64_t scaled = scale_temporal(x, t.scale_idx, kMaxTemporalBits + 1);
           largest = std::max(largest, scaled < 0 ? ~scaled : scaled);
         }
       }
       t.temporal_bits = largest == 0 ? 1 : floor_log2(static_cast<std::uint64_t>(largest)) + 2;
+      if (t.temporal_bits > kMaxTemporalBits) return false;
     }
+    return true;
+  }
+
+  static double largest(const std::vector<double>& values) {
+    double most = 0.0;
+    for (const double x : values) most = std::max(most, std::abs(x));
+    return most;
   }
 
   const CodedMesh& mesh_;
   const BoneAnalysis& analysis_;
   const BoneSettings& settings_;
   double step_;
+  int least_eighths_ = -1000;  // of eighths_: none so far
+  double excess_ = 0.0;        // largest spatial value, of those that fit
   std::size_t num_frames_;
   BoneGof gof_;
   std::size_t count_ = 0;                     // trajectories
