@@ -116,12 +116,16 @@ class BadInput(ToolsTest):
         mesh = self.obj(TRIANGLE)
         self.fails(64, "", "rlpcenc", mesh)
         self.fails(64, "", "rlpcenc", mesh, "-o")
-        for options in ("--kg 0", "--kg -1", "--kg a", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x",
+        for options in ("--kg 0", "--kg -1", "--kg a", "--kg nan", "--bpvf inf", "--kg 0,3",
+                        "--max-error 1mm", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x", "--gof -3",
                         "--fps 0", "--fps a", "--preset best", "--clusters 0", "--qu 1",
                         "--influences 0", "--influences 5", "--frame y", "--profile scalable",
                         "--nonsense"):
             self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
         self.assertEqual(self.files(), ["mesh.obj"])
+        for words, options in (("found `0,3`", "--kg 0,3"), ("fast,medium,slow", "--preset best"),
+                               ("Put patterns in quotes", self.path("b.obj"))):
+            self.fails(64, words, "rlpcenc", mesh, "-o", self.path("x"), *str(options).split())
         for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):
             self.assertIn(b"Exit code", self.ok(tool, "--help").out)
             self.assertRegex(self.ok(tool, "--version").out, rb"\d+\.\d+\.\d+")
@@ -130,10 +134,11 @@ class BadInput(ToolsTest):
     def test_settings_that_contradict(self):
         mesh = self.obj(TRIANGLE)
         paper = (mesh, "--profile", "baseline", "--qu", 12)
-        self.refused("both", *paper, "--components", 2)
-        self.refused("target", *paper, "--qc", 12, "--components", 2, "--kg", 1)
-        self.refused("--components", *paper, "--qc", 12)
-        self.refused("--components", mesh, "--profile", "baseline", "--no-rdo")
+        for words, options in (("both", [*paper, "--components", 2]),
+                               ("target", [*paper, "--qc", 12, "--components", 2, "--kg", 1]),
+                               ("--components", [*paper, "--qc", 12]),
+                               ("--components", [mesh, "--profile", "baseline", "--no-rdo"])):
+            self.fails(64, words, "rlpcenc", *options, "-o", self.path("out.rlpc"))
         self.refused("m.json", mesh, "--metadata", self.obj("{", "m.json"))
 
     def test_options_of_the_other_profile(self):
@@ -148,9 +153,10 @@ class BadInput(ToolsTest):
                                       "--no-temporal-weights", "--component-groups 2",
                                       "--layer-groups 2"))):
             for option in options:
-                self.refused(f"{option.split()[0]} needs --profile {profile}", mesh, "--profile",
-                             other, *option.split())
-        self.refused("--frame needs --profile baseline", mesh, "--frame", "world")  # main: default
+                self.fails(64, f"{option.split()[0]} needs --profile {profile}", "rlpcenc", mesh,
+                           "-o", self.path("out.rlpc"), "--profile", other, *option.split())
+        self.fails(64, "--frame needs --profile baseline", "rlpcenc", mesh, "-o",
+                   self.path("out.rlpc"), "--frame", "world")  # main is the default
         for options in ("--profile baseline --frame world --no-rdo --components 1",
                         "--no-outer-ring --bones 1"):
             self.ok("rlpcenc", mesh, "-o", self.path("out.rlpc"), *options.split())
@@ -211,10 +217,63 @@ class BadOutput(ToolsTest):
                      self.path("none/x"))
         self.assertEqual(result.code, 1, result.err)
         self.assertIn("none/x", result.err)
+        self.assertEqual(self.files(), [])  # it was known before the work
         result = run("rlpccmp", INPUTS / "elephant.pc2", INPUTS / "elephant.pc2", "--csv",
                      self.path("none/x"))
         self.assertEqual(result.code, 2, result.err)
         self.assertIn("none/x", result.err)
+
+
+class SamePlaces(ToolsTest):
+    """Nothing is written over what is read, or over another output."""
+
+    def setUp(self):
+        super().setUp()
+        self.clip(4)
+        self.encode(self.path("a.rlpc"))
+        self.before = {name: self.path(name).read_bytes() for name in self.files()}
+
+    def refused(self, words, tool, *arguments, code=64):
+        self.fails(code, words, tool, *arguments)
+        self.assertEqual({name: self.path(name).read_bytes() for name in self.files()},
+                         self.before)
+
+    def test_of_the_encoder(self):
+        obj, pc2, out = self.path("clip.obj"), self.path("clip.pc2"), self.path("x.rlpc")
+        (self.path("linked.obj")).symlink_to(obj)
+        self.before["linked.obj"] = self.before["clip.obj"]
+        for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
+            self.refused("is read, too", "rlpcenc", obj, "-o", output)
+        self.refused("is read, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
+        self.refused("is read, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
+        self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
+        for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
+                        ["-o", out, "--order-map", "-", "--json"]):
+            self.refused("cannot both", "rlpcenc", obj, *options)
+
+    def test_of_the_decoder(self):
+        stream = self.path("a.rlpc")
+        self.refused("is read, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
+        self.refused("is read, too", "rlpcdec", stream, "--html", stream)
+        self.refused("is the input itself", "rlpcinfo", stream, "--html", stream)
+        # The mesh that nobody named.
+        self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
+                     code=4)
+        self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
+                     "pc2", code=4)
+        for _ in range(2):  # its own mesh is replaced
+            self.ok("rlpcdec", stream, "-o", self.path("b.mdd"))
+
+    def test_of_the_comparison(self):
+        obj, pc2, stream = self.path("clip.obj"), self.path("clip.pc2"), self.path("a.rlpc")
+        pair = [obj, "--points-a", pc2, obj, "--points-b", pc2]
+        for option in ("--csv", "--html"):
+            self.refused("written over", "rlpccmp", *pair, option, obj)
+            self.refused("written over", "rlpccmp", *pair, option, pc2)
+            self.refused("written over", "rlpccmp", *pair, "--stream", stream, option, stream)
+        self.refused("written over", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
+                     self.path("x"))
+        self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")
 
 
 class BadStreams(ToolsTest):

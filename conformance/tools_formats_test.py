@@ -5,8 +5,9 @@
 """
 
 import struct
+import subprocess
 
-from tools_testing import ToolsTest, main, read_rlpd
+from tools_testing import Tools, ToolsTest, main, read_rlpd
 
 OUTPUTS = ("a.rlpd", "a.pc2", "a.mdd", "a.glb", "obj", "ply/f%d.ply", "text/f_%04d.ply")
 ENCODE = ["--preset", "fast", "--kg", 0.5, "--quiet"]
@@ -156,6 +157,15 @@ class FormatsOut(ToolsTest):
         self.path("b.rlpc").write_bytes(again.out)
         self.ok("rlpcdec", self.path("b.rlpc"), "-o", self.path("b.rlpd"))
         self.assertEqual(len(read_rlpd(self.path("b.rlpd"))[2]), 12)
+
+    def test_standard_output_that_is_a_file(self):
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"))
+        out = self.path("standard output")
+        with out.open("wb") as file:
+            subprocess.run([Tools.folder / "rlpcenc", self.path("a.rlpd"), "-o", "-", "--quiet"],
+                           stdout=file, check=True)
+        self.ok("rlpcdec", out, "--verify")
+        self.assertFalse(self.path("-").exists())
 
     def test_the_format_may_differ_from_the_name(self):
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("out"), "--format", "ply")

@@ -4,7 +4,6 @@
 #include <cinttypes>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -132,8 +131,7 @@ int extract(const ExtractOptions& o) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = file_source(o.input);
   if (!source) return complain(o, source.error());
-  std::error_code ignored;
-  if (std::filesystem::equivalent(o.input, o.output, ignored)) {
+  if (OutputFile::is_same_file(o.output, o.input)) {
     return complain(o.output + ": is the input itself; give another name", kExitUsage);
   }
   auto cutter = StreamCutter::open(std::move(*source), o.cut);

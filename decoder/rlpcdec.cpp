@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -20,6 +21,7 @@
 #include "decoder/describe_error.h"
 #include "decoder/html_verb.h"
 #include "decoder/output/frame_sink.h"
+#include "decoder/output/output_file.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace {
@@ -92,19 +94,21 @@ rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& pa
 // "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
 std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num_frames) {
   if (text.empty()) return FrameSpan{0, num_frames - 1};
-  unsigned first = 0;
-  unsigned last = 0;
-  int used = 0;
-  const int length = static_cast<int>(text.size());
-  if (std::sscanf(text.c_str(), "%u-%u%n", &first, &last, &used) != 2 || used != length) {
-    used = 0;
-    if (std::sscanf(text.c_str(), "%u%n", &first, &used) != 1) return std::nullopt;
-    last = used == length ? first : num_frames - 1;
-    if (used != length && text.substr(static_cast<std::size_t>(used)) != "-")
-      return std::nullopt;
+  const char* const end = text.data() + text.size();
+  FrameSpan span{};
+  auto [rest, error] = std::from_chars(text.data(), end, span.first);
+  if (error != std::errc()) return std::nullopt;
+  span.last = span.first;
+  if (rest != end) {
+    if (*rest++ != '-') return std::nullopt;
+    span.last = num_frames - 1;
+    if (rest != end) {
+      const auto [after, wrong] = std::from_chars(rest, end, span.last);
+      if (wrong != std::errc() || after != end) return std::nullopt;
+    }
   }
-  if (first > last || last >= num_frames) return std::nullopt;
-  return FrameSpan{first, last};
+  if (span.first > span.last || span.last >= num_frames) return std::nullopt;
+  return span;
 }
 
 // Frames as they are decoded; for people who wait at a terminal.
@@ -290,6 +294,13 @@ int main(int argc, char** argv) try {
     }
     if (options.json) {
       return complain("--json and the output cannot both go to standard output",
+                      rlpc::kExitUsage);
+    }
+  }
+  for (const std::string& read : {options.input, options.html.reference, options.html.player}) {
+    for (const std::string& written : {options.output, options.html.output}) {
+      if (!rlpc::OutputFile::is_same_file(written, read)) continue;
+      return complain(written + ": is read, too, and would be written over; give another name",
                       rlpc::kExitUsage);
     }
   }

@@ -332,6 +332,10 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
+  if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
+    std::cerr << "rlpcinfo: " << options.html << ": is the input itself; give another name\n";
+    return rlpc::kExitUsage;
+  }
   if (extract->count() == 0) return inform(options);
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {

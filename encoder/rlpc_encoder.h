@@ -113,7 +113,7 @@ struct EncodeReport {
   double bpvf = 0.0;
   PartBits bits;
   std::uint32_t num_gofs = 0;
-  std::uint32_t clusters = 0;  // over all GOFs
+  std::uint32_t clusters = 0;  // or bones, over all GOFs
   std::uint32_t components = 0;
   double step = 0.0;         // units; 0 with qu and qc
   std::uint32_t trials = 0;  // encodings made in search of the target

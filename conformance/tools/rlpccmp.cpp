@@ -168,7 +168,7 @@ std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::D
             digits(surface.mean_normal_angle) + "," + digits(surface.max_normal_angle) + "\n";
   }
   rlpc::StreamFile file(path);
-  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  file.write(text);
   return file.commit();
 }
 
@@ -200,7 +200,7 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
     std::printf("  rate      %.4f bits per vertex and frame (%llu bytes)\n", rate.bpvf,
                 static_cast<unsigned long long>(rate.bytes));
   }
-  std::printf("  KG error  %.4f %%\n", m.kg_error_percent);
+  std::printf("  KG error  %.4g %%\n", m.kg_error_percent);
   std::printf("  RMS       %.6g (%.4f %% of the diagonal)\n", m.rms_error, m.rms_error_percent);
   std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
               m.max_error_percent, m.max_error_frame, m.max_error_vertex);
@@ -229,7 +229,25 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
   return code;
 }
 
+// What would be written over, or mixed.
+std::optional<std::string> check_places(const Options& o) {
+  if (o.csv == "-" && o.json) return "--json and --csv cannot both go to standard output";
+  if (o.html == "-" && (o.json || o.csv == "-")) {
+    return "--html and another output cannot both go to standard output";
+  }
+  const std::string another = " would be written over; give another name";
+  for (const std::string& written : {o.csv, o.html}) {
+    for (const std::string& read :
+         {o.a.path, o.a.points, o.b.path, o.b.points, o.stream, o.order_map}) {
+      if (rlpc::OutputFile::is_same_file(written, read)) return written + another;
+    }
+  }
+  if (rlpc::OutputFile::is_same_file(o.csv, o.html)) return o.csv + another;
+  return std::nullopt;
+}
+
 int run(Options& o) {
+  if (const auto wrong = check_places(o)) return complain(*wrong), kUsage;
   if (!o.fps.empty()) {
     const auto rate = rlpc::parse_frame_rate(o.fps);
     if (!rate) return complain("--fps: " + rate.error().message), kUsage;
@@ -274,7 +292,7 @@ int run(Options& o) {
   }
   if (o.json) {
     print_json(*pair, rate, *distortion);
-  } else if (!o.quiet && o.csv != "-") {
+  } else if (!o.quiet && o.csv != "-" && o.html != "-") {
     print_report(*pair, rate, *distortion);
   }
   return check_gates(o, distortion->metrics);

@@ -115,6 +115,12 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
                        "frame_%04d" +
                        extension + ", or X.pc2 (which also writes X.obj)"};
   }
+  if (named != SinkFormat::kByName) {
+    return OutputError{path + ": " + std::string(extension_of(format)) +
+                       " files were asked for, one for each frame; give a folder, or a name "
+                       "with a number as in frame_%04d" +
+                       std::string(extension_of(format))};
+  }
   for (const std::string_view other : kOtherFiles) {
     if (extension == other) {
       return OutputError{path + ": cannot write " + extension +

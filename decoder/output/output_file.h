@@ -28,6 +28,9 @@ class OutputFile {
   std::optional<OutputError> close();
   // After close(): gives the file its name.
   std::optional<OutputError> commit();
+  // Whether writing `a` would change what reads as `b`: both lead to the same file, which is
+  // one, or none yet. Not so devices and pipes, and "-".
+  static bool is_same_file(const std::string& a, const std::string& b);
   // The name as the caller gave it.
   const std::string& path() const { return path_; }
 

@@ -1,6 +1,7 @@
 // Point cache with its mesh: X.pc2 or X.mdd, and X.obj.
 #include <cassert>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -81,6 +82,13 @@ class PointCacheSink : public FrameSink {
   std::uint32_t written_ = 0;
 };
 
+// Nobody asked for this file by its name. What MeshBytes writes begins in the same way.
+bool may_replace_mesh(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  return !std::getline(file, line) || line.starts_with("# frame_rate ");
+}
+
 }  // namespace
 
 OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string& path,
@@ -89,10 +97,20 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
   if (options.num_vertices > kMaxCount || options.num_frames > kMaxCount) {
     return OutputError{path + ": a point cache holds at most 2147483647 vertices and frames"};
   }
+  const std::string mesh_path = std::filesystem::path(path).replace_extension(".obj").string();
+  if (OutputFile::is_same_file(path, mesh_path)) {
+    return OutputError{path + ": a point cache has its mesh beside it, in " + mesh_path +
+                       "; give another name than that"};
+  }
+  if (!may_replace_mesh(mesh_path)) {
+    return OutputError{mesh_path +
+                       ": is there already, and no mesh of this tool's; it would "
+                       "be replaced by the one that goes with " +
+                       path + "; give another name, or remove it"};
+  }
   auto points = OutputFile::create(path);
   if (!points) return points.error();
-  auto mesh =
-      OutputFile::create(std::filesystem::path(path).replace_extension(".obj").string());
+  auto mesh = OutputFile::create(mesh_path);
   if (!mesh) return mesh.error();
   auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
                                                std::move(*mesh));

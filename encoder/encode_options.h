@@ -1,0 +1,33 @@
+// The command line of rlpcenc.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "encoder/input/frame_source.h"
+#include "encoder/rlpc_encoder.h"
+
+namespace rlpc {
+
+struct EncodeOptions {
+  InputOptions input;
+  std::string output;     // "-": standard output
+  std::string order_map;  // likewise; empty: none
+  std::string quality;    // its word, if the target was given by one
+  bool dry_run = false;
+  bool json = false;
+  bool quiet = false;
+  EncoderSettings settings;
+};
+
+enum EncodeExitCode : int { kEncoded = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };
+
+// Reads the command line, and the metadata file that it names. Returns the exit code where
+// there is nothing left to do: after --help, or after it has said on standard error what is
+// wrong.
+std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& options);
+
+// Says on standard error what went wrong; returns `code`.
+int complain(const std::string& message, EncodeExitCode code = kFailed);
+
+}  // namespace rlpc
