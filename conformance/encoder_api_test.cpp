@@ -276,7 +276,8 @@ TEST(Encoder, TakesInputsAtTheEdge) {
   }
 }
 
-// Factors of the finest steps would not fit their widths; then steps are as fine as they can be.
+// Factors of the finest steps would not fit their widths; then steps are as fine as they can
+// be.
 TEST(Encoder, IsExactWhereMoreThanThatIsAskedFor) {
   for (const std::uint32_t bones : {1U, 4U}) {
     for (const Prediction prediction : {Prediction::kNone, Prediction::kLayers}) {

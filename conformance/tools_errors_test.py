@@ -109,8 +109,8 @@ class BadInput(ToolsTest):
     def test_more_than_a_level_allows(self):
         mesh, cache = self.obj("v 0 0 0\n"), self.path("c.pc2")
         write_pc2(cache, [[0.0, 1.0, 2.0]] * 16385)
-        self.refused("no level allows", mesh, "--points", cache, "--gof", "all")
-        self.refused("no level allows", mesh, "--points", cache, "--gof", 20000)
+        self.refused("no level allows", mesh, "--points", cache, "--gof", "all", "-q")
+        self.refused("no level allows", mesh, "--points", cache, "--gof", 20000, "-q")
 
     def test_usage(self):
         mesh = self.obj(TRIANGLE)

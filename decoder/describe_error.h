@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "common/result.h"
 
@@ -41,12 +42,16 @@ inline std::string describe_error(const Error& error) {
     case Errc::kTruncated:
       return where + ": the stream ends too early" + rule + "; the file was cut off";
     case Errc::kInvalid:
+      if (std::string_view(error.rule) == "R-STR-01") {
+        return where + ": expected an RLPC stream, which begins with other bytes" + rule;
+      }
       return where + ": not a conforming stream" + rule +
              "; the file is damaged, or its encoder has a bug";
     case Errc::kUnsupported:
       return where + ": not supported by this version" + rule + "; get a newer decoder";
     case Errc::kLimitExceeded:
-      return where + ": more than the limits allow" + rule + "; raise them to decode it";
+      return where + ": more than the limits allow" + rule +
+             "; raise them to decode it (rlpcdec --max-memory, --max-vertices)";
     case Errc::kIo:
       break;
   }

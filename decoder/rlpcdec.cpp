@@ -78,8 +78,11 @@ int complain(const std::string& message, int code) {
   return code;
 }
 
+std::string name_of(const std::string& path) { return path == "-" ? "standard input" : path; }
+
 int complain(const Options& o, const rlpc::Error& error) {
-  return complain(o.input + ": " + rlpc::describe_error(error), rlpc::exit_code(error.code));
+  return complain(name_of(o.input) + ": " + rlpc::describe_error(error),
+                  rlpc::exit_code(error.code));
 }
 
 rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
@@ -142,7 +145,7 @@ void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     std::fprintf(stderr, "%s: %u frames of %u vertices and %u triangles decoded%s\n",
-                 o.input.c_str(), frames, h.num_vertices, h.num_triangles,
+                 name_of(o.input).c_str(), frames, h.num_vertices, h.num_triangles,
                  decoder.was_cut() ? ", cut; hashes of GOFs that are cut were not compared"
                  : hashes_verified ? ", hashes agree"
                                    : "");
@@ -166,9 +169,9 @@ int decode(const Options& o) {
   if (!decoder) return complain(o, decoder.error());
   const rlpc::SequenceHeader& header = decoder->header();
   if (o.decoder.cut.cuts() && header.profile_idc != rlpc::kProfileMain) {
-    return complain(
-        o.input + ": a stream of the Baseline profile has no slices, and cannot be cut",
-        rlpc::kExitUnsupported);
+    return complain(name_of(o.input) +
+                        ": a stream of the Baseline profile has no slices, and cannot be cut",
+                    rlpc::kExitUnsupported);
   }
   const auto span = parse_frames(o.frames, header.num_frames);
   if (!span) {

@@ -225,8 +225,9 @@ void add_extra_options(CLI::App& app, CommandLine& line) {
   app.add_flag("--keep-order", line.options.settings.keep_order,
                "Restore the vertex order of INPUT")
       ->group(extras);
-  app.add_option("--order-map", line.options.order_map,
-                 "Write, per decoded vertex, its index in INPUT")
+  app.add_option(
+         "--order-map", line.options.order_map,
+         "Write, per decoded vertex, its index in INPUT (of a glTF file: as it is welded)")
       ->excludes("--dry-run")
       ->group(extras);
   add_choice<HashMode>(

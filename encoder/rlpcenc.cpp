@@ -3,11 +3,13 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -29,10 +31,11 @@ namespace {
 void print_report(const EncodeOptions& o, const Expectation& e) {
   const EncodeReport& r = e.report;
   const Metrics& m = r.metrics;
+  const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
   const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
-  std::printf("%s: %u vertices, %u triangles, %u frames, level %u\n", name.c_str(),
+  std::printf("%s: %u vertices, %u triangles, %u frame%s, level %u\n", name.c_str(),
               r.header.num_vertices, r.header.num_triangles, r.header.num_frames,
-              r.header.level_idc);
+              s(r.header.num_frames), r.header.level_idc);
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
   if (!e.exact()) {
@@ -40,8 +43,9 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
-  const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
-  const char* const bones = o.settings.profile == Profile::kMain ? "bones or " : "";
+  const char* const bones = o.settings.profile != Profile::kMain ? ""
+                            : r.clusters == 1                    ? "bone or "
+                                                                 : "bones or ";
   std::printf("  %u GOF%s, %u %scluster%s, %u component%s, %u trial%s\n", r.num_gofs,
               s(r.num_gofs), r.clusters, bones, s(r.clusters), r.components, s(r.components),
               r.trials, s(r.trials));
@@ -120,11 +124,29 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   return report;
 }
 
+// What INPUT may not be meant to be.
+std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
+  std::vector<std::string> notes;
+  if (source.triangles().empty())
+    notes.emplace_back("has no triangles; points alone are coded");
+  if (source.num_frames() > 1 || input.path == "-") return notes;
+  for (const char* const extension : {".pc2", ".mdd"}) {
+    const std::string cache =
+        std::filesystem::path(input.path).replace_extension(extension).string();
+    std::error_code ignored;
+    if (cache == input.path || !std::filesystem::exists(cache, ignored)) continue;
+    notes.push_back("is one frame; with --points " + cache + " it has those of that file");
+  }
+  return notes;
+}
+
 int run(const EncodeOptions& o) {
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
   const std::string name = name_of_input(o.input.path);
-  for (const std::string& note : (*source)->notes()) {
+  std::vector<std::string> notes = (*source)->notes();
+  for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
+  for (const std::string& note : notes) {
     if (!o.quiet) std::cerr << "rlpcenc: " << name << ": " << note << "\n";
   }
   if (o.dry_run) return run_dry(o, **source);

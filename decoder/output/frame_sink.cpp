@@ -23,10 +23,6 @@ constexpr std::array<NamedFormat, 6> kFormats{{{".rlpd", SinkFormat::kRlpd},
                                                {".obj", SinkFormat::kObj},
                                                {".ply", SinkFormat::kPly}}};
 
-// Extensions that stand for a file of a kind that cannot be written, not for a folder.
-constexpr std::array<std::string_view, 8> kOtherFiles{".stl", ".fbx", ".abc",  ".gltf",
-                                                      ".off", ".txt", ".rlpc", ".zip"};
-
 std::string_view extension_of(SinkFormat format) {
   for (const NamedFormat& f : kFormats) {
     if (f.format == format) return f.extension;
@@ -121,12 +117,12 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
                        "with a number as in frame_%04d" +
                        std::string(extension_of(format))};
   }
-  for (const std::string_view other : kOtherFiles) {
-    if (extension == other) {
-      return OutputError{path + ": cannot write " + extension +
-                         " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
-                         "frame_%04d.ply or a folder"};
-    }
+  std::error_code ignored;
+  if (!extension.empty() && !fs::is_directory(path, ignored)) {
+    return OutputError{
+        path + ": cannot write " + extension +
+        " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
+        "frame_%04d.ply, or a folder, with / at the end if there is a dot in it"};
   }
   const std::string pattern = "frame_%04d" + std::string(extension_of(format));
   return open_mesh_sink((fs::path(path) / pattern).string(), format, std::move(options));

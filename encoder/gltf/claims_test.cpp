@@ -60,7 +60,7 @@ TEST_F(GltfClaimsTest, EveryValueMayBeAnything) {
       {"count", 1},
       {"indices",
        {{"bufferView", good.add_view(std::vector<std::uint8_t>{1})}, {"componentType", 5121}}},
-      {"values", {{"bufferView", 0}, {"byteOffset", 0}}}};
+      {"values", {{"bufferView", 0}, {"byteOffset", 12}}}};
   good.json["accessors"][0]["byteOffset"] = 0;
   good.json["nodes"][0].update({{"skin", 0}, {"children", {1}}, {"rotation", {0, 0, 0, 1}}});
   good.push("nodes", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});

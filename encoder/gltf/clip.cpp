@@ -1,6 +1,7 @@
 #include "encoder/gltf/clip.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -12,13 +13,11 @@ namespace {
 
 using std::to_string;
 
-std::string names_of(const GltfDocument& document) {
-  constexpr std::size_t kMost = 20;
-  std::string text;
-  for (std::size_t i = 0; i < document.animations.size() && i < kMost; ++i) {
-    text += (i > 0 ? ", " : "") + gltf_quoted(document.animations[i].name);
-  }
-  return text + (document.animations.size() > kMost ? ", ..." : "");
+// The shortest digits that tell the number from its neighbours.
+std::string shortest(float x) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+  return {text.data(), end};
 }
 
 void check_ascending(const std::vector<float>& times, std::uint32_t accessor,
@@ -26,8 +25,8 @@ void check_ascending(const std::vector<float>& times, std::uint32_t accessor,
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i - 1] < times[i]) continue;
     errors.expected(gltf_accessor_path(accessor) + ", element " + to_string(i),
-                    to_string(times[i]),
-                    "a time after the one before, " + to_string(times[i - 1]));
+                    shortest(times[i]),
+                    "a time after the one before, " + shortest(times[i - 1]));
   }
 }
 
@@ -142,6 +141,15 @@ double GltfClip::time_of(std::uint32_t frame, const FrameRate& rate) const {
                             static_cast<double>(frame) * rate.denominator / rate.numerator);
 }
 
+std::string gltf_animation_names(const GltfDocument& document) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < document.animations.size() && i < kMost; ++i) {
+    text += (i > 0 ? ", " : "") + gltf_quoted(document.animations[i].name);
+  }
+  return text + (document.animations.size() > kMost ? ", ..." : "");
+}
+
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                                              const std::string& name, GltfErrors& errors) {
   const auto count = static_cast<std::uint32_t>(document.animations.size());
@@ -163,7 +171,7 @@ std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
              "no " + gltf_quoted(name) + " there; " +
                  (count == 0 ? "the file has none"
                              : "expected all, an index below " + to_string(count) +
-                                   ", or one of " + names_of(document)));
+                                   ", or one of " + gltf_animation_names(document)));
   return {};
 }
 

@@ -29,6 +29,9 @@ struct GltfClip {
   double time_of(std::uint32_t frame, const FrameRate& rate) const;
 };
 
+// For messages: the first ones, quoted.
+std::string gltf_animation_names(const GltfDocument& document);
+
 // Which animations `name` means: "" the first if any, "all", a name, or an index from 0.
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                                              const std::string& name, GltfErrors& errors);

@@ -30,6 +30,19 @@ void check_extensions(const GltfValue& required) {
   }
 }
 
+// The file can be read without these, but shows something else.
+std::vector<std::string> left_out(const GltfValue& used) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const std::string name = used[i].text();
+    for (const char* const known :
+         {"EXT_mesh_gpu_instancing", "KHR_node_visibility", "MSFT_lod"}) {
+      if (name == known) found.push_back(name);
+    }
+  }
+  return found;
+}
+
 void check_version(const GltfValue& asset) {
   const std::string version = asset["version"].text();
   if (!version.starts_with("2.")) asset["version"].fail("\"2.0\"");
@@ -67,6 +80,7 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
   primitive.indices = value["indices"].index_if_any(counts.accessors, "accessors");
   const GltfValue attributes = value["attributes"];
   primitive.positions = attributes["POSITION"].index(counts.accessors, "accessors");
+  primitive.is_compressed = value["extensions"]["KHR_draco_mesh_compression"].exists();
   primitive.joints = numbered(attributes, "JOINTS_", counts);
   primitive.weights = numbered(attributes, "WEIGHTS_", counts);
   if (primitive.joints.size() != primitive.weights.size()) {
@@ -214,6 +228,7 @@ GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors) {
   GltfDocument document;
   check_version(root["asset"]);
   check_extensions(root["extensionsRequired"]);
+  document.extensions_left_out = left_out(root["extensionsUsed"]);
   const Counts counts(root);
   document.buffers = read_all(root["buffers"], [](const GltfValue& value) {
     GltfBuffer buffer;

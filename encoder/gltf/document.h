@@ -30,6 +30,7 @@ struct GltfPrimitive {
   GltfMode mode = GltfMode::kTriangles;
   std::optional<std::uint32_t> indices;  // accessors, here and below
   std::uint32_t positions = 0;
+  bool is_compressed = false;  // by an extension, and perhaps for those alone who know it
   std::vector<std::optional<std::uint32_t>> targets;  // without positions: nothing moves
   std::vector<std::uint32_t> joints;                  // as many as weights
   std::vector<std::uint32_t> weights;
@@ -88,6 +89,8 @@ struct GltfDocument {
   std::vector<GltfSkin> skins;
   std::vector<GltfAnimation> animations;
   std::optional<std::vector<std::uint32_t>> scene;  // its nodes; none: all that have no parent
+  // Extensions that are not read, though they would change shapes or motions.
+  std::vector<std::string> extensions_left_out;
 };
 
 // Whole only if there are no errors.

@@ -220,7 +220,7 @@ TEST_F(GltfErrorsTest, AnimationsThatCannotBe) {
     builder.add_channel(0, path, input, builder.add(type, values), how);
     expect_error(builder, part);
   };
-  const char* const order = "accessors[1], element 2: found 1.000000, expected a time after";
+  const char* const order = "accessors[1], element 2: found 1, expected a time after";
   expect_sampler(order, {0, 1, 1}, std::vector<float>(9));
   expect_sampler(order, {0, 2, 1}, std::vector<float>(9));
   expect_sampler("accessors[2].count: found 3, expected 2, 1 for each of the 2 times", {0, 1},

@@ -23,6 +23,14 @@ class ModelReader {
   GltfModel read(const std::string& animation) {
     model_.scene = read_gltf_scene(document_, errors_);
     if (errors_) return {};
+    for (const std::string& extension : document_.extensions_left_out) {
+      model_.notes.push_back("what " + extension + " adds or hides is left out of account");
+    }
+    if (animation.empty() && document_.animations.size() > 1) {
+      model_.notes.push_back("the first of " + to_string(document_.animations.size()) +
+                             " animations is taken: " + gltf_animation_names(document_) +
+                             "; --animation chooses");
+    }
     for (const std::uint32_t chosen : choose_animations(document_, animation, errors_)) {
       if (errors_) return {};
       model_.clips.push_back(read_gltf_clip(document_, chosen, values_, errors_));
@@ -75,7 +83,13 @@ class ModelReader {
         ++num_without_triangles_;
         continue;
       }
-      const std::uint64_t count = values_.accessor(primitive.positions).count;
+      const GltfAccessor& positions = values_.accessor(primitive.positions);
+      if (primitive.is_compressed && !positions.base && !positions.sparse) {
+        errors_.expected(gltf_accessor_path(primitive.positions), "no bufferView",
+                         "positions; export the file again without compression of meshes");
+        return;
+      }
+      const std::uint64_t count = positions.count;
       if (count > limits_.max_vertices - model_.num_vertices) {
         errors_.expected(primitive.path, to_string(count) + " vertices more",
                          "at most " + to_string(limits_.max_vertices) + " in the whole scene");

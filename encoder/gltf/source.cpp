@@ -134,8 +134,15 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
       std::move(shape), name, std::move(*model), std::move(*first_frame));
-  if (!options.weld) return source;
-  return weld(std::move(source));
+  if (options.weld) {
+    auto welded = weld(std::move(source));
+    if (!welded) return welded;
+    source = std::move(*welded);
+  }
+  if (source->triangles().empty()) {
+    return InputError{name + ": expected a mesh with triangles; all of them are degenerate"};
+  }
+  return source;
 }
 
 }  // namespace rlpc

@@ -199,6 +199,34 @@ TEST_F(GltfSourceTest, LeavesOutWhatExtensionsMoveAndSaysSo) {
             (std::vector<std::string>{"1 animation channel is of extensions and left out"}));
 }
 
+TEST_F(GltfSourceTest, SaysWhatElseItLeavesOut) {
+  GltfBuilder builder = moving_triangle();
+  builder.json["animations"].push_back(builder.json["animations"][0]);
+  builder.json["animations"][1]["name"] = "Run";
+  builder.json["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"};
+  const auto source = open(builder);
+  ASSERT_EQ(source->notes().size(), 2U);
+  EXPECT_EQ(source->notes()[0],
+            "what EXT_mesh_gpu_instancing adds or hides is left out of account");
+  EXPECT_TRUE(source->notes()[1].starts_with("the first of 2 animations is taken: "));
+  EXPECT_NE(source->notes()[1].find("\"Run\""), std::string::npos);
+  EXPECT_EQ(open(builder, "all")->notes().size(), 1U);
+}
+
+TEST_F(GltfSourceTest, RefusesMeshesWithoutAnything) {
+  GltfBuilder builder = one_triangle();
+  builder.json["accessors"][0].erase("bufferView");
+  builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0}};
+  expect_text(error_of(builder), "found no bufferView, expected positions");
+  GltfBuilder flat;
+  const std::vector<float> xyz(9);
+  flat.add_root(
+      {{"mesh", flat.add_mesh({{"attributes", {{"POSITION", flat.add("VEC3", xyz)}}}})}});
+  expect_text(error_of(flat), "all of them are degenerate");
+  EXPECT_EQ(open(flat)->triangles().size(), 1U);  // without welding, its corners differ
+}
+
 TEST_F(GltfSourceTest, WeldsUnlessToldNotTo) {
   GltfBuilder builder;
   // Two triangles with an edge in common, as six vertices; and one that is none.

@@ -256,6 +256,7 @@ TEST_F(FrameSourceTest, SortsNumbersByValue) {
   EXPECT_TRUE(natural_less("f01", "f1"));
   EXPECT_FALSE(natural_less("f1", "f01"));
   EXPECT_FALSE(natural_less("f1", "f1"));
+  EXPECT_FALSE(natural_less("\xC3\xA9_1", "z_1"));  // by bytes, whatever the sign of char
   EXPECT_TRUE(natural_less("f99999999999999999999998", "f99999999999999999999999"));
 }
 
@@ -329,6 +330,24 @@ TEST_F(MeshSequenceTest, NamesTheMissingFrame) {
   for (const int n : {3, 4, 6}) put("f" + std::to_string(n) + ".obj", frame(n));
   expect_error({path("f%d.obj"), "", {}},
                "f5.obj: this frame is missing, though f6.obj exists");
+}
+
+TEST_F(MeshSequenceTest, NotesWhatMayNotBeMeant) {
+  const auto notes = [&] {
+    const auto source = open_frame_source({folder_.string(), "", {}});
+    return source ? (*source)->notes() : std::vector<std::string>{source.error().message};
+  };
+  for (const int n : {9, 10, 11}) put("f" + std::to_string(n) + ".obj", frame(n));
+  put("._f9.obj", "of another system");
+  fs::create_symlink(path("loop"), path("loop"));
+  EXPECT_TRUE(notes().empty());
+  fs::remove(path("f10.obj"));
+  ASSERT_EQ(notes().size(), 1U);
+  EXPECT_NE(notes()[0].find("no frame between"), std::string::npos) << notes()[0];
+  put("f10.obj", frame(10));
+  put("backup.obj", frame(0));
+  ASSERT_EQ(notes().size(), 1U);
+  EXPECT_NE(notes()[0].find("names are of different kinds"), std::string::npos) << notes()[0];
 }
 
 TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {

@@ -34,7 +34,8 @@ InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
   std::error_code ec;
   fs::directory_iterator it(folder.empty() ? fs::path(".") : folder, ec);
   while (!ec && it != fs::directory_iterator()) {
-    if (!it->is_directory()) names.push_back(it->path().filename().string());
+    std::error_code unknown;  // a link that leads nowhere is told of when it is read
+    if (!it->is_directory(unknown)) names.push_back(it->path().filename().string());
     it.increment(ec);
   }
   if (ec) return InputError{folder.string() + ": cannot list the folder: " + ec.message()};
@@ -94,6 +95,42 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
   result.suffix = name.substr(pos + 1);
   if (result.suffix.find('%') != name.npos) return std::nullopt;
   return result;
+}
+
+// A file name about its last number.
+struct NameParts {
+  std::string_view before;
+  std::optional<std::uint64_t> number;
+  std::string_view after;
+};
+
+NameParts parts_of(std::string_view path) {
+  const std::string_view name = path.substr(path.find_last_of('/') + 1);
+  std::size_t end = name.size();
+  while (end > 0 && !is_digit(name[end - 1])) --end;
+  std::size_t first = end;
+  while (first > 0 && is_digit(name[first - 1])) --first;
+  std::uint64_t number = 0;
+  const auto [rest, error] = std::from_chars(name.data() + first, name.data() + end, number);
+  if (error != std::errc()) return {name, std::nullopt, ""};
+  return {name.substr(0, first), number, name.substr(end)};
+}
+
+// What looks as if it were not meant.
+std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    const NameParts a = parts_of(paths[i - 1]);
+    const NameParts b = parts_of(paths[i]);
+    if (a.before != b.before || a.after != b.after || !a.number || !b.number) {
+      return {paths[i - 1] + " and " + paths[i] + " are frames " + std::to_string(i - 1) +
+              " and " + std::to_string(i) + ", though their names are of different kinds"};
+    }
+    if (*b.number != *a.number + 1) {
+      return {"there is no frame between " + paths[i - 1] + " and " + paths[i] +
+              "; they follow each other"};
+    }
+  }
+  return {};
 }
 
 class MeshSequence : public FrameSource {
@@ -158,7 +195,9 @@ bool natural_less(std::string_view a, std::string_view b) {
       if (m.size() != n.size()) return m.size() < n.size();
       if (m != n) return m < n;
     } else {
-      if (a[i] != b[j]) return a[i] < b[j];
+      // As bytes: char has a sign on some machines.
+      if (a[i] != b[j])
+        return static_cast<std::uint8_t>(a[i]) < static_cast<std::uint8_t>(b[j]);
       ++i;
       ++j;
     }
@@ -169,7 +208,10 @@ bool natural_less(std::string_view a, std::string_view b) {
 
 InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {
   auto paths = list_matching(
-      folder, [](const std::string& name) { return is_mesh_extension(lower_extension(name)); },
+      folder,
+      [](const std::string& name) {
+        return name[0] != '.' && is_mesh_extension(lower_extension(name));
+      },
       folder + ": no .obj, .ply or .off file in this folder; expected one per frame");
   if (!paths) return paths;
   const std::string extension = lower_extension(paths->front());
@@ -231,6 +273,7 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
   if (!first) return first.error();
   auto shape =
       shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
+  shape.notes = notes_on(paths);
   return std::unique_ptr<FrameSource>(
       std::make_unique<MeshSequence>(std::move(shape), std::move(paths)));
 }
