@@ -52,10 +52,15 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
 }
 
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
+  const Target& target = o.settings.target;
+  constexpr double kNearRate = 0.95;
+  if (target.kind == Target::kBpvf && report.bpvf < kNearRate * target.value && !o.quiet) {
+    std::cerr << "rlpcenc: fewer bits than --bpvf allows: this is as exact as it gets\n";
+  }
   if (report.target_met) return kEncoded;
-  std::cerr << "rlpcenc: the target is out of reach; this is the closest. Try a "
-            << (o.settings.target.kind == Target::kBpvf ? "higher --bpvf, or a longer --gof"
-                                                        : "larger error")
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. Try a "
+            << (target.kind == Target::kBpvf ? "higher --bpvf, or a longer --gof"
+                                             : "larger error")
             << ".\n";
   return kTargetMissed;
 }
