@@ -5,9 +5,12 @@
 """
 
 import math
+import signal
 import struct
+import subprocess
+import time
 
-from tools_testing import INPUTS, ToolsTest, limited, main, run, write_pc2
+from tools_testing import INPUTS, Tools, ToolsTest, limited, main, run, write_pc2
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
@@ -222,6 +225,31 @@ class BadOutput(ToolsTest):
                      self.path("none/x"))
         self.assertEqual(result.code, 2, result.err)
         self.assertIn("none/x", result.err)
+
+
+class Interrupts(ToolsTest):
+    """Nothing is left of what was not finished."""
+
+    def interrupted(self, started, tool, *arguments):
+        with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
+                              stderr=subprocess.DEVNULL) as running:
+            while not started.exists() and running.poll() is None:
+                time.sleep(0.001)
+            running.send_signal(signal.SIGTERM)
+            self.assertEqual(running.wait(100), -signal.SIGTERM)
+
+    def test_while_encoding_and_decoding(self):
+        _, frames = self.clip(60)
+        write_pc2(self.path("clip.pc2"), frames * 20)
+        before = ["clip.obj", "clip.pc2"]
+        mesh = [self.path("clip.obj"), "--points", self.path("clip.pc2")]
+        self.interrupted(self.path("x.rlpc.partial"), "rlpcenc", *mesh, "-o",
+                         self.path("x.rlpc"), "--gof", 20)
+        self.assertEqual(self.files(), before)
+        self.ok("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
+        self.interrupted(self.path("out.partial"), "rlpcdec", self.path("x.rlpc"), "-o",
+                         self.path("out"))
+        self.assertEqual(self.files(), [*before, "x.rlpc"])
 
 
 class SamePlaces(ToolsTest):

@@ -160,7 +160,16 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
   return rlpc::write_html(request, source);
 }
 
+// The signal that asks to end, if one did. A second one ends at once.
+volatile std::sig_atomic_t interrupt = 0;
+
+extern "C" void on_interrupt(int signal) {
+  interrupt = signal;
+  std::signal(signal, SIG_DFL);
+}
+
 int decode(const Options& o) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, on_interrupt);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = open_input(o.input);
   if (!source) return complain(o, source.error());
@@ -201,6 +210,7 @@ int decode(const Options& o) {
   {
     const FrameCounter counter(count, !o.quiet);
     for (std::uint32_t f = 0; f < count; ++f) {
+      if (interrupt != 0) return 128 + interrupt;
       const auto more = decoder->next_frame(positions);
       if (!more) return complain(o, more.error());
       if (sink) {
@@ -313,7 +323,8 @@ int main(int argc, char** argv) try {
                     rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
-  return decode(options);
+  const int code = decode(options);
+  return interrupt != 0 ? std::raise(interrupt) : code;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "rlpcdec: %s\n", error.what());  // out of memory, most likely
   return rlpc::kExitLimit;

@@ -103,6 +103,16 @@ int run_dry(const EncodeOptions& o, FrameSource& source) {
   return tell(o, source, *expected);
 }
 
+// The signal that asks to end, if one did. A second one ends at once.
+volatile std::sig_atomic_t interrupt = 0;
+
+extern "C" void on_interrupt(int signal) {
+  interrupt = signal;
+  std::signal(signal, SIG_DFL);
+}
+
+struct Interrupted {};  // thrown, so that unfinished files go
+
 // Encodes to the file, and writes the order of vertices where it is asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
   StreamFile stream(o.output);
@@ -116,7 +126,10 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
     report = encode(
         source, o.settings,
         [&](std::span<const std::uint8_t> bytes) { return stream.write(bytes); },
-        [&](double fraction) { bar.show(fraction); });
+        [&](double fraction) {
+          if (interrupt != 0) throw Interrupted{};
+          bar.show(fraction);
+        });
   }
   if (!stream.good()) return *stream.commit();
   if (!report) return report;
@@ -173,11 +186,14 @@ void return_large_blocks() {
 }  // namespace rlpc
 
 int main(int argc, char** argv) try {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, rlpc::on_interrupt);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   rlpc::return_large_blocks();
   rlpc::EncodeOptions options;
   if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
   return rlpc::run(options);
+} catch (const rlpc::Interrupted&) {
+  return std::raise(rlpc::interrupt);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "rlpcenc: %s\n", error.what());  // out of memory, most likely
   return rlpc::kFailed;
