@@ -94,6 +94,11 @@ void print_text(const ExtractOptions& o, const StreamCutter& cutter, std::uint64
         gof.first_frame, gof.first_frame + gof.num_frames - 1, after.num_trajectories,
         before.num_trajectories, after.num_layers, before.num_layers, after.num_slices,
         before.num_slices, after.bytes, before.bytes);
+    if (after.num_trajectories == 0 && before.num_trajectories > 0 &&
+        o.cut.max_components > 0) {
+      std::printf("    no group has %u trajectories or less: bones and rest shape alone stay\n",
+                  o.cut.max_components);
+    }
     if (too_many_layers(o, after)) {
       std::printf("    more than %u layers: the first layer group always stays\n",
                   o.cut.max_layers);
