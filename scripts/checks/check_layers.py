@@ -39,7 +39,7 @@ TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
 # common computes; it neither reads, writes nor logs.
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
-PUBLIC_HEADERS = ("decoder/rlpc_decoder.h", "encoder/rlpc_encoder.h")
+PUBLIC_HEADERS = ("decoder/rlpc_decoder.h", "encoder/frame_encoder.h", "encoder/rlpc_encoder.h")
 # Folder: other folders whose modules it may import.
 PLAIN_PYTHON = {"conformance/specdec": (), "conformance/judge": ("conformance/specdec",)}
 
