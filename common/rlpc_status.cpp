@@ -1,6 +1,6 @@
 #include "common/rlpc_status.h"
 
-const char* rlpc_status_text(rlpc_status status) {
+const char* rlpc_status_text(int status) {
   switch (status) {
     case RLPC_OK:
       return "done";

@@ -28,7 +28,7 @@ typedef enum rlpc_status {
 
 // In a few words, for a status alone; handles have a text that says what, where and why. Never
 // null, for any number.
-RLPC_API const char* rlpc_status_text(rlpc_status status);
+RLPC_API const char* rlpc_status_text(int status);
 
 // Of the library: "1.1.1".
 RLPC_API const char* rlpc_version(void);

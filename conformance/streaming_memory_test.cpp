@@ -21,7 +21,8 @@ std::vector<float> frame_of(std::uint32_t f) {
   std::vector<float> xyz;
   for (std::uint32_t v = 0; v < kVertices; ++v) {
     const double x = v % 10 / 10.0;
-    const double y = v / 10 / 6.0;
+    const std::uint32_t row = v / 10;
+    const double y = row / 6.0;
     const double wave = 0.1 * std::sin(6.2832 * (f % kGofFrames / 10.0 + x));
     for (const double c : {x, y, wave * (1 + y)}) xyz.push_back(static_cast<float>(c));
   }

@@ -67,17 +67,17 @@ typedef enum rlpc_hash_mode {
 } rlpc_hash_mode;
 
 typedef struct rlpc_encode_options {
-  size_t struct_size;        // rlpc_encode_options_init sets it
-  rlpc_profile profile;      // RLPC_MAIN by default
-  rlpc_preset preset;        // RLPC_MEDIUM
-  rlpc_target target;        // RLPC_TARGET_KG: reached from below, within 2 % where it can be
-  double target_value;       // 0.1; above zero
-  uint32_t gof_frames;       // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
-  uint32_t components;       // of a GOF (Main) or cluster (Baseline); 0: chosen
-  uint32_t keep_order;       // 1: restore the order of vertices that the frames have here; or 0
-  rlpc_hash_mode hash_mode;  // RLPC_HASH_GOF
-  uint32_t least_level;      // 1; more where an error asks for it
-  const char* metadata;      // JSON text to carry along, not checked; null: none. Copied
+  size_t struct_size;    // rlpc_encode_options_init sets it
+  uint32_t profile;      // RLPC_MAIN by default
+  uint32_t preset;       // RLPC_MEDIUM
+  uint32_t target;       // RLPC_TARGET_KG: reached from below, within 2 % where it can be
+  double target_value;   // 0.1; above zero
+  uint32_t gof_frames;   // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
+  uint32_t components;   // of a GOF (Main) or cluster (Baseline); 0: chosen
+  uint32_t keep_order;   // 1: restore the order of vertices that the frames have here; or 0
+  uint32_t hash_mode;    // RLPC_HASH_GOF
+  uint32_t least_level;  // 1; more where an error asks for it
+  const char* metadata;  // JSON text to carry along, not checked; null: none. Copied
   // Memory for the handle, of rlpc_encoder_bytes() bytes and aligned as that of malloc, which
   // must stay until the handle is closed. Null: it is allocated.
   void* place;

@@ -12,7 +12,7 @@
 #include "encoder/rlpc_encode.h"
 
 // What is taken when memory ends may stay taken, as the headers say: common/ and decoder/ are
-// built without exceptions. NOLINTNEXTLINE(bugprone-reserved-identifier)
+// built without exceptions. NOLINTNEXTLINE
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
 namespace {
@@ -26,7 +26,8 @@ constexpr std::uint32_t kFrames = 4 * kGofFrames;
 std::vector<float> frame_of(std::uint32_t f) {
   std::vector<float> xyz;
   for (std::uint32_t v = 0; v < kVertices; ++v) {
-    const double x = v / 2 * 0.05;
+    const std::uint32_t column = v / 2;
+    const double x = column * 0.05;
     for (const double c : {x, v % 2 * 0.3, 0.2 * std::sin(0.2 * f + 4 * x)}) {
       xyz.push_back(static_cast<float>(c));
     }
