@@ -48,8 +48,8 @@ double percent(double part, double whole) {
 
 }  // namespace
 
-MetricsAccumulator::MetricsAccumulator(std::uint32_t num_vertices)
-    : num_vertices_(num_vertices) {
+MetricsAccumulator::MetricsAccumulator(std::uint32_t num_vertices, Keep keep)
+    : num_vertices_(num_vertices), keep_(keep) {
   assert(num_vertices > 0);
 }
 
@@ -71,41 +71,52 @@ void MetricsAccumulator::add_frame(std::span<const float> original,
   frame.rms_error = std::sqrt(frame.squared_error / num_vertices_);
   frame.max_error = std::sqrt(max_squared);
   for (std::size_t i = 0; i < original.size(); ++i) {
-    const bool first = frames_.empty() && i < 3;
+    const bool first = num_frames_ == 0 && i < 3;
     box_min_[i % 3] = first ? original[i] : std::min(box_min_[i % 3], original[i]);
     box_max_[i % 3] = first ? original[i] : std::max(box_max_[i % 3], original[i]);
   }
   add_motion(original, frame);
-  frames_.push_back(frame);
+  add_to_totals(frame);
+  if (keep_ == kFrames) frames_.push_back(frame);
+}
+
+void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
+  squared_error_ += frame.squared_error;
+  spread_ += frame.spread;
+  if (frame.max_error > totals_.max_error) {
+    totals_.max_error = frame.max_error;
+    totals_.max_error_frame = num_frames_;
+    totals_.max_error_vertex = frame.max_error_vertex;
+  }
+  if (frame.squared_error > 0) {
+    log_sum_ += std::log10(mean_squared(frame));
+    ++num_inexact_;
+  }
+  ++num_frames_;
+}
+
+// PMSE of a peak of 1.
+double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
+  const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
+  return frame.squared_error / (3 * vertices);
 }
 
 void MetricsAccumulator::add_motion(std::span<const float> original, FrameMetrics& frame) {
   frame.moved_vertices = 0;
-  for (std::uint32_t v = 0; !frames_.empty() && v < num_vertices_; ++v) {
+  for (std::uint32_t v = 0; num_frames_ > 0 && v < num_vertices_; ++v) {
     const double squared = squared_distance(original, previous_, v);
     max_squared_displacement_ = std::max(max_squared_displacement_, squared);
     if (squared > 0) ++frame.moved_vertices;
   }
-  if (frames_.empty()) frame.moved_vertices = num_vertices_;
+  if (num_frames_ == 0) frame.moved_vertices = num_vertices_;
   previous_.assign(original.begin(), original.end());
 }
 
 Metrics MetricsAccumulator::result() const {
-  assert(!frames_.empty());
-  Metrics m;
+  assert(num_frames_ > 0);
+  Metrics m = totals_;
   m.num_vertices = num_vertices_;
   m.frames = frames_;
-  double squared_error = 0;
-  double spread = 0;
-  for (std::size_t f = 0; f < frames_.size(); ++f) {
-    squared_error += frames_[f].squared_error;
-    spread += frames_[f].spread;
-    if (frames_[f].max_error > m.max_error) {
-      m.max_error = frames_[f].max_error;
-      m.max_error_frame = static_cast<std::uint32_t>(f);
-      m.max_error_vertex = frames_[f].max_error_vertex;
-    }
-  }
   double squared_diagonal = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double side =
@@ -113,9 +124,8 @@ Metrics MetricsAccumulator::result() const {
     squared_diagonal += side * side;
   }
   m.diagonal = std::sqrt(squared_diagonal);
-  m.kg_error_percent = percent(std::sqrt(squared_error), std::sqrt(spread));
-  m.rms_error =
-      std::sqrt(squared_error / (static_cast<double>(frames_.size()) * num_vertices_));
+  m.kg_error_percent = percent(std::sqrt(squared_error_), std::sqrt(spread_));
+  m.rms_error = std::sqrt(squared_error_ / (static_cast<double>(num_frames_) * num_vertices_));
   m.rms_error_percent = percent(m.rms_error, m.diagonal);
   m.max_error_percent = percent(m.max_error, m.diagonal);
   m.max_displacement = std::sqrt(max_squared_displacement_);
@@ -126,21 +136,14 @@ Metrics MetricsAccumulator::result() const {
 void MetricsAccumulator::finish_psnr(Metrics& metrics) const {
   const double peak =
       metrics.max_displacement > 0 ? metrics.max_displacement : metrics.diagonal;
-  double sum = 0;
-  std::uint64_t inexact_frames = 0;
   for (FrameMetrics& frame : metrics.frames) {
-    if (frame.squared_error == 0) {
-      frame.psnr_db = kInfinity;
-      continue;
-    }
-    const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
     // The quotient is infinite, and PSNR minus infinity, when the peak is 0.
-    frame.psnr_db = -10 * std::log10(frame.squared_error / (3 * vertices * peak * peak));
-    sum += frame.psnr_db;
-    ++inexact_frames;
+    frame.psnr_db = frame.squared_error > 0
+                        ? -10 * std::log10(mean_squared(frame) / (peak * peak))
+                        : kInfinity;
   }
   metrics.mean_psnr_db =
-      inexact_frames > 0 ? sum / static_cast<double>(inexact_frames) : kInfinity;
+      num_inexact_ > 0 ? 20 * std::log10(peak) - 10 * log_sum_ / num_inexact_ : kInfinity;
 }
 
 double bits_per_vertex_per_frame(std::uint64_t file_bytes, std::uint64_t num_vertices,

@@ -32,10 +32,10 @@ struct Metrics {
   double max_error_percent = 0;
   std::uint32_t max_error_frame = 0;  // the first frame and vertex that reach it
   std::uint32_t max_error_vertex = 0;
-  double diagonal = 0;          // of the original's bounding box over all frames
-  double max_displacement = 0;  // of a vertex of the original from one frame to the next
-  double mean_psnr_db = 0;      // over the frames that are not exact; infinite if all are
-  std::vector<FrameMetrics> frames;
+  double diagonal = 0;               // of the original's bounding box over all frames
+  double max_displacement = 0;       // of a vertex of the original from one frame to the next
+  double mean_psnr_db = 0;           // over the frames that are not exact; infinite if all are
+  std::vector<FrameMetrics> frames;  // empty if they were not to be kept
 };
 
 // PSNR is that of Ramanathan, Kassim and Tan 2008, section 3.2: -10 log10 PMSE with
@@ -46,7 +46,10 @@ struct Metrics {
 // nothing moves in the whole animation, R is the diagonal of the bounding box.
 class MetricsAccumulator {
  public:
-  explicit MetricsAccumulator(std::uint32_t num_vertices);  // at least 1
+  // kTotals keeps nothing of each frame, so that memory does not grow with them.
+  enum Keep : std::uint8_t { kFrames, kTotals };
+  explicit MetricsAccumulator(std::uint32_t num_vertices,  // at least 1
+                              Keep keep = kFrames);
 
   // Both 3 * num_vertices finite values in the same vertex order; frames in order.
   void add_frame(std::span<const float> original, std::span<const float> decoded);
@@ -56,10 +59,19 @@ class MetricsAccumulator {
 
  private:
   void add_motion(std::span<const float> original, FrameMetrics& frame);
+  void add_to_totals(const FrameMetrics& frame);
+  double mean_squared(const FrameMetrics& frame) const;
   void finish_psnr(Metrics& metrics) const;
 
   std::uint32_t num_vertices_;
+  Keep keep_;
   std::vector<FrameMetrics> frames_;
+  std::uint32_t num_frames_ = 0;
+  Metrics totals_;  // largest errors, so far
+  double squared_error_ = 0;
+  double spread_ = 0;
+  double log_sum_ = 0;  // of log10 of mean_squared, over frames that are not exact
+  std::uint32_t num_inexact_ = 0;
   std::vector<float> previous_;
   double max_squared_displacement_ = 0;
   float box_min_[3] = {};

@@ -14,6 +14,10 @@ class TargetSearch {
   TargetSearch(const Target& target, double spread, double steps_per_unit,
                double step_of_error = 6.0);
 
+  // Before the first encoding: the step to try first, where a target is searched for.
+  void begin_at(double step) {
+    if (target_.kind != Target::kNone) step_ = step;
+  }
   double step() const { return step_; }
   // The step that the analysis is made for. Close to the target it stays as it is, as the
   // measured value jumps from one analysis to the next; but it serves nearby steps only.

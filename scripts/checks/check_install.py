@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Installs a build into a temporary prefix and builds consumer/ against it, from outside:
-with find_package(rlpc), and with pkg-config where there is one."""
+"""Installs a build into a temporary prefix, and uses it from outside: builds the programs of
+consumer/ against it, with find_package(rlpc), and with pkg-config where there is one, and runs
+them on an animation of streams/inputs."""
 
 import argparse
+import array
 import os
 import pathlib
 import shlex
@@ -12,6 +14,17 @@ import sys
 import tempfile
 
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
+CLIP = CONSUMER.parents[2] / "streams" / "inputs" / "elephant.obj"
+PC2_HEADER_BYTES = 32
+PAGES = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
+# Program: its source, and the module of pkg-config.
+PROGRAMS = {
+    "decode_c": ("decode.c", "rlpc"), "encode_c": ("encode.c", "rlpc"),
+    "decode_cpp": ("decode.cpp", "rlpc-decoder"), "encode_cpp": ("encode.cpp", "rlpc-encoder")}
+
+
+class Wrong(Exception):
+    """What is installed does not do what it should."""
 
 
 def run(*command, **kwargs):
@@ -19,37 +32,94 @@ def run(*command, **kwargs):
     return subprocess.run(command, check=True, **kwargs)
 
 
-def try_consumer(program):
-    """It runs, and finds that an empty file is no stream."""
-    empty = program.parent / "empty.rlpc"
+def require(condition, complaint):
+    if not condition:
+        raise Wrong(complaint)
+
+
+class Clip:
+    """The animation as the tools of the prefix see it, and as raw numbers."""
+
+    def __init__(self, prefix, work):
+        self.tools = prefix / "bin"
+        self.stream = work / "clip.rlpc"
+        cache = CLIP.with_suffix(".pc2")
+        run(self.tools / "rlpcenc", CLIP, "--points", cache, "--kg", "0.2", "-q", "-o", self.stream)
+        run(self.tools / "rlpcdec", self.stream, "-q", "-o", work / "clip.pc2")
+        self.decoded = (work / "clip.pc2").read_bytes()[PC2_HEADER_BYTES:]
+        vertices, = array.array("i", cache.read_bytes()[16:20])
+        frames, = array.array("i", cache.read_bytes()[28:32])
+        self.shape = [str(vertices), str(frames)]
+        self.triangles, self.frames = work / "triangles.u32", work / "frames.f32"
+        faces = [line.split()[1:] for line in CLIP.read_text().splitlines()
+                 if line.startswith("f ")]
+        indices = array.array("I", [int(word.split("/")[0]) - 1 for face in faces for word in face])
+        self.triangles.write_bytes(indices.tobytes())
+        self.frames.write_bytes(cache.read_bytes()[PC2_HEADER_BYTES:])
+
+
+def try_decoder(program, clip, work):
+    """Its floats are those of rlpcdec; of an empty file it says that it is no stream."""
+    out = work / "decoded.f32"
+    run(program, clip.stream, out)
+    require(out.read_bytes() == clip.decoded, f"{program.name} and rlpcdec decode differently")
+    empty = work / "empty.rlpc"
     empty.touch()
     print("+", program, empty, flush=True)
-    code = subprocess.run([program, empty], check=False).returncode
-    if code != 1:
-        raise subprocess.CalledProcessError(code, [program, empty])
+    code = subprocess.run([program, empty, out], check=False).returncode
+    require(code == 1, f"{program.name}: exit code {code} for an empty file")
+
+
+def try_programs(folder, clip, work):
+    for name in ("decode_c", "decode_cpp"):
+        try_decoder(folder / name, clip, work)
+    out = work / "encoded.rlpc"
+    run(folder / "encode_cpp", CLIP, CLIP.with_suffix(".pc2"), out)
+    require(out.read_bytes() == clip.stream.read_bytes(), "encode_cpp and rlpcenc differ")
+    run(folder / "encode_c", *clip.shape, clip.triangles, clip.frames, out)
+    run(clip.tools / "rlpcval", out)
+    print("+", folder / "encode_c", "too few frames", flush=True)
+    cut = work / "cut.f32"
+    cut.write_bytes(clip.frames.read_bytes()[:-1])
+    code = subprocess.run([folder / "encode_c", *clip.shape, clip.triangles, cut, out],
+                          check=False).returncode
+    require(code == 1, f"encode_c: exit code {code} for too few frames")
 
 
 def with_cmake(args, prefix, work):
+    # The runtime of sanitizers comes with the C++ compiler.
+    link = [f"-DCMAKE_C_LINK_EXECUTABLE={args.cxx} <FLAGS> <LINK_FLAGS> <OBJECTS> -o <TARGET> "
+            "<LINK_LIBRARIES>"] if args.flags else []
     run(args.cmake, "-S", CONSUMER, "-B", work, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
-        f"-DCMAKE_CXX_COMPILER={args.cxx}", f"-DCMAKE_CXX_FLAGS={args.flags}")
+        f"-DCMAKE_C_COMPILER={args.cc}", f"-DCMAKE_CXX_COMPILER={args.cxx}",
+        f"-DCMAKE_C_FLAGS={args.flags}", f"-DCMAKE_CXX_FLAGS={args.flags}", *link)
     run(args.cmake, "--build", work)
-    try_consumer(work / "consumer")
+    return work
 
 
 def with_pkg_config(args, prefix, work):
-    folders = [str(path.parent) for path in prefix.rglob("rlpc-decoder.pc")]
-    found = run("pkg-config", "--cflags", "--libs", "rlpc-decoder", stdout=subprocess.PIPE,
-                text=True, env={**os.environ, "PKG_CONFIG_PATH": os.pathsep.join(folders)})
     work.mkdir()
-    run(args.cxx, "-std=c++20", *shlex.split(args.flags), CONSUMER / "consumer.cpp", "-o",
-        work / "consumer", *shlex.split(found.stdout))
-    try_consumer(work / "consumer")
+    folders = {str(path.parent) for path in prefix.rglob("rlpc*.pc")}
+    environment = {**os.environ, "PKG_CONFIG_PATH": os.pathsep.join(folders)}
+    flags = shlex.split(args.flags)
+    for name, (source, module) in PROGRAMS.items():
+        found = run("pkg-config", "--cflags", "--libs", module, stdout=subprocess.PIPE, text=True,
+                    env=environment).stdout.split()
+        compiler = [args.cc, "-std=c99"] if source.endswith(".c") else [args.cxx, "-std=c++20"]
+        run(*compiler, *flags, "-c", CONSUMER / source, "-o", work / f"{name}.o",
+            *[word for word in found if word.startswith("-I")])
+        linker = args.cc if source.endswith(".c") and not flags else args.cxx
+        folder = next(word[2:] for word in found if word.startswith("-L"))
+        run(linker, *flags, work / f"{name}.o", "-o", work / name, f"-Wl,-rpath,{folder}",
+            *[word for word in found if not word.startswith("-I")])
+    return work
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path, help="a finished build directory")
     parser.add_argument("--cmake", default="cmake")
+    parser.add_argument("--cc", default="gcc")
     parser.add_argument("--cxx", default="g++")
     parser.add_argument("--flags", default="", help="the C++ flags of the build")
     args = parser.parse_args()
@@ -60,12 +130,15 @@ def main():
                 stdout=subprocess.DEVNULL)
             # The package must not depend on the place it was installed to.
             prefix = (work / "installed").rename(work / "moved")
-            with_cmake(args, prefix, work / "cmake")
+            clip = Clip(prefix, work)
+            try_programs(with_cmake(args, prefix, work / "cmake"), clip, work)
             if shutil.which("pkg-config"):
-                with_pkg_config(args, prefix, work / "pkg-config")
+                try_programs(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
             else:
-                print("pkg-config is not installed: its file was not tried")
-        except subprocess.CalledProcessError as error:
+                print("pkg-config is not installed: its files were not tried")
+            pages = {path.name for path in (prefix / "share" / "man" / "man1").iterdir()}
+            require(pages == {f"{page}.1" for page in PAGES}, f"manual pages: {sorted(pages)}")
+        except (subprocess.CalledProcessError, Wrong) as error:
             print(f"install: {error}")
             return 1
     print("install: the installed package can be used")

@@ -18,7 +18,7 @@ def repository_root():
     return pathlib.Path(__file__).resolve().parents[2]
 
 
-def files(root, folders, suffixes=(".h", ".cpp")):
+def files(root, folders, suffixes=(".c", ".h", ".cpp")):
     """The files below `folders` with one of the suffixes, in sorted order."""
     return sorted(path for folder in folders for path in (root / folder).rglob("*")
                   if path.suffix in suffixes and path.is_file())

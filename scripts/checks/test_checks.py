@@ -130,6 +130,9 @@ class Layers(TreeTest):
         self.run_on({"encoder/rlpc_encoder.h": '#include "encoder/svd.h"\n',
                      "encoder/svd.h": "#include <Eigen/SVD>\n"},
                     "encoder/svd.h:1", "encoder/rlpc_encoder.h reaches <Eigen/SVD>")
+        self.run_on({"decoder/rlpc_decode.h": "#include <stdint.h>\n"})
+        self.run_on({"decoder/rlpc_decode.h": "#include <unistd.h>\n"},
+                    "decoder/rlpc_decode.h:1", "reaches <unistd.h>")
 
     def test_specification_interpreter_is_plain_python(self):
         self.run_on({"conformance/specdec/run.py": "import re\nfrom specdec import blocks\n",

@@ -4,3 +4,7 @@ if(NOT CMAKE_CXX_COMPILER)
   find_program(RLPC_CLANG NAMES clang++-14 clang++ REQUIRED)
   set(CMAKE_CXX_COMPILER ${RLPC_CLANG})
 endif()
+if(NOT CMAKE_C_COMPILER)  # of programs in C that use the library
+  find_program(RLPC_CLANG_C NAMES clang-14 clang REQUIRED)
+  set(CMAKE_C_COMPILER ${RLPC_CLANG_C})
+endif()

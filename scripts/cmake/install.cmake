@@ -3,11 +3,22 @@
 include(CMakePackageConfigHelpers)
 
 set(public_headers "")
-foreach(side decoder encoder)
-  if(TARGET rlpc_${side} AND EXISTS ${PROJECT_SOURCE_DIR}/${side}/rlpc_${side}.h)
-    list(APPEND public_headers ${side}/rlpc_${side}.h)
+foreach(header decoder/rlpc_decoder.h encoder/rlpc_encoder.h encoder/frame_encoder.h)
+  get_filename_component(side ${header} DIRECTORY)
+  if(TARGET rlpc_${side} AND EXISTS ${PROJECT_SOURCE_DIR}/${header})
+    list(APPEND public_headers ${header})
   endif()
 endforeach()
+
+if(TARGET rlpc)
+  list(APPEND public_headers
+       common/rlpc_status.h decoder/rlpc_decode.h encoder/rlpc_encode.h)
+  add_library(rlpc::rlpc ALIAS rlpc)
+  install(TARGETS rlpc EXPORT rlpcTargets
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES ${PROJECT_BINARY_DIR}/rlpc.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
 
 foreach(part common decoder encoder)
   if(NOT TARGET rlpc_${part})
@@ -57,10 +68,17 @@ install(FILES ${PROJECT_BINARY_DIR}/rlpcConfig.cmake ${PROJECT_BINARY_DIR}/rlpcC
 
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH RLPC_PC_TO_INCLUDE ${pc_dir} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
-foreach(RLPC_SIDE decoder encoder)
-  if(TARGET rlpc_${RLPC_SIDE})
-    configure_file(scripts/cmake/rlpc.pc.in ${PROJECT_BINARY_DIR}/rlpc-${RLPC_SIDE}.pc @ONLY)
-    install(FILES ${PROJECT_BINARY_DIR}/rlpc-${RLPC_SIDE}.pc
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+# rlpc_pkg_config(NAME WHAT REQUIRES LIBS)
+function(rlpc_pkg_config RLPC_PC_NAME RLPC_PC_WHAT RLPC_PC_REQUIRES RLPC_PC_LIBS)
+  set(file ${PROJECT_BINARY_DIR}/${RLPC_PC_NAME}.pc)
+  configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/rlpc.pc.in ${file} @ONLY)
+  install(FILES ${file} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+foreach(side decoder encoder)
+  if(TARGET rlpc_${side})
+    rlpc_pkg_config(rlpc-${side} "${side} in C++" zlib "-lrlpc_${side} -lrlpc_common -pthread")
   endif()
 endforeach()
+if(TARGET rlpc)
+  rlpc_pkg_config(rlpc "in C" "" -lrlpc)
+endif()

@@ -1,0 +1,18 @@
+// Memory that `new` takes, counted: for tests of how much that is. count_memory.cpp replaces
+// the operators new and delete of the program that it is part of.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+namespace rlpc {
+
+struct MemoryCount {
+  std::size_t now = 0;                                               // bytes
+  std::size_t peak = 0;                                              // most bytes at a time
+  std::size_t calls = 0;                                             // of new
+  std::size_t calls_left = std::numeric_limits<std::size_t>::max();  // until new fails
+};
+extern MemoryCount memory_count;
+
+}  // namespace rlpc

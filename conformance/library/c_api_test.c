@@ -1,0 +1,481 @@
+// The library as programs in C use it: every function, and what each refuses. C99.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "decoder/rlpc_decode.h"
+#include "encoder/rlpc_encode.h"
+
+#define VERTICES 12
+#define VALUES (3 * VERTICES)
+#define TRIANGLES 10
+#define FRAMES 20
+
+static int failures = 0;
+
+#define CHECK(condition)                                                      \
+  do {                                                                        \
+    if (!(condition)) {                                                       \
+      fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition); \
+      ++failures;                                                             \
+    }                                                                         \
+  } while (0)
+
+#define CHECK_TEXT(text, part)                                                     \
+  do {                                                                             \
+    if (strstr(text, part) == NULL) {                                              \
+      fprintf(stderr, "%s:%d: no `%s` in `%s`\n", __FILE__, __LINE__, part, text); \
+      ++failures;                                                                  \
+    }                                                                              \
+  } while (0)
+
+typedef struct buffer {
+  unsigned char bytes[1 << 16];
+  size_t size;
+  size_t allowed;  // writes; 0: all
+  size_t writes;
+} buffer;
+
+static int append(void* user, const void* bytes, size_t num_bytes) {
+  buffer* to = user;
+  if (++to->writes == to->allowed || num_bytes > sizeof to->bytes - to->size) return 1;
+  memcpy(to->bytes + to->size, bytes, num_bytes);
+  to->size += num_bytes;
+  return 0;
+}
+
+// A strip that waves.
+static void make_frame(unsigned frame, float* xyz) {
+  for (unsigned v = 0; v < VERTICES; ++v) {
+    const double x = 0.1 * (v / 2);
+    xyz[3 * v] = (float)x;
+    xyz[3 * v + 1] = (float)(0.3 * (v % 2));
+    xyz[3 * v + 2] = (float)(0.2 * sin(0.4 * frame + 5.0 * x));
+  }
+}
+
+static const uint32_t* strip(void) {
+  static uint32_t indices[3 * TRIANGLES];
+  for (uint32_t t = 0; t < TRIANGLES; ++t) {
+    indices[3 * t] = t;
+    indices[3 * t + 1] = t + 1 + t % 2;
+    indices[3 * t + 2] = t + 2 - t % 2;
+  }
+  return indices;
+}
+
+static rlpc_frame_format strip_format(void) {
+  rlpc_frame_format format;
+  rlpc_frame_format_init(&format, sizeof format);
+  format.num_vertices = VERTICES;
+  format.num_triangles = TRIANGLES;
+  format.indices = strip();
+  format.num_frames = FRAMES;
+  format.box_max[0] = format.box_max[1] = 0.6F;
+  format.box_min[2] = -0.25F;
+  format.box_max[2] = 0.25F;
+  return format;
+}
+
+static rlpc_encode_options small_gofs(void) {
+  rlpc_encode_options options;
+  rlpc_encode_options_init(&options, sizeof options);
+  options.target = RLPC_TARGET_MAX_ERROR;
+  options.target_value = 0.002;
+  options.gof_frames = 8;
+  options.keep_order = 1;
+  options.metadata = "{\"title\":\"strip\"}";
+  return options;
+}
+
+static rlpc_status add_frames(rlpc_encoder* encoder) {
+  rlpc_status status = RLPC_OK;
+  float xyz[VALUES];
+  for (unsigned f = 0; status == RLPC_OK && f < FRAMES; ++f) {
+    make_frame(f, xyz);
+    status = rlpc_encoder_add_frame(encoder, xyz, VALUES);
+  }
+  return status;
+}
+
+static void encode_strip(buffer* stream) {
+  const rlpc_frame_format format = strip_format();
+  const rlpc_encode_options options = small_gofs();
+  rlpc_encoder* encoder;
+  memset(stream, 0, sizeof *stream);
+  CHECK(rlpc_encoder_create(&format, &options, append, stream, &encoder) == RLPC_OK);
+  uint32_t order[VERTICES];
+  CHECK(rlpc_encoder_vertex_order(encoder, order, VERTICES) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "not finished");
+  CHECK(add_frames(encoder) == RLPC_OK);
+  rlpc_encode_report report;
+  CHECK(rlpc_encoder_finish(encoder, &report, sizeof report) == RLPC_OK);
+  CHECK(report.struct_size == sizeof report);
+  CHECK(report.num_bytes == stream->size);
+  CHECK(fabs(report.bpvf - 8.0 * (double)stream->size / (VERTICES * FRAMES)) < 1e-9);
+  CHECK(report.num_gofs == 3 && report.level == 1 && report.target_met == 1);
+  CHECK(report.max_error <= 0.002 && report.rms_error > 0 && report.kg_error_percent > 0);
+
+  CHECK(rlpc_encoder_vertex_order(encoder, order, VERTICES) == RLPC_OK);
+  unsigned seen = 0;
+  for (unsigned v = 0; v < VERTICES; ++v) seen |= 1U << order[v];
+  CHECK(seen == (1U << VERTICES) - 1);
+  CHECK(rlpc_encoder_vertex_order(encoder, order, VERTICES - 1) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_encoder_vertex_order(encoder, NULL, VERTICES) == RLPC_BAD_ARGUMENT);
+  rlpc_encoder_close(encoder);
+}
+
+static void check_info(rlpc_decoder* decoder) {
+  rlpc_stream_info info;
+  CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+  CHECK(info.struct_size == sizeof info && info.profile == RLPC_MAIN && info.level == 1);
+  CHECK(info.num_vertices == VERTICES && info.num_triangles == TRIANGLES);
+  CHECK(info.num_frames == FRAMES && info.has_vertex_order == 1);
+  CHECK(info.frame_rate_numerator == 30 && info.frame_rate_denominator == 1);
+  CHECK(info.position_bits >= 20 && info.position_bits <= 24);
+  // A caller that knows only the beginning gets that.
+  struct {
+    size_t struct_size;
+    uint32_t profile;
+    uint32_t guard;
+  } older = {0, 99, 99};
+  CHECK(rlpc_decoder_info(decoder, (rlpc_stream_info*)(void*)&older,
+                          offsetof(rlpc_stream_info, level)) == RLPC_OK);
+  CHECK(older.profile == RLPC_MAIN && older.guard == 99);
+  CHECK(rlpc_decoder_info(decoder, NULL, sizeof info) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_info(decoder, &info, 0) == RLPC_BAD_ARGUMENT);
+
+  uint32_t indices[3 * TRIANGLES];
+  CHECK(rlpc_decoder_triangles(decoder, indices, 3 * TRIANGLES) == RLPC_OK);
+  for (unsigned i = 0; i < 3 * TRIANGLES; ++i) CHECK(indices[i] < VERTICES);
+  CHECK(rlpc_decoder_triangles(decoder, indices, TRIANGLES) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "10 values, not 30");
+  CHECK(rlpc_decoder_triangles(decoder, NULL, 3 * TRIANGLES) == RLPC_BAD_ARGUMENT);
+  CHECK(strcmp(rlpc_decoder_metadata(decoder), "{\"title\":\"strip\"}") == 0);
+}
+
+// Frames as floats in order, then as positions from the last to the first.
+static void check_frames(rlpc_decoder* decoder) {
+  float xyz[VALUES];
+  float original[VALUES];
+  static int32_t positions[VALUES];
+  rlpc_stream_info info;
+  CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+  for (unsigned f = 0; f < FRAMES; ++f) {
+    CHECK(rlpc_decoder_position(decoder) == f);
+    CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_OK);
+    make_frame(f, original);
+    for (unsigned i = 0; i < VALUES; ++i) CHECK(fabs(xyz[i] - original[i]) <= 0.002);
+  }
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_END);
+  CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES) == RLPC_END);
+  CHECK(rlpc_decoder_position(decoder) == FRAMES);
+  for (unsigned f = FRAMES; f-- > 0;) {
+    CHECK(rlpc_decoder_seek(decoder, f) == RLPC_OK);
+    CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES) == RLPC_OK);
+    make_frame(f, original);
+    for (unsigned i = 0; i < VALUES; ++i) {
+      const double value =
+          ldexp(positions[i] + (double)info.grid_origin[i % 3], info.grid_log2_step);
+      CHECK(fabs(value - original[i]) <= 0.0021);
+    }
+  }
+  CHECK(rlpc_decoder_seek(decoder, FRAMES) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "no frame 20 of 20");
+  CHECK(rlpc_decoder_next_positions(decoder, NULL, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES - 1) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next_floats(decoder, NULL, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES + 3) == RLPC_BAD_ARGUMENT);
+  // None of that has moved it.
+  CHECK(rlpc_decoder_position(decoder) == 1);
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_OK);
+  CHECK(rlpc_decoder_error_text(decoder)[0] == '\0');
+}
+
+typedef struct read_state {
+  const buffer* stream;
+  int fails;
+} read_state;
+
+static int read_buffer(void* user, uint64_t offset, void* out, size_t num_bytes) {
+  const read_state* state = user;
+  if (state->fails) return -1;
+  if (offset + num_bytes > state->stream->size) abort();  // as promised, that is not asked for
+  memcpy(out, state->stream->bytes + offset, num_bytes);
+  return 0;
+}
+
+static void test_sources(const buffer* stream) {
+  rlpc_decoder* decoder;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, NULL, &decoder) == RLPC_OK);
+  CHECK(rlpc_decoder_error_text(decoder)[0] == '\0');
+  check_info(decoder);
+  check_frames(decoder);
+  rlpc_decoder_close(decoder);
+
+  read_state state = {stream, 0};
+  const rlpc_source source = {&state, stream->size, read_buffer};
+  CHECK(rlpc_decoder_open_source(&source, NULL, &decoder) == RLPC_OK);
+  check_frames(decoder);
+  // A callback that fails, and is well again.
+  float xyz[VALUES];
+  state.fails = 1;
+  CHECK(rlpc_decoder_seek(decoder, 19) == RLPC_IO_FAILED);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "cannot read");
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_IO_FAILED);
+  state.fails = 0;
+  CHECK(rlpc_decoder_seek(decoder, 19) == RLPC_OK);
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_OK);
+  rlpc_decoder_close(decoder);
+
+  const char* path = "c_api_test.rlpc";
+  FILE* file = fopen(path, "wb");
+  CHECK(file != NULL && fwrite(stream->bytes, 1, stream->size, file) == stream->size);
+  CHECK(file != NULL && fclose(file) == 0);
+  CHECK(rlpc_decoder_open_file(path, NULL, &decoder) == RLPC_OK);
+  check_frames(decoder);
+  rlpc_decoder_close(decoder);
+  remove(path);
+}
+
+static void test_options(const buffer* stream) {
+  rlpc_decode_options options;
+  rlpc_decoder* decoder;
+  rlpc_decode_options_init(&options, sizeof options);
+  CHECK(options.struct_size == sizeof options && options.threads == 1);
+  CHECK(options.verify_hashes == 1 && options.max_components == RLPC_ALL);
+
+  options.threads = 3;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
+  check_frames(decoder);
+  rlpc_decoder_close(decoder);
+  options.threads = 1;
+
+  options.max_vertices = VERTICES - 1;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) ==
+        RLPC_LIMIT_EXCEEDED);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "num_vertices_minus1: more than the limits");
+  rlpc_decoder_close(decoder);
+  options.max_vertices = VERTICES;
+
+  // In memory of the caller, if there is enough of it.
+  void* place = malloc(rlpc_decoder_bytes());
+  options.place = place;
+  options.place_bytes = rlpc_decoder_bytes() - 1;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) ==
+        RLPC_BAD_ARGUMENT);
+  CHECK(decoder == NULL);
+  options.place_bytes = rlpc_decoder_bytes();
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
+  CHECK((void*)decoder == place);
+  check_frames(decoder);
+  rlpc_decoder_close(decoder);
+  free(place);
+
+  // Not initialised; as of a newer version, without and with something that is new.
+  struct {
+    rlpc_decode_options options;
+    uint64_t future;
+  } newer;
+  memset(&newer, 0, sizeof newer);
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &newer.options, &decoder) ==
+        RLPC_BAD_ARGUMENT);
+  rlpc_decode_options_init(&newer.options, sizeof newer);
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &newer.options, &decoder) ==
+        RLPC_OK);
+  rlpc_decoder_close(decoder);
+  newer.future = 1;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &newer.options, &decoder) ==
+        RLPC_BAD_ARGUMENT);
+}
+
+// Wherever a stream is cut off, and whichever byte is wrong: an error, no harm.
+static void test_damage(const buffer* stream) {
+  static buffer damaged;
+  int32_t positions[VALUES];
+  for (size_t size = 0; size < stream->size; size += 1 + size / 16) {
+    rlpc_decoder* decoder;
+    rlpc_status status = rlpc_decoder_open_memory(stream->bytes, size, NULL, &decoder);
+    while (status == RLPC_OK) {
+      status = rlpc_decoder_next_positions(decoder, positions, VALUES);
+    }
+    CHECK(status == RLPC_BAD_STREAM);
+    CHECK_TEXT(rlpc_decoder_error_text(decoder), "bit ");
+    rlpc_decoder_close(decoder);
+  }
+  for (size_t at = 10; at < stream->size; at += 7) {
+    rlpc_decoder* decoder;
+    damaged = *stream;
+    damaged.bytes[at] ^= 0x20;
+    rlpc_status status = rlpc_decoder_open_memory(damaged.bytes, damaged.size, NULL, &decoder);
+    while (status == RLPC_OK) {
+      status = rlpc_decoder_next_positions(decoder, positions, VALUES);
+    }
+    CHECK(status == RLPC_BAD_STREAM || status == RLPC_UNSUPPORTED);
+    // A stream that could not be opened stays closed.
+    if (rlpc_decoder_position(decoder) == 0) {
+      CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES) == status);
+    }
+    rlpc_decoder_close(decoder);
+  }
+}
+
+static void test_null_decoders(const buffer* stream) {
+  rlpc_decoder* decoder = NULL;
+  const rlpc_source no_read = {NULL, 1, NULL};
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, NULL, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_memory(NULL, 1, NULL, &decoder) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_file(NULL, NULL, &decoder) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_file("x", NULL, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_source(NULL, NULL, &decoder) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_source(&no_read, NULL, &decoder) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_open_source(&no_read, NULL, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(decoder == NULL);
+  CHECK(rlpc_decoder_open_file("no/such/file", NULL, &decoder) == RLPC_IO_FAILED);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "no such file");
+  CHECK(rlpc_decoder_seek(decoder, 0) == RLPC_IO_FAILED);
+  CHECK(rlpc_decoder_position(decoder) == 0 && rlpc_decoder_metadata(decoder)[0] == '\0');
+  rlpc_decoder_close(decoder);
+
+  rlpc_stream_info info;
+  float xyz[VALUES];
+  int32_t positions[VALUES];
+  uint32_t indices[3 * TRIANGLES];
+  CHECK(rlpc_decoder_info(NULL, &info, sizeof info) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_triangles(NULL, indices, 3 * TRIANGLES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next_floats(NULL, xyz, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next_positions(NULL, positions, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_seek(NULL, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_position(NULL) == 0 && rlpc_decoder_metadata(NULL)[0] == '\0');
+  CHECK_TEXT(rlpc_decoder_error_text(NULL), "no decoder");
+  rlpc_decode_options_init(NULL, 100);
+  rlpc_decoder_close(NULL);
+}
+
+static rlpc_status create_with(const rlpc_frame_format* format,
+                               const rlpc_encode_options* options, char* text) {
+  static buffer ignored;
+  rlpc_encoder* encoder = NULL;
+  const rlpc_status status = rlpc_encoder_create(format, options, append, &ignored, &encoder);
+  snprintf(text, 256, "%s", rlpc_encoder_error_text(encoder));
+  if (encoder != NULL && status != RLPC_OK) {
+    float xyz[VALUES] = {0};
+    CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == status);
+    CHECK(rlpc_encoder_finish(encoder, NULL, 0) == status);
+  }
+  rlpc_encoder_close(encoder);
+  return status;
+}
+
+static void test_encoder_arguments(void) {
+  char text[256];
+  rlpc_frame_format format = strip_format();
+  rlpc_encode_options options = small_gofs();
+  CHECK(create_with(NULL, NULL, text) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(text, "no encoder");
+  CHECK(create_with(&format, NULL, text) == RLPC_OK);
+  CHECK(rlpc_encoder_create(&format, NULL, append, NULL, NULL) == RLPC_BAD_ARGUMENT);
+  rlpc_encoder* encoder;
+  CHECK(rlpc_encoder_create(&format, NULL, NULL, NULL, &encoder) == RLPC_BAD_ARGUMENT);
+
+  format.indices = NULL;
+  CHECK(create_with(&format, NULL, text) == RLPC_BAD_ARGUMENT);
+  format = strip_format();
+  format.num_vertices = VERTICES - 1;
+  CHECK(create_with(&format, NULL, text) == RLPC_BAD_INPUT);
+  CHECK_TEXT(text, "vertex 11 of 11");
+  format = strip_format();
+  format.struct_size = 0;
+  CHECK(create_with(&format, NULL, text) == RLPC_BAD_ARGUMENT);
+  format = strip_format();
+
+  options.target_value = -1;
+  CHECK(create_with(&format, &options, text) == RLPC_BAD_INPUT);
+  CHECK_TEXT(text, "above zero");
+  for (int i = 0; i < 4; ++i) {
+    options = small_gofs();
+    uint32_t* const choices[4] = {&options.profile, &options.preset, &options.target,
+                                  &options.hash_mode};
+    *choices[i] = 4;
+    CHECK(create_with(&format, &options, text) == RLPC_BAD_ARGUMENT);
+    CHECK_TEXT(text, "unknown value");
+  }
+  options = small_gofs();
+  options.profile = RLPC_BASELINE;
+  options.preset = RLPC_FAST;
+  options.target = RLPC_TARGET_BPVF;
+  options.hash_mode = RLPC_HASH_NONE;
+  CHECK(create_with(&format, &options, text) == RLPC_OK);
+
+  uint32_t order[VERTICES];
+  float xyz[VALUES] = {0};
+  CHECK(rlpc_encoder_add_frame(NULL, xyz, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_encoder_finish(NULL, NULL, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_encoder_vertex_order(NULL, order, VERTICES) == RLPC_BAD_ARGUMENT);
+  rlpc_encode_options_init(NULL, 100);
+  rlpc_frame_format_init(NULL, 100);
+  rlpc_encoder_close(NULL);
+}
+
+static void test_encoder_frames(void) {
+  static buffer stream;
+  const rlpc_frame_format format = strip_format();
+  rlpc_encode_options options = small_gofs();
+  void* place = malloc(rlpc_encoder_bytes());
+  options.place = place;
+  options.place_bytes = rlpc_encoder_bytes();
+  rlpc_encoder* encoder;
+  float xyz[VALUES];
+  make_frame(0, xyz);
+
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);
+  CHECK((void*)encoder == place);
+  CHECK(rlpc_encoder_add_frame(encoder, NULL, VALUES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_encoder_add_frame(encoder, xyz, VERTICES) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "12 values, not 36");
+  CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_OK);
+  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_BAD_INPUT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "after 1 of 20 frames");
+  rlpc_encoder_close(encoder);
+
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);
+  xyz[4] = 7;
+  CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_BAD_INPUT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "frame 0 (from 0), vertex 1: y is 7");
+  xyz[4] = 0;
+  CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_BAD_INPUT);
+  rlpc_encoder_close(encoder);
+  free(place);
+
+  memset(&stream, 0, sizeof stream);
+  stream.allowed = 3;
+  CHECK(rlpc_encoder_create(&format, NULL, append, &stream, &encoder) == RLPC_OK);
+  CHECK(add_frames(encoder) == RLPC_IO_FAILED);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "could not be written");
+  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_IO_FAILED);
+  CHECK(stream.writes == 3);
+  rlpc_encoder_close(encoder);
+}
+
+static void test_texts(void) {
+  for (int i = RLPC_OK; i <= RLPC_INTERNAL_ERROR; ++i) {
+    CHECK(strcmp(rlpc_status_text(i), "unknown status") != 0);
+  }
+  CHECK(strcmp(rlpc_status_text(1000), "unknown status") == 0);
+  CHECK(rlpc_version()[0] == '1' && rlpc_version()[1] == '.');
+}
+
+int main(void) {
+  static buffer stream;
+  encode_strip(&stream);
+  test_sources(&stream);
+  test_options(&stream);
+  test_damage(&stream);
+  test_null_decoders(&stream);
+  test_encoder_arguments();
+  test_encoder_frames();
+  test_texts();
+  if (failures == 0) puts("the library does what its headers say");
+  return failures == 0 ? 0 : 1;
+}

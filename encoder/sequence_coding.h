@@ -1,0 +1,75 @@
+// What the GOFs of a sequence have in common, and the steps that each of them goes through.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/layers.h"
+#include "common/sequence_header.h"
+#include "common/topology.h"
+#include "common/write_units.h"
+#include "encoder/gof_coder.h"
+#include "encoder/gof_cuts.h"
+#include "encoder/gof_search.h"
+#include "encoder/main_gof_search.h"
+#include "encoder/metrics.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/target_search.h"
+#include "encoder/write_connectivity.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kDefaultGofFrames = 128;
+
+// The longest GOF that the settings allow.
+std::uint32_t longest_gof(const EncoderSettings& settings);
+
+// rms_spread: of a coordinate about the mean of its frame, units, over the frames that the
+// target is for.
+TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
+                        double rms_spread);
+
+// The choices of a search that hold for later coders of the same GOF.
+struct GofMemory {
+  std::optional<GofChoice> clusters;  // of the Baseline profile
+  MainChoice main;                    // of the Main profile
+};
+
+class SequenceCoding {
+ public:
+  // Keeps references to header and settings. Every index of the triangles is below
+  // num_vertices.
+  SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
+                 std::span<const Triangle> triangles);
+  SequenceCoding(const SequenceCoding&) = delete;
+  SequenceCoding& operator=(const SequenceCoding&) = delete;
+
+  const ConnectivityCode& connectivity() const { return connectivity_; }
+
+  // The frames of a GOF, in decoded vertex order and grid units. Error: that of the source.
+  InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
+  // For the GOF that begins with first_frame of the sequence. Keeps references to frames and
+  // memory.
+  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, std::uint32_t first_frame,
+                                       GofMemory& memory) const;
+  // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
+  // unit of the GOF, empty if there is to be none. Error: that of the source.
+  InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
+                             const EncodedGof& encoded, MetricsAccumulator& metrics) const;
+
+ private:
+  const SequenceHeader& header_;
+  const EncoderSettings& settings_;
+  ConnectivityCode connectivity_;
+  Topology topology_;
+  EncodingContext context_;
+  VertexLayers layers_;  // of the Main profile
+  std::optional<BoneContext> bone_context_;
+};
+
+// The units of a coded GOF, as they stand in a stream.
+Bytes write_gof_units(const EncodedGof& encoded);
+
+}  // namespace rlpc

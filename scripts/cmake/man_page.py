@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Writes the manual page of a tool from what it says itself with --help."""
+
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+TOOLS = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
+COLUMN = 30  # of descriptions in the help
+
+
+def escaped(text):
+    """For roff: no line is a request, and dashes are those of the keyboard."""
+    text = text.replace("\\", r"\e").replace("-", r"\-").replace("'", r"\(aq").replace("`", r"\(ga")
+    return r"\&" + text if text.startswith(".") else text
+
+
+def bold(text):
+    return r"\fB" + escaped(text) + r"\fR"
+
+
+def option(first, more):
+    """Of "  -o,--output TEXT   what it does", or of a long name with that in the lines behind."""
+    name, description = (first, more) if more else (first[:COLUMN], [first[COLUMN:]])
+    words = name.strip().split(" ", 1)
+    term = bold(words[0]) + (" " + escaped(words[1]) if len(words) > 1 else "")
+    return [".TP", term, *(escaped(line.strip()) for line in description)]
+
+
+def options(lines):
+    """The entries of a list of options or arguments."""
+    out, entry = [], []
+    for line in lines + ["  "]:
+        begins = not line.startswith(" " * COLUMN)
+        if begins and entry:
+            out += option(entry[0], entry[1:])
+            entry = []
+        if line.strip():
+            entry.append(line)
+    return out
+
+
+def paragraph(lines):
+    """Text as it is; what is indented, or stands in columns, keeps its lines."""
+    out, exact = [], False
+    for line in lines:
+        if (line.startswith(" ") or "   " in line) != exact:
+            exact = not exact
+            out.append(".nf" if exact else ".fi")
+        out.append(escaped(line))
+    return out + ([".fi"] if exact else [])
+
+
+def footer(blocks):
+    """Blocks of lines: a short first line without an end is a heading."""
+    out, headed = [], False
+    for block in blocks:
+        heading = re.fullmatch(r"[A-Z][\w ()./-]{0,60}", block[0])
+        code = re.match(r"Exit code: (.*)", block[0])
+        if code:
+            out += [".SH EXIT STATUS", *paragraph([code.group(1), *block[1:]])]
+        elif heading and len(block) > 1 and block[1].startswith("  "):
+            out += [".SH " + escaped(block[0].upper()), *paragraph(block[1:])]
+        else:
+            out += [".PP" if headed else ".SH DESCRIPTION", *paragraph(block)]
+        headed = True
+    return out
+
+
+def page(tool, version, text):
+    """The manual page for the text of --help."""
+    blocks = [block.split("\n") for block in re.split(r"\n\n+", text.strip())]
+    about, usage = blocks[0][0], blocks[0][1].removeprefix("Usage: ")
+    purpose = about[0].lower() + about[1:].rstrip(".")
+    arguments = usage.removeprefix(tool + " ")
+    out = [f'.TH {tool.upper()} 1 "" "rlpc {version}" "RLPC"',
+           ".SH NAME", f"{tool} \\- {escaped(purpose)}",
+           ".SH SYNOPSIS", f"{bold(tool)} {escaped(arguments)}"]
+    rest = blocks[1:]
+    while rest and rest[0][0].endswith(":") and not rest[0][0].startswith(" "):
+        title = {"Positionals:": "ARGUMENTS"}.get(rest[0][0], rest[0][0].rstrip(":").upper())
+        out += [f".SH {escaped(title)}", *options(rest[0][1:])]
+        rest = rest[1:]
+    out += footer(rest)
+    others = [f"{bold(other)}(1)" for other in TOOLS if other != tool]
+    return "\n".join([*out, ".SH SEE ALSO", ",\n".join(others), ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("tool", type=pathlib.Path, help="the program")
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("--version", required=True)
+    args = parser.parse_args()
+    done = subprocess.run([args.tool, "--help"], check=True, capture_output=True, text=True,
+                          env={**os.environ, "LC_ALL": "C.UTF-8", "COLUMNS": "80"})
+    text = page(args.tool.name, args.version, done.stdout)
+    partial = args.output.with_name(args.output.name + ".partial")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(args.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""The manual pages: what they are made of, and that man has no complaint about those built."""
+
+import argparse
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+import man_page  # noqa: E402
+
+HELP = """Does a thing.
+Usage: rlpcdec [OPTIONS] input
+
+Positionals:
+  input TEXT REQUIRED         What to do it to
+
+Options:
+  -h,--help                   Print this
+  --size UINT:INT in [1 - 9] Excludes: --help
+                              How large
+                              it is
+
+
+OUT is one of
+  a.x    one
+.dots are text, and so is \\ as well
+
+Exit code: 0 done;
+4 not."""
+
+
+class Page(unittest.TestCase):
+    def test_sections_and_options(self):
+        lines = man_page.page("rlpcdec", "1.2", HELP).split("\n")
+        self.assertEqual(lines[0], '.TH RLPCDEC 1 "" "rlpc 1.2" "RLPC"')
+        self.assertIn(r"rlpcdec \- does a thing", lines)
+        self.assertIn(r"\fBrlpcdec\fR [OPTIONS] input", lines)
+        self.assertEqual([line for line in lines if line.startswith(".SH")],
+                         [".SH NAME", ".SH SYNOPSIS", ".SH ARGUMENTS", ".SH OPTIONS",
+                          ".SH OUT IS ONE OF", ".SH EXIT STATUS", ".SH SEE ALSO"])
+        at = lines.index(r"\fB\-\-size\fR UINT:INT in [1 \- 9] Excludes: \-\-help")
+        self.assertEqual(lines[at - 1:at + 3:3], [".TP", "it is"])
+        self.assertIn(r"\&.dots are text, and so is \e as well", lines)
+        self.assertIn("0 done;", lines)
+
+
+class Built(unittest.TestCase):
+    folder = None
+
+    def test_man_takes_them(self):
+        pages = sorted(self.folder.glob("*.1"))
+        self.assertEqual([page.stem for page in pages], sorted(man_page.TOOLS))
+        for page in pages:
+            for command in (["groff", "-man", "-ww", "-z"],
+                            ["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z"]):
+                if not shutil.which(command[0]):
+                    continue
+                done = subprocess.run([*command, page], capture_output=True, text=True, check=False)
+                self.assertEqual((done.returncode, done.stderr), (0, ""), (command[0], page))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=pathlib.Path, help="of the pages")
+    Built.folder = parser.parse_args().folder
+    unittest.main(argv=[sys.argv[0]])
