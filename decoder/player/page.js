@@ -57,6 +57,7 @@ class Player {
     this.states = new FrameStates(header.num_frames, $("strip"));
     this.showFacts();
     $("slider").max = header.num_frames - 1;
+    $("slider").disabled = $("play").disabled = header.num_frames === 1;
     $("errors").hidden = !this.hasReference;
     this.playback = new Playback({
       numFrames: header.num_frames,
@@ -150,12 +151,13 @@ class Player {
     this.playback = null;
   }
 
-  setPlaying(playing) {
-    if (playing) {
+  setPlaying(plays) {
+    if (plays) {
       this.playback.play();
     } else {
       this.playback.pause();
     }
+    const { playing } = this.playback;
     $("play").toggleAttribute("data-playing", playing);
     $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
   }
