@@ -3,8 +3,8 @@
 //   request                                     reply
 //   open  wasm, stream, referenceStream         opened  header, triangles; or failed  error
 //   frame frame, order, withNormals, checkOnly  frame   frame, order, checkOnly; crc, compared,
-//                                                       differs, ms, and unless checkOnly box and
-//                                                       arrays; error
+//                                                       differs, ms, and unless checkOnly box,
+//                                                       arrays and referenceError; error
 //   edges                                       edges   edges
 
 export class DecodingThread {

@@ -49,7 +49,8 @@ function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-export function showState(element, states, frame, error) {
+/** error: of the frame, checkError: what has stopped the check of all; or undefined. */
+export function showState(element, states, frame, { error, checkError }) {
   const state = states.states[frame];
   element.dataset.state = kStateNames[state];
   const crc = states.crcs[frame].toString(16).padStart(8, "0");
@@ -65,6 +66,7 @@ export function showState(element, states, frame, error) {
   setText(count, [
     `${grouped(states.counts[State.agrees])} of ${grouped(states.states.length)} frames equal to their hash`,
     ...counts.map(([number, text]) => `${grouped(number)} ${text}`),
+    ...(checkError ? [`Not all are checked: ${checkError}`] : []),
   ].join("\n"));
 }
 

@@ -35,6 +35,7 @@ class Player {
     this.thread?.close();
     this.checker?.close();
     Object.assign(this, { playback: null, edges: null, errors: new Map(), checker: null });
+    this.checkError = undefined;
     this.stream = stream;
     this.hasReference = referenceStream !== undefined;
     this.thread = new DecodingThread({
@@ -50,6 +51,7 @@ class Player {
     this.header = header;
     this.ms = { sum: 0, frames: 0 };
     this.largestDistance = 0;
+    this.referenceDiffers = undefined; // what is said of it, once it is known
     this.paintsErrors = this.hasReference && wanted.get("errors") !== "off";
     this.scene.setMesh(header, triangles);
     this.scene.setUp(this.up);
@@ -102,20 +104,30 @@ class Player {
   show(reply) {
     if (reply.coordinates) {
       this.thread.recycle(this.scene.showFrame(reply));
-      if (reply.distances) this.showDeviation(reply);
+      if (this.hasReference) this.showDeviation(reply);
     }
     this.say(reply.coordinates ? "" : `Frame ${reply.frame} cannot be decoded`);
     $("view").toggleAttribute("data-stale", !reply.coordinates);
     this.shownFrame = reply.frame;
   }
 
-  showDeviation({ largest, rms }) {
+  /** Of a frame without distances, the surface has its own colour. */
+  showDeviation({ frame, distances, largest = 0, rms, referenceError }) {
+    if (distances && referenceError) {
+      this.referenceDiffers ??=
+        `Frame ${frame} of the reference does not fit its hash: ${referenceError.text}`;
+    }
+    $("deviation").hidden = !this.paintsErrors;
+    $("deviation").toggleAttribute("data-missing", !distances);
+    $("deviation-error").textContent = distances
+      ? this.referenceDiffers ?? ""
+      : `The reference cannot be decoded: ${referenceError.text}`;
     this.largestDistance = Math.max(this.largestDistance, largest);
     const { position_bits: bits, grid_log2_step: step } = this.header;
     const unit = 2 ** (bits - 1 + step); // of the animation, in the cube where it is drawn
     const most = roundedUp(this.largestDistance * unit);
-    this.scene.setDeviationScale(this.paintsErrors ? most / unit : 0);
-    $("deviation").hidden = !this.paintsErrors;
+    this.scene.setDeviationScale(this.paintsErrors && distances ? most / unit : 0);
+    if (!distances) return;
     $("deviation-most").textContent = most.toPrecision(1);
     $("deviation-frame").textContent =
       `largest ${(largest * unit).toPrecision(2)}, RMS ${(rms * unit).toPrecision(2)}`;
@@ -135,7 +147,9 @@ class Player {
     $("slider").value = frame;
     $("clock").innerHTML = `${grouped(frame)} <small>/ ${grouped(last)}</small> · ${seconds.toFixed(2)} s`;
     this.states.draw();
-    showState($("hash"), this.states, frame, this.errors.get(frame));
+    showState($("hash"), this.states, frame, {
+      error: this.errors.get(frame), checkError: this.checkError,
+    });
     const ms = this.ms.sum / Math.max(this.ms.frames, 1);
     $("fact-list").lastChild.textContent = `${ofTime(ms)} a frame`;
   }
@@ -216,8 +230,9 @@ class Player {
         this.keepResult(reply);
         this.checkFrom(reply.frame + 1);
       },
-      failed: ({ error }) => this.fail(error.text),
+      failed: ({ error }) => this.endCheck(error.text),
     });
+    this.checkError = undefined;
     this.checker.open(this.wasm, this.stream);
     this.showToggles();
   }
@@ -226,11 +241,17 @@ class Player {
     if (frame < this.header.num_frames) {
       this.checker.requestFrame({ frame, checkOnly: true });
     } else {
-      this.checker.close();
-      this.checker = null;
       this.states.isComplete = true;
-      this.showToggles();
+      this.endCheck();
     }
+  }
+
+  /** error: what has stopped it, which need not stop playing. */
+  endCheck(error) {
+    this.checker.close();
+    this.checker = null;
+    this.checkError = error;
+    this.showToggles();
   }
 
   showToggles() {

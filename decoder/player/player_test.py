@@ -391,12 +391,16 @@ class Browser(InFolder):
         right = Decoded(STREAMS / "v1.0" / "accept" / "HSH" / "HSH-0001a.rlpc", self.folder)
         self.assertEqual(self.browser.evaluate("[...player.states.crcs]"), right.crcs)
 
-    def test_a_damaged_frame(self):
+    def damaged(self):
+        """The stream, with an error in the second of its three GOFs."""
         data = bytearray(self.stream.read_bytes())
-        data[len(data) // 2] ^= 0x10  # in the second of three GOFs
+        data[len(data) // 2] ^= 0x10
         damaged = self.folder / "damaged.rlpc"
         damaged.write_bytes(data)
-        self.open(damaged, "frame=30")
+        return damaged
+
+    def test_a_damaged_frame(self):
+        self.open(self.damaged(), "frame=30")
         self.wait_for_check()
         self.assertEqual(self.states(), [2] * 20 + [4] * 20 + [2] * 20)
         self.browser.wait_for("document.getElementById('hash').dataset.state === 'error'")
@@ -404,6 +408,43 @@ class Browser(InFolder):
         self.browser.evaluate("player.seek(50)")
         self.browser.wait_for("document.getElementById('hash').dataset.state === 'agrees'")
         self.assertIn("frame 50", self.text("hash"))
+
+    def test_a_damaged_reference_is_no_fault_of_the_stream(self):
+        self.open(self.stream, "frame=30", "--reference", self.damaged())
+        self.wait_for_frame(30)
+        self.wait_for_check()
+        self.assertEqual(self.states(), [2] * 60)
+        self.assertIn("bit-exact", self.text("hash"))
+        self.assertRegex(self.text("deviation"), "reference cannot be decoded: .*R-UNT-")
+        self.assertNotIn("RMS", self.text("deviation"))
+        self.assertEqual(self.browser.evaluate("player.scene.deviationScale.value"), 0)
+        self.browser.evaluate("player.seek(50)")
+        self.wait_for_frame(50)
+        self.assertIn("largest 0, RMS 0", self.text("deviation"))
+        self.assertNotIn("decoded", self.text("deviation"))
+
+    def test_a_reference_whose_hash_differs(self):
+        hashes = STREAMS / "v1.0"
+        self.open(hashes / "accept" / "HSH" / "HSH-0001a.rlpc", "frame=0",
+                  "--reference", hashes / "reject" / "HSH" / "HSH-0001x1.rlpc")
+        self.wait_for_frame(0)
+        self.wait_for_check()
+        self.assertEqual(set(self.states()), {2})
+        self.assertRegex(self.text("deviation"), "reference does not fit its hash: .*R-HSH-02")
+        self.assertIn("largest 0, RMS 0", self.text("deviation"))
+
+    def test_playing_goes_on_if_the_check_fails(self):
+        self.open(self.stream, "frame=0")
+        self.wait_for_check()
+        self.browser.evaluate("""(() => {
+          player.checkAll();
+          player.checker.worker.dispatchEvent(new ErrorEvent('error', {message: 'no room'}));
+        })()""")
+        self.browser.wait_for("document.getElementById('hash').innerText.includes('no room')")
+        self.assertIn("Not all are checked", self.text("hash"))
+        self.browser.evaluate("player.seek(12)")
+        self.wait_for_frame(12)
+        self.assertEqual(self.browser.evaluate("document.body.dataset.state"), "ready")
 
     def test_distance_from_a_reference(self):
         coarse = self.encode("coarse.rlpc", "--kg", "2")
