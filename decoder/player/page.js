@@ -1,7 +1,9 @@
 // The page: a stream, a scene, and the controls between them.
 import { DecodingThread } from "./decoding_thread.js";
 import { describedStream, takeBlob } from "./embedded.js";
-import { framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts } from "./facts.js";
+import {
+  digits, framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts,
+} from "./facts.js";
 import { FrameStates } from "./frame_states.js";
 import { Playback } from "./playback.js";
 import { Scene } from "./scene.js";
@@ -34,7 +36,7 @@ class Player {
     this.say("Decoding …");
     this.thread?.close();
     this.checker?.close();
-    Object.assign(this, { playback: null, edges: null, errors: new Map(), checker: null });
+    Object.assign(this, { playback: null, edgesRequested: false, errors: new Map(), checker: null });
     this.checkError = undefined;
     this.stream = stream;
     this.hasReference = referenceStream !== undefined;
@@ -128,9 +130,9 @@ class Player {
     const most = roundedUp(this.largestDistance * unit);
     this.scene.setDeviationScale(this.paintsErrors && distances ? most / unit : 0);
     if (!distances) return;
-    $("deviation-most").textContent = most.toPrecision(1);
+    $("deviation-most").textContent = digits(most);
     $("deviation-frame").textContent =
-      `largest ${(largest * unit).toPrecision(2)}, RMS ${(rms * unit).toPrecision(2)}`;
+      `largest ${digits(largest * unit)}, RMS ${digits(rms * unit)}`;
   }
 
   showFacts() {
@@ -188,8 +190,8 @@ class Player {
 
   setWire(mode) {
     this.wire = mode;
-    if (mode > 0 && !this.edges) {
-      this.edges = "asked for";
+    if (mode > 0 && !this.edgesRequested) {
+      this.edgesRequested = true;
       this.thread.requestEdges();
     }
     this.scene.setWireframe(kWireModes[mode]);
