@@ -7,12 +7,20 @@
 //                                                       arrays and referenceError; error
 //   edges                                       edges   edges
 
+let address; // of the worker's script: one for all threads of the page
+
+function workerAddress() {
+  if (!address) {
+    const source = document.getElementById("worker").textContent;
+    address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  }
+  return address;
+}
+
 export class DecodingThread {
   /** on: functions by type of reply. */
   constructor(on) {
-    const source = document.getElementById("worker").textContent;
-    const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    this.worker = new Worker(url);
+    this.worker = new Worker(workerAddress());
     this.spare = [];
     this.worker.onmessage = ({ data }) => on[data.type](data);
     this.worker.onerror = (event) => on.failed({ error: { text: event.message } });

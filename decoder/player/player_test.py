@@ -477,6 +477,23 @@ class Browser(InFolder):
         distances = [sum(squares[i:i + 3]) for i in range(0, len(squares), 3)]
         return max(distances) ** 0.5, (sum(distances) / len(distances)) ** 0.5
 
+    def test_a_stream_that_is_dropped_takes_the_place_of_another(self):
+        held = "(({ memory, programs }) => [memory.geometries, memory.textures, programs.length])" \
+               "(player.scene.renderer.info)"
+        self.open(self.stream, "frame=3&wire=over")
+        self.wait_for_frame(3)
+        self.browser.wait_for("player.scene.lines?.visible && player.scene.isDrawn")
+        before = self.browser.evaluate(held)
+        self.browser.evaluate("globalThis.addresses = 0;"
+                              "URL.createObjectURL = () => String(++addresses)")
+        for _ in range(2):
+            self.browser.evaluate("player.shownFrame = undefined; player.scene.lines = null;"
+                                  "player.open('dropped.rlpc', player.stream)")
+            self.browser.wait_for("player.shownFrame === 3 && player.scene.lines?.visible"
+                                  " && player.scene.isDrawn")
+        self.assertEqual(self.browser.evaluate(held), before)
+        self.assertEqual(self.browser.evaluate("addresses"), 0)
+
     def test_without_a_stream(self):
         self.browser.open(PLAYER.as_uri())
         self.browser.wait_for("document.body?.dataset.state === 'empty'")

@@ -44,7 +44,7 @@ export class Scene {
 
   /** Of a stream; the first frame follows with showFrame(). */
   setMesh(header, triangles) {
-    this.place.clear();
+    this.removeMesh();
     const numVertices = header.num_vertices;
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
@@ -69,6 +69,15 @@ export class Scene {
     this.lines = null;
     this.box = null;
     this.isDrawn = false;
+  }
+
+  /** Gives back what the graphics card holds of it. */
+  removeMesh() {
+    for (const object of this.place.children) {
+      object.geometry.dispose();
+      object.material.dispose();
+    }
+    this.place.clear();
   }
 
   /** Takes the arrays of a frame; returns those that it replaces. */
