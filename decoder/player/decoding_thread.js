@@ -4,7 +4,7 @@
 //   open  wasm, stream, referenceStream         opened  header, triangles; or failed  error
 //   frame frame, order, withNormals, checkOnly  frame   frame, order, checkOnly; crc, compared,
 //                                                       differs, ms, and unless checkOnly box,
-//                                                       arrays and referenceError; error
+//                                                       centre, arrays and referenceError; error
 //   edges                                       edges   edges
 
 let address; // of the worker's script: one for all threads of the page

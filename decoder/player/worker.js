@@ -54,6 +54,7 @@ function drawn(request, reply) {
   const { coordinates, normals } = request.spare ?? {};
   reply.coordinates = decoder.coordinates(coordinates);
   reply.box = decoder.box();
+  reply.centre = decoder.centre();
   if (request.withNormals) reply.normals = decoder.normals(normals);
   compared(request, reply);
 }
