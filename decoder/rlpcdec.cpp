@@ -19,9 +19,9 @@
 
 #include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
-#include "decoder/html_verb.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
+#include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace {

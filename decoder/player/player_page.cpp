@@ -1,4 +1,4 @@
-#include "decoder/player_page.h"
+#include "decoder/player/player_page.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "decoder/html_verb.h"
+#include "decoder/player/html_verb.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "decoder/describe_error.h"
-#include "decoder/player_page.h"
+#include "decoder/player/player_page.h"
 
 namespace rlpc {
 namespace {
