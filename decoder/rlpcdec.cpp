@@ -229,8 +229,9 @@ void add_options(CLI::App& app, Options& o) {
                    ->excludes(output)
                    ->excludes(verify);
   app.add_option("--reference", o.html.reference,
-                 "With --html: a finer stream of the same animation; the page colours the mesh "
-                 "by its distance from it")
+                 "With --html: a finer stream of the same animation, its vertices in the same "
+                 "order (with --keep-order both, or neither); the page colours the mesh by its "
+                 "distance from it")
       ->needs(html);
   app.add_option("--player", o.html.player,
                  "With --html: page of the player (default: as installed, or as built)")

@@ -139,6 +139,7 @@ class Writing(InFolder):
                    input=self.stream.read_bytes())
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.embedded(out.read_text(), "stream")[0], self.stream.read_bytes())
+        self.assertIn('{"name":"animation"}', out.read_text())
 
     def test_a_name_cannot_end_the_element(self):
         stream = self.folder / "a<script>b<!--.rlpc"
@@ -159,6 +160,10 @@ class Writing(InFolder):
         self.assertEqual(done.returncode, 64)
         self.assertIn(b"not a stream of the same frames", done.stderr)
         self.assertFalse(out.exists())
+        kept = self.encode("kept.rlpc", "--keep-order")
+        done, out = self.page(self.stream, "--reference", kept)
+        self.assertEqual(done.returncode, 64)
+        self.assertIn(b"in the same order; encode both", done.stderr)
 
     def test_without_a_player(self):
         tool = self.folder / "elsewhere" / "rlpcdec"
