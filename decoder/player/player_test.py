@@ -446,6 +446,21 @@ class Browser(InFolder):
         self.assertRegex(self.text("deviation"), "reference does not fit its hash: .*R-HSH-02")
         self.assertIn("largest 0, RMS 0", self.text("deviation"))
 
+    def test_cards_leave_each_other_room(self):
+        self.open(self.stream, "frame=0", "--reference", self.stream)
+        self.wait_for_frame(0)
+        overlaps = """(() => {
+          const boxes = [...document.querySelectorAll('.card')].map((card) =>
+            card.getBoundingClientRect());
+          const inside = boxes.every((a) => a.left >= 0 && a.right <= innerWidth && a.width > 0);
+          return !inside || boxes.some((a, i) => boxes.some((b, j) => i < j && a.left < b.right &&
+            b.left < a.right && a.top < b.bottom && b.top < a.bottom));
+        })()"""
+        for width in (1280, 800, 420, 360):
+            self.browser.resize(width, 800)
+            self.assertFalse(self.browser.evaluate(overlaps), width)
+        self.browser.resize(1280, 800)
+
     def test_playing_goes_on_if_the_check_fails(self):
         self.open(self.stream, "frame=0")
         self.wait_for_check()
