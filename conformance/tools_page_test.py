@@ -221,6 +221,23 @@ class PagesInBrowser(PageTest):
                 dom = self.browse("frame.html", "", "--dump-dom", "--allow-file-access-from-files")
                 self.assertEqual(re.search(r"<title>width (\d+)", dom).group(1), str(width), page)
 
+    def test_far_from_the_origin_it_looks_the_same(self):
+        """Coordinates of 24 bits, exact in both places; a step is 1/1024."""
+        faces = [line for line in (INPUTS / "elephant.obj").read_text().splitlines()
+                 if line.startswith("f ")]
+        xyz = [round(1024 * value) / 1024 for value in read_pc2(INPUTS / "elephant.pc2")[0]]
+        shots = []
+        for place in (0, 8192):
+            lines = [f"v {xyz[i] + place} {xyz[i + 1] + place} {xyz[i + 2] + place}"
+                     for i in range(0, len(xyz), 3)]
+            self.path("far.obj").write_text("\n".join(lines + faces))
+            self.ok("rlpccmp", self.path("far.obj"), self.path("far.obj"), "-q", "--html",
+                    self.path("a.html"))
+            self.browse("a.html", "flat=1", f"--screenshot={self.path('shot.png')}",
+                        "--window-size=1000,1200")
+            shots.append(self.path("shot.png").read_bytes())
+        self.assertTrue(shots[0] == shots[1], "the pictures differ")
+
     def test_charts_tell_values(self):
         """A pointer over the first chart, as the page itself would see it."""
         self.compare()

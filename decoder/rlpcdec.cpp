@@ -19,9 +19,9 @@
 
 #include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
-#include "decoder/html_verb.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
+#include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace {
@@ -242,8 +242,9 @@ void add_options(CLI::App& app, Options& o) {
                    ->excludes(output)
                    ->excludes(verify);
   app.add_option("--reference", o.html.reference,
-                 "With --html: a finer stream of the same animation; the page colours the mesh "
-                 "by its distance from it")
+                 "With --html: a finer stream of the same animation, its vertices in the same "
+                 "order (with --keep-order both, or neither); the page colours the mesh by its "
+                 "distance from it")
       ->needs(html);
   app.add_option("--player", o.html.player,
                  "With --html: page of the player (default: as installed, or as built)")

@@ -47,8 +47,9 @@ std::string distortion_charts(const Distortion& d) {
       "STED", "of edges in each frame, and over time",
       {line("spatial part", kBlue, surface, [](const auto& f) { return f.sted_spatial; }),
        temporal});
-  html += line_chart("PSNR", "dB",
-                     {line("PSNR", kBlue, frames, [](const auto& f) { return f.psnr_db; })});
+  ChartSeries psnr = line("PSNR", kBlue, frames, [](const auto& f) { return f.psnr_db; });
+  psnr.worst_is_smallest = true;
+  html += line_chart("PSNR", "dB", {psnr});
   html += line_chart("Angle of normals, mean", "degrees",
                      {line("mean by area", kBlue, surface,
                            [](const auto& f) { return f.mean_normal_angle; })});

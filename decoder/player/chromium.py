@@ -52,8 +52,7 @@ class Chromium:
         page = next(target for target in targets if target["type"] == "page")
         self._session = self._call("Target.attachToTarget", targetId=page["targetId"],
                                    flatten=True)["sessionId"]
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
-                  deviceScaleFactor=1, mobile=False)
+        self.resize(width, height)
         return self
 
     def __exit__(self, *_):
@@ -68,6 +67,10 @@ class Chromium:
 
     def open(self, address):
         self.call("Page.navigate", url=address)
+
+    def resize(self, width, height):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                  deviceScaleFactor=1, mobile=False)
 
     def evaluate(self, expression):
         """The value of a JavaScript expression in the page."""

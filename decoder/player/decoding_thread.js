@@ -3,16 +3,24 @@
 //   request                                     reply
 //   open  wasm, stream, referenceStream         opened  header, triangles; or failed  error
 //   frame frame, order, withNormals, checkOnly  frame   frame, order, checkOnly; crc, compared,
-//                                                       differs, ms, and unless checkOnly box and
-//                                                       arrays; error
+//                                                       differs, ms, and unless checkOnly box,
+//                                                       centre, arrays and referenceError; error
 //   edges                                       edges   edges
+
+let address; // of the worker's script: one for all threads of the page
+
+function workerAddress() {
+  if (!address) {
+    const source = document.getElementById("worker").textContent;
+    address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  }
+  return address;
+}
 
 export class DecodingThread {
   /** on: functions by type of reply. */
   constructor(on) {
-    const source = document.getElementById("worker").textContent;
-    const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    this.worker = new Worker(url);
+    this.worker = new Worker(workerAddress());
     this.spare = [];
     this.worker.onmessage = ({ data }) => on[data.type](data);
     this.worker.onerror = (event) => on.failed({ error: { text: event.message } });

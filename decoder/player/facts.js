@@ -2,15 +2,21 @@
 import { State, kStateNames } from "./frame_states.js";
 
 const kProfiles = { 0: "Baseline", 1: "Main" };
+const kSizes = [[1, "B"], [1e3, "kB"], [1e6, "MB"], [1e9, "GB"], [1e12, "TB"]];
 
 export function grouped(number) {
   return Math.round(number).toLocaleString("en").replaceAll(",", "\u2009");
 }
 
+/** With so many digits that count: "0.0123", "1230", "12". */
+export function digits(value, count = 3) {
+  return String(Number(value.toPrecision(count)));
+}
+
 export function ofSize(bytes) {
-  if (bytes < 1000) return `${bytes} B`;
-  const step = bytes < 1e6 ? [1e3, "kB"] : bytes < 1e9 ? [1e6, "MB"] : [1e9, "GB"];
-  return `${(bytes / step[0]).toPrecision(3)} ${step[1]}`;
+  const rounded = Number(bytes.toPrecision(3)); // first: 999 600 bytes are 1 MB, not 1000 kB
+  const step = kSizes.findLast(([size]) => rounded >= size) ?? kSizes[0];
+  return `${digits(rounded / step[0])} ${step[1]}`;
 }
 
 export function framesPerSecond(header) {
@@ -18,7 +24,7 @@ export function framesPerSecond(header) {
 }
 
 export function ofTime(ms) {
-  return ms < 10 ? `${ms.toPrecision(2)} ms` : `${grouped(ms)} ms`;
+  return ms < 10 ? `${digits(ms, 2)} ms` : `${grouped(ms)} ms`;
 }
 
 /** [name, value] of a stream. */
@@ -30,7 +36,7 @@ export function streamFacts(header, bytes) {
     ["Mesh", `${grouped(vertices)} vertices, ${grouped(header.num_triangles)} triangles`],
     ["Frames", `${grouped(frames)} at ${+fps.toFixed(2)} per second, ${(frames / fps).toFixed(1)} s`],
     ["Size", `${ofSize(bytes)}, floats have ${ofSize(12 * vertices * frames)}`],
-    ["Rate", `${rate.toPrecision(3)} bits per vertex and frame`],
+    ["Rate", `${digits(rate)} bits per vertex and frame`],
     ["Profile", `${kProfiles[header.profile_idc] ?? header.profile_idc}, level ${header.level_idc}`],
     ["Decoding", ""],
   ];
@@ -49,7 +55,8 @@ function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-export function showState(element, states, frame, error) {
+/** error: of the frame, checkError: what has stopped the check of all; or undefined. */
+export function showState(element, states, frame, { error, checkError }) {
   const state = states.states[frame];
   element.dataset.state = kStateNames[state];
   const crc = states.crcs[frame].toString(16).padStart(8, "0");
@@ -65,10 +72,11 @@ export function showState(element, states, frame, error) {
   setText(count, [
     `${grouped(states.counts[State.agrees])} of ${grouped(states.states.length)} frames equal to their hash`,
     ...counts.map(([number, text]) => `${grouped(number)} ${text}`),
+    ...(checkError ? [`Not all are checked: ${checkError}`] : []),
   ].join("\n"));
 }
 
-/** The shortest of 1, 2, 5 x 10^k that is at least `value`. */
+/** The smallest of 1, 2, 5 x 10^k that is at least `value`. */
 export function roundedUp(value) {
   if (!(value > 0)) return 0;
   const power = 10 ** Math.floor(Math.log10(value));

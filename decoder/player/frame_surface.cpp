@@ -73,15 +73,16 @@ Box box_of(std::span<const float> coordinates) {
 }
 
 Deviation vertex_distances(std::span<const float> coordinates, std::span<const float> reference,
-                           std::vector<float>& distances) {
+                           const std::array<double, 3>& shift, std::vector<float>& distances) {
   assert(coordinates.size() == reference.size());
   distances.resize(coordinates.size() / 3);
   double sum = 0;
   float largest = 0;
   for (std::size_t v = 0; v < distances.size(); ++v) {
     double square = 0;
-    for (std::size_t i = 3 * v; i < 3 * v + 3; ++i) {
-      const double d = double{coordinates[i]} - double{reference[i]};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t i = 3 * v + c;
+      const double d = double{coordinates[i]} - double{reference[i]} + shift[c];
       square += d * d;
     }
     sum += square;

@@ -1,5 +1,5 @@
 // What a surface needs besides positions to be drawn: normals, edges, distances between two.
-// Floating point, for the eye only. Coordinates, [num_vertices][3], are about 1 in size.
+// Floating point, for the eye only. Coordinates, [num_vertices][3], are up to about 1 in size.
 #pragma once
 
 #include <array>
@@ -34,8 +34,9 @@ struct Deviation {
   float root_mean_square = 0;
 };
 
-// Distance of each vertex from the same one of a reference.
+// Distance of each vertex from the same one of a reference. `shift`: of the place that the
+// coordinates count from, against that of the reference.
 Deviation vertex_distances(std::span<const float> coordinates, std::span<const float> reference,
-                           std::vector<float>& distances);
+                           const std::array<double, 3>& shift, std::vector<float>& distances);
 
 }  // namespace rlpc

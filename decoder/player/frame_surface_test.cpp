@@ -64,10 +64,12 @@ TEST(VertexDistances, AreEuclidean) {
   const std::vector<float> a{0, 0, 0, 1, 1, 1};
   const std::vector<float> b{3, 0, 4, 1, 1, 1};
   std::vector<float> distances;
-  const Deviation deviation = vertex_distances(a, b, distances);
+  const Deviation deviation = vertex_distances(a, b, {}, distances);
   EXPECT_EQ(distances, (std::vector<float>{5, 0}));
   EXPECT_EQ(deviation.largest, 5);
   EXPECT_FLOAT_EQ(deviation.root_mean_square, std::sqrt(12.5F));
+  vertex_distances(a, b, {3, 0, 0}, distances);
+  EXPECT_EQ(distances, (std::vector<float>{4, 3}));
 }
 
 SequenceHeader header_with(int position_bits, const Grid& grid) {
@@ -98,6 +100,19 @@ TEST(Placement, OfAReferenceKeepsItsCoordinates) {
     EXPECT_DOUBLE_EQ(position * own.scale + own.offset[c],
                      same * other.scale + other.offset[c]);
   }
+}
+
+TEST(CentredCoordinates, OfAMeshAreTheSameWhereverItIs) {
+  const std::vector<std::int32_t> positions{0, 5, -7, 1, 9, 1, 6, 5, -7};
+  std::vector<float> here(positions.size());
+  EXPECT_EQ(centred_coordinates(positions, {0.5, {}}, here), (Vec3d{1.5, 3.5, -1.5}));
+  EXPECT_EQ(here, (std::vector<float>{-1.5, -1, -2, -1, 1, 2, 1.5, -1, -2}));
+  std::vector<std::int32_t> moved = positions;
+  for (std::int32_t& x : moved) x += 1 << 23;
+  std::vector<float> there(positions.size());
+  // Beyond 24 bits, in which the steps of the grid would be lost.
+  centred_coordinates(moved, {0.5, {1e9, 0, 0}}, there);
+  EXPECT_EQ(there, here);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // The page: a stream, a scene, and the controls between them.
 import { DecodingThread } from "./decoding_thread.js";
 import { describedStream, takeBlob } from "./embedded.js";
-import { framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts } from "./facts.js";
+import {
+  digits, framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts,
+} from "./facts.js";
 import { FrameStates } from "./frame_states.js";
 import { Playback } from "./playback.js";
 import { Scene } from "./scene.js";
@@ -34,7 +36,8 @@ class Player {
     this.say("Decoding …");
     this.thread?.close();
     this.checker?.close();
-    Object.assign(this, { playback: null, edges: null, errors: new Map(), checker: null });
+    Object.assign(this, { playback: null, edgesRequested: false, errors: new Map(), checker: null });
+    this.checkError = undefined;
     this.stream = stream;
     this.hasReference = referenceStream !== undefined;
     this.thread = new DecodingThread({
@@ -50,6 +53,7 @@ class Player {
     this.header = header;
     this.ms = { sum: 0, frames: 0 };
     this.largestDistance = 0;
+    this.referenceDiffers = undefined; // what is said of it, once it is known
     this.paintsErrors = this.hasReference && wanted.get("errors") !== "off";
     this.scene.setMesh(header, triangles);
     this.scene.setUp(this.up);
@@ -57,6 +61,7 @@ class Player {
     this.states = new FrameStates(header.num_frames, $("strip"));
     this.showFacts();
     $("slider").max = header.num_frames - 1;
+    $("slider").disabled = $("play").disabled = header.num_frames === 1;
     $("errors").hidden = !this.hasReference;
     this.playback = new Playback({
       numFrames: header.num_frames,
@@ -101,23 +106,33 @@ class Player {
   show(reply) {
     if (reply.coordinates) {
       this.thread.recycle(this.scene.showFrame(reply));
-      if (reply.distances) this.showDeviation(reply);
+      if (this.hasReference) this.showDeviation(reply);
     }
     this.say(reply.coordinates ? "" : `Frame ${reply.frame} cannot be decoded`);
     $("view").toggleAttribute("data-stale", !reply.coordinates);
     this.shownFrame = reply.frame;
   }
 
-  showDeviation({ largest, rms }) {
+  /** Of a frame without distances, the surface has its own colour. */
+  showDeviation({ frame, distances, largest = 0, rms, referenceError }) {
+    if (distances && referenceError) {
+      this.referenceDiffers ??=
+        `Frame ${frame} of the reference does not fit its hash: ${referenceError.text}`;
+    }
+    $("deviation").hidden = !this.paintsErrors;
+    $("deviation").toggleAttribute("data-missing", !distances);
+    $("deviation-error").textContent = distances
+      ? this.referenceDiffers ?? ""
+      : `The reference cannot be decoded: ${referenceError.text}`;
     this.largestDistance = Math.max(this.largestDistance, largest);
     const { position_bits: bits, grid_log2_step: step } = this.header;
     const unit = 2 ** (bits - 1 + step); // of the animation, in the cube where it is drawn
     const most = roundedUp(this.largestDistance * unit);
-    this.scene.setDeviationScale(this.paintsErrors ? most / unit : 0);
-    $("deviation").hidden = !this.paintsErrors;
-    $("deviation-most").textContent = most.toPrecision(1);
+    this.scene.setDeviationScale(this.paintsErrors && distances ? most / unit : 0);
+    if (!distances) return;
+    $("deviation-most").textContent = digits(most);
     $("deviation-frame").textContent =
-      `largest ${(largest * unit).toPrecision(2)}, RMS ${(rms * unit).toPrecision(2)}`;
+      `largest ${digits(largest * unit)}, RMS ${digits(rms * unit)}`;
   }
 
   showFacts() {
@@ -134,7 +149,9 @@ class Player {
     $("slider").value = frame;
     $("clock").innerHTML = `${grouped(frame)} <small>/ ${grouped(last)}</small> · ${seconds.toFixed(2)} s`;
     this.states.draw();
-    showState($("hash"), this.states, frame, this.errors.get(frame));
+    showState($("hash"), this.states, frame, {
+      error: this.errors.get(frame), checkError: this.checkError,
+    });
     const ms = this.ms.sum / Math.max(this.ms.frames, 1);
     $("fact-list").lastChild.textContent = `${ofTime(ms)} a frame`;
   }
@@ -150,12 +167,13 @@ class Player {
     this.playback = null;
   }
 
-  setPlaying(playing) {
-    if (playing) {
+  setPlaying(plays) {
+    if (plays) {
       this.playback.play();
     } else {
       this.playback.pause();
     }
+    const { playing } = this.playback;
     $("play").toggleAttribute("data-playing", playing);
     $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
   }
@@ -172,8 +190,8 @@ class Player {
 
   setWire(mode) {
     this.wire = mode;
-    if (mode > 0 && !this.edges) {
-      this.edges = "asked for";
+    if (mode > 0 && !this.edgesRequested) {
+      this.edgesRequested = true;
       this.thread.requestEdges();
     }
     this.scene.setWireframe(kWireModes[mode]);
@@ -214,8 +232,9 @@ class Player {
         this.keepResult(reply);
         this.checkFrom(reply.frame + 1);
       },
-      failed: ({ error }) => this.fail(error.text),
+      failed: ({ error }) => this.endCheck(error.text),
     });
+    this.checkError = undefined;
     this.checker.open(this.wasm, this.stream);
     this.showToggles();
   }
@@ -224,11 +243,17 @@ class Player {
     if (frame < this.header.num_frames) {
       this.checker.requestFrame({ frame, checkOnly: true });
     } else {
-      this.checker.close();
-      this.checker = null;
       this.states.isComplete = true;
-      this.showToggles();
+      this.endCheck();
     }
+  }
+
+  /** error: what has stopped it, which need not stop playing. */
+  endCheck(error) {
+    this.checker.close();
+    this.checker = null;
+    this.checkError = error;
+    this.showToggles();
   }
 
   showToggles() {

@@ -7,7 +7,9 @@ export class Playback {
   /** request(frame, order) asks for a frame, which receive() gets; discard(reply) takes those
    * that are not wanted any more. */
   constructor({ numFrames, framesPerSecond, framesAhead, request, discard }) {
-    Object.assign(this, { numFrames, framesPerSecond, framesAhead, request, discard });
+    Object.assign(this, { numFrames, framesPerSecond, request, discard });
+    // Of a short animation, each other frame once: then the one that is shown comes again.
+    this.framesAhead = Math.max(1, Math.min(framesAhead, numFrames - 1));
     this.speed = 1;
     this.playing = false;
     this.waiting = 0; // requests without a reply
@@ -21,8 +23,9 @@ export class Playback {
     return this.current;
   }
 
+  /** A still mesh does not play. */
   play() {
-    this.playing = true;
+    this.playing = this.numFrames > 1;
     this.pump();
   }
 
@@ -76,7 +79,7 @@ export class Playback {
       }
       if (shown) this.discard(shown);
       shown = this.take(following);
-      if (following < this.current || this.numFrames === 1) this.time -= this.numFrames;
+      if (following < this.current) this.time -= this.numFrames;
       this.current = following;
     }
     this.pump();

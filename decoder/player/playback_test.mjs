@@ -6,15 +6,19 @@ import { Playback } from "./playback.js";
 
 /** Answers requests `delay` ticks later; 10 frames a second, a tick is 50 ms. */
 class Bench {
-  constructor(numFrames, delay) {
+  constructor(numFrames, delay, framesAhead = 4) {
     this.delay = delay;
     this.now = 0;
     this.asked = [];
+    this.numAsked = 0;
     this.discarded = 0;
     this.shown = [];
     this.playback = new Playback({
-      numFrames, framesPerSecond: 10, framesAhead: 4,
-      request: (frame, order) => this.asked.push({ frame, order, at: this.now + this.delay }),
+      numFrames, framesPerSecond: 10, framesAhead,
+      request: (frame, order) => {
+        ++this.numAsked;
+        this.asked.push({ frame, order, at: this.now + this.delay });
+      },
       discard: () => ++this.discarded,
     });
   }
@@ -81,9 +85,25 @@ test("SeekingWhilePlayingGoesOnFromThere", () => {
   assert.deepEqual(bench.run(10).filter((frame) => frame >= 50).slice(0, 3), [50, 51, 52]);
 });
 
-test("OneFrameIsShownOnce", () => {
-  const bench = new Bench(1, 0);
-  bench.run(3);
+for (const [numFrames, delay] of [[2, 0], [3, 0], [3, 1], [7, 0], [7, 1], [7, 5]]) {
+  test(`AsksForEachFrameOnceInTurn (${numFrames} frames, delay ${delay})`, () => {
+    const bench = new Bench(numFrames, delay, 8);
+    bench.playback.play();
+    const shown = bench.run(400);
+    assert.deepEqual(shown, shown.map((_, i) => i % numFrames));
+    assert.ok(shown.length > 60, `${shown.length}`);
+    // What is not shown yet is on its way, or waits: each other frame at most once.
+    assert.ok(bench.numAsked - shown.length < numFrames, `${bench.numAsked}`);
+    assert.equal(bench.discarded, 0);
+  });
+}
+
+test("AStillMeshIsShownOnceAndDoesNotPlay", () => {
+  const bench = new Bench(1, 0, 8);
+  bench.playback.play();
+  assert.equal(bench.playback.playing, false);
+  bench.run(30);
   assert.deepEqual(bench.shown, [0]);
   assert.equal(bench.playback.frame, 0);
+  assert.equal(bench.numAsked, 1);
 });

@@ -133,6 +133,11 @@ RLPC_EXPORT(player_coordinates) const float* player_coordinates(const Page* page
   return page->player.coordinates().data();
 }
 
+// Three doubles: where its coordinates, and the box, count from.
+RLPC_EXPORT(player_centre) const double* player_centre(const Page* page) {
+  return page->player.centre().data();
+}
+
 // 9.7.2, of the frame in output order
 RLPC_EXPORT(player_frame_crc) std::uint32_t player_frame_crc(const Page* page) {
   return rlpc::crc32_of_positions(page->player.positions());
@@ -161,8 +166,11 @@ RLPC_EXPORT(player_edges) const std::uint32_t* player_edges(const Page* page) {
 
 RLPC_EXPORT(player_distances)
 const float* player_distances(Page* page, const Page* reference) {
-  page->deviation = rlpc::vertex_distances(page->player.coordinates(),
-                                           reference->player.coordinates(), page->distances);
+  const rlpc::Vec3d& centre = page->player.centre();
+  const rlpc::Vec3d& other = reference->player.centre();
+  page->deviation = rlpc::vertex_distances(
+      page->player.coordinates(), reference->player.coordinates(),
+      {centre[0] - other[0], centre[1] - other[1], centre[2] - other[2]}, page->distances);
   return page->distances.data();
 }
 

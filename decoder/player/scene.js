@@ -21,7 +21,8 @@ export class Scene {
     this.controls.addEventListener("change", () => (this.isDrawn = false));
     this.axes = new THREE.Group(); // turned if z is up
     this.place = new THREE.Group(); // of the size of the view
-    this.scene.add(this.axes.add(this.place));
+    this.body = new THREE.Group(); // at the centre of the frame, from which it is drawn
+    this.scene.add(this.axes.add(this.place.add(this.body)));
     this.floor = new Floor(this.scene);
     this.addLights();
     this.isDrawn = false;
@@ -44,7 +45,7 @@ export class Scene {
 
   /** Of a stream; the first frame follows with showFrame(). */
   setMesh(header, triangles) {
-    this.place.clear();
+    this.removeMesh();
     const numVertices = header.num_vertices;
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
@@ -65,19 +66,29 @@ export class Scene {
     this.surface.frustumCulled = false; // there is no bounding sphere of what moves
     this.surface.castShadow = this.surface.receiveShadow =
       triangles.length / 3 <= kMostShadowTriangles;
-    this.place.add(this.surface);
+    this.body.add(this.surface);
     this.lines = null;
     this.box = null;
     this.isDrawn = false;
   }
 
+  /** Gives back what the graphics card holds of it. */
+  removeMesh() {
+    for (const object of this.body.children) {
+      object.geometry.dispose();
+      object.material.dispose();
+    }
+    this.body.clear();
+  }
+
   /** Takes the arrays of a frame; returns those that it replaces. */
-  showFrame({ coordinates, normals, distances, box }) {
+  showFrame({ coordinates, normals, distances, box, centre }) {
     const replaced = {
       coordinates: this.replace("position", coordinates),
       normals: this.replace("normal", normals),
       distances: this.replace("deviation", distances),
     };
+    this.body.position.set(...centre);
     const first = this.box === null;
     this.box = new THREE.Box3(new THREE.Vector3(...box.subarray(0, 3)),
       new THREE.Vector3(...box.subarray(3)));
@@ -102,7 +113,7 @@ export class Scene {
   /** The box of the frame as it stands in the scene. */
   worldBox() {
     this.axes.updateMatrixWorld(true);
-    return this.box.clone().applyMatrix4(this.place.matrixWorld);
+    return this.box.clone().applyMatrix4(this.body.matrixWorld);
   }
 
   /** The frame has size 1, stands on the floor, and is seen whole. */
@@ -110,7 +121,7 @@ export class Scene {
     const size = this.box.getSize(new THREE.Vector3()).length();
     const scale = size > 0 ? 1 / size : 1;
     this.place.scale.setScalar(scale);
-    this.place.position.copy(this.box.getCenter(new THREE.Vector3())).multiplyScalar(-scale);
+    this.place.position.copy(this.body.position).multiplyScalar(-scale);
     const box = this.worldBox();
     this.floor.setHeight(box.min.y);
     this.controls.target.copy(box.getCenter(new THREE.Vector3()));
@@ -157,7 +168,7 @@ export class Scene {
     this.lines = new THREE.LineSegments(geometry,
       new THREE.LineBasicMaterial({ transparent: true }));
     this.lines.frustumCulled = false;
-    this.place.add(this.lines);
+    this.body.add(this.lines);
   }
 
   /** mode: "off", "over" the surface, "alone". After setEdges(), unless it is off. */

@@ -84,7 +84,7 @@ class StreamDecoder {
     return this.copy(Int32Array, "player_positions", 3 * this.header.num_vertices);
   }
 
-  /** In the cube from -1 to 1. */
+  /** From the centre of the frame, in a cube from -1 to 1 that holds all positions. */
   coordinates(into) {
     return this.copy(Float32Array, "player_coordinates", 3 * this.header.num_vertices, into);
   }
@@ -93,6 +93,12 @@ class StreamDecoder {
     return this.copy(Int16Array, "player_normals", 4 * this.header.num_vertices, into);
   }
 
+  /** In that cube; numbers of 64 bits, as frames may be small and far away. */
+  centre() {
+    return this.copy(Float64Array, "player_centre", 3);
+  }
+
+  /** Least and most coordinates. */
   box() {
     return this.copy(Float32Array, "player_box", 6);
   }

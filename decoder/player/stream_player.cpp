@@ -1,6 +1,8 @@
 #include "decoder/player/stream_player.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +25,26 @@ Placement placement_in(const SequenceHeader& header, const SequenceHeader& other
     placement.offset[c] = header.grid.origin[c] * placement.scale - other.grid.origin[c] * unit;
   }
   return placement;
+}
+
+Vec3d centred_coordinates(std::span<const std::int32_t> positions, const Placement& placement,
+                          std::span<float> coordinates) {
+  Vec3d middle{};  // of the grid
+  Vec3d centre{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::int32_t least = positions[c];
+    std::int32_t most = positions[c];
+    for (std::size_t i = c; i < positions.size(); i += 3) {
+      least = std::min(least, positions[i]);
+      most = std::max(most, positions[i]);
+    }
+    middle[c] = std::midpoint<double>(least, most);
+    centre[c] = middle[c] * placement.scale + placement.offset[c];
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    coordinates[i] = static_cast<float>((positions[i] - middle[i % 3]) * placement.scale);
+  }
+  return centre;
 }
 
 StreamPlayer::StreamPlayer(OpenSource open_source, std::uint32_t stream,
@@ -69,7 +91,7 @@ bool StreamPlayer::decode(std::uint32_t frame) {
     if (!unchecked_) unchecked_ = open_decoder(false);
     if (!unchecked_ || !decode_with(unchecked_, frame)) return false;
   }
-  set_coordinates();
+  centre_ = centred_coordinates(positions_, placement_, coordinates_);
   return true;
 }
 
@@ -77,13 +99,6 @@ bool StreamPlayer::finish() {
   const auto more = decoder_->next_frame(positions_);
   if (!more) error_ = more.error();
   return static_cast<bool>(more);
-}
-
-void StreamPlayer::set_coordinates() {
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    coordinates_[i] =
-        static_cast<float>(positions_[i] * placement_.scale + placement_.offset[i % 3]);
-  }
 }
 
 }  // namespace rlpc

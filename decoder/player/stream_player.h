@@ -14,17 +14,23 @@
 
 namespace rlpc {
 
-// Where grid positions are drawn: position * scale + offset. Neither large grids nor places far
-// from the origin trouble the arithmetic of a graphics card, whose numbers have 24 bits.
+using Vec3d = std::array<double, 3>;
+
+// Where grid positions are drawn: position * scale + offset.
 struct Placement {
   double scale = 1;
-  std::array<double, 3> offset{};
+  Vec3d offset{};
 };
 
 // In the cube from -1 to 1, which is what position_bits can reach.
 Placement placement_of(const SequenceHeader& header);
 // The positions of `header` in the cube of another stream.
 Placement placement_in(const SequenceHeader& header, const SequenceHeader& other);
+
+// Coordinates of a frame from the centre of its box, which is returned: 24 bits, all that the
+// numbers of a graphics card have, then go to the mesh, and not to its way. As many of both.
+Vec3d centred_coordinates(std::span<const std::int32_t> positions, const Placement& placement,
+                          std::span<float> coordinates);
 
 class StreamPlayer {
  public:
@@ -49,14 +55,14 @@ class StreamPlayer {
 
   // Of the frame that was decoded last.
   std::span<const std::int32_t> positions() const { return positions_; }
-  std::span<const float> coordinates() const { return coordinates_; }
+  std::span<const float> coordinates() const { return coordinates_; }  // from the centre
+  const Vec3d& centre() const { return centre_; }
   bool hash_differs() const { return hash_differs_; }
   std::uint32_t compared_frames() const { return decoder_->compared_frames(); }
 
  private:
   std::optional<Decoder> open_decoder(bool verify_hashes);
   bool decode_with(std::optional<Decoder>& decoder, std::uint32_t frame);
-  void set_coordinates();
 
   OpenSource open_source_;
   std::uint32_t stream_;
@@ -69,6 +75,7 @@ class StreamPlayer {
   Placement placement_;
   std::vector<std::int32_t> positions_;
   std::vector<float> coordinates_;
+  Vec3d centre_{};
 };
 
 }  // namespace rlpc

@@ -4,6 +4,7 @@ import { DecoderModule } from "./stream_decoder.js";
 
 let decoder = null;
 let reference = null;
+let referenceError; // why it cannot be opened
 let endIsChecked = false;
 
 /** As a message, which loses the class of an error. */
@@ -18,24 +19,44 @@ async function bytesOf(blob) {
 async function open({ wasm, stream, referenceStream }) {
   const module = await DecoderModule.create(await wasm.arrayBuffer());
   decoder = module.open(await bytesOf(stream));
-  if (referenceStream) {
-    reference = module.open(await bytesOf(referenceStream));
-    reference.placeIn(decoder);
-  }
+  if (referenceStream) await openReference(module, referenceStream);
   const triangles = decoder.triangles();
   postMessage({ type: "opened", header: decoder.header, triangles }, [triangles.buffer]);
 }
 
+/** Without it, the stream is played all the same. */
+async function openReference(module, stream) {
+  try {
+    const opened = module.open(await bytesOf(stream));
+    opened.placeIn(decoder);
+    reference = opened;
+  } catch (error) {
+    referenceError = told(error);
+  }
+}
+
+/** Distances of the frame that was just decoded; what is wrong with the reference is no fault
+ * of the stream. */
+function compared(request, reply) {
+  reply.referenceError = referenceError;
+  if (!reference) return;
+  try {
+    reference.decode(request.frame);
+    if (reference.hashDiffers()) reply.referenceError = told(reference.error());
+    Object.assign(reply, decoder.distances(reference, request.spare?.distances));
+  } catch (error) {
+    reply.referenceError = told(error);
+  }
+}
+
 /** The arrays of the frame that was just decoded. */
 function drawn(request, reply) {
-  const { coordinates, normals, distances } = request.spare ?? {};
+  const { coordinates, normals } = request.spare ?? {};
   reply.coordinates = decoder.coordinates(coordinates);
   reply.box = decoder.box();
+  reply.centre = decoder.centre();
   if (request.withNormals) reply.normals = decoder.normals(normals);
-  if (reference) {
-    reference.decode(request.frame);
-    Object.assign(reply, decoder.distances(reference, distances));
-  }
+  compared(request, reply);
 }
 
 function decodeFrame(request) {

@@ -53,23 +53,6 @@ std::string grouped_text(std::uint64_t value) {
   return text;
 }
 
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t triple = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      triple = triple << 8 | (i + j < bytes.size() ? bytes[i + j] : 0U);
-    }
-    for (std::size_t j = 0; j < 4; ++j) {
-      text += i + j <= bytes.size() ? kDigits[triple >> (18 - 6 * j) & 63] : '=';
-    }
-  }
-  return text;
-}
-
 HtmlPage::HtmlPage(std::string_view title) : title_(escape_html(title)) {}
 
 void HtmlPage::add_fact(std::string_view name, std::string_view text) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +16,6 @@ std::string number_text(double value, int digits = 4);
 
 // "1,234,567"
 std::string grouped_text(std::uint64_t value);
-
-std::string base64(std::span<const std::uint8_t> bytes);
 
 // A figure that stands out, with what it is below: {"1.05", "bits per vertex and frame"}.
 struct KeyFigure {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "decoder/output/base64.h"
 #include "decoder/report/assets.h"
-#include "decoder/report/html_page.h"
 
 namespace rlpc {
 namespace {

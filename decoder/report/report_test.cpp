@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "decoder/output/base64.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/mesh_view.h"
 #include "decoder/report/svg_chart.h"
@@ -13,18 +14,12 @@
 namespace rlpc {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 std::string encoded(const std::string& text) {
   const std::vector<std::uint8_t> bytes(text.begin(), text.end());
   return base64(bytes);
-}
-
-// RFC 4648, section 10.
-TEST(Report, Base64IsThatOfTheStandard) {
-  const std::vector<std::string> texts{"", "f", "fo", "foo", "foob", "fooba", "foobar"};
-  const std::vector<std::string> expected{"",         "Zg==",     "Zm8=",    "Zm9v",
-                                          "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
-  for (std::size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(encoded(texts[i]), expected[i]);
-  EXPECT_EQ(base64(std::vector<std::uint8_t>{0xFF, 0xEF, 0xBE}), "/+++");
 }
 
 TEST(Report, NumbersHaveTheDigitsThatCount) {
@@ -36,7 +31,7 @@ TEST(Report, NumbersHaveTheDigitsThatCount) {
   EXPECT_EQ(number_text(99.96, 3), "100");
   EXPECT_EQ(number_text(123456.7), "123457");
   EXPECT_EQ(number_text(1.5e-9, 3), "1.50e-09");
-  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "∞");
+  EXPECT_EQ(number_text(kInfinity), "∞");
   EXPECT_EQ(grouped_text(0), "0");
   EXPECT_EQ(grouped_text(999), "999");
   EXPECT_EQ(grouped_text(1000), "1,000");
@@ -62,9 +57,40 @@ TEST(Report, LongLinesShowTheLargestOfSeveralFrames) {
             std::string::npos);
 }
 
+// The values that the script of the page shows, in groups of 2.
+std::string shown_in_pairs(const std::vector<double>& first, bool worst_is_smallest) {
+  ChartSeries series{"e", "red", std::vector<double>(2000, 1.0), worst_is_smallest};
+  std::copy(first.begin(), first.end(), series.values.begin());
+  const std::string html = line_chart("E", "u", {series});
+  const std::string start = "values&quot;:[[";
+  const std::size_t at = html.find(start) + start.size();
+  return html.substr(at, html.find(",1.0,1.0", at) - at);
+}
+
+TEST(Report, LongLinesShowTheWorstOfSeveralFrames) {
+  const std::vector<double> values{3, 2, 4, 7};
+  EXPECT_EQ(shown_in_pairs(values, false), "3.0,7.0");
+  EXPECT_EQ(shown_in_pairs(values, true), "2.0,4.0");
+  ChartSeries error{"error", "red", std::vector<double>(1001, 1.0)};
+  ChartSeries psnr{"psnr", "blue", error.values, true};
+  const auto has = [](const std::string& html, const char* words) {
+    return html.find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(has(line_chart("E", "u", {error}), "the largest of 2 each"));
+  EXPECT_TRUE(has(line_chart("E", "u", {psnr}), "the smallest of 2 each"));
+  EXPECT_TRUE(has(line_chart("E", "u", {error, psnr}), "the worst of 2 each"));
+}
+
+TEST(Report, WhatIsNoFiniteNumberLeavesNoGapInAGroup) {
+  for (const double none : {kInfinity, -kInfinity, kNan}) {
+    const std::vector<double> values{3, none, none, 4, none, none};
+    EXPECT_EQ(shown_in_pairs(values, false), "3.0,4.0,null") << none;
+    EXPECT_EQ(shown_in_pairs(values, true), "3.0,4.0,null") << none;
+  }
+}
+
 TEST(Report, InfiniteValuesInterruptALine) {
-  const double inf = std::numeric_limits<double>::infinity();
-  const std::string html = line_chart("E", "u", {{"e", "red", {1, 2, inf, 3, 4}}});
+  const std::string html = line_chart("E", "u", {{"e", "red", {1, 2, kInfinity, 3, 4}}});
   const std::size_t path = html.find("class=\"line\" d=\"");
   ASSERT_NE(path, std::string::npos);
   const std::string d = html.substr(path, html.find("stroke", path) - path);

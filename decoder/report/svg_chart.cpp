@@ -111,17 +111,32 @@ std::string figure(std::string_view title, std::string_view unit, const std::str
   return html + svg + "</svg>\n" + legend(series) + "</figure>\n";
 }
 
-// The largest of every `group` values.
-std::vector<double> grouped(const std::vector<double>& values, std::size_t group) {
-  std::vector<double> largest;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+// The worst of every `group` values; of those that are finite, unless none is.
+std::vector<double> grouped(const ChartSeries& series, std::size_t group) {
+  const auto takes_its_place = [&](double value, double worst) {
+    if (!std::isfinite(value) || !std::isfinite(worst)) return std::isfinite(value);
+    return series.worst_is_smallest ? value < worst : value > worst;
+  };
+  std::vector<double> worst;
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    const double value = series.values[i];
     if (i % group == 0) {
-      largest.push_back(values[i]);
-    } else if (!(largest.back() >= values[i])) {  // so that a number takes the place of none
-      largest.back() = values[i];
+      worst.push_back(value);
+    } else if (takes_its_place(value, worst.back())) {
+      worst.back() = value;
     }
   }
-  return largest;
+  return worst;
+}
+
+// What the axis says of groups.
+std::string frame_label(const std::vector<ChartSeries>& series, std::size_t group) {
+  if (group == 1) return "frame";
+  const auto count = std::count_if(series.begin(), series.end(),
+                                   [](const ChartSeries& s) { return s.worst_is_smallest; });
+  const bool all = count == static_cast<std::ptrdiff_t>(series.size());
+  const std::string worst = count == 0 ? "largest" : all ? "smallest" : "worst";
+  return "frame; the " + worst + " of " + std::to_string(group) + " each";
 }
 
 double rounded(double value) {  // to the digits that are shown
@@ -159,7 +174,7 @@ std::string line_chart(std::string_view title, std::string_view unit,
   double highest = 0;
   nlohmann::ordered_json data = {{"group", group}, {"frames", num_frames}};
   for (ChartSeries& s : shown) {
-    s.values = grouped(s.values, group);
+    s.values = grouped(s, group);
     nlohmann::ordered_json values = nlohmann::ordered_json::array();
     for (const double value : s.values) {
       if (std::isfinite(value)) highest = std::max(highest, value);
@@ -170,9 +185,7 @@ std::string line_chart(std::string_view title, std::string_view unit,
   const double last = std::max<double>(1, static_cast<double>(num_frames) - 1);
   data["last"] = last;
   const Frames frames = axes(last, highest);
-  const std::string label =
-      group == 1 ? "frame" : "frame; the largest of " + std::to_string(group) + " each";
-  std::string svg = grid(frames, label);
+  std::string svg = grid(frames, frame_label(series, group));
   for (const ChartSeries& s : shown) svg += line(s, frames, group);
   return figure(title, unit, svg, shown, std::move(data));
 }

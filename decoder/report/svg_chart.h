@@ -16,10 +16,11 @@ struct ChartSeries {
   std::string name;
   std::string colour;  // as in CSS
   std::vector<double> values;
+  bool worst_is_smallest = false;  // as of PSNR
 };
 
 // One value of each series for each frame; what is no finite number is left out. Of long
-// animations, the largest of several frames; the axis says so.
+// animations, the worst of several frames; the axis says so.
 std::string line_chart(std::string_view title, std::string_view unit,
                        const std::vector<ChartSeries>& series);
 

@@ -37,10 +37,11 @@ const edges = (() => {
   return new Uint32Array(list);
 })();
 
+// From the centre of all frames: far from the origin, 32 bits would not tell them apart.
 function positionsOf(which, frame) {
   const from = levels[which].subarray(3 * V * frame, 3 * V * (frame + 1));
   const xyz = new Float32Array(3 * V);
-  for (let i = 0; i < xyz.length; ++i) xyz[i] = info.low[i % 3] + info.step[i % 3] * from[i];
+  for (let i = 0; i < xyz.length; ++i) xyz[i] = info.step[i % 3] * (from[i] - 65535 / 2);
   return xyz;
 }
 
@@ -178,9 +179,8 @@ gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
 gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
 gl.enable(gl.DEPTH_TEST);
 
-// ---- Camera: turns about a point; radii are of the sphere around all frames ----
+// ---- Camera: turns about the centre; radii are of the sphere around all frames ----
 
-const centre = [0, 1, 2].map((c) => info.low[c] + 65535 / 2 * info.step[c]);
 const radius = Math.hypot(...info.step) * 65535 / 2 || 1;
 const TAN = Math.tan(0.5 * 35 * Math.PI / 180);
 let camera = {yaw: 0.6, pitch: 0.3, distance: 1, x: 0, y: 0};
@@ -191,11 +191,8 @@ function viewMatrix() {
   // Rows: right, up, backward; of a mesh whose y axis is up.
   let rows = [[cy, 0, -sy], [-sp * sy, cp, -sp * cy], [cp * sy, sp, cp * cy]];
   if ($("up").value === "z") rows = rows.map(([a, b, c]) => [a, -c, b]);
-  const move = rows.map((r) => -(r[0] * centre[0] + r[1] * centre[1] + r[2] * centre[2]));
-  move[0] += x;
-  move[1] += y;
-  move[2] -= distance;
-  return [0, 1, 2].flatMap((c) => [rows[0][c], rows[1][c], rows[2][c], 0]).concat(move, 1);
+  return [0, 1, 2].flatMap((c) => [rows[0][c], rows[1][c], rows[2][c], 0])
+      .concat(x, y, -distance, 1);
 }
 
 function projectionMatrix(aspect) {

@@ -1,4 +1,4 @@
-#include "decoder/html_verb.h"
+#include "decoder/player/html_verb.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "decoder/describe_error.h"
-#include "decoder/player_page.h"
+#include "decoder/player/player_page.h"
 
 namespace rlpc {
 namespace {
@@ -46,6 +46,11 @@ bool same_mesh(const Decoder& a, const Decoder& b) {
                     b.triangles().end());
 }
 
+std::string title(const std::string& input) {
+  if (input == "-") return "animation";
+  return std::filesystem::path(input).filename().string();
+}
+
 }  // namespace
 
 int write_html(const HtmlRequest& request, ByteSource& stream) {
@@ -62,12 +67,13 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
     if (!other) return complain(request.reference, other.error());
     if (!same_mesh(*decoder, *other)) {
       return complain(request.reference + ": not a stream of the same frames, vertices and " +
-                          "triangles as " + request.input,
+                          "triangles as " + request.input +
+                          ", in the same order; encode both " +
+                          "from the same mesh, both with --keep-order or both without",
                       kExitUsage);
     }
   }
-  const std::string name = std::filesystem::path(request.input).filename().string();
-  const PageStreams streams{name, &stream, reference.get()};
+  const PageStreams streams{title(request.input), &stream, reference.get()};
   if (const auto error = write_player_page(request.output, *player, streams)) {
     return complain(error->message, kExitIo);
   }

@@ -1,16 +1,16 @@
-#include "decoder/player_page.h"
+#include "decoder/player/player_page.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "decoder/output/base64.h"
 #include "decoder/output/output_file.h"
 
 namespace rlpc {
@@ -23,23 +23,6 @@ constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
 // An element for each, as strings of browsers have limits; a multiple of 3, so that only the
 // last one is padded.
 constexpr std::size_t kPartBytes = std::size_t{3} << 20;
-
-// RFC 4648, section 4
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t b = 0; b < 3; ++b) bits = bits << 8 | (b < count ? bytes[i + b] : 0U);
-    for (std::size_t d = 0; d < 4; ++d) {
-      text += d <= count ? kDigits[(bits >> (18 - 6 * d)) & 63] : '=';
-    }
-  }
-  return text;
-}
 
 // As text of a script element, which `</` could end.
 std::string description(const std::string& name) {

@@ -9,10 +9,10 @@
 namespace rlpc {
 
 struct HtmlRequest {
-  std::string input;      // name of the stream
+  std::string input;      // name of the stream; "-": it came from standard input
   std::string output;     // page to write
   std::string player;     // page of the player; empty: where it usually is
-  std::string reference;  // another stream of the same mesh; empty: none
+  std::string reference;  // of the same mesh, its vertices in the same order; empty: none
   DecoderOptions decoder;
   bool quiet = false;
 };

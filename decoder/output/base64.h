@@ -1,0 +1,13 @@
+// Bytes as text, for pages that hold them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace rlpc {
+
+// RFC 4648, section 4: with padding, in one line.
+std::string base64(std::span<const std::uint8_t> bytes);
+
+}  // namespace rlpc
