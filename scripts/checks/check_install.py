@@ -44,7 +44,8 @@ class Clip:
         self.tools = prefix / "bin"
         self.stream = work / "clip.rlpc"
         cache = CLIP.with_suffix(".pc2")
-        run(self.tools / "rlpcenc", CLIP, "--points", cache, "--kg", "0.2", "-q", "-o", self.stream)
+        run(self.tools / "rlpcenc", CLIP, "--points", cache, "--kg", "0.2", "--preset", "fast",
+            "-q", "-o", self.stream)
         run(self.tools / "rlpcdec", self.stream, "-q", "-o", work / "clip.pc2")
         self.decoded = (work / "clip.pc2").read_bytes()[PC2_HEADER_BYTES:]
         vertices, = array.array("i", cache.read_bytes()[16:20])
@@ -70,9 +71,12 @@ def try_decoder(program, clip, work):
     require(code == 1, f"{program.name}: exit code {code} for an empty file")
 
 
-def try_programs(folder, clip, work):
+def try_decoders(folder, clip, work):
     for name in ("decode_c", "decode_cpp"):
         try_decoder(folder / name, clip, work)
+
+
+def try_encoders(folder, clip, work):
     out = work / "encoded.rlpc"
     run(folder / "encode_cpp", CLIP, CLIP.with_suffix(".pc2"), out)
     require(out.read_bytes() == clip.stream.read_bytes(), "encode_cpp and rlpcenc differ")
@@ -131,9 +135,11 @@ def main():
             # The package must not depend on the place it was installed to.
             prefix = (work / "installed").rename(work / "moved")
             clip = Clip(prefix, work)
-            try_programs(with_cmake(args, prefix, work / "cmake"), clip, work)
+            programs = with_cmake(args, prefix, work / "cmake")
+            try_decoders(programs, clip, work)
+            try_encoders(programs, clip, work)
             if shutil.which("pkg-config"):
-                try_programs(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
+                try_decoders(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
             else:
                 print("pkg-config is not installed: its files were not tried")
             pages = {path.name for path in (prefix / "share" / "man" / "man1").iterdir()}

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   }
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
+  options.preset = RLPC_FAST;
   options.target_value = 0.2;  // KG error in per cent
   options.gof_frames = 32;
 

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
 
   std::ofstream out(argv[3], std::ios::binary);
   rlpc::EncoderSettings settings;
+  settings.preset = rlpc::Preset::kFast;
   settings.target = {rlpc::Target::kKg, 0.2};  // per cent
   const auto report = rlpc::encode(**source, settings, [&](auto bytes) {
     out.write(reinterpret_cast<const char*>(bytes.data()),
