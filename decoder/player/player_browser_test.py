@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""The player in Chromium.
+
+  player_browser_test.py --bin FOLDER [Browser.test_NAME]...
+
+Exit code: 0 passed, 1 failed, 77 if all was skipped.
+"""
+
+import re
+import struct
+import unittest
+
+import chromium
+from player_testing import PLAYER, STREAMS, Decoded, InFolder, main, need_player, run
+
+
+class Browser(InFolder):
+    """Pages in Chromium; each has the frames that rlpcdec decodes."""
+
+    @classmethod
+    def setUpClass(cls):
+        need_player()
+        path = chromium.program()
+        if not path:
+            raise unittest.SkipTest("no Chromium here: scripts/setup --player")
+        super().setUpClass()
+        browser = chromium.Chromium(path)
+        cls.browser = browser.__enter__()
+        cls.addClassCleanup(browser.__exit__)
+        cls.stream = cls.encode("clip.rlpc", "--gof", "20")
+
+    def open(self, stream, fragment="", *arguments):
+        page = self.folder / f"{stream.stem}.html"
+        done = run("rlpcdec", stream, "--html", page, "--player", PLAYER, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.browser.open("about:blank")
+        self.browser.open(f"{page.as_uri()}#{fragment}")
+        self.browser.wait_for("document.body?.dataset.state === 'ready'")
+
+    def wait_for_frame(self, frame):
+        self.browser.wait_for(f"player.shownFrame === {frame}")
+
+    def wait_for_check(self):
+        """And until the page says so, which it does with the next picture."""
+        self.browser.wait_for("player.states.isComplete")
+        self.browser.evaluate("new Promise((next) => requestAnimationFrame(() => "
+                              "requestAnimationFrame(() => next(true))))")
+
+    def states(self):
+        return self.browser.evaluate("[...player.states.states]")
+
+    def text(self, element):
+        return self.browser.evaluate(f"document.getElementById('{element}').innerText")
+
+    def test_frames_are_those_of_rlpcdec(self):
+        self.open(self.stream, "frame=33")
+        self.wait_for_check()
+        self.wait_for_frame(33)
+        crcs = Decoded(self.stream, self.folder).crcs
+        self.assertEqual(self.browser.evaluate("[...player.states.crcs]"), crcs)
+        self.assertEqual(self.states(), [2] * 60)
+        self.assertIn("bit-exact", self.text("hash"))
+        self.assertIn(f"{crcs[33]:08x}", self.text("hash"))
+        self.assertIn("60 of 60 frames", self.text("hash"))
+
+    def test_the_mesh_is_seen(self):
+        self.open(self.stream, "frame=20")
+        self.wait_for_frame(20)
+        shot = self.folder / "shot.png"
+        self.browser.screenshot(shot)
+        self.assertTrue(shot.read_bytes().startswith(b"\x89PNG"))
+        # The middle of the view has the light colour of the mesh; without it, the dark floor.
+        middle = """(() => {
+          player.scene.setWireframe('MODE');
+          player.scene.draw();
+          const gl = player.scene.renderer.getContext();
+          const pixel = new Uint8Array(4);
+          gl.readPixels(gl.drawingBufferWidth / 2, gl.drawingBufferHeight / 2, 1, 1, gl.RGBA,
+                        gl.UNSIGNED_BYTE, pixel);
+          return [...pixel];
+        })()"""
+        self.assertGreater(min(self.browser.evaluate(middle.replace("MODE", "off"))), 80)
+        self.assertLess(max(self.browser.evaluate(middle.replace("MODE", "alone"))[:3]), 80)
+
+    def test_keys(self):
+        self.open(self.stream, "frame=10")
+        self.wait_for_frame(10)
+        for key, frame in [("ArrowRight", 11), ("ArrowUp", 21), ("ArrowLeft", 20), ("Home", 0),
+                           ("ArrowLeft", 59)]:
+            self.browser.press(key)
+            self.wait_for_frame(frame)
+        self.browser.press(" ")
+        self.browser.wait_for("player.playback.playing && player.shownFrame < 50")
+        self.browser.press(" ")
+        self.assertFalse(self.browser.evaluate("player.playback.playing"))
+        self.browser.press("w")
+        self.browser.wait_for("player.scene.lines?.visible")
+        # Closed and of genus 0 in each part, it has 3/2 edges for each triangle.
+        self.assertEqual(self.browser.evaluate("2 * player.scene.lines.geometry.index.count / 2"),
+                         self.browser.evaluate("3 * player.header.num_triangles"))
+        self.browser.press("n")
+        self.browser.wait_for("player.scene.material.flatShading")
+
+    def test_the_time_line(self):
+        self.open(self.stream, "frame=0")
+        self.wait_for_frame(0)
+        self.browser.evaluate("""(() => {
+          const slider = document.getElementById('slider');
+          slider.value = 47;
+          slider.dispatchEvent(new Event('input'));
+        })()""")
+        self.wait_for_frame(47)
+        self.assertIn("47", self.text("clock"))
+
+    def test_it_plays_by_itself(self):
+        self.open(self.stream)
+        self.browser.wait_for("player.shownFrame > 5")
+        self.browser.wait_for("player.shownFrame < 5")  # it starts again
+
+    def test_a_hash_that_differs(self):
+        stream = STREAMS / "v1.0" / "reject" / "HSH" / "HSH-0001x1.rlpc"
+        self.open(stream, "frame=0")
+        self.wait_for_frame(0)
+        self.wait_for_check()
+        self.assertIn("hash mismatch", self.text("hash"))
+        states = self.states()
+        self.assertEqual(states[0], 3)
+        self.assertEqual(set(states[1:]), {2})  # the others are found to be right
+        # It is shown all the same, and is the frame of the stream with the right hash.
+        right = Decoded(STREAMS / "v1.0" / "accept" / "HSH" / "HSH-0001a.rlpc", self.folder)
+        self.assertEqual(self.browser.evaluate("[...player.states.crcs]"), right.crcs)
+
+    def damaged(self):
+        """The stream, with an error in the second of its three GOFs."""
+        data = bytearray(self.stream.read_bytes())
+        data[len(data) // 2] ^= 0x10
+        damaged = self.folder / "damaged.rlpc"
+        damaged.write_bytes(data)
+        return damaged
+
+    def test_a_damaged_frame(self):
+        self.open(self.damaged(), "frame=30")
+        self.wait_for_check()
+        self.assertEqual(self.states(), [2] * 20 + [4] * 20 + [2] * 20)
+        self.browser.wait_for("document.getElementById('hash').dataset.state === 'error'")
+        self.assertIn("R-UNT-", self.text("hash"))
+        self.browser.evaluate("player.seek(50)")
+        self.browser.wait_for("document.getElementById('hash').dataset.state === 'agrees'")
+        self.assertIn("frame 50", self.text("hash"))
+
+    def test_a_damaged_reference_is_no_fault_of_the_stream(self):
+        self.open(self.stream, "frame=30", "--reference", self.damaged())
+        self.wait_for_frame(30)
+        self.wait_for_check()
+        self.assertEqual(self.states(), [2] * 60)
+        self.assertIn("bit-exact", self.text("hash"))
+        self.assertRegex(self.text("deviation"), "reference cannot be decoded: .*R-UNT-")
+        self.assertNotIn("RMS", self.text("deviation"))
+        self.assertEqual(self.browser.evaluate("player.scene.deviationScale.value"), 0)
+        self.browser.evaluate("player.seek(50)")
+        self.wait_for_frame(50)
+        self.assertIn("largest 0, RMS 0", self.text("deviation"))
+        self.assertNotIn("decoded", self.text("deviation"))
+
+    def test_a_reference_whose_hash_differs(self):
+        hashes = STREAMS / "v1.0"
+        self.open(hashes / "accept" / "HSH" / "HSH-0001a.rlpc", "frame=0",
+                  "--reference", hashes / "reject" / "HSH" / "HSH-0001x1.rlpc")
+        self.wait_for_frame(0)
+        self.wait_for_check()
+        self.assertEqual(set(self.states()), {2})
+        self.assertRegex(self.text("deviation"), "reference does not fit its hash: .*R-HSH-02")
+        self.assertIn("largest 0, RMS 0", self.text("deviation"))
+
+    def test_cards_leave_each_other_room(self):
+        self.open(self.stream, "frame=0", "--reference", self.stream)
+        self.wait_for_frame(0)
+        overlaps = """(() => {
+          const boxes = [...document.querySelectorAll('.card')].map((card) =>
+            card.getBoundingClientRect());
+          const inside = boxes.every((a) => a.left >= 0 && a.right <= innerWidth && a.width > 0);
+          return !inside || boxes.some((a, i) => boxes.some((b, j) => i < j && a.left < b.right &&
+            b.left < a.right && a.top < b.bottom && b.top < a.bottom));
+        })()"""
+        for width in (1280, 800, 420, 360):
+            self.browser.resize(width, 800)
+            self.assertFalse(self.browser.evaluate(overlaps), width)
+        self.browser.resize(1280, 800)
+
+    def test_playing_goes_on_if_the_check_fails(self):
+        self.open(self.stream, "frame=0")
+        self.wait_for_check()
+        self.browser.evaluate("""(() => {
+          player.checkAll();
+          player.checker.worker.dispatchEvent(new ErrorEvent('error', {message: 'no room'}));
+        })()""")
+        self.browser.wait_for("document.getElementById('hash').innerText.includes('no room')")
+        self.assertIn("Not all are checked", self.text("hash"))
+        self.browser.evaluate("player.seek(12)")
+        self.wait_for_frame(12)
+        self.assertEqual(self.browser.evaluate("document.body.dataset.state"), "ready")
+
+    def test_distance_from_a_reference(self):
+        coarse = self.encode("coarse.rlpc", "--kg", "2")
+        self.open(coarse, "frame=7", "--reference", self.stream)
+        self.wait_for_frame(7)
+        deviation = self.text("deviation")
+        largest = float(re.search(r"largest ([\d.e-]+)", deviation)[1])
+        rms = float(re.search(r"RMS ([\d.e-]+)", deviation)[1])
+        for shown, native in zip((largest, rms), self.native_deviation(coarse, self.stream, 7)):
+            self.assertAlmostEqual(shown / native, 1, delta=0.006)  # of three digits
+
+    def native_deviation(self, stream, reference, frame):
+        """Largest and root mean square distance."""
+        frames = []
+        for source in (stream, reference):
+            out = self.folder / "frame.f32"
+            run("rlpcdec", "decode", source, out)
+            values = struct.unpack(f"<{out.stat().st_size // 4}f", out.read_bytes())
+            size = len(values) // 60
+            frames.append(values[size * frame:size * (frame + 1)])
+        squares = [(a - b) ** 2 for a, b in zip(*frames)]
+        distances = [sum(squares[i:i + 3]) for i in range(0, len(squares), 3)]
+        return max(distances) ** 0.5, (sum(distances) / len(distances)) ** 0.5
+
+    def test_a_stream_that_is_dropped_takes_the_place_of_another(self):
+        held = "(({ memory, programs }) => [memory.geometries, memory.textures, programs.length])" \
+               "(player.scene.renderer.info)"
+        self.open(self.stream, "frame=3&wire=over")
+        self.wait_for_frame(3)
+        self.browser.wait_for("player.scene.lines?.visible && player.scene.isDrawn")
+        before = self.browser.evaluate(held)
+        self.browser.evaluate("globalThis.addresses = 0;"
+                              "URL.createObjectURL = () => String(++addresses)")
+        for _ in range(2):
+            self.browser.evaluate("player.shownFrame = undefined; player.scene.lines = null;"
+                                  "player.open('dropped.rlpc', player.stream)")
+            self.browser.wait_for("player.shownFrame === 3 && player.scene.lines?.visible"
+                                  " && player.scene.isDrawn")
+        self.assertEqual(self.browser.evaluate(held), before)
+        self.assertEqual(self.browser.evaluate("addresses"), 0)
+
+    def test_without_a_stream(self):
+        self.browser.open(PLAYER.as_uri())
+        self.browser.wait_for("document.body?.dataset.state === 'empty'")
+        self.assertIn("Drop", self.text("message"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+"""What the tests of the player have in common."""
+
+import argparse
+import hashlib
+import json
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+STREAMS = ROOT / "streams"
+PLAYER = ROOT / "build" / "player" / "player.html"
+WASM = ROOT / "build" / "player" / "wasm" / "bin" / "rlpc_player.wasm"
+RLPD_HEADER = struct.Struct("<4sIIIIIIi3i")
+ELEPHANT = STREAMS / "inputs" / "elephant"
+
+
+class Tools:
+    folder = ROOT / "build" / "release" / "bin"  # --bin
+
+
+def run(tool, *arguments, **options):
+    return subprocess.run([Tools.folder / tool, *map(str, arguments)], capture_output=True,
+                          timeout=120, check=False, **options)
+
+
+def need_player():
+    if not PLAYER.exists() or not WASM.exists():
+        raise unittest.SkipTest("the player is not built: scripts/player")
+
+
+def need_node():
+    if not shutil.which("node"):
+        raise unittest.SkipTest("no node here: scripts/setup --player")
+
+
+class Decoded:
+    """What rlpcdec makes of a stream: frames, CRCs and the rule that is broken, or None."""
+
+    def __init__(self, stream, folder):
+        out = folder / "native.rlpd"
+        out.unlink(missing_ok=True)
+        done = run("rlpcdec", "decode", stream, out)
+        verdict = re.search(r"^rlpc-verdict (.*)$", done.stderr.decode(), re.MULTILINE)
+        self.code = done.returncode
+        self.rule = json.loads(verdict[1]).get("rule", "") if verdict else None
+        data = out.read_bytes() if out.exists() else b""
+        self.triangles, positions, self.crcs = b"", b"", []
+        if data:
+            _, _, vertices, triangles, *_ = RLPD_HEADER.unpack_from(data)
+            end = RLPD_HEADER.size + 12 * triangles
+            self.triangles, positions = data[RLPD_HEADER.size:end], data[end:]
+            size = 12 * vertices
+            self.crcs = [zlib.crc32(positions[at:at + size])
+                         for at in range(0, len(positions), size)]
+        self.positions = hashlib.sha256(positions).hexdigest()
+
+
+class InFolder(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+
+    @classmethod
+    def encode(cls, name, *arguments):
+        stream = cls.folder / name
+        done = run("rlpcenc", "-q", f"{ELEPHANT}.obj", "--points", f"{ELEPHANT}.pc2", "--preset",
+                   "fast", "-o", stream, *arguments)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr.decode())
+        return stream
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", type=pathlib.Path, default=Tools.folder)
+    options, rest = parser.parse_known_args()
+    Tools.folder = options.bin.resolve()
+    program = unittest.main(argv=[sys.argv[0], *rest], exit=False)
+    result = program.result
+    if not result.wasSuccessful():
+        sys.exit(1)
+    if result.skipped:
+        for _, reason in result.skipped:
+            print(f"skipped: {reason}")
+        sys.exit(77)
