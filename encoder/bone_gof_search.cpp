@@ -35,6 +35,9 @@ constexpr double kPromisingOfReal = 0.85;
 constexpr double kPromisingUnsettled = 0.93;
 constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
+// Below this part of the cost expected without bones, expected costs are trusted more than the
+// real one: what makes that low, such as vertices at rest, is there with bones, too.
+constexpr double kStrongPromise = 0.65;
 // Limits of promises are so much higher where a trial takes little time.
 constexpr double kHopeOfSmallMesh = 1.25;
 // Expected costs, relative to the least, of numbers of bones to be tried.
@@ -218,7 +221,8 @@ void BoneGofSearch::consider(const BoneSettings& settings) {
 }
 
 // Geometry weights cost more than they bring where rest positions tell little, and
-// parallelograms predict regular meshes of few vertices better.
+// parallelograms predict regular meshes of few vertices better. Where bones leave little to
+// predict, rest positions cost less without layers.
 void BoneGofSearch::choose_prediction() {
   const auto try_other = [&](auto BoneSettings::*member, auto value) {
     BoneSettings other = choice_->settings;
@@ -231,6 +235,9 @@ void BoneGofSearch::choose_prediction() {
   if (choice_->settings.prediction == Prediction::kLayers) {
     if (tools_.geometry_weights) try_other(&BoneSettings::damping_log2, 0);
     if (tools_.layer_steps && (slow || small)) try_other(&BoneSettings::layer_steps, false);
+  }
+  if (!tools_.prediction && choice_->rig.bones.size() > 1) {
+    try_other(&BoneSettings::prediction, Prediction::kNone);
   }
   if (!tools_.prediction && (slow || small)) {
     try_other(&BoneSettings::prediction, Prediction::kParallelogram);
@@ -296,8 +303,10 @@ void BoneGofSearch::choose_bones() {
   }
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
     const Promise& of = promises[influences - 1];
-    if (of.cost <= std::min(kNearLeast * least, hope_ * kPromisingOfReal * without)) {
-      try_promised_bones(influences, of, without);
+    const bool strong = of.cost < kStrongPromise * of.sliding;
+    const double against = strong ? std::max(without, of.sliding) : without;
+    if (of.cost <= std::min(kNearLeast * least, hope_ * kPromisingOfReal * against)) {
+      try_promised_bones(influences, of, against);
     }
     if (preset_ == Preset::kSlow) {
       BoneFit full = fit(influences, step);
