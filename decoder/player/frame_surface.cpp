@@ -50,7 +50,7 @@ void vertex_normals(std::span<const float> coordinates, std::span<const Triangle
   std::transform(sums.begin(), sums.end(), normals.begin(), packed);
 }
 
-std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> triangles) {
+std::vector<std::array<std::uint32_t, 2>> drawn_edges(std::span<const Triangle> triangles) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) {

@@ -20,7 +20,7 @@ void vertex_normals(std::span<const float> coordinates, std::span<const Triangle
                     std::vector<PackedNormal>& normals);
 
 // Each edge of the triangles once.
-std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> triangles);
+std::vector<std::array<std::uint32_t, 2>> drawn_edges(std::span<const Triangle> triangles);
 
 struct Box {
   std::array<float, 3> least{};

@@ -48,9 +48,9 @@ TEST(VertexNormals, AreUnitVectorsWithoutAreaAndForTinyTriangles) {
 
 TEST(EdgesOf, ListsEachEdgeOnce) {
   const std::vector<Triangle> tetrahedron{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-  EXPECT_EQ(edges_of(tetrahedron),
+  EXPECT_EQ(drawn_edges(tetrahedron),
             (std::vector<Edge>{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
-  EXPECT_TRUE(edges_of({}).empty());
+  EXPECT_TRUE(drawn_edges({}).empty());
 }
 
 TEST(BoxOf, HoldsAllVertices) {

@@ -155,7 +155,7 @@ RLPC_EXPORT(player_normals) const rlpc::PackedNormal* player_normals(Page* page)
 }
 
 RLPC_EXPORT(player_num_edges) std::uint32_t player_num_edges(Page* page) {
-  page->edges = rlpc::edges_of(page->player.decoder().triangles());
+  page->edges = rlpc::drawn_edges(page->player.decoder().triangles());
   return static_cast<std::uint32_t>(page->edges.size());
 }
 
