@@ -289,7 +289,7 @@ class GltfSink : public FrameSink {
     if (is_sparse(places.size(), count, 4)) {
       accessor += sparse_text(places, count, std::vector<float>(places.size(), 1));
     } else {
-      std::vector<float> values(count);
+      std::vector<float> values(static_cast<std::size_t>(count));
       for (const std::uint32_t place : places) values[place] = 1;
       accessor += ",\"bufferView\":" + to_string(add_floats(values, 0));
     }

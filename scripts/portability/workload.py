@@ -28,7 +28,7 @@ SETTINGS = {
     ],
 }
 # Of glTF documents; what is evaluated of them is at stake.
-GLTF = "--animation all --kg 0.5 --preset fast --clusters 4"
+GLTF = "--animation all --kg 0.5 --preset fast --bones 4"
 # The decoded frames of the first setting are also written as floats, and encoded again.
 AGAIN = "--profile baseline --kg 1 --preset fast"
 
