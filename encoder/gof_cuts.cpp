@@ -67,8 +67,8 @@ class GofCosts {
     matrix.num_frames = 3 * std::size_t{count};
     matrix.a.resize(matrix.num_values * matrix.num_frames);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::size_t frame =
-          span.first + (count < 2 ? 0 : std::uint64_t{i} * (span.count - 1) / (count - 1));
+      const auto frame = static_cast<std::size_t>(
+          span.first + (count < 2 ? 0 : std::uint64_t{i} * (span.count - 1) / (count - 1)));
       const float* from = &sample_[frame * 3 * vertices_.size()];
       for (std::size_t v = 0; v < vertices_.size(); ++v) {
         for (std::size_t c = 0; c < 3; ++c) matrix.row(v)[c * count + i] = *from++;

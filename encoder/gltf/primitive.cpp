@@ -174,7 +174,7 @@ void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& po
     Vec3d sum{};
     double total = 0.0;  // weights in integers, or rounded, do not add up to 1
     for (auto i = geometry.first_influence[v]; i < geometry.first_influence[v + 1]; ++i) {
-      const GltfInfluence& influence = geometry.influences[i];
+      const GltfInfluence& influence = geometry.influences[static_cast<std::size_t>(i)];
       const Vec3d moved = joints[influence.joint](p);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += influence.weight * moved[c];
       total += influence.weight;

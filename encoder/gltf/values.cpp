@@ -121,7 +121,9 @@ void GltfValues::each_sparse(std::uint32_t accessor, const Visit& visit) {
                      to_string(element), "indices that ascend, below " + to_string(a.count));
                });
   each_element(sparse.values, elements.size(), std::size_t{a.width} * bytes_of(a.component),
-               [&](std::uint64_t i, const char* bytes) { visit(elements[i], bytes); });
+               [&](std::uint64_t i, const char* bytes) {
+                 visit(elements[static_cast<std::size_t>(i)], bytes);
+               });
 }
 
 // Elements that are in no buffer are left out; sparse ones come again, with what they are.

@@ -70,7 +70,8 @@ std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> 
 std::string beginning_of(const std::string& path) {
   auto file = InputFile::open(path);
   if (!file) return {};
-  std::string text(std::min<std::uint64_t>(file->size(), 64), '\0');
+  constexpr std::uint64_t kEnough = 64;
+  std::string text(static_cast<std::size_t>(std::min(file->size(), kEnough)), '\0');
   if (file->read(0, text)) return {};
   return text;
 }
