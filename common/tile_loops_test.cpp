@@ -46,9 +46,9 @@ TEST_P(EachTileLoop, SumsProductsOfAnyRowsAndPairs) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const std::size_t num_pairs = 1 + random() % 8;
-    const std::size_t rows = 1 + random() % 9;
-    const std::size_t first = random() % 3;
+    const auto num_pairs = static_cast<std::size_t>(1 + random() % 8);
+    const auto rows = static_cast<std::size_t>(1 + random() % 9);
+    const auto first = static_cast<std::size_t>(random() % 3);
     // 16 products together within 31 bits, or one with both factors at their extremes.
     const std::int64_t s_most = seed % 2 == 0 ? (1 << 13) : (1 << 15);
     const std::int64_t t_most = seed % 2 == 0 ? (1 << 14) : (1 << 15);
@@ -85,7 +85,7 @@ TEST_P(EachTileLoop, AddsWeightedValuesOfAnyNumber) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const std::size_t n = random() % 20;
+    const auto n = static_cast<std::size_t>(random() % 20);
     const auto values = random_list(random, n, INT32_MIN, INT32_MAX);
     const auto weight =
         static_cast<std::int32_t>(random_within(random, -(1 << 26), std::int64_t{1} << 26));

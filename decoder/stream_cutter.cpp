@@ -134,8 +134,7 @@ Result<Bytes> StreamCutter::new_hash(const ListedGof& gof, const UnitHeader& uni
   for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
     if (const auto more = decoder_.next_frame(positions); !more) return more.error();
     for (std::size_t v = 0; v < vertex_order_.size(); ++v) {
-      std::copy_n(positions.begin() + 3 * std::ptrdiff_t{vertex_order_[v]}, 3,
-                  decoded.begin() + 3 * static_cast<std::ptrdiff_t>(v));
+      std::copy_n(&positions[3 * std::size_t{vertex_order_[v]}], 3, &decoded[3 * v]);
     }
     crc = crc32_of_positions(vertex_order_.empty() ? positions : decoded,
                              old->per_frame_flag ? 0 : crc);
