@@ -230,24 +230,28 @@ class BadOutput(ToolsTest):
 class Interrupts(ToolsTest):
     """Nothing is left of what was not finished."""
 
-    def interrupted(self, started, tool, *arguments):
+    def interrupted(self, by, code, started, tool, *arguments, **options):
         with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
-                              stderr=subprocess.DEVNULL) as running:
+                              stderr=subprocess.DEVNULL, **options) as running:
             while not started.exists() and running.poll() is None:
                 time.sleep(0.001)
-            running.send_signal(signal.SIGTERM)
-            self.assertEqual(running.wait(100), -signal.SIGTERM)
+            running.send_signal(by)
+            self.assertEqual(running.wait(100), code)
 
     def test_while_encoding_and_decoding(self):
         _, frames = self.clip(60)
         write_pc2(self.path("clip.pc2"), frames * 20)
         before = ["clip.obj", "clip.pc2"]
         mesh = [self.path("clip.obj"), "--points", self.path("clip.pc2")]
-        self.interrupted(self.path("x.rlpc.partial"), "rlpcenc", *mesh, "-o",
-                         self.path("x.rlpc"), "--gof", 20)
+        term = [signal.SIGTERM, -signal.SIGTERM]
+        encode = [self.path("x.rlpc.partial"), "rlpcenc", *mesh, "-o", self.path("x.rlpc"),
+                  "--gof", 20]
+        self.interrupted(*term, *encode)
         self.assertEqual(self.files(), before)
+        ignored = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
+        self.interrupted(signal.SIGHUP, 0, *encode, "--preset", "fast", **ignored)  # nohup
         self.ok("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
-        self.interrupted(self.path("out.partial"), "rlpcdec", self.path("x.rlpc"), "-o",
+        self.interrupted(*term, self.path("out.partial"), "rlpcdec", self.path("x.rlpc"), "-o",
                          self.path("out"))
         self.assertEqual(self.files(), [*before, "x.rlpc"])
 

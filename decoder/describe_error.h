@@ -50,8 +50,7 @@ inline std::string describe_error(const Error& error) {
     case Errc::kUnsupported:
       return where + ": not supported by this version" + rule + "; get a newer decoder";
     case Errc::kLimitExceeded:
-      return where + ": more than the limits allow" + rule +
-             "; raise them to decode it (rlpcdec --max-memory, --max-vertices)";
+      return where + ": more than the limits allow" + rule + "; raise them to decode it";
     case Errc::kIo:
       break;
   }

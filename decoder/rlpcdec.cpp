@@ -81,8 +81,9 @@ int complain(const std::string& message, int code) {
 std::string name_of(const std::string& path) { return path == "-" ? "standard input" : path; }
 
 int complain(const Options& o, const rlpc::Error& error) {
-  return complain(name_of(o.input) + ": " + rlpc::describe_error(error),
-                  rlpc::exit_code(error.code));
+  std::string text = name_of(o.input) + ": " + rlpc::describe_error(error);
+  if (error.code == rlpc::Errc::kLimitExceeded) text += " (--max-memory, --max-vertices)";
+  return complain(text, rlpc::exit_code(error.code));
 }
 
 rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
@@ -168,8 +169,14 @@ extern "C" void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// While files are unfinished. What is ignored, as under nohup, stays so.
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
+  }
+}
+
 int decode(const Options& o) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, on_interrupt);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = open_input(o.input);
   if (!source) return complain(o, source.error());
@@ -199,6 +206,7 @@ int decode(const Options& o) {
     options.first_number = span->first;
     options.format = o.format;
     options.ascii = o.ascii;
+    catch_interrupts();
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) return complain(opened.error().message, rlpc::kExitIo);
     sink = std::move(*opened);

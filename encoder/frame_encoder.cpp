@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "encoder/det_math.h"
 #include "encoder/gof_cuts.h"
 #include "encoder/grid_choice.h"
+#include "encoder/input/mesh_text.h"
 #include "encoder/level_choice.h"
 #include "encoder/sequence_coding.h"
 #include "encoder/stream_assembly.h"
@@ -18,12 +18,6 @@
 
 namespace rlpc {
 namespace {
-
-std::string number(float value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", static_cast<double>(value));
-  return text.data();
-}
 
 // The frames of one GOF, as they came.
 class GofBuffer final : public FrameSource {
@@ -70,7 +64,7 @@ std::optional<InputError> check_format(const FrameFormat& format) {
     const float high = format.box_max[c];
     if (low <= high && low >= -kMost && high <= kMost) continue;
     return InputError{std::string("the box has no extent in ") + "xyz"[c] +
-                      " within 2^100: " + number(low) + " to " + number(high)};
+                      " within 2^100: " + shortest_text(low) + " to " + shortest_text(high)};
   }
   return std::nullopt;
 }
@@ -93,7 +87,7 @@ class FrameEncoder::Impl {
         sink_(std::move(sink)),
         metrics_(format_.num_vertices, MetricsAccumulator::kTotals) {}
 
-  std::optional<InputError> prepare();
+  std::optional<InputError> prepare();  // of a format that was checked
   std::optional<InputError> add_frame(std::span<const float> xyz);
   InputResult<EncodeReport> finish();
   std::uint32_t num_added() const { return num_added_; }
@@ -135,7 +129,6 @@ class FrameEncoder::Impl {
 };
 
 std::optional<InputError> FrameEncoder::Impl::prepare() {
-  if (auto error = check_format(format_)) return error;
   if (auto error = check_settings(settings_)) return error;
   header_.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
   header_.num_vertices = format_.num_vertices;
@@ -175,8 +168,7 @@ std::uint64_t FrameEncoder::Impl::fixed_bytes() const {
 std::optional<InputError> FrameEncoder::Impl::check_frame(std::span<const float> xyz) const {
   const std::string frame = "frame " + std::to_string(num_added_) + " (from 0)";
   if (num_added_ == header_.num_frames) {
-    return InputError{"frame " + std::to_string(num_added_) +
-                      " (from 0) is one more than the number of frames announced, " +
+    return InputError{frame + " is one more than the number of frames announced, " +
                       std::to_string(header_.num_frames)};
   }
   if (xyz.size() != 3 * std::size_t{header_.num_vertices}) {
@@ -188,8 +180,9 @@ std::optional<InputError> FrameEncoder::Impl::check_frame(std::span<const float>
     const std::size_t c = i % 3;
     if (xyz[i] >= format_.box_min[c] && xyz[i] <= format_.box_max[c]) continue;
     return InputError{frame + ", vertex " + std::to_string(i / 3) + ": " + "xyz"[c] + " is " +
-                      number(xyz[i]) + ", outside the box announced, " +
-                      number(format_.box_min[c]) + " to " + number(format_.box_max[c])};
+                      shortest_text(xyz[i]) + ", outside the box announced, " +
+                      shortest_text(format_.box_min[c]) + " to " +
+                      shortest_text(format_.box_max[c])};
   }
   return std::nullopt;
 }

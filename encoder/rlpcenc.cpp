@@ -111,10 +111,18 @@ extern "C" void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// While files are unfinished. What is ignored, as under nohup, stays so.
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
+  }
+}
+
 struct Interrupted {};  // thrown, so that unfinished files go
 
 // Encodes to the file, and writes the order of vertices where it is asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
+  catch_interrupts();
   StreamFile stream(o.output);
   if (!stream.good()) return *stream.commit();
   std::optional<StreamFile> map;
@@ -186,7 +194,6 @@ void return_large_blocks() {
 }  // namespace rlpc
 
 int main(int argc, char** argv) try {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, rlpc::on_interrupt);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   rlpc::return_large_blocks();
   rlpc::EncodeOptions options;

@@ -1,11 +1,12 @@
 #include "encoder/gltf/clip.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 #include <system_error>
+
+#include "encoder/input/mesh_text.h"
 
 namespace rlpc {
 
@@ -13,20 +14,13 @@ namespace {
 
 using std::to_string;
 
-// The shortest digits that tell the number from its neighbours.
-std::string shortest(float x) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
-  return {text.data(), end};
-}
-
 void check_ascending(const std::vector<float>& times, std::uint32_t accessor,
                      GltfErrors& errors) {
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i - 1] < times[i]) continue;
     errors.expected(gltf_accessor_path(accessor) + ", element " + to_string(i),
-                    shortest(times[i]),
-                    "a time after the one before, " + shortest(times[i - 1]));
+                    shortest_text(times[i]),
+                    "a time after the one before, " + shortest_text(times[i - 1]));
   }
 }
 

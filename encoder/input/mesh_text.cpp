@@ -1,5 +1,6 @@
 #include "encoder/input/mesh_text.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -97,6 +98,12 @@ float parse_coordinate(std::string_view word, std::optional<std::string>& proble
     problem = quoted(word) + " is not finite; every coordinate must be";
   }
   return value;
+}
+
+std::string shortest_text(float x) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+  return {text.data(), end};
 }
 
 }  // namespace rlpc

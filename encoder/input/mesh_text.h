@@ -45,4 +45,7 @@ std::string quoted(std::string_view word);
 // All of `word` as a finite float, rounded correctly; else `problem` says what it is instead.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
 
+// The fewest digits that parse_coordinate() makes the same number of.
+std::string shortest_text(float x);
+
 }  // namespace rlpc
