@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "encoder/local_motion.h"
+
 namespace rlpc {
 namespace {
 
@@ -111,19 +113,16 @@ bool MotionClusters::add_seed() {
 // Total motion of every vertex between adjacent frames, seen from the frame of a seed (3.2).
 std::vector<double> MotionClusters::motion_in(const Seed& seed) const {
   const std::uint32_t n = frames_.num_vertices;
-  std::vector<double> motion(n, 0.0);
-  std::vector<std::array<double, 3>> before(n);
+  std::vector<double> motion(n);
+  std::vector<double> before(3 * std::size_t{n});
   for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
     std::array<Vec3i, 3> p{};
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = nearest_position(frames_.at(f, seed[k]), position_bits_);
     }
-    const Lcf lcf = make_lcf(p[0], p[1], p[2]);
-    for (std::uint32_t v = 0; v < n; ++v) {
-      const std::array<double, 3> q = world_to_local(lcf, frames_.at(f, v));
-      if (f > 0) motion[v] += distance2(q.data(), before[v].data());
-      before[v] = q;
-    }
+    const LocalFrame local(make_lcf(p[0], p[1], p[2]));
+    add_local_motion(local, n, frames_.at(f, 0), before.data(), motion.data());
+    if (f == 0) motion.assign(n, 0.0);  // there is no frame before the first
   }
   return motion;
 }

@@ -55,21 +55,4 @@ class MotionClusters {
   std::vector<std::vector<double>> motion_;  // [seed][num_vertices]
 };
 
-// Local coordinates in grid units of a point; the inverse of 8.4.3 in floating point.
-inline std::array<double, 3> world_to_local(const Lcf& lcf, const double* xyz) {
-  constexpr double kAxisUnit = 1.0 / (1 << kAxisFractionBits);
-  std::array<double, 3> d{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    d[c] = xyz[c] - 0.5 * static_cast<double>(lcf.doubled_origin[c]);
-  }
-  std::array<double, 3> q{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3l& a = lcf.axis[k];
-    q[k] = (static_cast<double>(a[0]) * d[0] + static_cast<double>(a[1]) * d[1] +
-            static_cast<double>(a[2]) * d[2]) *
-           kAxisUnit;
-  }
-  return q;
-}
-
 }  // namespace rlpc

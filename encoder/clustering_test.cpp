@@ -219,46 +219,5 @@ TEST(MotionClusters, WhereAllVerticesCoincideHaveNoSeeds) {
   EXPECT_TRUE(motion.clusters(2).seeds.empty());
 }
 
-Vec3i random_position(std::mt19937& random) {
-  Vec3i p{};
-  for (std::int32_t& c : p) c = static_cast<std::int32_t>(random() % 200001) - 100000;
-  return p;
-}
-
-TEST(WorldToLocal, IsTheInverseOfTheDecodersWayBack) {
-  constexpr unsigned kSeed = 1;
-  SCOPED_TRACE(kSeed);
-  std::mt19937 random(kSeed);
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3i p1 = random_position(random);
-    const Lcf lcf = make_lcf(p1, i % 50 == 0 ? p1 : random_position(random),
-                             i % 20 == 0 ? p1 : random_position(random));
-    const Vec3i point = random_position(random);
-    const Point xyz{static_cast<double>(point[0]), static_cast<double>(point[1]),
-                    static_cast<double>(point[2])};
-    const Point local = world_to_local(lcf, xyz.data());
-    // Local coordinates are rounded to 1/16 steps: less than half a step of error, then exact.
-    const Vec3l back = lcf_to_world(lcf, std::llround(16 * local[0]),
-                                    std::llround(16 * local[1]), std::llround(16 * local[2]));
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(back[c], point[c]);
-  }
-}
-
-TEST(WorldToLocal, OfRigidlyMovedPointsStaysTheSame) {
-  // Turned by 90 degrees about z and moved: exact on the grid.
-  const auto moved = [](const Vec3i& p) { return Vec3i{-p[1] + 77, p[0] - 12, p[2] + 5}; };
-  const Vec3i a{0, 0, 0};
-  const Vec3i b{90, 40, -20};
-  const Vec3i c{10, 80, 33};
-  const Vec3i q{-31, 52, 99};
-  const Vec3i r = moved(q);
-  const Point before{-31, 52, 99};
-  const Point after{static_cast<double>(r[0]), static_cast<double>(r[1]),
-                    static_cast<double>(r[2])};
-  const Point local = world_to_local(make_lcf(a, b, c), before.data());
-  const Point again = world_to_local(make_lcf(moved(a), moved(b), moved(c)), after.data());
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(local[k], again[k], 1e-6);
-}
-
 }  // namespace
 }  // namespace rlpc

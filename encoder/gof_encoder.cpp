@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/int_math.h"
 #include "encoder/det_math.h"
+#include "encoder/local_motion.h"
 #include "encoder/rate_allocation.h"
 
 namespace rlpc {
@@ -80,10 +82,12 @@ TrajectoryMatrix local_trajectories(const GofFrames& frames, const ClusterAnalys
   const std::size_t n = cluster.vertices.size();
   TrajectoryMatrix m{3 * n, frames.num_frames, std::vector<double>(3 * n * frames.num_frames)};
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+    std::optional<LocalFrame> local;
+    if (!cluster.lcf.empty()) local.emplace(cluster.lcf[f]);
     for (std::size_t i = 0; i < n; ++i) {
       const double* p = frames.at(f, cluster.vertices[i]);
       std::array<double, 3> q{p[0], p[1], p[2]};
-      if (!cluster.lcf.empty()) q = world_to_local(cluster.lcf[f], p);
+      if (local) q = local->to_local(p);
       for (std::size_t c = 0; c < 3; ++c) m.row(c * n + i)[f] = q[c];
     }
   }

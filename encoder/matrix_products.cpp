@@ -1,11 +1,6 @@
 #include "encoder/matrix_products.h"
 
-// Compiled for wider vectors, too; the machine takes what it has.
-#if defined(__x86_64__) && defined(__linux__)
-#define WIDEST __attribute__((target_clones("avx2", "default")))
-#else
-#define WIDEST
-#endif
+#include "encoder/widest.h"
 
 namespace rlpc {
 namespace {
@@ -14,7 +9,7 @@ constexpr std::size_t kTogether = 4;  // rows in one pass over the sums
 
 }  // namespace
 
-WIDEST std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
+RLPC_WIDEST std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
   std::vector<double> result(width * width, 0.0);
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
@@ -44,8 +39,8 @@ WIDEST std::vector<double> gram_matrix(std::span<const double> rows, std::size_t
   return result;
 }
 
-WIDEST std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
-                                          std::span<const double> b, std::size_t b_width) {
+RLPC_WIDEST std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
+                                               std::span<const double> b, std::size_t b_width) {
   const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
   const std::size_t inner = b_width == 0 ? 0 : b.size() / b_width;
   std::vector<double> result(num_rows * b_width, 0.0);
