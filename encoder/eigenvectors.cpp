@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "encoder/det_math.h"
+#include "encoder/inverse_iteration.h"
 #include "encoder/matrix_products.h"
 
 namespace rlpc {
@@ -18,7 +19,7 @@ namespace {
 using Square = Eigen::MatrixXd;
 
 // From this width on, few vectors are found faster than all.
-constexpr std::size_t kWide = 288;
+constexpr std::size_t kWide = 600;
 constexpr std::size_t kFewPart = 4;
 
 // Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
@@ -35,27 +36,74 @@ void fix_sign(std::vector<double>& v) {
   }
 }
 
-EigenPairs all_eigenvectors(std::span<const double> matrix, std::size_t width,
-                            std::size_t max_count, double least) {
-  fix_eigen_blocking();
+Square square_of(std::span<const double> lower, std::size_t width) {
   const auto n = static_cast<Eigen::Index>(width);
   Square square(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j)
-      square(i, j) = matrix[static_cast<std::size_t>(i * n + j)];
+      square(i, j) = lower[static_cast<std::size_t>(i * n + j)];
   }
-  const Eigen::SelfAdjointEigenSolver<Square> solver(square);
-  EigenPairs pairs;
-  for (Eigen::Index l = n - 1; l >= 0; --l) {
-    const double value = std::max(solver.eigenvalues()(l), 0.0);
-    pairs.values.push_back(value);
-    if (pairs.vectors.size() >= max_count || value <= least) continue;
-    std::vector<double> v(width);
-    for (Eigen::Index i = 0; i < n; ++i)
-      v[static_cast<std::size_t>(i)] = solver.eigenvectors()(i, l);
-    fix_sign(v);
-    pairs.vectors.push_back(std::move(v));
+  return square;
+}
+
+// Columns of a matrix, from the last to the first.
+std::vector<std::vector<double>> last_columns(const Square& from, std::size_t count) {
+  std::vector<std::vector<double>> vectors;
+  for (Eigen::Index l = from.cols(); vectors.size() < count; --l) {
+    const auto column = from.col(l - 1);
+    fix_sign(vectors.emplace_back(column.begin(), column.end()));
   }
+  return vectors;
+}
+
+std::vector<double> descending_values(const Eigen::SelfAdjointEigenSolver<Square>& solver) {
+  const auto& ascending = solver.eigenvalues();
+  std::vector<double> values;
+  for (Eigen::Index l = ascending.size(); l-- > 0;) {
+    values.push_back(std::max(ascending(l), 0.0));
+  }
+  return values;
+}
+
+std::size_t num_wanted(const std::vector<double>& values, std::size_t max_count, double least) {
+  std::size_t wanted = 0;
+  while (wanted < std::min(values.size(), max_count) && values[wanted] > least) ++wanted;
+  return wanted;
+}
+
+EigenPairs all_eigenvectors(std::span<const double> matrix, std::size_t width,
+                            std::size_t max_count, double least) {
+  fix_eigen_blocking();
+  const Eigen::SelfAdjointEigenSolver<Square> solver(square_of(matrix, width));
+  EigenPairs pairs{descending_values(solver), {}};
+  pairs.vectors =
+      last_columns(solver.eigenvectors(), num_wanted(pairs.values, max_count, least));
+  return pairs;
+}
+
+// All values, and vectors one by one: faster, unless nearly all are wanted.
+std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, std::size_t width,
+                                              std::size_t max_count, double least) {
+  fix_eigen_blocking();
+  const Eigen::Tridiagonalization<Square> reduced(square_of(matrix, width));
+  const Eigen::VectorXd diagonal = reduced.diagonal();
+  const Eigen::VectorXd beside = reduced.subDiagonal();
+  Eigen::SelfAdjointEigenSolver<Square> solver;
+  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  EigenPairs pairs{descending_values(solver), {}};
+  const std::size_t wanted = num_wanted(pairs.values, max_count, least);
+  if (4 * wanted >= 3 * width) return std::nullopt;
+  const auto vectors =
+      tridiagonal_eigenvectors({diagonal.data(), width}, {beside.data(), width - 1},
+                               std::span(pairs.values).first(wanted));
+  if (!vectors) return std::nullopt;
+  Square columns(diagonal.size(), static_cast<Eigen::Index>(wanted));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    columns.col(columns.cols() - 1 - k) = Eigen::Map<const Eigen::VectorXd>(
+        (*vectors)[static_cast<std::size_t>(k)].data(), diagonal.size());
+  }
+  columns.applyOnTheLeft(reduced.matrixQ());
+  pairs.vectors = last_columns(columns, wanted);
   return pairs;
 }
 
@@ -81,9 +129,7 @@ class SubspaceIteration {
       for (int i = 0; i < kRounds; ++i) multiply();
       EigenPairs pairs = rotate();
       if (pairs.values.back() < kMargin * least || count >= max_count + kMoreCount) {
-        std::size_t wanted = 0;
-        while (wanted < std::min(count, max_count) && pairs.values[wanted] > least) ++wanted;
-        pairs.vectors.resize(wanted);
+        pairs.vectors.resize(num_wanted(pairs.values, max_count, least));
         for (auto& v : pairs.vectors) fix_sign(v);
         return pairs;
       }
@@ -178,6 +224,9 @@ EigenPairs leading_eigenvectors(const std::vector<double>& matrix, std::size_t w
     if (auto few = SubspaceIteration(matrix, width).find(max_count, least)) {
       return std::move(*few);
     }
+  }
+  if (auto single = single_eigenvectors(matrix, width, max_count, least)) {
+    return std::move(*single);
   }
   return all_eigenvectors(matrix, width, max_count, least);
 }
