@@ -171,6 +171,8 @@ class BoneAnalyser {
   // The mean motion of a vertex in each frame.
   void find_mean_motion(std::uint32_t v) {
     const Influences& influences = found_.gof.influences[v];
+    if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
+    mean_of_ = influences;
     const double unit = exact_exp2(-found_.gof.weight_bits);
     mean_.assign(frames_.num_frames, {});
     for (const Influence& influence : influences) {
@@ -270,7 +272,8 @@ class BoneAnalyser {
   double step_;
   BoneAnalysis found_;
   std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
-  std::vector<MeanMotion> mean_;                  // [frame], of the vertex at hand
+  std::vector<MeanMotion> mean_;                  // [frame], of the vertex at hand,
+  Influences mean_of_;                            // which has these
 };
 
 }  // namespace

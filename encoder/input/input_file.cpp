@@ -1,7 +1,6 @@
 #include "encoder/input/input_file.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
@@ -92,34 +91,6 @@ InputResult<std::string> read_whole_file(const std::string& path) {
   if (!file) return file.error();
   if (file->size() == 0) return InputError{file->path() + ": the file is empty"};
   return read_text(*file, 0, file->size());
-}
-
-std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) {
-    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
-  }
-  return value;
-}
-
-std::int32_t load_i32(std::span<const char> bytes, std::size_t offset) {
-  return static_cast<std::int32_t>(load_u32(bytes, offset));
-}
-
-float load_f32(std::span<const char> bytes, std::size_t offset) {
-  return std::bit_cast<float>(load_u32(bytes, offset));
-}
-
-std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
-  }
-  return value;
-}
-
-float load_f32_be(std::span<const char> bytes, std::size_t offset) {
-  return std::bit_cast<float>(load_u32_be(bytes, offset));
 }
 
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,

@@ -1,6 +1,8 @@
 // A regular file, or standard input as "-", that is read at offsets; every failure names it.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -41,12 +43,30 @@ InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::u
 InputResult<std::string> read_whole_file(const std::string& path);
 
 // Little-endian numbers of a binary file; the caller has checked the length.
-std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset);
-std::int32_t load_i32(std::span<const char> bytes, std::size_t offset);
-float load_f32(std::span<const char> bytes, std::size_t offset);
+inline std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i-- > 0;) {
+    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
+  }
+  return value;
+}
+inline std::int32_t load_i32(std::span<const char> bytes, std::size_t offset) {
+  return static_cast<std::int32_t>(load_u32(bytes, offset));
+}
+inline float load_f32(std::span<const char> bytes, std::size_t offset) {
+  return std::bit_cast<float>(load_u32(bytes, offset));
+}
 // Big-endian ones.
-std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset);
-float load_f32_be(std::span<const char> bytes, std::size_t offset);
+inline std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
+  }
+  return value;
+}
+inline float load_f32_be(std::span<const char> bytes, std::size_t offset) {
+  return std::bit_cast<float>(load_u32_be(bytes, offset));
+}
 
 // Error for the first value of a frame that is NaN or infinite.
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
