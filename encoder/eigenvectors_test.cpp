@@ -69,21 +69,26 @@ TEST_P(LeadingEigenvectors, AreFoundWithTheirValues) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(WideAndNarrow, LeadingEigenvectors,
-                         testing::Values(Case{1, 1, 0.0}, Case{60, 12, 0.2}, Case{300, 0, 0.1},
-                                         Case{300, 12, 0.0}, Case{300, 40, 0.3},
-                                         Case{400, 140, 0.4}));
+INSTANTIATE_TEST_SUITE_P(NarrowAndWideFewAndMany, LeadingEigenvectors,
+                         testing::Values(Case{1, 1, 0.0}, Case{60, 12, 0.2}, Case{60, 50, 0.2},
+                                         Case{300, 0, 0.1}, Case{400, 140, 0.4},
+                                         Case{620, 0, 0.1}, Case{620, 12, 0.0},
+                                         Case{620, 40, 0.3}, Case{620, 140, 0.4}));
 
 TEST(LeadingEigenvectors, AreNoMoreThanAskedFor) {
-  const Known known(300, {9.0, 8.0, 5.0, 4.0}, 0.1);
-  const EigenPairs pairs = leading_eigenvectors(known.matrix, 300, 2, 1.0);
-  ASSERT_EQ(pairs.vectors.size(), 2U);
-  EXPECT_NEAR(pairs.values[1], 8.0, 1e-6);
+  for (const std::size_t width : {300U, 620U}) {
+    const Known known(width, {9.0, 8.0, 5.0, 4.0}, 0.1);
+    const EigenPairs pairs = leading_eigenvectors(known.matrix, width, 2, 1.0);
+    ASSERT_EQ(pairs.vectors.size(), 2U);
+    EXPECT_NEAR(pairs.values[1], 8.0, 1e-6);
+  }
 }
 
 TEST(LeadingEigenvectors, OfNothingAreNone) {
-  const std::vector<double> zeros(std::size_t{300} * 300, 0.0);
-  EXPECT_TRUE(leading_eigenvectors(zeros, 300, 300, 0.0).vectors.empty());
+  for (const std::size_t width : {300U, 620U}) {
+    const std::vector<double> zeros(width * width, 0.0);
+    EXPECT_TRUE(leading_eigenvectors(zeros, width, width, 0.0).vectors.empty());
+  }
 }
 
 }  // namespace
