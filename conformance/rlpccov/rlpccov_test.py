@@ -22,7 +22,10 @@ import coverage_signs  # noqa: E402
 import coverage_waivers  # noqa: E402
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
-import specdec_test  # noqa: E402
+from specdec_testing import (  # noqa: E402
+    cut_animation, encode, run_stream, soup_animation)
+
+BIN = None
 
 READING = """
 # 9 Parsing
@@ -296,21 +299,19 @@ class Streams(FolderTest):
         cls.waivers = coverage_waivers.Waivers(TOOLS.parent / "matrix" / "waivers.json")
 
     def test_decodes_as_without(self):
-        data = specdec_test.encode(
-            self.folder, specdec_test.soup_animation(self.folder), "--kg", "2", "--gof", "3",
-            "--clusters", "3", "--keep-order", "--hash", "frame", "--frame", "lcf")
+        data = encode(BIN, self.folder, soup_animation(self.folder), "--kg", "2", "--gof", "3",
+                      "--clusters", "3", "--keep-order", "--hash", "frame", "--frame", "lcf")
         for stream in [data, data[:-1], data[:200], data + b"?",
                        *(data[:i] + bytes([data[i] ^ 4]) + data[i + 1:] for i in (3, 21, 60))]:
-            self.assertEqual(specdec_test.run_stream(stream, self.target),
-                             specdec_test.run_stream(stream))
+            self.assertEqual(run_stream(stream, self.target), run_stream(stream))
 
     def test_waivers_hold(self):
         goals = coverage_measure.Goals(self.target)
         reached = set()
         for animation, settings in (
-                (specdec_test.cut_animation(self.folder, "robot_arm", 5), ["--frame", "lcf"]),
-                (specdec_test.soup_animation(self.folder), ["--keep-order", "--gof", "2"])):
-            data = specdec_test.encode(self.folder, animation, "--kg", "1", *settings)
+                (cut_animation(self.folder, "robot_arm", 5), ["--frame", "lcf"]),
+                (soup_animation(self.folder), ["--keep-order", "--gof", "2"])):
+            data = encode(BIN, self.folder, animation, "--kg", "1", *settings)
             for stream in (data, data[:len(data) // 2]):
                 reached |= goals.reached(coverage_measure.measure(goals, stream))
         self.assertGreater(len(reached), 1000)
@@ -330,11 +331,12 @@ class Streams(FolderTest):
 
 
 def main():
+    global BIN
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=pathlib.Path, required=True)
     options, rest = parser.parse_known_args()
-    specdec_test.BIN = options.bin.resolve()
+    BIN = options.bin.resolve()
     unittest.main(argv=[sys.argv[0], *rest])
 
 

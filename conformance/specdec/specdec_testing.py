@@ -1,0 +1,73 @@
+"""What the tests of the specification as a decoder share."""
+
+import io
+import pathlib
+import random
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import spec_program  # noqa: E402
+import specdec  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = spec_program.Program(ROOT / "spec")
+
+
+class FolderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+
+def run_stream(data, program=PROGRAM, trace=None, widths=False):
+    """(exit code, rule or None, number of frames, output) of specdec."""
+    output = io.BytesIO()
+    decoder = specdec.Decoder(program, data, output.write, trace, widths)
+    code, rule = specdec.DONE, None
+    try:
+        decoder.call("stream")
+    except specdec.Verdict as verdict:
+        code, rule = verdict.code, verdict.rule
+    return code, rule, decoder.place()[1], output.getvalue()
+
+
+def cut_animation(folder, name, frames):
+    """The first frames of a bundled animation: (mesh, point cache)."""
+    inputs = ROOT / "streams" / "inputs"
+    mesh = shutil.copy(inputs / f"{name}.obj", folder)
+    data = (inputs / f"{name}.pc2").read_bytes()
+    points = struct.unpack_from("<i", data, 16)[0]
+    cache = folder / f"{name}.pc2"
+    cache.write_bytes(data[:28] + struct.pack("<i", frames) + data[32:32 + 12 * points * frames])
+    return mesh, cache
+
+
+def soup_animation(folder):
+    """Triangles that no surface would have, some of them degenerate, and loose vertices."""
+    r = random.Random(7)
+    points = [[r.random() for _ in range(3)] for _ in range(40)]
+    triangles = [[r.randrange(38) for _ in range(3)] for _ in range(70)]
+    mesh, cache = folder / "soup.obj", folder / "soup.pc2"
+    mesh.write_text("".join("v %f %f %f\n" % tuple(p) for p in points)
+                    + "".join("f %d %d %d\n" % tuple(v + 1 for v in t) for t in triangles))
+    frames = [[c + 0.1 * f * p[(k + 1) % 3] for p in points for k, c in enumerate(p)]
+              for f in range(7)]
+    header = struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(points), 0.0, 1.0, len(frames))
+    cache.write_bytes(header + b"".join(struct.pack(f"<{len(f)}f", *f) for f in frames))
+    return mesh, cache
+
+
+def encode(tools, folder, animation, *settings, profile="baseline"):
+    """The stream that rlpcenc, in the folder `tools`, makes of it."""
+    mesh, cache = animation
+    stream = folder / "stream.rlpc"
+    subprocess.run([tools / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q", "--profile",
+                    profile, *settings], check=True, timeout=60)
+    return stream.read_bytes()
