@@ -322,6 +322,8 @@ class Figures(ToolsTest):
         self.ok("rlpccmp", *arguments, "--max-kg", repr(kg), "--max-error", repr(largest))
         self.fails(1, "KG error", "rlpccmp", *arguments, "--max-kg", repr(kg * 0.999))
         self.fails(1, "largest error", "rlpccmp", *arguments, "--max-error", repr(largest * 0.999))
+        for word in ("nan", "-1", "much"):
+            self.fails(64, ["--max-kg", word], "rlpccmp", *arguments, "--max-kg", word)
 
     def test_what_cannot_be_compared_is_an_error(self):
         self.encode(self.path("a.rlpc"), "--kg", 1, "--order-map", self.path("a.order"))

@@ -81,6 +81,16 @@ struct Options {
   bool quiet = false;
 };
 
+// Not so CLI11's own check, which lets NaN through: nothing would be beyond that.
+const CLI::Validator kBound(
+    [](const std::string& word) {
+      double value = 0.0;
+      return CLI::detail::lexical_cast(word, value) && value >= 0.0
+                 ? ""
+                 : "expected a number, 0 or above, found `" + word + "`";
+    },
+    "NUMBER");
+
 void add_options(CLI::App& app, Options& o) {
   app.add_option("A", o.a.path, "The original")->required();
   app.add_option("B", o.b.path, "The decoded animation")->required();
@@ -103,10 +113,10 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--html", o.html,
                  "Write a page with charts, and the mesh with its error as colour");
   app.add_option("--max-kg", o.max_kg, "Exit code 1 if the KG error is above, per cent")
-      ->check(CLI::NonNegativeNumber);
+      ->check(kBound);
   app.add_option("--max-error", o.max_error,
                  "Exit code 1 if a vertex is further off, in units of A")
-      ->check(CLI::NonNegativeNumber);
+      ->check(kBound);
   app.add_flag("--json", o.json, "Report as JSON on standard output");
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
   app.footer(kExamples);
