@@ -263,7 +263,8 @@ void BoneRecon::frames(std::uint32_t first, std::uint32_t count,
     for (std::uint32_t f = 0; f < count; ++f) {
       skin_tile(tile, first + f, places);
       for (std::size_t c = 0; c < 3; ++c) {
-        loops_.positions(places[c].data(), &displacements[(3 * f + c) * kTileValues], widths_,
+        loops_.positions(places[c].data(),
+                         &displacements[(3 * std::size_t{f} + c) * kTileValues], widths_,
                          moved[c].data());
       }
       std::int32_t* const out = &positions[3 * (std::size_t{f} * num_vertices_ + first_vertex)];

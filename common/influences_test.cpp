@@ -44,13 +44,14 @@ TEST(Influences, OfTheRingAreCandidatesInOrderOfTheirWeights) {
   for (std::size_t k = 0; k < prediction.num_candidates(); ++k) {
     bones.push_back(prediction.candidate(k));
   }
-  EXPECT_EQ(bones, (std::vector<std::uint16_t>{3, 7, 2, 5, 1})) << "ties by number";
+  EXPECT_EQ(bones, (std::vector<std::uint16_t>{3U, 7U, 2U, 5U, 1U})) << "ties by number";
   EXPECT_EQ(prediction.candidate_mean(0), 6);
   EXPECT_EQ(prediction.candidate_mean(1), 3);  // 10 / 3
   EXPECT_EQ(prediction.candidate_mean(2), 3);  // 8 / 3 = 2.67
   EXPECT_EQ(prediction.candidate_mean(4), 1);  // 4 / 3
-  for (const std::uint32_t bone : {3, 7, 2, 5, 1}) EXPECT_FALSE(prediction.is_new_bone(bone));
-  for (const std::uint32_t bone : {0, 9}) EXPECT_TRUE(prediction.is_new_bone(bone));
+  for (const std::uint32_t bone : {3U, 7U, 2U, 5U, 1U})
+    EXPECT_FALSE(prediction.is_new_bone(bone));
+  for (const std::uint32_t bone : {0U, 9U}) EXPECT_TRUE(prediction.is_new_bone(bone));
   for (std::size_t k = 1; k < 5; ++k) prediction.add_candidate(k, 0);
   EXPECT_EQ(list_of(prediction.finish()),
             (std::vector<Influence>{{7, 3}, {2, 3}, {5, 3}, {1, 1}, {3, 6}}))
@@ -97,7 +98,7 @@ TEST(Influences, ExtraBonesAreAtMostFourAndNew) {
   InfluencePrediction prediction(known, 20, 4);
   const std::vector<std::uint32_t> ring{0};
   prediction.start(ring);
-  for (const std::uint32_t bone : {7, 19, 0, 3}) {
+  for (const std::uint32_t bone : {7U, 19U, 0U, 3U}) {
     ASSERT_TRUE(prediction.can_add_bone());
     ASSERT_TRUE(prediction.is_new_bone(bone));
     prediction.add_extra_bone(bone, 3);

@@ -73,6 +73,7 @@ void FactorSet::sum_tile(std::size_t tile, std::size_t first_row, std::size_t nu
   assert(tile < num_tiles() && first_row + num_rows <= num_rows_);
   assert(sums.size() == num_rows * kTileValues);
   std::fill(sums.begin(), sums.end(), 0);
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): sum_products() fills what is read.
   std::array<std::int32_t, kMaxRows * kTileValues> of_group;
   for (std::size_t r = 0; r < num_rows; r += kMaxRows) {
     const std::size_t rows = std::min(kMaxRows, num_rows - r);

@@ -90,7 +90,7 @@ class Threads : public testing::TestWithParam<StreamBytes (*)()> {
   // With 2, 3 and 9 threads as with one.
   static Outcome expect_the_same(const StreamBytes& stream, DecoderOptions options) {
     options.threads = 1;
-    const Outcome outcome = decode(stream, options);
+    Outcome outcome = decode(stream, options);
     for (const std::uint32_t threads : {2U, 3U, 9U}) {
       options.threads = threads;
       EXPECT_TRUE(decode(stream, options) == outcome) << threads << " threads";

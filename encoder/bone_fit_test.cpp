@@ -58,7 +58,7 @@ Animation chain(double blend, std::uint32_t num_frames) {
   a.frames.num_frames = num_frames;
   for (std::uint32_t f = 0; f < num_frames; ++f) {
     for (std::uint32_t v = 0; v < a.frames.num_vertices; ++v) {
-      const double ring = v / kSides;
+      const std::uint32_t ring = v / kSides;
       const double angle = 2.0 * 3.14159265358979 * (v % kSides) / kSides;
       const Point p{3.0 * kLink * ring / (kRings - 1), 150.0 * std::cos(angle),
                     200.0 * std::sin(angle)};

@@ -34,7 +34,7 @@ struct Animation {
     frames.num_frames = num_frames;
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < kVertices; ++v) {
-        const double ring = v / kSides;
+        const std::uint32_t ring = v / kSides;
         const double angle = 6.283185307 * (v % kSides) / kSides;
         const double radius = 2500.0 + 300.0 * std::sin(1.7 * v);
         const Point p =

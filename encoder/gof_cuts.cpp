@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;
 constexpr std::uint32_t kSampleVertices = 160;
 constexpr std::uint32_t kLeastVertices = 8;  // that tell anything
-constexpr std::uint32_t kMostFrames = kMaxSampleValues / (3 * kLeastVertices);
+constexpr std::uint32_t kMostFrames = kMaxSampleValues / (std::uint64_t{3} * kLeastVertices);
 constexpr std::uint32_t kSampleFrames = 16;  // of a GOF
 // GOFs of equal lengths stay unless others are expected to cost less than this part.
 constexpr double kClearlyLess = 0.97;
