@@ -202,7 +202,8 @@ set(CMAKE_CXX_FLAGS "-O0 -DNDEBUG -w -fwrapv -DRLPC_VERSION=\\\\\\"mutant\\\\\\"
 find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
-file(GLOB sources common/*.cpp decoder/*.cpp decoder/output/*.cpp)
+file(GLOB sources common/*.cpp decoder/*.cpp decoder/output/*.cpp decoder/player/html_verb.cpp
+  decoder/player/player_page.cpp)
 list(FILTER sources EXCLUDE REGEX "rlpcinfo")
 add_executable(rlpcdec ${sources})
 target_include_directories(rlpcdec PRIVATE ${CMAKE_SOURCE_DIR})
