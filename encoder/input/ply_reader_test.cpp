@@ -62,8 +62,8 @@ TEST(PlyReader, ReadsEveryEncoding) {
 }
 
 TEST(PlyReader, ReadsEveryLineEndOfTheHeader) {
-  for (const std::string& end : {std::string("\r\n"), std::string("\r")}) {
-    for (std::string text : {kText, binary(true)}) {
+  for (const std::string end : {"\r\n", "\r"}) {
+    for (const std::string& text : {kText, binary(true)}) {
       const std::size_t body = text.find("end_header\n") + 11;
       std::string header;
       for (const char c : text.substr(0, body)) header += c == '\n' ? end : std::string(1, c);
