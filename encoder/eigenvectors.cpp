@@ -93,6 +93,7 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
   EigenPairs pairs{descending_values(solver), {}};
   const std::size_t wanted = num_wanted(pairs.values, max_count, least);
   if (4 * wanted >= 3 * width) return std::nullopt;
+  if (wanted == 0) return pairs;
   const auto vectors =
       tridiagonal_eigenvectors({diagonal.data(), width}, {beside.data(), width - 1},
                                std::span(pairs.values).first(wanted));
