@@ -44,7 +44,7 @@ TEST(Influences, OfTheRingAreCandidatesInOrderOfTheirWeights) {
   for (std::size_t k = 0; k < prediction.num_candidates(); ++k) {
     bones.push_back(prediction.candidate(k));
   }
-  EXPECT_EQ(bones, (std::vector<std::uint16_t>{3U, 7U, 2U, 5U, 1U})) << "ties by number";
+  EXPECT_EQ(bones, (std::vector<std::uint16_t>{3, 7, 2, 5, 1})) << "ties by number";
   EXPECT_EQ(prediction.candidate_mean(0), 6);
   EXPECT_EQ(prediction.candidate_mean(1), 3);  // 10 / 3
   EXPECT_EQ(prediction.candidate_mean(2), 3);  // 8 / 3 = 2.67

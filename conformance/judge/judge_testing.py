@@ -8,7 +8,6 @@ import io
 import json
 import os
 import pathlib
-import shutil
 import struct
 import subprocess
 import sys
@@ -19,61 +18,31 @@ import zlib
 sys.dont_write_bytecode = True
 import expectation  # noqa: E402
 import suite  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
+from specdec_testing import PROGRAM, cut_animation, stream_of, units_of  # noqa: E402
 
 JUDGE = pathlib.Path(__file__).resolve().parent
 ROOT = JUDGE.parents[1]
 INPUTS = ROOT / "streams" / "inputs"
 RUN = importlib.machinery.SourceFileLoader("judge_run", str(JUDGE / "run")).load_module()
-PROGRAM = spec_program.Program(ROOT / "spec")
 
 
 class Tools:
     folder = ROOT / "build" / "release" / "bin"  # --bin
 
 
-def cut_input(folder, name, frames):
-    """The first frames of a bundled animation: (mesh, point cache)."""
-    data = (INPUTS / f"{name}.pc2").read_bytes()
-    points = struct.unpack_from("<i", data, 16)[0]
-    cache = folder / f"{name}.pc2"
-    cache.write_bytes(data[:28] + struct.pack("<i", frames) + data[32:32 + 12 * points * frames])
-    return shutil.copy(INPUTS / f"{name}.obj", folder), cache
-
-
 def encode(folder, name, frames, *settings):
-    mesh, cache = cut_input(folder, name, frames)
+    mesh, cache = cut_animation(folder, name, frames)
     stream = folder / "stream.rlpc"
     subprocess.run([Tools.folder / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q",
                     "--profile", "baseline", "--preset", "fast", *settings], check=True, timeout=60)
     return stream.read_bytes()
 
 
-def units(data):
-    """[type byte, payload] of every unit."""
-    place, result = 10, []
-    while place < len(data):
-        size = struct.unpack_from(">I", data, place + 1)[0]
-        result.append([data[place], data[place + 5:place + 5 + size]])
-        place += 9 + size
-    return result
-
-
-def stream_of(data, all_units):
-    """A stream with the signature and version of data, and good CRCs."""
-    result = data[:10]
-    for kind, payload in all_units:
-        unit = struct.pack(">BI", kind, len(payload)) + payload
-        result += unit + struct.pack(">I", zlib.crc32(unit))
-    return result
-
-
 def changed(data, kind, nth, change):
     """The stream with the payload of its nth unit of a type replaced by change(payload)."""
-    all_units = units(data)
-    unit = [u for u in all_units if u[0] == kind][nth]
-    unit[1] = change(unit[1])
+    all_units = units_of(data)
+    at = [u for u, (code, _) in enumerate(all_units) if code == kind][nth]
+    all_units[at] = kind, change(all_units[at][1])
     return stream_of(data, all_units)
 
 

@@ -8,7 +8,6 @@ import json
 import pathlib
 import random
 import sys
-import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from tools_testing import ROOT, ToolsTest, main, run  # noqa: E402
@@ -19,34 +18,14 @@ import random_main  # noqa: E402
 import random_streams  # noqa: E402
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
+from specdec_testing import stream_of, units_of  # noqa: E402
 
-STREAM_HEADER_BYTES, UNIT_HEADER_BYTES, CRC_BYTES = 10, 5, 4
 SLICE = 6
-
-
-def units_of(stream):
-    """(type, payload) of each unit."""
-    units, at = [], STREAM_HEADER_BYTES
-    while at < len(stream):
-        first = at + UNIT_HEADER_BYTES
-        size = int.from_bytes(stream[at + 1:first], "big")
-        units.append((stream[at], stream[first:first + size]))
-        at = first + size + CRC_BYTES
-    return units
-
-
-def stream_of(header, units):
-    """The stream of these units, with sizes and CRCs that fit."""
-    data = bytearray(header)
-    for code, payload in units:
-        unit = bytes([code]) + len(payload).to_bytes(4, "big") + payload
-        data += unit + zlib.crc32(unit).to_bytes(4, "big")
-    return bytes(data)
 
 
 def damaged(stream, numbers):
     """The stream with one fault, of a kind drawn from `numbers`."""
-    header, units = stream[:STREAM_HEADER_BYTES], units_of(stream)
+    units = units_of(stream)
     slices = [u for u, (code, _) in enumerate(units) if code == SLICE]
     kind = numbers.choice(["flip", "flip", "flip", "payload", "cut", "short", "drop", "drop",
                            "swap", "move"])
@@ -73,7 +52,7 @@ def damaged(stream, numbers):
         else:
             payload[numbers.randrange(len(payload))] ^= 1 << numbers.randrange(8)
         units[u] = code, bytes(payload)
-    return stream_of(header, units)
+    return stream_of(stream, units)
 
 
 class Agreement(ToolsTest):

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -17,6 +18,7 @@ import specdec  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = spec_program.Program(ROOT / "spec")
+STREAM_HEADER_BYTES, UNIT_HEADER_BYTES, CRC_BYTES = 10, 5, 4
 
 
 class FolderTest(unittest.TestCase):
@@ -36,6 +38,26 @@ def run_stream(data, program=PROGRAM, trace=None, widths=False):
     except specdec.Verdict as verdict:
         code, rule = verdict.code, verdict.rule
     return code, rule, decoder.place()[1], output.getvalue()
+
+
+def units_of(stream):
+    """(type, payload) of every unit."""
+    place, units = STREAM_HEADER_BYTES, []
+    while place < len(stream):
+        kind, size = struct.unpack_from(">BI", stream, place)
+        place += UNIT_HEADER_BYTES
+        units.append((kind, stream[place:place + size]))
+        place += size + CRC_BYTES
+    return units
+
+
+def stream_of(stream, units):
+    """A stream with the header of `stream`, and these units with sizes and CRCs that fit."""
+    result = stream[:STREAM_HEADER_BYTES]
+    for kind, payload in units:
+        unit = struct.pack(">BI", kind, len(payload)) + payload
+        result += unit + struct.pack(">I", zlib.crc32(unit))
+    return result
 
 
 def cut_animation(folder, name, frames):

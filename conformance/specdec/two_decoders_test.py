@@ -14,13 +14,12 @@ import struct
 import subprocess
 import sys
 import unittest
-import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import spec_program  # noqa: E402
 from specdec_testing import (  # noqa: E402
-    ROOT, FolderTest, cut_animation, encode, run_stream, soup_animation)
+    ROOT, FolderTest, cut_animation, encode, run_stream, soup_animation, stream_of, units_of)
 
 BIN = None
 
@@ -133,7 +132,7 @@ class MainStreams(StreamTest):
 
     def test_slices_can_be_left_out(self):
         data = self.encode_main("curtain", 6, "--kg", "0.5", "--hash", "none", "--bones", "1")
-        whole = list(units(data))
+        whole = units_of(data)
         slices = [i for i, (kind, _) in enumerate(whole) if kind == SLICE]
         self.assertGreater(len(slices), 1)
         outputs = set()
@@ -157,23 +156,6 @@ class MainStreams(StreamTest):
 
 
 SLICE = 6
-
-
-def units(data):
-    """(type byte, payload) of every unit."""
-    place = 10
-    while place < len(data):
-        size = struct.unpack_from(">I", data, place + 1)[0]
-        yield data[place], data[place + 5:place + 5 + size]
-        place += 9 + size
-
-
-def stream_of(data, all_units):
-    result = data[:10]
-    for kind, payload in all_units:
-        unit = struct.pack(">BI", kind, len(payload)) + payload
-        result += unit + struct.pack(">I", zlib.crc32(unit))
-    return result
 
 
 class DamagedStreams(Clips):
@@ -203,7 +185,7 @@ class DamagedStreams(Clips):
         r = random.Random(3)
         cases = []
         for _ in range(80):
-            all_units = list(units(data))
+            all_units = units_of(data)
             i = r.randrange(len(all_units))
             payload = bytearray(all_units[i][1])
             payload[r.randrange(min(len(payload), r.choice((8, 1000))))] = r.randrange(256)
@@ -214,9 +196,9 @@ class DamagedStreams(Clips):
     def test_misplaced_units(self):
         data = self.stream()
         cases = []
-        for i in range(1, len(list(units(data)))):
+        for i in range(1, len(units_of(data))):
             for kind in (0x01, 0x05, 0x06, 0x84):
-                all_units = list(units(data))
+                all_units = units_of(data)
                 cases.append(stream_of(data, all_units[:i] + [(kind, b"?")] + all_units[i:]))
             del all_units[i]
             cases.append(stream_of(data, all_units))
