@@ -29,7 +29,8 @@ class RoundTrip(ToolsTest):
         }
         streams = {}
         for form, arguments in forms.items():
-            self.ok("rlpcenc", *arguments, "-o", self.path(f"{form}.rlpc"), "--kg", 0.5, "--quiet")
+            self.ok("rlpcenc", *arguments, "-o", self.path(f"{form}.rlpc"), "--kg", 0.5, "--quiet",
+                    "--preset", "fast")
             streams[form] = self.path(f"{form}.rlpc").read_bytes()
         for form, stream in streams.items():
             self.assertEqual(stream, streams["cache"], form)
@@ -40,7 +41,7 @@ class RoundTrip(ToolsTest):
             write_obj(self.path(f"walk_{f + 98:04d}.obj"), xyz, triangles)
         for pattern in ("walk_%04d.obj", "walk_*.obj", "walk_[0-9]*.obj"):
             self.ok("rlpcenc", self.path(pattern), "-o", self.path("walk.rlpc"), "--kg", 0.5,
-                    "--keep-order")
+                    "--preset", "fast", "--keep-order")
             compared = self.ok("rlpccmp", self.path("clip.obj"), self.path("walk.rlpc"),
                                "--json").json()
             self.assertEqual(compared["num_frames"], 4)
@@ -50,9 +51,10 @@ class RoundTrip(ToolsTest):
         self.encode(self.path("a.rlpc"), "--kg", 1, "--keep-order")
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"))
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.pc2"))
-        self.ok("rlpcenc", self.path("a.rlpd"), "-o", self.path("from_rlpd.rlpc"), "--kg", 1)
+        self.ok("rlpcenc", self.path("a.rlpd"), "-o", self.path("from_rlpd.rlpc"), "--kg", 1,
+                "--preset", "fast")
         self.ok("rlpcenc", self.path("a.obj"), "--points", self.path("a.pc2"), "-o",
-                self.path("from_pc2.rlpc"), "--kg", 1)
+                self.path("from_pc2.rlpc"), "--kg", 1, "--preset", "fast")
         self.assertEqual(self.path("from_rlpd.rlpc").read_bytes(),
                          self.path("from_pc2.rlpc").read_bytes())
 
@@ -134,7 +136,8 @@ class RoundTrip(ToolsTest):
                 shutil.rmtree(self.path("out"), ignore_errors=True)
                 self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path(output), "--frames", "0-5")
                 report = self.ok("rlpcenc", self.path(again[0]), *again[1:], "-o",
-                                 self.path("b.rlpc"), "--kg", 1, "--json").json()
+                                 self.path("b.rlpc"), "--kg", 1, "--preset", "fast",
+                                 "--json").json()
                 self.assertEqual(report["frame_rate"], rate, output)
 
     def test_hashes_cost_bits_and_change_nothing(self):
@@ -164,8 +167,7 @@ class RoundTrip(ToolsTest):
     def test_pipes(self):
         self.encode(self.path("a.rlpc"), "--kg", 1)
         piped = self.ok("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2",
-                        "-o", "-", "--kg",
-                        1, "--preset", "fast")
+                        "-o", "-", "--kg", 1, "--preset", "fast")
         self.assertEqual(piped.out, self.path("a.rlpc").read_bytes())
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"))
         self.ok("rlpcdec", "-", "-o", self.path("b.rlpd"), input=piped.out)
