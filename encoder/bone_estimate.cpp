@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "encoder/component_cost.h"
+#include "encoder/det_math.h"
 #include "encoder/local_pca.h"
 
 namespace rlpc {
@@ -51,6 +52,41 @@ double expected_cost(const BoneSample& sample, const std::vector<double>& residu
     cost += expected_component_cost(energy, vertices, values, of_frames * difference[l], step);
   }
   return cost;
+}
+
+std::vector<double> unsteadiness(const GofFrames& frames) {
+  constexpr std::uint32_t kVertices = 40;
+  const std::uint32_t stride = (frames.num_vertices + kVertices - 1) / kVertices;
+  std::vector<double> result;
+  for (std::uint32_t f = 1; f < frames.num_frames; ++f) {
+    for (std::uint32_t v = 0; v < frames.num_vertices; v += stride) {
+      const double* now = frames.at(f, v);
+      const double* before = frames.at(f - 1, v);
+      const double* first = frames.at(f > 1 ? f - 2 : 0, v);
+      double square = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = now[c] - 2.0 * before[c] + first[c];
+        square += d * d;
+      }
+      result.push_back(std::sqrt(square));
+    }
+  }
+  return result;
+}
+
+// The more vertices follow a bone, the finer its steps are. Factors as measured.
+double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
+                          std::size_t num_bones, double step) {
+  constexpr double kPivotAndFirstPose = 60.0;
+  constexpr double kBits = 2.6;
+  constexpr double kFineness = 10.0;
+  if (unsteady.empty()) return kPivotAndFirstPose;
+  const double followers = frames.num_vertices / static_cast<double>(num_bones);
+  const double scale = kFineness * std::sqrt(followers) / step;
+  double sum = 0.0;
+  for (const double d : unsteady) sum += det_log2(1.0 + scale * d);
+  const double mean = sum / static_cast<double>(unsteady.size());
+  return kPivotAndFirstPose + kBits * mean * (frames.num_frames - 1);
 }
 
 }  // namespace rlpc

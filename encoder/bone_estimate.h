@@ -1,10 +1,12 @@
-// What the trajectories of a GOF are expected to cost, from a sample of what bones leave.
+// What bones of a GOF, and the trajectories of what they leave, are expected to cost.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "encoder/bone_solver.h"
+#include "encoder/gof_frames.h"
 
 namespace rlpc {
 
@@ -15,5 +17,16 @@ namespace rlpc {
 //   step                    of the quantisers, grid units
 double expected_cost(const BoneSample& sample, const std::vector<double>& residuals,
                      std::uint32_t num_vertices, std::uint32_t num_frames, double step);
+
+// Of some vertices, how far each is in each frame but the first from where it would be if it
+// had gone on as before; grid units.
+std::vector<double> unsteadiness(const GofFrames& frames);
+
+// Bits of pivot and poses of one bone among so many, in all frames.
+//
+//   unsteady  of that GOF
+//   step      of the quantisers, grid units
+double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
+                          std::size_t num_bones, double step);
 
 }  // namespace rlpc

@@ -13,10 +13,9 @@
 namespace rlpc {
 namespace {
 
-// What a stream spends, roughly, on one frame of a free bone, of a pinned one, and on a weight.
-constexpr double kFreeBoneBits = 15.0;
-constexpr double kPinnedBoneBits = 7.5;
+// What a stream spends, roughly, on a weight, and on a pinned bone as a part of a free one.
 constexpr double kInfluenceBits = 7.0;
+constexpr double kPinnedPart = 0.5;
 
 // Evenly spaced, from the first to the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
@@ -123,6 +122,7 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
       options_(options),
       centre_(centres(frames)),
       chosen_(sample_frames(frames.num_frames, options.sample_frames)),
+      unsteady_(unsteadiness(frames)),
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
 
@@ -163,19 +163,17 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
 // Where a bit saves this much, all parts of a stream are in balance.
 double BoneFit::error_per_bit() const { return kErrorPerBit * options_.step * options_.step; }
 
-double BoneFit::worth_of_bone() const {
-  const double part = static_cast<double>(sample_.positions.size()) /
-                      (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
-  return kFreeBoneBits * frames_.num_frames * error_per_bit() * part;
+// What a free bone costs, as an error of all frames.
+double BoneFit::cost_of_bone() const {
+  return error_per_bit() * expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
 }
 
 double BoneFit::expected_cost() const {
   const double n = static_cast<double>(frames_.num_vertices);
-  const double bits = kFreeBoneBits * frames_.num_frames * static_cast<double>(num_bones()) +
-                      kInfluenceBits * n * solver_.mean_influences();
   return rlpc::expected_cost(sample_, solver_.residuals(), frames_.num_vertices,
                              frames_.num_frames, options_.step) +
-         error_per_bit() * bits;
+         static_cast<double>(num_bones()) * cost_of_bone() +
+         error_per_bit() * kInfluenceBits * n * solver_.mean_influences();
 }
 
 double BoneFit::expected_sliding_cost() const {
@@ -272,15 +270,16 @@ Rig BoneFit::rig(std::size_t max_influences) const {
   rig.weights.resize(frames_.num_vertices);
   BoneSolver settled = solver_;
   settled.settle();
-  settled.remove_worthless_bones(worth_of_bone());
+  const double sampled = static_cast<double>(sample_.positions.size()) /
+                         (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
+  settled.remove_worthless_bones(cost_of_bone() * sampled);
   fit_vertices(settled, max_influences, rig);
   SkinMoments moments(settled.motions().size());
   for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
     moments.add(rest_of(rig, v), rig.weights[v]);
   }
   BoneMotions motions = fit_frames(settled.motions(), moments, rig);
-  const double pin_error =
-      (kFreeBoneBits - kPinnedBoneBits) * frames_.num_frames * error_per_bit();
+  const double pin_error = (1.0 - kPinnedPart) * cost_of_bone();
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
   put_in_tree_order(tree, motions, rig);
   return rig;

@@ -54,7 +54,7 @@ class BoneFit {
 
  private:
   double error_per_bit() const;
-  double worth_of_bone() const;
+  double cost_of_bone() const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;
   BoneSample sample_of(std::span<const Triangle> triangles) const;
   void fit_vertices(const BoneSolver& solver, std::size_t max_influences, Rig& rig) const;
@@ -65,6 +65,7 @@ class BoneFit {
   BoneFitOptions options_;
   std::vector<Vec3d> centre_;          // [num_frames]: everything is relative to it
   std::vector<std::uint32_t> chosen_;  // frames that are looked at together
+  std::vector<double> unsteady_;       // bone_estimate.h
   BoneSample sample_;
   BoneSolver solver_;
 };

@@ -37,7 +37,7 @@ constexpr double kPromisingSettled = 0.9;
 constexpr double kSure = 0.3;
 // Below this part of the cost expected without bones, expected costs are trusted more than the
 // real one: what makes that low, such as vertices at rest, is there with bones, too.
-constexpr double kStrongPromise = 0.65;
+constexpr double kStrongPromise = 0.5;
 // Limits of promises are so much higher where a trial takes little time.
 constexpr double kHopeOfSmallMesh = 1.25;
 // Expected costs, relative to the least, of numbers of bones to be tried.
@@ -263,11 +263,13 @@ void BoneGofSearch::choose(double step) {
   choose_prediction();
 }
 
-// As many bones as were best for another step, or the next number: more for a finer step.
+// As many bones as were best for another step, or the next number: more for a finer step,
+// fewer, and after the fewest one, for a coarser.
 void BoneGofSearch::choose_bones_near(const BoneCounts& counts, bool finer) {
   const auto at = std::find(kFewBones.begin(), kFewBones.end(), counts.bones);
   const auto first = finer || at == kFewBones.begin() ? at : at - 1;
   const auto end = finer ? std::min(at + 2, kFewBones.end()) : at + 1;
+  if (!finer && first == kFewBones.begin()) choose_one_bone();
   BoneFit full = fit(counts.influences, choice_->step);
   if (!grow(full, *first)) return;
   try_bones(full, counts.influences, std::span(first, end), counts.bones);
