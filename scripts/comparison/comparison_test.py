@@ -166,6 +166,15 @@ class Reports(unittest.TestCase):
         extra = report.extra_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
         self.assertEqual(extra.rows[0], ["Baseline", "+100.0 / +100.0", "+100.0 / +100.0"])
 
+    def test_tables_of_the_readme(self):
+        rates = report.readme_rates([SEQUENCE], self.curves, self.POINTS, [0.1, 1.1])
+        self.assertEqual(rates.rows, [["Main", "4.00 / 0.400"], ["Baseline", "8.00 / 0.800 (+100 %)"],
+                                      ["draco per frame", "- / 16.0 (-)"]])
+        table = report.readme_bd_rates([SEQUENCE, SEQUENCE], self.curves, self.POINTS, 0.1)
+        row = ["a & b: 100 vertices, 10 frames", "4.00", "+100 %", "-"]
+        self.assertEqual(table.rows, [row, row, ["mean", *row[1:]]])
+        self.assertTrue(all(len(line) == len(table.head) for line in table.rows))
+
     def test_a_column_for_each_gof(self):
         curves = report.curves_of(self.CODECS, ("all", "64"))
         self.assertEqual([c.title for c in curves], [
@@ -197,12 +206,13 @@ class Reports(unittest.TestCase):
         self.assertIsNone(report.curve_plot(SEQUENCE, self.curves, [], (0.1, 1.0)))
 
     def test_marked_text_is_replaced_and_nothing_else(self):
-        text = f"a\n{report.MARK[0]}\nold\n{report.MARK[1]}\nb\n"
-        new = report.replace_marked(text, "| new |\n")
+        begin, end = report.marks("rates")
+        text = f"{report.marks('x')}\na\n{begin}\nold\n{end}\nb\n"
+        new = report.replace_marked(text, "rates", "| new |\n")
         self.assertEqual(new, text.replace("old\n", "| new |\n"))
-        self.assertEqual(report.replace_marked(new, "| new |\n"), new)
+        self.assertEqual(report.replace_marked(new, "rates", "| new |\n"), new)
         with self.assertRaises(measure.Failure):
-            report.replace_marked("a\n", "x")
+            report.replace_marked("a\n", "rates", "x")
 
 
 class Tables(unittest.TestCase):

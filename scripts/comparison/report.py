@@ -10,7 +10,6 @@ import measure
 import svg_plot
 
 NOTHING = "-"
-MARK = ("<!-- begin: rates (scripts/compare --readme) -->", "<!-- end: rates -->")
 
 STYLE = """
 body { font: 15px/1.5 Helvetica, Arial, sans-serif; color: #222; max-width: 1180px;
@@ -142,15 +141,22 @@ def _extra(ratio):
     return NOTHING if ratio is None else f"{100 * (ratio - 1):+.1f}"
 
 
+def bd_rates(curve, sequences, curves, points):
+    """Against the first curve, per cent; None where there is none."""
+    return [arithmetic.bd_rate(curve.sizes(points, s), curves[0].sizes(points, s))
+            for s in sequences]
+
+
+def mean_bd_rate(rates):
+    mean = arithmetic.geometric_mean(1 + x / 100 for x in rates if x is not None)
+    return None if mean is None else 100 * (mean - 1)
+
+
 def bd_table(sequences, curves, points):
     rows = []
     for curve in curves[1:]:
-        found = [arithmetic.bd_rate(curve.sizes(points, s), curves[0].sizes(points, s))
-                 for s in sequences]
-        ratios = [1 + x / 100 for x in found if x is not None]
-        mean = arithmetic.geometric_mean(ratios)
-        rows.append([curve.title, *map(percent, found),
-                     percent(None if mean is None else 100 * (mean - 1))])
+        found = bd_rates(curve, sequences, curves, points)
+        rows.append([curve.title, *map(percent, found), percent(mean_bd_rate(found))])
     return Table(f"BD-rate against {curves[0].title} (above 0: more bytes)",
                  ["codec", *(s.name for s in sequences), "mean"], rows)
 
@@ -224,9 +230,48 @@ def markdown(title, notes, tables):
     return "\n".join(lines) + "\n"
 
 
-def replace_marked(text, table):
+def readme_rates(sequences, curves, points, kgs):
+    """A row for each codec: rates, and the BD-rate."""
+    rows = []
+    for curve in curves:
+        cells = [" / ".join(number(bpvf_at(curve, points, s, kg)) for kg in kgs)
+                 for s in sequences]
+        if curve is not curves[0]:
+            cells = [f"{cell} ({_whole_percent(bd)})" for cell, bd in
+                     zip(cells, bd_rates(curve, sequences, curves, points))]
+        rows.append([curve.title, *cells])
+    return Table("", ["bpvf at KG error " + " / ".join(f"{kg:g}" for kg in kgs) + " % (BD-rate)",
+                      *(f"{s.name}: {s.num_vertices} vertices, {s.num_frames} frames"
+                        for s in sequences)], rows)
+
+
+def readme_bd_rates(sequences, curves, points, kg):
+    """A row for each sequence: what the first codec takes, and BD-rates of the others."""
+    columns = [bd_rates(curve, sequences, curves, points) for curve in curves[1:]]
+    rows = [[f"{s.name}: {s.num_vertices} vertices, {s.num_frames} frames",
+             number(bpvf_at(curves[0], points, s, kg)),
+             *(_whole_percent(column[i]) for column in columns)]
+            for i, s in enumerate(sequences)]
+    rows.append(["mean", number(arithmetic.geometric_mean(bpvf_at(curves[0], points, s, kg)
+                                                          for s in sequences)),
+                 *(_whole_percent(mean_bd_rate(column)) for column in columns)])
+    return Table("", ["BD-rate", f"{curves[0].title}: bpvf at {kg:g} %",
+                      *(c.title for c in curves[1:])], rows)
+
+
+def _whole_percent(value):
+    return NOTHING if value is None else f"{value:+.0f} %"
+
+
+def marks(name):
+    """The lines around a table of README.md."""
+    return f"<!-- begin: {name} -->", f"<!-- end: {name} -->"
+
+
+def replace_marked(text, name, table):
     """`text` with what stands between the marks replaced."""
-    begin, end = (text.find(mark) for mark in MARK)
+    first, last = marks(name)
+    begin, end = text.find(first), text.find(last)
     if begin < 0 or end < begin:
-        raise measure.Failure(f"README.md has no lines {MARK[0]} and {MARK[1]}")
-    return text[:begin + len(MARK[0])] + "\n" + table + text[end:]
+        raise measure.Failure(f"README.md has no lines {first} and {last}")
+    return text[:begin + len(first)] + "\n" + table + text[end:]
