@@ -4,9 +4,9 @@
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
   calls just those versions released that have one.
 * The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
-  has the digests by version of the project (CMakeLists.txt), of streams of the Baseline profile;
-  what the encoder makes of a profile is kept from its release on. They may change with the version,
-  or with an erratum (spec/errata.md) that the new entry names.
+  has the digests by version of the project (CMakeLists.txt); what the encoder makes of a profile
+  is kept from its release on. They may change with the version, or with an erratum
+  (spec/errata.md) that the new entry names.
 
   --bin FOLDER   where rlpcenc is; without it, the encoder is not run
   --write        add an entry for the encoder as it is now
@@ -24,9 +24,12 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DIGESTS = "streams/inputs/encoder_digests.json"
-SETTINGS = ("--kg 0.3", "--kg 1 --preset fast --gof 20 --keep-order --hash frame",
+BASELINE = ("--kg 0.3", "--kg 1 --preset fast --gof 20 --keep-order --hash frame",
             "--max-error 0.01 --frame world --gof 40",
             "--gof all --clusters 8 --components 6 --qu 12 --qc 12 --qdelta 12 --frame lcf")
+MAIN = ("--profile main --kg 0.3",
+        "--profile main --kg 1 --preset fast --gof 20 --keep-order --hash frame",
+        "--profile main --bpvf 1.5 --preset fast --gof 40 --bones 4")
 
 
 def released(root):
@@ -61,9 +64,10 @@ def encoder_digests(root, bin_folder):
     with tempfile.TemporaryDirectory(prefix="rlpc-stability-") as folder:
         out = pathlib.Path(folder, "a.rlpc")
         for mesh in sorted((root / "streams" / "inputs").glob("*.obj")):
-            for setting in SETTINGS:
+            for setting in BASELINE + MAIN:
+                profile = () if setting in MAIN else ("--profile", "baseline")
                 subprocess.run([bin_folder / "rlpcenc", mesh, "--points", mesh.with_suffix(".pc2"),
-                                "-o", out, "--profile", "baseline", *setting.split()], check=True,
+                                "-o", out, *profile, *setting.split()], check=True,
                                capture_output=True)
                 digest = hashlib.sha256(out.read_bytes()).hexdigest()
                 digests[f"{mesh.stem} {setting}"] = digest[:32]
