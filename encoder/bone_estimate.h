@@ -22,10 +22,10 @@ double expected_cost(const BoneSample& sample, const std::vector<double>& residu
 // had gone on as before; grid units.
 std::vector<double> unsteadiness(const GofFrames& frames);
 
-// Bits of pivot and poses of one bone among so many, in all frames.
+// Bits of pivot and poses of one bone among so many (at least 1) in all frames.
 //
 //   unsteady  of that GOF
-//   step      of the quantisers, grid units
+//   step      of the quantisers, grid units, above 0
 double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
                           std::size_t num_bones, double step);
 

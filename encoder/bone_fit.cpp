@@ -165,6 +165,7 @@ double BoneFit::error_per_bit() const { return kErrorPerBit * options_.step * op
 
 // What a free bone costs, as an error of all frames.
 double BoneFit::cost_of_bone() const {
+  if (options_.step == 0.0) return 0.0;  // no error is small
   return error_per_bit() * expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
 }
 
