@@ -12,7 +12,7 @@ LocalFrame::LocalFrame(const Lcf& lcf) {
 }
 
 RLPC_WIDEST void add_local_motion(const LocalFrame& frame, std::size_t num_vertices,
-                                  const double* xyz, double* before, double* motion) {
+                                  const double* xyz, double* before, double* motion) noexcept {
   const LocalFrame f = frame;  // which nothing here writes to
   for (std::size_t v = 0; v < num_vertices; ++v) {
     const std::array<double, 3> q = f.to_local(xyz + 3 * v);

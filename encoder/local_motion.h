@@ -35,6 +35,6 @@ struct LocalFrame {
 //   before  [num_vertices][3], local
 //   motion  [num_vertices]
 void add_local_motion(const LocalFrame& frame, std::size_t num_vertices, const double* xyz,
-                      double* before, double* motion);
+                      double* before, double* motion) noexcept;
 
 }  // namespace rlpc

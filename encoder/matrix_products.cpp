@@ -7,10 +7,8 @@ namespace {
 
 constexpr std::size_t kTogether = 4;  // rows in one pass over the sums
 
-}  // namespace
-
-RLPC_WIDEST std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
-  std::vector<double> result(width * width, 0.0);
+RLPC_WIDEST void add_gram_matrix(std::span<const double> rows, std::size_t width,
+                                 std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
   for (; r + kTogether <= num_rows; r += kTogether) {
@@ -36,14 +34,13 @@ RLPC_WIDEST std::vector<double> gram_matrix(std::span<const double> rows, std::s
       for (std::size_t j = 0; j <= i; ++j) out[j] += row[i] * row[j];
     }
   }
-  return result;
 }
 
-RLPC_WIDEST std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
-                                               std::span<const double> b, std::size_t b_width) {
+RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
+                             std::span<const double> b, std::size_t b_width,
+                             std::span<double> result) noexcept {
   const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
   const std::size_t inner = b_width == 0 ? 0 : b.size() / b_width;
-  std::vector<double> result(num_rows * b_width, 0.0);
   for (std::size_t r = 0; r < num_rows; ++r) {
     const double* x = &a[r * a_width];
     double* out = result.data() + r * b_width;  // b may have no columns
@@ -65,6 +62,21 @@ RLPC_WIDEST std::vector<double> matrix_product(std::span<const double> a, std::s
       for (std::size_t j = 0; j < b_width; ++j) out[j] += x[i] * b[i * b_width + j];
     }
   }
+}
+
+}  // namespace
+
+std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
+  std::vector<double> result(width * width, 0.0);
+  add_gram_matrix(rows, width, result);
+  return result;
+}
+
+std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
+                                   std::span<const double> b, std::size_t b_width) {
+  const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
+  std::vector<double> result(num_rows * b_width, 0.0);
+  add_product(a, a_width, b, b_width, result);
   return result;
 }
 
