@@ -65,6 +65,10 @@ def curves_of(codecs, gofs):
     return found
 
 
+def described(sequence):
+    return f"{sequence.name}: {sequence.num_vertices} vertices, {sequence.num_frames} frames"
+
+
 def number(value, digits=3):
     """With so many digits that count."""
     if value is None:
@@ -207,8 +211,7 @@ def curve_plot(sequence, curves, points, kgs):
                                           width=2.8 if number_of == 0 else 2.0))
     if not series:
         return None
-    title = f"{sequence.name}: {sequence.num_vertices} vertices, {sequence.num_frames} frames"
-    return svg_plot.plot(title, series, "bits per vertex and frame (whole file)",
+    return svg_plot.plot(described(sequence), series, "bits per vertex and frame (whole file)",
                          "KG error, per cent")
 
 
@@ -241,14 +244,13 @@ def readme_rates(sequences, curves, points, kgs):
                      zip(cells, bd_rates(curve, sequences, curves, points))]
         rows.append([curve.title, *cells])
     return Table("", ["bpvf at KG error " + " / ".join(f"{kg:g}" for kg in kgs) + " % (BD-rate)",
-                      *(f"{s.name}: {s.num_vertices} vertices, {s.num_frames} frames"
-                        for s in sequences)], rows)
+                      *map(described, sequences)], rows)
 
 
 def readme_bd_rates(sequences, curves, points, kg):
     """A row for each sequence: what the first codec takes, and BD-rates of the others."""
     columns = [bd_rates(curve, sequences, curves, points) for curve in curves[1:]]
-    rows = [[f"{s.name}: {s.num_vertices} vertices, {s.num_frames} frames",
+    rows = [[described(s),
              number(bpvf_at(curves[0], points, s, kg)),
              *(_whole_percent(column[i]) for column in columns)]
             for i, s in enumerate(sequences)]
