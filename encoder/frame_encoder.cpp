@@ -69,13 +69,8 @@ std::optional<InputError> check_format(const FrameFormat& format) {
   return std::nullopt;
 }
 
-// How spread out frames will be is not known: the grid is as fine as it can be where that is
-// what errors are relative to.
-double finest_error(const Target& target) {
-  if (target.kind == Target::kNone) return 0.0;
-  if (target.kind == Target::kMaxError) return target.value;
-  return std::numeric_limits<double>::min();
-}
+// Later GOFs may need errors this much smaller than the first one, of which the grid is.
+constexpr double kReserve = 4.0;
 
 }  // namespace
 
@@ -98,11 +93,18 @@ class FrameEncoder::Impl {
     EncodedGof encoded;
     GofBytes bytes;
     double step = 0.0;
+    double kg_error_percent = 0.0;
+    bool met = false;  // within the target
   };
 
   std::optional<InputError> check_frame(std::span<const float> xyz) const;
   std::optional<InputError> encode_gof();
-  InputResult<Best> search(const GofSpan& span);
+  // In place of the header before, after prepare().
+  void use_header(const SequenceHeader& header);
+  // With the grid for the finest error that matters.
+  SequenceHeader header_for(double finest) const;
+  InputResult<Best> search(const GofSpan& span, double rms_spread);
+  InputResult<Best> search_first(const GofSpan& span, double rms_spread);
   double measured(const Metrics& metrics, const GofBytes& gof) const;
   std::optional<InputError> keep_to_level(const LevelNeeds& needs);
   std::uint64_t fixed_bytes() const;
@@ -135,21 +137,12 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   header_.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
   header_.num_frames = format_.num_frames;
   header_.frame_rate = format_.frame_rate;
-  Extent extent;
-  std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
-  std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
-  const auto grid = choose_grid(extent, finest_error(settings_.target));
-  header_.grid = grid.grid;
-  header_.position_bits = grid.position_bits;
-
   spans_ = equal_gofs(header_.num_frames, longest_gof(settings_));
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
   if (auto error = choose_level(header_, settings_, longest, format_.least_level)) return error;
   coding_.emplace(header_, settings_, format_.triangles);
   format_.triangles = {};
-  stream_.emplace(header_, settings_, coding_->connectivity());
-  fixed_bits_per_frame_ = 8.0 * static_cast<double>(fixed_bytes()) / header_.num_frames;
   return std::nullopt;
 }
 
@@ -213,15 +206,30 @@ double FrameEncoder::Impl::measured(const Metrics& metrics, const GofBytes& gof)
   return 0.0;
 }
 
-InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& span) {
+void FrameEncoder::Impl::use_header(const SequenceHeader& header) {
+  header_ = header;
+  coding_->follow_grid();
+  stream_.emplace(header_, settings_, coding_->connectivity());
+  fixed_bits_per_frame_ = 8.0 * static_cast<double>(fixed_bytes()) / header_.num_frames;
+}
+
+SequenceHeader FrameEncoder::Impl::header_for(double finest) const {
+  Extent extent;
+  std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
+  std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
+  SequenceHeader header = header_;
+  set_grid(header, choose_grid(extent, finest));
+  return header;
+}
+
+InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& span,
+                                                                 double rms_spread) {
   const GofSpan all{0, span.count};
   const auto frames = coding_->read_frames(*buffer_, all);
   if (!frames) return frames.error();
   GofMemory memory;
   const auto coder = coding_->make_coder(*frames, span.first, memory);
-  const auto extent = measure_extent(*buffer_);
-  if (!extent) return extent.error();
-  TargetSearch search = search_for(settings_, header_, extent->rms_spread);
+  TargetSearch search = search_for(settings_, header_, rms_spread);
   // GOFs are much alike.
   if (last_step_ > 0.0) search.begin_at(last_step_);
   std::optional<Best> best;
@@ -232,11 +240,25 @@ InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& 
     auto hash_unit = coding_->measure(*buffer_, all, trial.encoded, metrics);
     if (!hash_unit) return hash_unit.error();
     trial.bytes = {span.count, write_gof_units(trial.encoded), std::move(*hash_unit)};
+    trial.kg_error_percent = metrics.result().kg_error_percent;
     const bool better = search.report(measured(metrics.result(), trial.bytes));
     if (better || !best) best = std::move(trial);
   }
-  report_.target_met = report_.target_met && search.met();
+  best->met = search.met();
   return std::move(*best);
+}
+
+// The first GOF sets the grid; where the target is a rate, by the error that this allows.
+InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search_first(const GofSpan& span,
+                                                                       double rms_spread) {
+  use_header(header_for(finest_error(settings_.target, rms_spread) / kReserve));
+  auto best = search(span, rms_spread);
+  if (!best || settings_.target.kind != Target::kBpvf) return best;
+  const double error = rms_spread * best->kg_error_percent / 100.0;
+  const SequenceHeader finer = header_for(error / kReserve);
+  if (finer.position_bits <= header_.position_bits) return best;
+  use_header(finer);
+  return search(span, rms_spread);
 }
 
 // The first GOF sets the level, with a reserve; the others keep to it.
@@ -256,8 +278,12 @@ std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& ne
 
 std::optional<InputError> FrameEncoder::Impl::encode_gof() {
   const GofSpan& span = spans_[num_coded_];
-  const auto best = search(span);
+  const auto extent = measure_extent(*buffer_);
+  if (!extent) return extent.error();
+  const auto best = num_coded_ == 0 ? search_first(span, extent->rms_spread)
+                                    : search(span, extent->rms_spread);
   if (!best) return best.error();
+  report_.target_met = report_.target_met && best->met;
   last_step_ = best->step;
   report_.clusters += best->encoded.clusters;
   report_.components += best->encoded.components;

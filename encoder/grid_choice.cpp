@@ -62,6 +62,11 @@ InputResult<Extent> measure_extent(FrameSource& source) {
   return extent;
 }
 
+double finest_error(const Target& target, double rms_spread) {
+  if (target.kind == Target::kKg) return rms_spread * target.value / 100.0;
+  return target.kind == Target::kMaxError ? target.value : 0.0;
+}
+
 GridChoice choose_grid(const Extent& extent, double finest_error) {
   double half = 0.0;     // largest half width of the bounding box
   double largest = 0.0;  // largest coordinate of its centre
@@ -75,7 +80,7 @@ GridChoice choose_grid(const Extent& extent, double finest_error) {
   const double reach = half * kMargin;
   int bits = kDefaultPositionBits;
   if (finest_error > 0.0 && reach > 0.0) {
-    const double steps = std::min(2.0 * reach * kStepsPerError / finest_error, 0x1p40);
+    const double steps = std::clamp(2.0 * reach * kStepsPerError / finest_error, 1.0, 0x1p40);
     bits = std::clamp(ceil_exponent(steps), kDefaultPositionBits, kMaxPositionBits);
   }
   int log2_step = kMinGridLog2Step;

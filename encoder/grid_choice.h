@@ -5,7 +5,9 @@
 #include <array>
 
 #include "common/mesh.h"
+#include "common/sequence_header.h"
 #include "encoder/input/frame_source.h"
+#include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
 
@@ -23,7 +25,17 @@ struct GridChoice {
   int position_bits = 0;
 };
 
-// finest_error: the smallest error, in units, that matters; 0 if unknown.
+// The smallest error, in units, that matters to a target; 0 if that is not known before. A grid
+// that is far finer than the error is no better, and costs bits: steps have a largest size.
+// rms_spread: as in Extent.
+double finest_error(const Target& target, double rms_spread);
+
+// finest_error: 0 if unknown.
 GridChoice choose_grid(const Extent& extent, double finest_error);
+
+inline void set_grid(SequenceHeader& header, const GridChoice& choice) {
+  header.grid = choice.grid;
+  header.position_bits = choice.position_bits;
+}
 
 }  // namespace rlpc

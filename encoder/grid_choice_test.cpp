@@ -107,6 +107,15 @@ TEST(ChooseGrid, IsAsFineAsTheErrorAsks) {
   EXPECT_EQ(choose_grid(extent, 1e-12).position_bits, kMaxPositionBits);  // as fine as it goes
 }
 
+TEST(ChooseGrid, TakesAnyError) {
+  for (const double size : {1e-44, 1.0, 1e30}) {
+    for (const double finest :
+         {std::numeric_limits<double>::min(), 1e300, std::numeric_limits<double>::infinity()}) {
+      expect_covered(box(-size, size), choose_grid(box(-size, size), finest));
+    }
+  }
+}
+
 TEST(ChooseGrid, UsesAtLeastHalfOfItsPositions) {
   double size = 1e-20;
   for (int i = 0; i < 70; ++i, size *= 3.7) {

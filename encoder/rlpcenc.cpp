@@ -54,8 +54,12 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
   const Target& target = o.settings.target;
   constexpr double kNearRate = 0.95;
+  constexpr double kNoError = 0.002;  // per cent: about what the finest grid leaves
   if (target.kind == Target::kBpvf && report.bpvf < kNearRate * target.value && !o.quiet) {
-    std::cerr << "rlpcenc: fewer bits than --bpvf allows: this is as exact as it gets\n";
+    std::cerr << "rlpcenc: fewer bits than --bpvf allows: "
+              << (report.metrics.kg_error_percent < kNoError
+                      ? "this is as exact as it gets\n"
+                      : "no encoding was found that comes closer\n");
   }
   if (report.target_met) return kEncoded;
   std::cerr << "rlpcenc: the target is out of reach; this is the closest found. Try a "

@@ -41,6 +41,10 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
   }
 }
 
+void SequenceCoding::follow_grid() {
+  if (bone_context_) bone_context_->position_bits = header_.position_bits;
+}
+
 InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
   const std::uint32_t n = header_.num_vertices;

@@ -47,6 +47,8 @@ class SequenceCoding {
   SequenceCoding& operator=(const SequenceCoding&) = delete;
 
   const ConnectivityCode& connectivity() const { return connectivity_; }
+  // After the grid of the header has changed. Frames and coders from before are of no use.
+  void follow_grid();
 
   // The frames of a GOF, in decoded vertex order and grid units. Error: that of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;

@@ -1,5 +1,5 @@
+// Implements encode() of encoder/rlpc_encoder.h: a whole sequence, to its target.
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -44,8 +44,19 @@ class SequenceEncoder {
     GofMemory memory;
   };
 
+  // The best encoding of a search.
+  struct Found {
+    SequenceTrial trial;
+    double step = 0.0;  // grid steps
+    bool met = false;   // within the target
+  };
+
   std::optional<InputError> prepare();
+  // In place of the header before, after prepare().
+  void use_header(const SequenceHeader& header);
   std::optional<InputError> cut_gofs(std::uint32_t longest);
+  InputResult<Found> search();
+  std::optional<InputError> search_on_finer_grid(Found& best);
   InputResult<SequenceTrial> encode_at(double step, double analysis_step);
   std::optional<InputError> encode_gof(std::size_t g, double step, double analysis_step,
                                        SequenceTrial& trial, MetricsAccumulator& metrics);
@@ -56,7 +67,7 @@ class SequenceEncoder {
   const EncoderSettings& settings_;
   const Progress& progress_;
   SequenceHeader header_;
-  double rms_spread_ = 0.0;  // units, per coordinate
+  Extent extent_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;
@@ -73,19 +84,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header_.frame_rate = source_.frame_rate();
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
-  // A rate may allow any error, so that the grid is as fine as it can be.
-  double finest = 0.0;
-  if (settings_.target.kind == Target::kKg) {
-    finest = extent->rms_spread * settings_.target.value / 100.0;
-  } else if (settings_.target.kind == Target::kMaxError) {
-    finest = settings_.target.value;
-  } else if (settings_.target.kind == Target::kBpvf) {
-    finest = std::numeric_limits<double>::min();
-  }
-  const auto grid = choose_grid(*extent, finest);
-  header_.grid = grid.grid;
-  header_.position_bits = grid.position_bits;
-  rms_spread_ = extent->rms_spread;
+  extent_ = *extent;
+  set_grid(header_, choose_grid(extent_, finest_error(settings_.target, extent_.rms_spread)));
 
   if (auto error = cut_gofs(longest_gof(settings_))) return error;
   std::uint32_t longest = 0;
@@ -109,7 +109,7 @@ std::optional<InputError> SequenceEncoder::cut_gofs(std::uint32_t longest) {
     spans_ = equal_gofs(header_.num_frames, longest);
     return std::nullopt;
   }
-  const double step = search_for(settings_, header_, rms_spread_).step();
+  const double step = search_for(settings_, header_, extent_.rms_spread).step();
   auto spans = cheapest_gofs(source_, longest, step * exact_exp2(header_.grid.log2_step));
   if (!spans) return spans.error();
   spans_ = std::move(*spans);
@@ -192,23 +192,59 @@ InputResult<EncodeReport> SequenceEncoder::write(SequenceTrial trial, double ste
   return report;
 }
 
-InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
-  if (auto error = prepare()) return *error;
-  TargetSearch search = search_for(settings_, header_, rms_spread_);
-  std::optional<SequenceTrial> best;
-  double best_step = search.step();
-  for (;;) {
+InputResult<SequenceEncoder::Found> SequenceEncoder::search() {
+  TargetSearch search = search_for(settings_, header_, extent_.rms_spread);
+  Found best;
+  for (bool is_first = true; !search.finished(); is_first = false) {
     auto trial = encode_at(search.step(), search.analysis_step());
     if (!trial) return trial.error();
     const bool better = search.report(measured(*trial));
-    if (better || !best) {
-      best = std::move(*trial);
-      best_step = search.last_step();
+    if (better || is_first) {
+      best.trial = std::move(*trial);
+      best.step = search.last_step();
     }
-    if (search.finished()) break;
   }
-  auto report = write(std::move(*best), best_step, sink);
-  if (report) report->target_met = search.met();
+  best.met = search.met();
+  return best;
+}
+
+void SequenceEncoder::use_header(const SequenceHeader& header) {
+  header_ = header;
+  coding_->follow_grid();
+  stream_.emplace(header_, settings_, coding_->connectivity());
+}
+
+// What error a rate allows shows when it is reached: whether the grid was fine enough for it.
+std::optional<InputError> SequenceEncoder::search_on_finer_grid(Found& best) {
+  const double error = extent_.rms_spread * best.trial.metrics.kg_error_percent / 100.0;
+  const GridChoice grid = choose_grid(extent_, error);
+  if (grid.position_bits <= header_.position_bits) return std::nullopt;
+  const SequenceHeader before = header_;
+  SequenceHeader header = header_;
+  set_grid(header, grid);
+  use_header(header);
+  gofs_ = std::vector<GofState>(spans_.size());
+  auto finer = search();
+  if (!finer) return finer.error();
+  if (finer->met >= best.met &&
+      finer->trial.metrics.kg_error_percent < best.trial.metrics.kg_error_percent) {
+    best = std::move(*finer);
+  } else {
+    use_header(before);
+  }
+  return std::nullopt;
+}
+
+InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {
+  if (auto error = prepare()) return *error;
+  auto best = search();
+  if (!best) return best.error();
+  if (settings_.target.kind == Target::kBpvf) {
+    if (auto error = search_on_finer_grid(*best)) return *error;
+  }
+  const bool met = best->met;
+  auto report = write(std::move(best->trial), best->step, sink);
+  if (report) report->target_met = met;
   if (report && progress_) progress_(1.0);
   return report;
 }
