@@ -120,7 +120,8 @@ TEST(Settings, AVertexFollowsAtMostFourBones) {
 
 TEST(Settings, ATargetIsAboveZero) {
   for (const auto kind : {Target::kKg, Target::kBpvf, Target::kMaxError}) {
-    for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity()}) {
       EXPECT_NE(error_of([&](auto& s) {
                   s.target = {kind, value};
                 }).find("above zero"),
@@ -130,13 +131,25 @@ TEST(Settings, ATargetIsAboveZero) {
   }
 }
 
-TEST(Settings, NoLevelHasMoreClustersOrBones) {
-  EXPECT_NE(error_of([](auto& s) { s.main.bones = 1025; }).find("level"), std::string::npos);
-  EXPECT_NE(error_of([](auto& s) {
+TEST(Settings, NoLevelHasMoreClustersBonesOrComponents) {
+  EXPECT_EQ(error_of([](auto& s) { s.main.bones = 1025; }),
+            "no level allows more than 1024 bones (--bones)");
+  EXPECT_EQ(error_of([](auto& s) {
               s.profile = Profile::kBaseline;
               s.baseline.clusters = 1025;
-            }).find("level"),
-            std::string::npos);
+            }),
+            "no level allows more than 1024 clusters (--clusters)");
+  EXPECT_EQ(error_of([](auto& s) { s.components = 1025; }),
+            "no level allows more than 1024 components (--components)");
+}
+
+// Larger than anything in the animation, and so large that sums of it overflow.
+TEST(Settings, ATargetMayAllowAnyError) {
+  for (const auto kind : {Target::kKg, Target::kBpvf, Target::kMaxError}) {
+    for (const double value : {1e6, 1e300, std::numeric_limits<double>::max()}) {
+      EXPECT_EQ(error_of([&](auto& s) { s.target = {kind, value}; }), "") << value;
+    }
+  }
 }
 
 TEST(Encoder, RefusesWhatNoLevelAllows) {

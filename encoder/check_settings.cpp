@@ -1,5 +1,6 @@
 #include "encoder/check_settings.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,22 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
   return std::nullopt;
 }
 
+// Annex B: what is beyond every level, whatever the animation.
+std::optional<InputError> check_counts(const EncoderSettings& s) {
+  const Level& most = kLevels.back();
+  const auto refuse = [](std::uint32_t limit, const std::string& what) {
+    return InputError{"no level allows more than " + std::to_string(limit) + " " + what};
+  };
+  if (s.components > most.max_components) {
+    return refuse(most.max_components, "components (--components)");
+  }
+  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones (--bones)");
+  if (s.baseline.clusters > most.max_clusters) {
+    return refuse(most.max_clusters, "clusters (--clusters)");
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<InputError> check_settings(const EncoderSettings& s) {
@@ -87,6 +104,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
     return error;
   }
   if (auto error = check_baseline(s)) return error;
+  if (auto error = check_counts(s)) return error;
   // A vertex of which no bone is a candidate can have no more (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
@@ -95,8 +113,9 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.metadata.size() > kMaxMetadataBytes) {
     return InputError{"metadata may have at most 1 MiB"};
   }
-  if (s.target.kind != Target::kNone && !(s.target.value > 0.0)) {
-    return InputError{"a target must be above zero"};
+  if (s.target.kind != Target::kNone &&
+      !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
+    return InputError{"a target must be a number above zero"};
   }
   return std::nullopt;
 }

@@ -23,17 +23,6 @@ constexpr double kMinEnergySteps = 1.2;
 
 }  // namespace
 
-GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
-                 const GofAnalysis& analysis, const CodingSettings& coding) {
-  GofTrial trial;
-  trial.gof = code_gof(frames, analysis, coding);
-  trial.payload = write_gof(trial.gof, context.header, context.topology);
-  const GofRecon recon(context.header, context.topology, trial.gof);
-  trial.squared_error = squared_error(
-      frames, [&](std::uint32_t f, std::span<std::int32_t> out) { recon.frame(f, out); });
-  return trial;
-}
-
 GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
                      std::uint32_t first_frame, const EncoderSettings& settings,
                      std::optional<GofChoice>& choice)
@@ -100,9 +89,13 @@ GofAnalysis GofSearch::analyse(double step, const GofChoice& choice) {
 
 double GofSearch::cost(double step, const GofChoice& choice) {
   const CodingSettings coding = coding_settings(step);
-  const GofTrial trial = try_gof(context_, frames_, analyse(step, choice), coding);
-  const double bits = 8.0 * static_cast<double>(trial.payload.size());
-  return trial.squared_error + coding.lambda_factor * step * step * bits;
+  const Gof gof = code_gof(frames_, analyse(step, choice), coding);
+  const auto payload = write_gof(gof, context_.header, context_.topology);
+  const GofRecon recon(context_.header, context_.topology, gof);
+  const double error = squared_error(
+      frames_, [&](std::uint32_t f, std::span<std::int32_t> out) { recon.frame(f, out); });
+  const double bits = 8.0 * static_cast<double>(payload.size());
+  return error + coding.lambda_factor * step * step * bits;
 }
 
 // Climbs from a middling number of clusters while the cost falls.
@@ -133,7 +126,7 @@ GofChoice GofSearch::choose(double step) {
   const bool fast = settings_.preset == Preset::kFast;
   if (fast) {
     const auto wanted = static_cast<std::uint32_t>(std::sqrt(frames_.num_vertices) / 3.0);
-    return {std::clamp<std::uint32_t>(tools_.clusters > 0 ? tools_.clusters : wanted, 1, 32),
+    return {tools_.clusters > 0 ? tools_.clusters : std::clamp(wanted, 1U, 32U),
             tools_.frame_mode == FrameMode::kWorld};
   }
   const auto best_of = [&](bool world) {

@@ -11,16 +11,6 @@
 
 namespace rlpc {
 
-// One encoding of a GOF, whole.
-struct GofTrial {
-  Gof gof;
-  std::vector<std::uint8_t> payload;
-  double squared_error = 0.0;  // grid steps squared, over all coordinates and frames
-};
-
-GofTrial try_gof(const EncodingContext& context, const GofFrames& frames,
-                 const GofAnalysis& analysis, const CodingSettings& coding);
-
 // How a GOF is cut into clusters.
 struct GofChoice {
   std::uint32_t clusters;
@@ -35,10 +25,10 @@ class GofSearch : public GofCoder {
   GofSearch(const EncodingContext& context, const GofFrames& frames, std::uint32_t first_frame,
             const EncoderSettings& settings, std::optional<GofChoice>& choice);
 
+  bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   // The GOF at the settings' own quantisers (qu, qc, qdelta) or, without them, with the
   // quantiser step that is given, in grid steps.
   // analysis_step: the step that the analysis is made for, near it.
-  bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   EncodedGof encode(double step, double analysis_step) override;
 
  private:

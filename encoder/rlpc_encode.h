@@ -45,7 +45,8 @@ typedef struct rlpc_frame_format {
   uint32_t num_frames;            // at least 1; as many have to come
   uint32_t frame_rate_numerator;  // frames per second: 30 / 1 by default
   uint32_t frame_rate_denominator;
-  // No coordinate of any frame is outside. A box that is far too large makes the grid coarser.
+  // Within 2^100, and no coordinate of any frame is outside. A box that is far too large makes
+  // the grid coarser.
   float box_min[3];
   float box_max[3];
 } rlpc_frame_format;
@@ -71,13 +72,14 @@ typedef struct rlpc_encode_options {
   uint32_t profile;      // RLPC_MAIN by default
   uint32_t preset;       // RLPC_MEDIUM
   uint32_t target;       // RLPC_TARGET_KG: reached from below, within 2 % where it can be
-  double target_value;   // 0.1; above zero
+  double target_value;   // 0.1; above zero and finite
   uint32_t gof_frames;   // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
-  uint32_t components;   // of a GOF (Main) or cluster (Baseline); 0: chosen
+  uint32_t components;   // of a GOF (Main) or cluster (Baseline), up to 1024; 0: chosen
   uint32_t keep_order;   // 1: restore the order of vertices that the frames have here; or 0
   uint32_t hash_mode;    // RLPC_HASH_GOF
   uint32_t least_level;  // 1; more where an error asks for it
-  const char* metadata;  // JSON text to carry along, not checked; null: none. Copied
+  // JSON text to carry along, not checked, up to 1 MiB; null: none. Copied.
+  const char* metadata;
   // Memory for the handle, of rlpc_encoder_bytes() bytes and aligned as that of malloc, which
   // must stay until the handle is closed. Null: it is allocated.
   void* place;

@@ -77,7 +77,7 @@ struct Target {
     kMaxError,  // largest distance of a vertex from its original, in units: likewise
   };
   Kind kind = kKg;
-  double value = 0.1;
+  double value = 0.1;  // above zero and finite
 };
 
 struct EncoderSettings {
