@@ -9,12 +9,14 @@
 #include "common/bit_reader.h"
 #include "common/gof_recon.h"
 #include "common/residual_models.h"
+#include "conformance/count_memory.h"
 #include "decoder/parse_gof.h"
 #include "encoder/write_gof.h"
 
 namespace rlpc {
 namespace {
 
+constexpr std::uint64_t kAmple = std::uint64_t{1} << 40;
 constexpr int kResidualBits = floor_log2(kMaxResidual) + 1;  // of a magnitude
 
 // Random legal GOFs. Fields take the ends of their ranges often.
@@ -173,7 +175,7 @@ void expect_round_trip(const Generator& from, const Gof& gof) {
   BitReader r(payload);
   const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
   EXPECT_FALSE(start.bones_flag);
-  const auto parsed = parse_clusters(r, from.header, from.topology, start, 1U << 30);
+  const auto parsed = parse_clusters(r, from.header, from.topology, start, kAmple);
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
   expect_equal(gof, *parsed);
 
@@ -251,6 +253,78 @@ TEST(GofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
       for (std::int32_t& x : c.spatial_residual) x = next();
     }
     expect_round_trip(generator, gof);
+  }
+}
+
+// The least max_memory_bytes that the parser takes a GOF with, its estimate, or up to 2 % more.
+std::uint64_t estimated_memory(const Generator& from, const Gof& gof,
+                               const std::vector<std::uint8_t>& payload) {
+  std::uint64_t too_few = 0;
+  std::uint64_t enough = std::uint64_t{1} << 32;
+  while (enough - too_few > enough / 50) {
+    const std::uint64_t middle = too_few + (enough - too_few) / 2;
+    BitReader r(payload);
+    const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
+    (parse_clusters(r, from.header, from.topology, start, middle) ? enough : too_few) = middle;
+  }
+  return enough;
+}
+
+// What parsing and reconstruction have at a time, beside what they need for any GOF.
+void expect_memory_within_estimate(const Generator& from, const Gof& gof) {
+  const std::vector<std::uint8_t> payload = write_gof(gof, from.header, from.topology);
+  const std::uint64_t estimate = estimated_memory(from, gof, payload);
+  memory_count.peak = memory_count.now;
+  const std::size_t before = memory_count.now;
+  {
+    BitReader r(payload);
+    const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
+    const auto parsed = parse_clusters(r, from.header, from.topology, start, kAmple);
+    ASSERT_TRUE(parsed);
+    const GofRecon recon(from.header, from.topology, *parsed);
+    std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
+    recon.frame(0, positions);
+  }
+  const std::size_t of_any =
+      300'000 + 100 * std::size_t{from.header.num_vertices} + 300 * gof.clusters.size();
+  EXPECT_LE(memory_count.peak - before, estimate + of_any);
+}
+
+TEST(GofMemory, StaysWithinWhatIsComparedWithTheLimit) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Generator generator(seed);
+    expect_memory_within_estimate(generator, generator.gof(400, 60, seed % 2 == 0 ? 3 : 100));
+  }
+}
+
+// Most of it is what each component of each cluster takes, however few values it has.
+TEST(GofMemory, OfManyComponentsOfSmallClustersIsCounted) {
+  for (const int spatial_bits : {1, 16, kMaxSpatialBits}) {
+    for (const int temporal_bits : {1, 16, kMaxTemporalBits}) {
+      for (const std::uint32_t vertices : {1U, 43U}) {  // 3 and 129 values
+        SCOPED_TRACE(testing::Message() << spatial_bits << " " << temporal_bits << " bits, "
+                                        << vertices << " vertices");
+        constexpr std::uint32_t kClusters = 60;
+        Generator generator(1);
+        generator.header.num_vertices = kClusters * vertices;
+        generator.header.num_frames = 2;
+        generator.topology = make_topology(kClusters * vertices, {});
+        Gof gof;
+        gof.num_frames = 2;
+        gof.clusters.resize(kClusters);
+        for (std::uint32_t v = 0; v < kClusters * vertices; ++v) {
+          gof.cluster_of_vertex.push_back(static_cast<std::uint16_t>(v / vertices));
+        }
+        Component component;
+        component.spatial_bits = spatial_bits;
+        component.temporal_bits = temporal_bits;
+        component.temporal_residual.resize(2);
+        component.spatial_residual.resize(3 * std::size_t{vertices});
+        for (Cluster& cluster : gof.clusters) cluster.components.assign(100, component);
+        expect_memory_within_estimate(generator, gof);
+      }
+    }
   }
 }
 

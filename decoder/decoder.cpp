@@ -1,3 +1,4 @@
+// Implements decoder/rlpc_decoder.h: goes from unit to unit, and from frame to frame.
 #include <algorithm>
 #include <cassert>
 #include <string>
@@ -42,7 +43,7 @@ constexpr std::uint32_t kMaxThreads = 256;
 class Decoder::Impl {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
-      : units_(std::move(source), options.trace),
+      : units_(std::move(source), options.trace, options.limits.max_memory_bytes),
         options_(options),
         band_(std::clamp(options.threads, 1U, kMaxThreads)) {
     options_.threads = std::clamp(options.threads, 1U, kMaxThreads);
@@ -205,9 +206,9 @@ Result<bool> Decoder::Impl::read_vertex_order(const UnitHeader& unit) {
 // Units that a decoder may skip: their CRC holds, and metadata is kept.
 Result<bool> Decoder::Impl::read_ancillary(const UnitHeader& unit) {
   if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
+  if (unit.type() != UnitType::kMetadata) return units_.skip(unit);
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
-  if (unit.type() != UnitType::kMetadata) return true;
   BitReader r = units_.bits(unit, *payload);
   auto json = parse_metadata(r);
   if (!json) return json.error();
@@ -423,9 +424,9 @@ Result<bool> Decoder::Impl::seek_gof(std::uint32_t frame) {
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
-    index_tried_ = true;
     auto gofs = find_gof_index(units_, offset_, header_.num_frames);
     if (!gofs) return gofs.error();
+    index_tried_ = true;
     if (!gofs->empty()) gofs_ = std::move(*gofs);
   }
   const auto after =

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <future>
 
-#include "decoder/apart.h"
+#include "decoder/run_apart.h"
 
 namespace rlpc {
 

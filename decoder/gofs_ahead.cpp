@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "decoder/apart.h"
 #include "decoder/parse_gof.h"
+#include "decoder/run_apart.h"
 
 namespace rlpc {
 
@@ -51,15 +51,19 @@ void GofsAhead::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_
   }
 }
 
-// The next GOF, past ancillary units. Nothing is read behind the end of the sequence.
+// The next GOF, past ancillary units, if its units fit into max_memory_bytes. Nothing is read
+// behind the end of the sequence.
 std::optional<GofUnits> GofsAhead::read(std::uint64_t offset, std::uint32_t first_frame) {
   GofUnits units;
+  std::uint64_t num_bytes = 0;
   for (bool have_gof = false; offset < units_.size();) {
     const auto unit = units_.header_at(offset);
     if (!unit) return std::nullopt;
     const bool is_gof = !have_gof && unit->type() == UnitType::kGof;
     const bool is_slice = units.start.bones_flag && unit->type() == UnitType::kSlice;
     if (is_gof || is_slice) {
+      num_bytes += unit->size;
+      if (num_bytes > max_memory_bytes_) return std::nullopt;
       auto payload = units_.payload(*unit);
       if (!payload) return std::nullopt;
       GofUnits::Coded coded{*unit, std::move(*payload)};

@@ -4,6 +4,7 @@
 
 #include "common/gof_models.h"
 #include "common/int_math.h"
+#include "common/tile_loops.h"
 #include "decoder/parse_component_header.h"
 #include "decoder/parse_track.h"
 #include "decoder/section_reader.h"
@@ -11,8 +12,23 @@
 namespace rlpc {
 namespace {
 
-// Memory of a factor: as a residual, and arranged for reconstruction.
-constexpr std::uint64_t kBytesPerFactor = 14;
+// Memory of a value of a seed track: as a residual, and as a position.
+constexpr std::uint64_t kBytesPerTrackValue = 14;
+
+// Memory of components of a cluster: the residuals, and the factors arranged for
+// reconstruction (FactorSet), in tiles and with both digits of both factors, each in a vector
+// that may have grown to twice what it holds.
+constexpr std::uint64_t kBytesPerComponent = 320;
+constexpr std::uint64_t kBytesPerResidual = 4;
+constexpr std::uint64_t kBytesPerFactor = 16;
+constexpr std::uint64_t kBytesPerTile = kTileValues * kBytesPerFactor + 48;
+
+std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_values,
+                               std::uint64_t num_frames) {
+  const std::uint64_t tiles = (num_values + kTileValues - 1) / kTileValues;
+  return num_components * (kBytesPerComponent + kBytesPerResidual * (num_values + num_frames) +
+                           kBytesPerFactor * num_frames + kBytesPerTile * tiles);
+}
 
 // The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
 class GofSectionParser {
@@ -34,7 +50,8 @@ class GofSectionParser {
   void cluster_map();
   std::uint16_t cluster_idx(const ClusterPrediction& prediction);
   void count_factors(std::uint64_t more, const char* element);
-  void check_factor_memory(const char* element);
+  // Whether what is known so far fits into the memory that the caller allows.
+  void take_memory(std::uint64_t bytes, const char* element);
   void seed_tracks();
   void component_counts();
   void components();
@@ -48,6 +65,7 @@ class GofSectionParser {
   GofModels models_;
   std::vector<std::size_t> coded_vertices_;  // of each cluster
   std::uint64_t num_factors_ = 0;
+  std::uint64_t memory_bytes_ = 0;
   std::vector<std::uint32_t> frame_mean_;
   Component previous_;  // header of the component before
 };
@@ -121,18 +139,17 @@ void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
   if (num_factors_ > header_.level().max_gof_factors) section_.fail("R-LVL-05", element);
 }
 
-// Whether the factors counted so far fit into the memory that the caller allows.
-void GofSectionParser::check_factor_memory(const char* element) {
-  if (!failed() && num_factors_ * kBytesPerFactor > max_memory_bytes_) {
-    section_.fail_limit(element);
-  }
+void GofSectionParser::take_memory(std::uint64_t bytes, const char* element) {
+  memory_bytes_ += bytes;
+  if (!failed() && memory_bytes_ > max_memory_bytes_) section_.fail_limit(element);
 }
 
 // 6.5.4 seed_tracks( )
 void GofSectionParser::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
-  count_factors(3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames, "seed_residual");
-  check_factor_memory("seed_residual");
+  const std::uint64_t values = 3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames;
+  count_factors(values, "seed_residual");
+  take_memory(kBytesPerTrackValue * values, "seed_residual");
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
     track.residual = parse_track(section_, models_.seed, frame_mean_, "seed_residual");
@@ -148,18 +165,19 @@ void GofSectionParser::component_counts() {
     if (i != kSeedCluster) ++coded_vertices_[i];
   }
   std::vector<std::size_t> counts(gof_.clusters.size(), 0);
+  std::uint64_t memory = 0;
   for (std::size_t i = 0; i < counts.size() && !failed(); ++i) {
     const Range range{0, header_.level().max_components};
     previous = parse_header_field(section_, models_.header, models_.header_mean,
                                   HeaderField::kNumComponents, previous, range,
                                   "num_components_delta", "R-GOF-09");
     if (failed()) return;
-    count_factors(
-        static_cast<std::uint64_t>(previous) * (3 * coded_vertices_[i] + gof_.num_frames),
-        "num_components_delta");
     counts[i] = static_cast<std::size_t>(previous);
+    const std::uint64_t num_values = 3 * std::uint64_t{coded_vertices_[i]};
+    count_factors(counts[i] * (num_values + gof_.num_frames), "num_components_delta");
+    memory += component_memory(counts[i], num_values, gof_.num_frames);
   }
-  check_factor_memory("num_components_delta");
+  take_memory(memory, "num_components_delta");
   if (failed()) return;
   for (std::size_t i = 0; i < counts.size(); ++i) gof_.clusters[i].components.resize(counts[i]);
 }

@@ -72,27 +72,57 @@ void UnitReader::flush_trace() {
   pending_crc_.reset();
 }
 
-Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
+void UnitReader::trace_header(const UnitHeader& unit) {
   flush_trace();
-  if (trace_ != nullptr) {
-    const std::uint64_t at = unit.offset * 8;
-    trace_->begin("unit", at);
-    trace_->element("ancillary_flag", unit.ancillary() ? 1 : 0, at);
-    trace_->element("unit_type", unit.type_byte & 0x7F, at + 1);
-    trace_->element("unit_size", unit.size, at + 8);
+  if (trace_ == nullptr) return;
+  const std::uint64_t at = unit.offset * 8;
+  trace_->begin("unit", at);
+  trace_->element("ancillary_flag", unit.ancillary() ? 1 : 0, at);
+  trace_->element("unit_type", unit.type_byte & 0x7F, at + 1);
+  trace_->element("unit_size", unit.size, at + 8);
+}
+
+Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t computed,
+                                   std::uint32_t unit_crc) {
+  const std::uint64_t at = (unit.end() - kUnitCrcBytes) * 8;
+  if (computed != unit_crc) return Error{Errc::kInvalid, "R-UNT-03", "unit_crc", at};
+  pending_crc_ = PendingCrc{computed, at};
+  return true;
+}
+
+Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
+  if (unit.size > max_payload_bytes_) {
+    return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8};
   }
+  trace_header(unit);
   std::vector<std::uint8_t> bytes(kUnitHeaderBytes + std::size_t{unit.size} + kUnitCrcBytes);
   if (!source_->read(unit.offset, bytes)) {
     return Error{Errc::kIo, "", "unit_payload", unit.payload_offset() * 8};
   }
   const std::span<const std::uint8_t> covered(bytes.data(), bytes.size() - kUnitCrcBytes);
-  if (crc32_of(covered) != big_endian(std::span(bytes).last(kUnitCrcBytes))) {
-    return Error{Errc::kInvalid, "R-UNT-03", "unit_crc", (unit.end() - kUnitCrcBytes) * 8};
-  }
-  pending_crc_ = PendingCrc{crc32_of(covered), (unit.end() - kUnitCrcBytes) * 8};
+  const std::uint32_t unit_crc = big_endian(std::span(bytes).last(kUnitCrcBytes));
+  if (const auto ok = check_crc(unit, crc32_of(covered), unit_crc); !ok) return ok.error();
   bytes.resize(bytes.size() - kUnitCrcBytes);
   bytes.erase(bytes.begin(), bytes.begin() + kUnitHeaderBytes);
   return bytes;
+}
+
+Result<bool> UnitReader::skip(const UnitHeader& unit) {
+  trace_header(unit);
+  std::array<std::uint8_t, 4096> block{};
+  std::uint32_t crc = 0;
+  std::uint64_t at = unit.offset;
+  const std::uint64_t covered_end = unit.end() - kUnitCrcBytes;
+  while (at < covered_end) {
+    const auto part = std::span(block).first(
+        static_cast<std::size_t>(std::min<std::uint64_t>(covered_end - at, block.size())));
+    if (!source_->read(at, part)) return Error{Errc::kIo, "", "unit_payload", at * 8};
+    crc = crc32_of(part, crc);
+    at += part.size();
+  }
+  const auto stored = std::span(block).first(kUnitCrcBytes);
+  if (!source_->read(at, stored)) return Error{Errc::kIo, "", "unit_crc", at * 8};
+  return check_crc(unit, crc, big_endian(stored));
 }
 
 Result<std::vector<std::uint8_t>> UnitReader::payload_start(const UnitHeader& unit,

@@ -1,7 +1,10 @@
 // 6.2: units; finds them, reads them, checks their CRC.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -31,8 +34,12 @@ Error unsupported_minor_version();
 
 class UnitReader {
  public:
-  UnitReader(std::unique_ptr<ByteSource> source, Trace* trace)
-      : source_(std::move(source)), trace_(trace) {}
+  // max_payload_bytes: of a unit that payload() reads.
+  explicit UnitReader(std::unique_ptr<ByteSource> source, Trace* trace = nullptr,
+                      std::uint64_t max_payload_bytes = kMaxPayloadBytes)
+      : source_(std::move(source)),
+        trace_(trace),
+        max_payload_bytes_(std::min(max_payload_bytes, kMaxPayloadBytes)) {}
 
   // 6.1: signature and version.
   Result<bool> stream_header();
@@ -42,6 +49,8 @@ class UnitReader {
   Result<UnitHeader> header_at(std::uint64_t offset);
   // Payload of a unit whose CRC holds.
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
+  // Goes past a unit whose payload nobody needs: its CRC holds. Takes no memory.
+  Result<bool> skip(const UnitHeader& unit);
   // Up to max_bytes from the beginning of a payload, its CRC not checked.
   Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
                                                   std::uint32_t max_bytes);
@@ -55,9 +64,18 @@ class UnitReader {
 
   std::uint32_t version_minor() const { return version_minor_; }
   std::uint64_t size() const { return source_->size(); }
-  Trace* trace() const { return trace_; }
 
  private:
+  // What a vector of bytes can hold beside the header and the CRC, on machines of 32 bits, too.
+  static constexpr std::uint64_t kMaxPayloadBytes =
+      std::uint64_t{std::numeric_limits<std::ptrdiff_t>::max()} - kUnitHeaderBytes -
+      kUnitCrcBytes;
+
+  void trace_header(const UnitHeader& unit);
+  // unit_crc: as in the stream.
+  Result<bool> check_crc(const UnitHeader& unit, std::uint32_t computed,
+                         std::uint32_t unit_crc);
+
   struct PendingCrc {
     std::uint32_t value;
     std::uint64_t bit_pos;
@@ -65,6 +83,7 @@ class UnitReader {
 
   std::unique_ptr<ByteSource> source_;
   Trace* trace_;
+  std::uint64_t max_payload_bytes_;
   std::uint32_t version_minor_ = 0;
   std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
   std::optional<PendingCrc> pending_crc_;

@@ -1,7 +1,7 @@
-// In place of decoder/apart.cpp: a page has one thread to decode on, and no exceptions.
+// In place of decoder/run_apart.cpp: a page has one thread to decode on, and no exceptions.
 #include <future>
 
-#include "decoder/apart.h"
+#include "decoder/run_apart.h"
 
 namespace rlpc {
 

@@ -1,5 +1,5 @@
 // Compiled with exceptions: what a thread throws would end the program.
-#include "decoder/apart.h"
+#include "decoder/run_apart.h"
 
 #include <utility>
 
