@@ -148,7 +148,6 @@ class RoundTrip(ToolsTest):
             parts = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()["bits"]
             self.assertEqual(parts["connectivity"], report["bits"]["connectivity"] - 8 * 9)
             self.assertEqual(parts["vertex order"], 0)
-            self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
             self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"))
             decoded[mode] = self.path("a.rlpd").read_bytes()
         self.assertEqual(bits["none"]["hashes"], 0)
@@ -156,6 +155,27 @@ class RoundTrip(ToolsTest):
         self.assertEqual(bits["none"]["gofs"], bits["frame"]["gofs"])
         self.assertEqual(decoded["none"], decoded["gof"])
         self.assertEqual(decoded["none"], decoded["frame"])
+
+    def test_rlpcdec_tells_what_was_compared_with_hashes(self):
+        def verified(*options):
+            report = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--json", *options).json()
+            text = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", *options).err
+            return report["frames_compared"], report["hashes_verified"], text
+
+        expected = {  # of all frames; of 5 to 24, where one GOF of 20 frames has parts of two
+            "none": ((0, False, "no hashes"), (0, False, "not compared")),
+            "gof": ((60, True, "hashes agree"), (0, False, "not compared")),
+            "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),
+        }
+        for mode, (of_all, of_some) in expected.items():
+            self.encode(self.path("a.rlpc"), "--kg", 0.5, "--gof", 20, "--hash", mode)
+            for options, (compared, agree, words) in (((), of_all), (("--frames", "5-24"), of_some)):
+                found = verified(*options)
+                self.assertEqual(found[:2], (compared, agree), mode)
+                self.assertIn(words, found[2], mode)
+        self.encode(self.path("a.rlpc"), "--kg", 0.5, "--gof", 20)
+        self.assertIn("hashes of 20 of them agree", verified("--frames", "15-44")[2])
+        self.fails(64, "--no-hashes", "rlpcdec", self.path("a.rlpc"), "--verify", "--no-hashes")
 
     def test_gofs_are_as_long_as_asked(self):
         for gof, count in ((1, 60), (7, 9), (60, 1), (1000, 1), ("all", 1)):
@@ -370,6 +390,21 @@ class Targets(ToolsTest):
 
     def test_bpvf(self):
         self.check("--bpvf", (1.5, 2.5), lambda report: report["bpvf"])
+
+    def test_a_rate_buys_what_it_buys_as_an_error(self):
+        for name in NAMES:
+            for kg in (0.1, 1, 3):
+                by_error = self.encode(self.path("a.rlpc"), "--kg", kg, name=name)
+                by_rate = self.encode(self.path("b.rlpc"), "--bpvf", 1.05 * by_error["bpvf"],
+                                      name=name)
+                error = by_rate["metrics"]["kg_error_percent"]
+                self.assertLess(error, 1.25 * kg, name)
+
+    def test_high_rates_get_a_finer_grid(self):
+        report = self.encode(self.path("a.rlpc"), "--bpvf", 30, name="curtain")
+        self.assertGreater(report["bpvf"], 29)
+        self.assertLess(report["metrics"]["kg_error_percent"], 0.006)
+        self.assertGreater(report["position_bits"], 20)
 
     def test_max_error(self):
         self.check("--max-error", (0.002, 0.02), lambda report: report["metrics"]["max_error"],

@@ -134,22 +134,40 @@ class FrameCounter {
   bool shown_;
 };
 
-void report(const Options& o, const rlpc::Decoder& decoder, std::uint32_t frames) {
+// How many frames were decoded, and how many of them compared with a hash.
+struct FrameCounts {
+  std::uint32_t decoded = 0;
+  std::uint32_t compared = 0;
+};
+
+std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
+                        const FrameCounts& frames) {
+  if (decoder.was_cut()) return ", cut; hashes of GOFs that are cut were not compared";
+  if (!o.decoder.verify_hashes) return "";
+  if (frames.compared == frames.decoded) return ", hashes agree";
+  if (frames.compared > 0) {
+    return ", hashes of " + std::to_string(frames.compared) +
+           " of them agree; the others have "
+           "none of their own";
+  }
+  return o.frames.empty() ? ", which have no hashes"
+                          : ", not compared: no hash is of these frames alone";
+}
+
+void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames) {
   const rlpc::SequenceHeader& h = decoder.header();
-  const bool hashes_verified = o.decoder.verify_hashes && !decoder.was_cut();
   if (o.json) {
     const nlohmann::ordered_json json = {{"num_vertices", h.num_vertices},
                                          {"num_triangles", h.num_triangles},
-                                         {"frames", frames},
-                                         {"hashes_verified", hashes_verified},
+                                         {"frames", frames.decoded},
+                                         {"frames_compared", frames.compared},
+                                         {"hashes_verified", frames.compared == frames.decoded},
                                          {"cut", decoder.was_cut()}};
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     std::fprintf(stderr, "%s: %u frames of %u vertices and %u triangles decoded%s\n",
-                 name_of(o.input).c_str(), frames, h.num_vertices, h.num_triangles,
-                 decoder.was_cut() ? ", cut; hashes of GOFs that are cut were not compared"
-                 : hashes_verified ? ", hashes agree"
-                                   : "");
+                 name_of(o.input).c_str(), frames.decoded, h.num_vertices, h.num_triangles,
+                 hashes_text(o, decoder, frames).c_str());
   }
 }
 
@@ -215,9 +233,10 @@ int decode(const Options& o) {
     if (const auto ok = decoder->seek(span->first); !ok) return complain(o, ok.error());
   }
   std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  FrameCounts frames;
   {
     const FrameCounter counter(count, !o.quiet);
-    for (std::uint32_t f = 0; f < count; ++f) {
+    while (frames.decoded < count) {
       if (interrupt != 0) return 128 + interrupt;
       const auto more = decoder->next_frame(positions);
       if (!more) return complain(o, more.error());
@@ -226,7 +245,8 @@ int decode(const Options& o) {
           return complain(error->message, rlpc::kExitIo);
         }
       }
-      counter.show(f + 1);
+      frames.compared += decoder->compared_frames();
+      counter.show(++frames.decoded);
     }
   }
   if (o.frames.empty()) {
@@ -236,7 +256,7 @@ int decode(const Options& o) {
   if (sink) {
     if (auto error = sink->finish()) return complain(error->message, rlpc::kExitIo);
   }
-  report(o, *decoder, count);
+  report(o, *decoder, frames);
   return rlpc::kExitDone;
 }
 
@@ -270,7 +290,8 @@ void add_options(CLI::App& app, Options& o) {
       ->excludes(html);
   app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify)->excludes(html);
   app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
-  app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream");
+  app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream")
+      ->excludes(verify);
   app.add_option("--max-components", o.decoder.cut.max_components,
                  "Only the component groups with up to K trajectories of a GOF of bones");
   app.add_option("--max-layers", o.decoder.cut.max_layers,
