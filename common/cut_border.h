@@ -18,8 +18,6 @@ namespace rlpc {
 
 class CutBorder {
  public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-
   explicit CutBorder(std::uint32_t urgent_degree) : urgent_degree_(urgent_degree) {}
 
   // 8.7.3 SelectGate( ): false if no edge is left, so that a new component has to start.

@@ -76,9 +76,6 @@ constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
 constexpr std::array<TriangulationList, kMaxRing + 1> kTriangulations = triangulate_all();
 static_assert(kTriangulations[6].size == 14 && kTriangulations[7].size == 42);
 
-// ------------------------------------------------------------------- 8.9.2
-// Rest of the mesh
-
 // 8.9.2 Rest of the mesh: its triangles. Those of a vertex are linked through their
 // corners, so that one leaves in constant time; corner k of triangle i is 3 * i
 // + k.
@@ -139,9 +136,6 @@ class Rest {
   std::vector<std::uint32_t> first_;    // [num_vertices]
   std::vector<std::uint32_t> valence_;  // [num_vertices]
 };
-
-// -------------------------------------------------------------------- 8.9.3
-// Ring of a vertex
 
 // 8.9.3 Ring of a vertex
 struct Ring {
@@ -211,9 +205,7 @@ std::optional<Ring> find_ring(const Rest& rest, std::uint32_t v) {
   return walk_fan(fan, first);
 }
 
-// -------------------------------------------------------------------------
-// Layers, pass by pass
-
+// Layers, pass by pass.
 class LayerMaker {
  public:
   LayerMaker(std::uint32_t num_vertices, std::span<const Triangle> triangles)

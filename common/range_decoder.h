@@ -58,7 +58,7 @@ class RangeDecoder {
   bool starts_legally() const { return starts_legally_; }
   // True if the section held exactly the bytes that were needed (rule R-RNG-01).
   bool at_exact_end() const { return taken_ == section_.size() + 3; }
-  // Far past the end: what follows is not worth decoding.
+  // Past the end: what follows is not worth decoding.
   bool overrun() const { return taken_ > section_.size() + 3; }
   // Bits spent so far, to the next whole bit; for traces and error positions.
   std::uint64_t bits_spent() const {

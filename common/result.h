@@ -21,7 +21,7 @@ struct Error {
   Errc code = Errc::kInvalid;
   const char* rule = "";      // rule id of the specification, for example "R-HDR-03"
   const char* element = "";   // syntax element, spelled as in the specification
-  std::uint64_t bit_pos = 0;  // first bit of that element, from the start of the stream
+  std::uint64_t bit_pos = 0;  // where that element begins, or near it (spec/permissive.md)
 };
 
 template <class T, class E = Error>

@@ -24,8 +24,9 @@ struct FactorPairs {
 
 // Rest positions that a bone moves.
 struct BoneArms {
-  std::array<const std::int32_t*, 3> arm;  // from the pivot, |arm| <= 2^29; [size] each
-  const std::int32_t* weight;              // [size]
+  // From the pivot, |arm| <= 2^29; of [size] each, and three more numbers can be read.
+  std::array<const std::int32_t*, 3> arm;
+  const std::int32_t* weight;  // likewise
   std::size_t size;
 };
 
@@ -45,8 +46,8 @@ struct TileLoops {
   void (*add_weighted)(const std::int32_t* values, std::int32_t weight, std::size_t n,
                        std::int64_t* sums);
   // 8.12.3 Moved point, for one coordinate: places[i] = where a bone takes a rest position,
-  // times its weight. axis: that coordinate of the axes of the bone. |axis| <= 2^30 + 16,
-  // |origin| <= 2^30.
+  // times its weight; places [kTileValues], those past the size are undefined. axis: that
+  // coordinate of the axes of the bone. |axis| <= 2^30 + 16, |origin| <= 2^30.
   void (*weighted_places)(const BoneArms& arms, const std::array<std::int32_t, 3>& axis,
                           std::int32_t origin, std::int64_t* places);
   // 8.14.3 Positions, for one coordinate: positions [kTileValues] from sums of weighted places

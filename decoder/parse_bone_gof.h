@@ -59,7 +59,6 @@ class BoneGofParser {
   // After the last slice: the GOF, with what absent slices are predicted to hold.
   BoneGof finish();
 
-  const BoneGof& parsed() const { return gof_; }
   const CodedMesh& mesh() const { return *mesh_; }
   // Whether a slice was left out so far.
   bool is_cut() const { return is_cut_; }

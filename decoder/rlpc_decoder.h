@@ -80,8 +80,9 @@ class Decoder {
   Result<bool> next_frame(std::span<std::int32_t> positions);
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
-  // Parses all that is left of the stream, without reconstructing it: for tools that look at
-  // its syntax. Returns the number of GOFs in the stream; afterwards there is no next frame.
+  // Parses all that is left of the stream, without the positions of its frames: for tools that
+  // look at its syntax. Returns the number of GOFs in the stream; afterwards there is no next
+  // frame.
   Result<std::uint32_t> parse_rest();
   // Index of the frame that next_frame would decode.
   std::uint32_t position() const;

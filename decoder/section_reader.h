@@ -31,7 +31,7 @@ class SectionReader {
   void fail_limit(const char* element) {
     reader_.fail(Errc::kLimitExceeded, "", element, bit_pos());
   }
-  // A section that ran out of bytes long ago is not worth decoding.
+  // A section that ran out of bytes is not worth decoding.
   void check_overrun(const char* element) {
     if (rd_.overrun()) fail("R-RNG-01", element);
   }

@@ -65,7 +65,7 @@ void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
 
 namespace {
 
-// u x v for all u in the columns of the second factor of sum(v u^T)
+// The sum of u x v over pairs of which k is the sum of v u^T.
 Vec3d curl(const Eigen::Matrix3d& k) {
   return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
 }

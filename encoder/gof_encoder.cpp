@@ -312,9 +312,7 @@ Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
   }
   for (std::size_t i = 0; i < count; ++i) {
     components[i].resize(chosen[i]);
-    if (settings.refit) {
-      refit_temporal(frames, analysis.clusters[i], components[i], settings.dead_zone);
-    }
+    refit_temporal(frames, analysis.clusters[i], components[i], settings.dead_zone);
   }
   Gof gof = analysis.gof;
   gof.fraction_bits = choose_fraction_bits(components);

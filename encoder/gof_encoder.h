@@ -42,7 +42,6 @@ struct CodingSettings {
   std::uint32_t components = 0;  // per cluster: all but kSlope
   double lambda_factor = 0.18;   // kSlope: a bit must save lambda_factor * step^2
   double dead_zone = 0.06;
-  bool refit = true;  // temporal vectors fitted again to the quantised spatial ones
 };
 
 struct ClusterAnalysis {

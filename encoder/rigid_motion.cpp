@@ -16,13 +16,6 @@ Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit) {
   return r;
 }
 
-UnitQuaternion product(const UnitQuaternion& a, const UnitQuaternion& b) {
-  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-}
-
 UnitQuaternion normalised(const UnitQuaternion& q) {
   const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};

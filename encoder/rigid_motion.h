@@ -17,7 +17,6 @@ using UnitQuaternion = std::array<double, 4>;  // w, x, y, z
 inline Vec3d moved(const Motion& m, const Vec3d& x) { return m.leftCols<3>() * x + m.col(3); }
 
 Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit);
-UnitQuaternion product(const UnitQuaternion& a, const UnitQuaternion& b);
 UnitQuaternion normalised(const UnitQuaternion& q);
 UnitQuaternion rotation_quaternion(const Eigen::Matrix3d& rotation);
 

@@ -14,13 +14,13 @@ constexpr std::size_t kMaxBars = 300;
 constexpr std::size_t kMaxGofRows = 200;
 constexpr std::size_t kMaxSliceTables = 20;
 
-// Of the parts, in their order; alike on all pages. Those of the plots of scripts/compare come
-// first to what is mostly large.
+// Of the parts, in their order; alike on all pages. The parts that are usually largest have the
+// first colours of the plots of scripts/compare.
 constexpr std::array<const char*, kNumStreamParts> kColours{
     "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00",
     "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#c4c9d1"};
 
-// Parts that are there, largest first within a column of a table; bits of each.
+// A series for each part that occurs; its one value is the bits that it takes.
 std::vector<ChartSeries> part_series(const PartSizes& bits) {
   std::vector<ChartSeries> series;
   for (std::size_t p = 0; p < kNumStreamParts; ++p) {

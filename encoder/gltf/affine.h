@@ -8,15 +8,15 @@
 
 namespace rlpc {
 
-using Vec3d = std::array<double, 3>;
-using Quaternion = std::array<double, 4>;  // x, y, z, w as in glTF
+using GltfVec3 = std::array<double, 3>;
+using GltfQuaternion = std::array<double, 4>;  // x, y, z, w as in glTF
 
 // Three rows of four: row[i] . (x, y, z, 1) is coordinate i of the image.
 struct Affine {
   std::array<std::array<double, 4>, 3> row{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
-  Vec3d operator()(const Vec3d& p) const {
-    Vec3d image{};
+  GltfVec3 operator()(const GltfVec3& p) const {
+    GltfVec3 image{};
     for (std::size_t i = 0; i < 3; ++i) {
       image[i] = row[i][0] * p[0] + row[i][1] * p[1] + row[i][2] * p[2] + row[i][3];
     }
@@ -38,9 +38,10 @@ inline Affine operator*(const Affine& a, const Affine& b) {
 }
 
 // Scales, then turns (unit quaternion), then moves.
-inline Affine affine_of(const Vec3d& translation, const Quaternion& q, const Vec3d& scale) {
+inline Affine affine_of(const GltfVec3& translation, const GltfQuaternion& q,
+                        const GltfVec3& scale) {
   const auto [x, y, z, w] = q;
-  const std::array<Vec3d, 3> turn{
+  const std::array<GltfVec3, 3> turn{
       {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};

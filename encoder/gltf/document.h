@@ -49,9 +49,9 @@ struct GltfNode {
   std::optional<std::uint32_t> skin;
   std::vector<std::uint32_t> children;
   std::optional<Affine> matrix;  // in place of the next three
-  Vec3d translation{0, 0, 0};
-  Quaternion rotation{0, 0, 0, 1};  // of length 1
-  Vec3d scale{1, 1, 1};
+  GltfVec3 translation{0, 0, 0};
+  GltfQuaternion rotation{0, 0, 0, 1};  // of length 1
+  GltfVec3 scale{1, 1, 1};
   std::optional<std::vector<double>> weights;  // in place of those of the mesh
 };
 

@@ -6,9 +6,9 @@ namespace {
 
 // What tracks change of a node.
 struct Place {
-  Vec3d translation;
-  Quaternion rotation;
-  Vec3d scale;
+  GltfVec3 translation;
+  GltfQuaternion rotation;
+  GltfVec3 scale;
 };
 
 }  // namespace

@@ -162,7 +162,7 @@ void morph(const GltfGeometry& geometry, std::span<const double> weights,
 
 void place(const std::vector<double>& positions, const Affine& node, std::span<float> out) {
   for (std::size_t i = 0; i < positions.size(); i += 3) {
-    const Vec3d p = node({positions[i], positions[i + 1], positions[i + 2]});
+    const GltfVec3 p = node({positions[i], positions[i + 1], positions[i + 2]});
     for (std::size_t c = 0; c < 3; ++c) out[i + c] = static_cast<float>(p[c]);
   }
 }
@@ -170,12 +170,12 @@ void place(const std::vector<double>& positions, const Affine& node, std::span<f
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,
                      const std::vector<Affine>& joints, std::span<float> out) {
   for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {
-    const Vec3d p{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
-    Vec3d sum{};
+    const GltfVec3 p{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
+    GltfVec3 sum{};
     double total = 0.0;  // weights in integers, or rounded, do not add up to 1
     for (auto i = geometry.first_influence[v]; i < geometry.first_influence[v + 1]; ++i) {
       const GltfInfluence& influence = geometry.influences[static_cast<std::size_t>(i)];
-      const Vec3d moved = joints[influence.joint](p);
+      const GltfVec3 moved = joints[influence.joint](p);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += influence.weight * moved[c];
       total += influence.weight;
     }

@@ -29,19 +29,19 @@ Place find_place(const GltfTrack& track, double time) {
   return {key, (time - first) / duration, duration};
 }
 
-double length_of(const Quaternion& q) {
+double length_of(const GltfQuaternion& q) {
   return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
 // Appendix C.4 of glTF 2.0.
-Quaternion slerp(const Quaternion& a, Quaternion b, double part) {
+GltfQuaternion slerp(const GltfQuaternion& a, GltfQuaternion b, double part) {
   double dot = 0.0;
   for (std::size_t i = 0; i < 4; ++i) dot += a[i] * b[i];
   if (dot < 0) {
     for (double& x : b) x = -x;
   }
-  Quaternion sum{};
-  Quaternion difference{};
+  GltfQuaternion sum{};
+  GltfQuaternion difference{};
   for (std::size_t i = 0; i < 4; ++i) {
     sum[i] = a[i] + b[i];
     difference[i] = b[i] - a[i];
@@ -51,7 +51,7 @@ Quaternion slerp(const Quaternion& a, Quaternion b, double part) {
   const double sine = det_sin(angle);
   const double of_a = sine > 0 ? det_sin((1.0 - part) * angle) / sine : 1.0 - part;
   const double of_b = sine > 0 ? det_sin(part * angle) / sine : part;
-  Quaternion result{};
+  GltfQuaternion result{};
   for (std::size_t i = 0; i < 4; ++i) result[i] = of_a * a[i] + of_b * b[i];
   return unit_quaternion(result);
 }
@@ -64,14 +64,14 @@ const float* value_at(const GltfTrack& track, std::size_t key) {
   return &track.values[(3 * key + 1) * track.width];
 }
 
-Quaternion rotation_at(const GltfTrack& track, std::size_t key) {
+GltfQuaternion rotation_at(const GltfTrack& track, std::size_t key) {
   const float* const value = value_at(track, key);
   return unit_quaternion({value[0], value[1], value[2], value[3]});
 }
 
 }  // namespace
 
-Quaternion unit_quaternion(const Quaternion& q) {
+GltfQuaternion unit_quaternion(const GltfQuaternion& q) {
   const double length = length_of(q);
   if (!(length > 0)) return {0, 0, 0, 1};
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
@@ -102,12 +102,12 @@ void sample(const GltfTrack& track, double time, std::span<double> out) {
   }
 }
 
-Quaternion sample_rotation(const GltfTrack& track, double time) {
+GltfQuaternion sample_rotation(const GltfTrack& track, double time) {
   const Place place = find_place(track, time);
   if (track.interpolation == GltfInterpolation::kLinear && place.part > 0.0) {
     return slerp(rotation_at(track, place.key), rotation_at(track, place.key + 1), place.part);
   }
-  Quaternion rotation{};
+  GltfQuaternion rotation{};
   sample(track, time, rotation);
   return unit_quaternion(rotation);
 }

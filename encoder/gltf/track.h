@@ -22,9 +22,9 @@ void sample(const GltfTrack& track, double time, std::span<double> out);
 
 // Of a track of unit quaternions, a unit quaternion: linear is spherical, the shorter way
 // round.
-Quaternion sample_rotation(const GltfTrack& track, double time);
+GltfQuaternion sample_rotation(const GltfTrack& track, double time);
 
 // Of any length but 0, which gives no rotation.
-Quaternion unit_quaternion(const Quaternion& q);
+GltfQuaternion unit_quaternion(const GltfQuaternion& q);
 
 }  // namespace rlpc

@@ -34,7 +34,7 @@ GltfTrack turns(const std::vector<std::vector<float>>& quaternions, Interpolatio
 }
 
 // Degrees about z; q and -q are the same turn.
-double degrees_of(const Quaternion& q) {
+double degrees_of(const GltfQuaternion& q) {
   EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1.0, 1e-12);
   return 2 * std::atan2(q[2], q[3]) * 180 / 3.14159265358979323846;
 }
@@ -135,13 +135,13 @@ TEST(GltfTrack, SlerpIsThatOfTheLibrary) {
     for (auto& one : q) {
       for (float& x : one) x = coordinate(random);
     }
-    const Quaternion a = unit_quaternion({q[0][0], q[0][1], q[0][2], q[0][3]});
-    Quaternion b = unit_quaternion({q[1][0], q[1][1], q[1][2], q[1][3]});
+    const GltfQuaternion a = unit_quaternion({q[0][0], q[0][1], q[0][2], q[0][3]});
+    GltfQuaternion b = unit_quaternion({q[1][0], q[1][1], q[1][2], q[1][3]});
     double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
     for (double& x : b) x = dot < 0 ? -x : x;
     const double angle = std::acos(std::min(std::abs(dot), 1.0));
     if (angle < 0.01) continue;  // where an arc cosine is inexact
-    const Quaternion got = sample_rotation(turns(q, Interpolation::kLinear), 0.3);
+    const GltfQuaternion got = sample_rotation(turns(q, Interpolation::kLinear), 0.3);
     for (std::size_t i = 0; i < 4; ++i) {
       const double want =
           (std::sin(0.7 * angle) * a[i] + std::sin(0.3 * angle) * b[i]) / std::sin(angle);
