@@ -1,6 +1,9 @@
 #include "decoder/byte_source.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <utility>
 
@@ -41,6 +44,23 @@ class FileSource final : public ByteSource {
   std::uint64_t size_;
 };
 
+Error cannot_open(int code) {
+  const char* const why = code == ENOENT   ? "no such file"
+                          : code == EACCES ? "no permission to read it"
+                          : code == EISDIR ? "it is a folder"
+                                           : "it cannot be opened";
+  return Error{Errc::kIo, "", why, 0};
+}
+
+Result<std::unique_ptr<ByteSource>> read_whole(std::FILE* file) {
+  std::vector<std::uint8_t> bytes;
+  for (int byte = std::getc(file); byte != EOF; byte = std::getc(file)) {
+    bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  if (std::ferror(file) != 0) return Error{Errc::kIo, "", "reading it failed", 0};
+  return memory_source(std::move(bytes));
+}
+
 }  // namespace
 
 std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes) {
@@ -48,14 +68,19 @@ std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes) {
 }
 
 Result<std::unique_ptr<ByteSource>> file_source(const std::string& path) {
-  const Error failure{Errc::kIo, "", path.empty() ? "" : "stream file", 0};
   File file(std::fopen(path.c_str(), "rb"));
-  if (!file || fseeko(file.get(), 0, SEEK_END) != 0) return failure;
-  const off_t size = ftello(file.get());
-  if (size < 0) return failure;
-  std::unique_ptr<ByteSource> source =
-      std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(size));
+  if (!file) return cannot_open(errno);
+  struct stat about {};
+  if (fstat(fileno(file.get()), &about) != 0) return cannot_open(errno);
+  if (S_ISDIR(about.st_mode)) return cannot_open(EISDIR);
+  if (!S_ISREG(about.st_mode)) return read_whole(file.get());
+  std::unique_ptr<ByteSource> source = std::make_unique<FileSource>(
+      std::move(file), static_cast<std::uint64_t>(about.st_size));
   return source;
+}
+
+Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path) {
+  return path == "-" ? read_whole(stdin) : file_source(path);
 }
 
 }  // namespace rlpc

@@ -26,7 +26,9 @@ class ByteSource {
 // Keeps a copy of the bytes.
 std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
 
-// Reads from a file as needed; Errc::kIo if it cannot be opened.
+// Reads from a file as needed; a pipe is read whole. Error: Errc::kIo, the element says why.
 Result<std::unique_ptr<ByteSource>> file_source(const std::string& path);
+// The same; "-" is standard input, read whole.
+Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path);
 
 }  // namespace rlpc

@@ -54,7 +54,8 @@ inline std::string describe_error(const Error& error) {
     case Errc::kIo:
       break;
   }
-  return "cannot read the stream: no such file, or it is not readable";
+  if (error.bit_pos == 0) return "cannot read the stream: " + std::string(error.element);
+  return where + ": cannot read the stream here; the file or the disk is at fault";
 }
 
 }  // namespace rlpc

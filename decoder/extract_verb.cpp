@@ -134,12 +134,12 @@ std::optional<SliceCut> parse_slice_cut(const std::string& text) {
 
 int extract(const ExtractOptions& o) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
-  auto source = file_source(o.input);
+  auto source = file_or_standard_input(o.input);
   if (!source) return complain(o, source.error());
   if (OutputFile::is_same_file(o.output, o.input)) {
     return complain(o.output + ": is the input itself; give another name", kExitUsage);
   }
-  auto cutter = StreamCutter::open(std::move(*source), o.cut);
+  auto cutter = StreamCutter::open(std::move(*source), o.cut, o.limits);
   if (!cutter) return complain(o, cutter.error());
   if (cutter->header().profile_idc != kProfileMain) {
     return complain(
@@ -161,7 +161,7 @@ int extract(const ExtractOptions& o) {
   if (const auto error = file->commit()) return complain(error->message, kExitIo);
   if (o.json) {
     print_json(o, *cutter, written);
-  } else {
+  } else if (o.output != "-") {
     print_text(o, *cutter, written);
   }
   return kExitDone;

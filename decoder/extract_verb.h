@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "decoder/slice_cut.h"
+#include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
 
@@ -15,11 +15,12 @@ struct ExtractOptions {
   std::string input;
   std::string output;
   SliceCut cut;
+  DecodeLimits limits;
   bool json = false;
 };
 
-// Writes the stream and a report on standard output, or says on standard error why not; the
-// exit code.
+// Writes the stream, and a report on standard output unless the stream goes there ("-"), or
+// says on standard error why not; the exit code.
 int extract(const ExtractOptions& options);
 
 }  // namespace rlpc

@@ -10,6 +10,7 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
+#include "decoder/output/standard_output.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -84,15 +86,6 @@ int complain(const Options& o, const rlpc::Error& error) {
   std::string text = name_of(o.input) + ": " + rlpc::describe_error(error);
   if (error.code == rlpc::Errc::kLimitExceeded) text += " (--max-memory, --max-vertices)";
   return complain(text, rlpc::exit_code(error.code));
-}
-
-rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
-  if (path != "-") return rlpc::file_source(path);
-  std::vector<std::uint8_t> bytes;
-  for (int byte = std::getchar(); byte != EOF; byte = std::getchar()) {
-    bytes.push_back(static_cast<std::uint8_t>(byte));
-  }
-  return rlpc::memory_source(std::move(bytes));
 }
 
 // "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
@@ -196,7 +189,7 @@ void catch_interrupts() {
 
 int decode(const Options& o) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
-  auto source = open_input(o.input);
+  auto source = rlpc::file_or_standard_input(o.input);
   if (!source) return complain(o, source.error());
   if (!o.html.output.empty()) return write_html(o, **source);
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
@@ -354,8 +347,12 @@ int main(int argc, char** argv) try {
   }
   options.decoder.verify_hashes = !options.no_hashes;
   const int code = decode(options);
-  return interrupt != 0 ? std::raise(interrupt) : code;
+  if (interrupt != 0) return std::raise(interrupt);
+  return rlpc::after_standard_output("rlpcdec", code);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcdec: out of memory\n");
+  return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcdec: %s\n", error.what());  // out of memory, most likely
+  std::fprintf(stderr, "rlpcdec: %s\n", error.what());
   return rlpc::kExitLimit;
 }

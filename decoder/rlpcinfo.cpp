@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "decoder/describe_error.h"
 #include "decoder/extract_verb.h"
 #include "decoder/output/output_file.h"
+#include "decoder/output/standard_output.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
 #include "decoder/rlpc_decoder.h"
@@ -41,7 +43,7 @@ Examples
                                   encoded anew; --gofs tells what there is to choose
 
 Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
-cannot be cut; 4 input or output failed; 64 usage.)";
+cannot be cut; 3 beyond the limits; 4 input or output failed; 64 usage.)";
 
 struct Options {
   std::string input;
@@ -51,6 +53,7 @@ struct Options {
   std::string html;
   std::string extract;
   std::string output;
+  std::uint64_t max_memory_bytes = rlpc::DecodeLimits().max_memory_bytes;
 };
 
 int complain(const Options& o, const rlpc::Error& error) {
@@ -119,6 +122,30 @@ nlohmann::ordered_json json_of(const rlpc::ListedGof& gof) {
           {"cut_to_layers", std::move(layers)}};
 }
 
+// What a stream carries is not checked: what is no JSON, or is nested without measure, is told
+// as the text that it is.
+nlohmann::ordered_json metadata_json(const std::string& text) {
+  constexpr int kDeepest = 100;
+  bool too_deep = false;
+  const auto look = [&](int depth, nlohmann::ordered_json::parse_event_t,
+                        nlohmann::ordered_json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  auto json = nlohmann::ordered_json::parse(text, look, false);
+  if (too_deep || json.is_discarded()) return text;
+  return json;
+}
+
+// With "?" for what would do something to a terminal.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) c = '?';
+  }
+  return text;
+}
+
 void print_json(const Summary& s) {
   const rlpc::SequenceHeader& h = s.header;
   nlohmann::ordered_json bits = nlohmann::ordered_json::object();
@@ -140,8 +167,9 @@ void print_json(const Summary& s) {
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
   for (const rlpc::ListedGof& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
-  if (!s.metadata.empty()) json["metadata"] = nlohmann::json::parse(s.metadata, nullptr, false);
-  std::cout << json.dump(2) << "\n";
+  if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
 // "12", or "3 to 12"
@@ -237,7 +265,7 @@ void print_table(const Options& o, const Summary& s) {
                 bpvf(s, bits));
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
-  if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", s.metadata.c_str());
+  if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", printable(s.metadata).c_str());
   if (o.gofs) {
     for (const rlpc::ListedGof& gof : s.counter.gofs()) print_gof(gof);
   }
@@ -285,10 +313,11 @@ int inform(const Options& o) {
     page.emplace(std::move(*file));
   }
   rlpc::BitCounter counter(o.trace);
-  auto source = rlpc::file_source(o.input);
+  auto source = rlpc::file_or_standard_input(o.input);
   if (!source) return complain(o, source.error());
   const std::uint64_t bytes = (*source)->size();
   rlpc::DecoderOptions options;
+  options.limits.max_memory_bytes = o.max_memory_bytes;
   options.trace = &counter;
   auto decoder = rlpc::Decoder::open(std::move(*source), options);
   if (!decoder) return complain(o, decoder.error());
@@ -303,7 +332,7 @@ int inform(const Options& o) {
   }
   if (o.json) {
     print_json(summary);
-  } else {
+  } else if (o.html != "-") {
     print_table(o, summary);
   }
   return rlpc::kExitDone;
@@ -315,7 +344,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Tells what is in an .rlpc stream.", "rlpcinfo");
   app.set_version_flag("--version", "rlpcinfo " RLPC_VERSION);
   Options options;
-  app.add_option("input", options.input, "Stream to look at")->required();
+  app.add_option("input", options.input, "Stream to look at; - for standard input")->required();
   auto* json = app.add_flag("--json", options.json, "JSON on standard output");
   auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
   auto* html = app.add_option("--html", options.html, "Write a page with charts, too");
@@ -323,6 +352,9 @@ int main(int argc, char** argv) try {
   auto* extract = app.add_option("--extract", options.extract,
                                  "components=K,layers=L: write the stream without some slices");
   auto* output = app.add_option("-o,--output", options.output, "Where --extract writes to");
+  app.add_option("--max-memory", options.max_memory_bytes,
+                 "Give up on streams that need more to decode, for example 500MB")
+      ->transform(CLI::AsSizeValue(false));
   trace->excludes(json)->excludes(html);
   extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
   output->needs(extract);
@@ -336,7 +368,11 @@ int main(int argc, char** argv) try {
     std::cerr << "rlpcinfo: " << options.html << ": is the input itself; give another name\n";
     return rlpc::kExitUsage;
   }
-  if (extract->count() == 0) return inform(options);
+  if (options.json && (options.html == "-" || options.output == "-")) {
+    std::cerr << "rlpcinfo: --json and another output cannot both go to standard output\n";
+    return rlpc::kExitUsage;
+  }
+  if (extract->count() == 0) return rlpc::after_standard_output("rlpcinfo", inform(options));
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {
     std::cerr
@@ -345,8 +381,15 @@ int main(int argc, char** argv) try {
         << options.extract << "`\n";
     return rlpc::kExitUsage;
   }
-  return rlpc::extract({options.input, options.output, *cut, options.json});
+  rlpc::DecodeLimits limits;
+  limits.max_memory_bytes = options.max_memory_bytes;
+  return rlpc::after_standard_output(
+      "rlpcinfo",
+      rlpc::extract({options.input, options.output, *cut, limits, options.json}));
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcinfo: out of memory\n");
+  return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcinfo: %s\n", error.what());  // out of memory, most likely
+  std::fprintf(stderr, "rlpcinfo: %s\n", error.what());
   return rlpc::kExitLimit;
 }

@@ -35,10 +35,11 @@ StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,
                             [this](const ListedGof& gof) { return cuts(gof); })) {}
 
 Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source,
-                                        const SliceCut& cut) {
+                                        const SliceCut& cut, const DecodeLimits& limits) {
   const std::shared_ptr<ByteSource> shared = std::move(source);
   ListingTrace trace;
   DecoderOptions options;
+  options.limits = limits;
   options.trace = &trace;
   auto whole = Decoder::open(std::make_unique<SharedSource>(shared), options);
   if (!whole) return whole.error();

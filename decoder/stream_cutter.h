@@ -23,7 +23,8 @@ namespace rlpc {
 class StreamCutter {
  public:
   // Parses all of the stream, so that no cut stream comes of one that does not conform.
-  static Result<StreamCutter> open(std::unique_ptr<ByteSource> source, const SliceCut& cut);
+  static Result<StreamCutter> open(std::unique_ptr<ByteSource> source, const SliceCut& cut,
+                                   const DecodeLimits& limits = {});
 
   const SequenceHeader& header() const { return decoder_.header(); }
   std::uint64_t size() const { return units_.size(); }  // of the stream before

@@ -229,6 +229,7 @@ void add_extra_options(CLI::App& app, CommandLine& line) {
          "--order-map", line.options.order_map,
          "Write, per decoded vertex, its index in INPUT (of a glTF file: as it is welded)")
       ->excludes("--dry-run")
+      ->excludes("--keep-order")
       ->group(extras);
   add_choice<HashMode>(
       app, "--hash", line.options.settings.hash_mode, "gof",

@@ -1,13 +1,16 @@
 // rlpcenc: animations to .rlpc streams.
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -33,8 +36,8 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   const Metrics& m = r.metrics;
   const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
   const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
-  std::printf("%s: %u vertices, %u triangles, %u frame%s, level %u\n", name.c_str(),
-              r.header.num_vertices, r.header.num_triangles, r.header.num_frames,
+  std::printf("%s: %u vertices, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
+              r.header.num_vertices, r.header.num_triangles, s(r.header.num_triangles), r.header.num_frames,
               s(r.header.num_frames), r.header.level_idc);
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
@@ -170,9 +173,23 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
   return notes;
 }
 
+// A file of the input, also one that it only points to, that would be written over.
+std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
+  for (const std::string& written : {o.output, o.order_map}) {
+    for (const std::string& read : source.files()) {
+      if (StreamFile::is_same_file(written, read)) return written;
+    }
+  }
+  return std::nullopt;
+}
+
 int run(const EncodeOptions& o) {
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
+  if (const auto written = written_over(o, **source)) {
+    return complain(*written + ": is read, too, and would be written over; give another name",
+                    kUsage);
+  }
   const std::string name = name_of_input(o.input.path);
   std::vector<std::string> notes = (*source)->notes();
   for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
@@ -184,6 +201,15 @@ int run(const EncodeOptions& o) {
   if (!report) return complain(report.error().message);
   const std::uint32_t frames = report->header.num_frames;
   return tell(o, **source, {std::move(*report), frames});
+}
+
+// `code`, or that of failure if not all of standard output could be written.
+int after_standard_output(int code) {
+  errno = 0;
+  const bool good = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (good || code != kEncoded) return code;
+  return complain("cannot write to standard output: " +
+                  std::generic_category().message(errno == 0 ? EIO : errno));
 }
 
 // Blocks as large as a GOF's go back to the system when they are freed. glibc would keep them,
@@ -202,10 +228,13 @@ int main(int argc, char** argv) try {
   rlpc::return_large_blocks();
   rlpc::EncodeOptions options;
   if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
-  return rlpc::run(options);
+  return rlpc::after_standard_output(rlpc::run(options));
 } catch (const rlpc::Interrupted&) {
   return std::raise(rlpc::interrupt);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcenc: out of memory; a shorter --gof needs less\n");
+  return rlpc::kFailed;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcenc: %s\n", error.what());  // out of memory, most likely
+  std::fprintf(stderr, "rlpcenc: %s\n", error.what());
   return rlpc::kFailed;
 }

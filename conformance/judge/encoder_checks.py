@@ -110,7 +110,8 @@ class Checker:
             judgement.outcome, judgement.reason, judgement.text = "CRASH", "end", done.ending()
             judgement.cells["encodes"] = FAIL
         elif done.code != 0:
-            self._fail(judgement, "encodes", done.ending())
+            said = done.stderr.strip().splitlines()[-1:]
+            self._fail(judgement, "encodes", ": ".join([done.ending(), *said]))
         elif not stream.is_file():
             self._fail(judgement, "encodes", "exit code 0, but OUT does not exist")
         else:

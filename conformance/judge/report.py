@@ -2,6 +2,7 @@
 
 import collections
 import json
+import os
 import sys
 import xml.etree.ElementTree as ElementTree
 
@@ -108,6 +109,14 @@ def junit(report):
 def _printable(value):
     """Without the control characters that XML does not have."""
     return "".join(c if c >= " " or c in "\n\t" else "\ufffd" for c in value)
+
+
+def check_places(options):
+    """OSError where a report that is asked for could not be written in the end."""
+    for path in (options.json, options.junit, options.markdown, options.html):
+        folder = os.path.dirname(path or "") or "."
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise OSError(f"{path}: cannot be written; is {folder} there, a folder, and yours?")
 
 
 def write(report, options):

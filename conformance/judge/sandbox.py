@@ -13,7 +13,9 @@ import time
 MAX_FILE_BYTES = 1 << 32
 _TAIL = 1 << 16
 # sh sets the limits and becomes the command; so no code runs between fork and exec here.
-_LIMITED = 'ulimit -c 0; ulimit -f "$1"; [ "$2" = 0 ] || ulimit -v "$2"; shift 2; exec "$@"'
+# Where there is a tighter limit already, that stays.
+_LIMITED = ('ulimit -c 0; ulimit -f "$1" 2>/dev/null; [ "$2" = 0 ] || ulimit -v "$2" 2>/dev/null; '
+            'shift 2; exec "$@"')
 
 _running = set()
 _lock = threading.Lock()

@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -15,6 +15,7 @@
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
+#include "decoder/output/standard_output.h"
 #include "encoder/progress_bar.h"
 
 namespace {
@@ -60,21 +61,6 @@ void add_options(CLI::App& app, Options& o) {
   app.footer(kExamples);
 }
 
-rlpc::Result<std::unique_ptr<rlpc::ByteSource>> open_input(const std::string& path) {
-  if (path != "-") {
-    std::error_code none;
-    if (std::filesystem::is_directory(path, none)) {
-      return rlpc::Error{rlpc::Errc::kIo, "", "stream file", 0};
-    }
-    return rlpc::file_source(path);
-  }
-  std::vector<std::uint8_t> bytes;
-  for (int byte = std::getchar(); byte != EOF; byte = std::getchar()) {
-    bytes.push_back(static_cast<std::uint8_t>(byte));
-  }
-  return rlpc::memory_source(std::move(bytes));
-}
-
 rlpc::ExitCode exit_code(const rlpc::ValidationReport& report, bool strict_warnings) {
   const bool warned = report.count(rlpc::Severity::kWarning) > 0;
   switch (rlpc::verdict_of(report)) {
@@ -100,7 +86,7 @@ rlpc::ExitCode worse(rlpc::ExitCode a, rlpc::ExitCode b) {
 rlpc::ExitCode validate(const Options& o, const std::string& path,
                         nlohmann::ordered_json& streams) {
   rlpc::ValidationReport report;
-  if (const auto source = open_input(path)) {
+  if (const auto source = rlpc::file_or_standard_input(path)) {
     rlpc::ProgressBar bar("validating", !o.quiet);
     rlpc::ValidationOptions options = o.validation;
     options.progress = [&](double fraction) { bar.show(fraction); };
@@ -144,7 +130,9 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
-  if (!options.explain.empty()) return explain(options.explain);
+  if (!options.explain.empty()) {
+    return rlpc::after_standard_output("rlpcval", explain(options.explain));
+  }
   if (options.inputs.empty()) {
     std::cerr << "rlpcval: give a stream to validate, or --help\n";
     return rlpc::kExitUsage;
@@ -159,8 +147,11 @@ int main(int argc, char** argv) try {
     constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in paths
     std::cout << json.dump(2, ' ', false, kReplace) << "\n";
   }
-  return code;
+  return rlpc::after_standard_output("rlpcval", code);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcval: out of memory\n");
+  return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcval: %s\n", error.what());  // out of memory, most likely
+  std::fprintf(stderr, "rlpcval: %s\n", error.what());
   return rlpc::kExitLimit;
 }

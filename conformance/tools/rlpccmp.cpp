@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
 #include "decoder/output/output_file.h"
+#include "decoder/output/standard_output.h"
 #include "decoder/report/mesh_view.h"
 #include "encoder/metrics.h"
 #include "encoder/progress_bar.h"
@@ -239,21 +241,26 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
   return code;
 }
 
+constexpr const char* kWrittenOver = " would be written over; give another name";
+
+std::optional<std::string> written_over(const Options& o, const std::vector<std::string>& read) {
+  for (const std::string& written : {o.csv, o.html}) {
+    for (const std::string& file : read) {
+      if (rlpc::OutputFile::is_same_file(written, file)) return written + kWrittenOver;
+    }
+  }
+  return std::nullopt;
+}
+
 // What would be written over, or mixed.
 std::optional<std::string> check_places(const Options& o) {
   if (o.csv == "-" && o.json) return "--json and --csv cannot both go to standard output";
   if (o.html == "-" && (o.json || o.csv == "-")) {
     return "--html and another output cannot both go to standard output";
   }
-  const std::string another = " would be written over; give another name";
-  for (const std::string& written : {o.csv, o.html}) {
-    for (const std::string& read :
-         {o.a.path, o.a.points, o.b.path, o.b.points, o.stream, o.order_map}) {
-      if (rlpc::OutputFile::is_same_file(written, read)) return written + another;
-    }
-  }
-  if (rlpc::OutputFile::is_same_file(o.csv, o.html)) return o.csv + another;
-  return std::nullopt;
+  if (rlpc::OutputFile::is_same_file(o.csv, o.html)) return o.csv + kWrittenOver;
+  return written_over(
+      o, {o.a.path, o.a.points, o.b.path, o.b.points, o.stream, o.order_map});
 }
 
 int run(Options& o) {
@@ -265,6 +272,9 @@ int run(Options& o) {
   }
   const auto pair = rlpc::open_comparison_pair(o.a, o.b);
   if (!pair) return complain(pair.error().message);
+  for (const auto* side : {&pair->a, &pair->b}) {
+    if (const auto wrong = written_over(o, side->frames->files())) return complain(*wrong), kUsage;
+  }
   if (!o.fps.empty() && !rlpc::is_gltf(o.a) && !rlpc::is_gltf(o.b)) {
     return complain("--fps: neither A nor B is a glTF file"), kUsage;
   }
@@ -320,8 +330,11 @@ int main(int argc, char** argv) try {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kCompared : kUsage;
   }
-  return run(options);
+  return rlpc::after_standard_output("rlpccmp", run(options), kFailed);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpccmp: out of memory\n");
+  return kFailed;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpccmp: %s\n", error.what());  // out of memory, most likely
+  std::fprintf(stderr, "rlpccmp: %s\n", error.what());
   return kFailed;
 }

@@ -67,7 +67,7 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       file_(std::exchange(other.file_, nullptr)) {}
 
 OutputFile::~OutputFile() {
-  if (file_ != nullptr) std::fclose(file_);
+  if (file_ != nullptr && file_ != stdout) std::fclose(file_);
   std::error_code ec;
   if (!temporary_.empty()) fs::remove(temporary_, ec);
 }
@@ -81,7 +81,8 @@ std::optional<OutputError> OutputFile::write(std::string_view bytes) {
 
 std::optional<OutputError> OutputFile::close() {
   errno = 0;
-  if (std::fclose(std::exchange(file_, nullptr)) == 0) return std::nullopt;
+  std::FILE* const file = std::exchange(file_, nullptr);
+  if ((file == stdout ? std::fflush(file) : std::fclose(file)) == 0) return std::nullopt;
   return output_error(path_, "write", errno);
 }
 

@@ -24,7 +24,7 @@ class OutputFile {
   ~OutputFile();  // removes the file unless commit() succeeded
 
   std::optional<OutputError> write(std::string_view bytes);
-  // Flushes and closes: from here on nothing but the name can fail.
+  // Flushes, and closes all but standard output: from here on nothing but the name can fail.
   std::optional<OutputError> close();
   // After close(): gives the file its name.
   std::optional<OutputError> commit();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <utility>
+#include <vector>
 
 #include "decoder/describe_error.h"
 #include "decoder/player/player_page.h"
@@ -34,8 +35,16 @@ class Borrowed final : public ByteSource {
   ByteSource& source_;
 };
 
+// Decodes it whole: no page is to be written that stops in the middle.
 Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
-  return Decoder::open(std::make_unique<Borrowed>(source), options);
+  auto decoder = Decoder::open(std::make_unique<Borrowed>(source), options);
+  if (!decoder) return decoder;
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+  for (;;) {
+    const auto more = decoder->next_frame(positions);
+    if (!more) return more.error();
+    if (!*more) return decoder;
+  }
 }
 
 bool same_mesh(const Decoder& a, const Decoder& b) {

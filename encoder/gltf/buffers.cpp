@@ -100,6 +100,12 @@ void GltfBuffers::read(std::uint32_t buffer, std::uint64_t offset, std::span<cha
   }
 }
 
+std::vector<std::string> GltfBuffers::files() const {
+  std::vector<std::string> paths{file_.file.path()};
+  for (const auto& [path, file] : others_) paths.push_back(path);
+  return paths;
+}
+
 std::optional<GltfBuffers::Place> GltfBuffers::find(std::uint32_t buffer) {
   const std::optional<std::string>& uri = buffers_[buffer].uri;
   if (!uri) return find_binary(buffer);

@@ -31,6 +31,8 @@ class GltfBuffers {
   bool available(std::uint32_t buffer);
   // The buffer is available, and offset + bytes.size() not more than its size.
   void read(std::uint32_t buffer, std::uint64_t offset, std::span<char> bytes);
+  // The document, and the files that it points to, of those asked for.
+  std::vector<std::string> files() const;
 
  private:
   // Where the bytes of a buffer are: in `file` from `offset` on, or in `text`.

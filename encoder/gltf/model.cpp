@@ -44,6 +44,7 @@ class ModelReader {
     note(num_without_triangles_, "primitive", "of points or lines and left out");
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
+    model_.files = buffers_.files();
     return std::move(model_);
   }
 

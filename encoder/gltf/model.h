@@ -49,6 +49,7 @@ struct GltfModel {
   std::uint64_t num_vertices = 0;
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer does
   std::vector<std::string> notes;       // as FrameSource has them
+  std::vector<std::string> files;       // likewise
 };
 
 // `animation` as in InputOptions.

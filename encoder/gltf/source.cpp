@@ -131,6 +131,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.triangles =
       triangles_of(*model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
   shape.notes = model->notes;
+  shape.files = model->files;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
       std::move(shape), name, std::move(*model), std::move(*first_frame));

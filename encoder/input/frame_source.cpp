@@ -1,6 +1,7 @@
 #include "encoder/input/frame_source.h"
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -143,6 +144,23 @@ InputResult<FrameRate> parse_frame_rate(std::string_view text) {
   if (rate && rate->numerator > 0) return *rate;
   return InputError{"frame rate \"" + std::string(text) +
                     "\": expected frames per second as in 25, 30000/1001 or 29.97"};
+}
+
+std::optional<FrameRate> frame_rate_near(double frames_per_second) {
+  constexpr double kLeast = 2.0;
+  constexpr double kMost = 1000.0;
+  constexpr double kNear = 1e-4;
+  if (!(frames_per_second >= kLeast && frames_per_second <= kMost)) return std::nullopt;
+  const auto near = [&](double rate) {
+    return std::abs(frames_per_second / rate - 1.0) < kNear;
+  };
+  const auto whole = static_cast<std::uint32_t>(std::lround(frames_per_second));
+  if (near(whole)) return FrameRate{whole, 1};
+  const auto slowed = static_cast<std::uint32_t>(std::lround(frames_per_second * 1.001));
+  if (near(slowed / 1.001)) return FrameRate{1000 * slowed, 1001};
+  const auto thousandths = static_cast<std::uint32_t>(std::lround(frames_per_second * 1000.0));
+  const std::uint32_t divisor = std::gcd(thousandths, 1000U);
+  return FrameRate{thousandths / divisor, 1000 / divisor};
 }
 
 }  // namespace rlpc

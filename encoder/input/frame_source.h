@@ -32,6 +32,7 @@ class FrameSource {
     FrameRate frame_rate;
     std::vector<Triangle> triangles;
     std::vector<std::string> notes{};
+    std::vector<std::string> files{};
   };
 
   FrameSource(const FrameSource&) = delete;
@@ -45,6 +46,8 @@ class FrameSource {
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
   // For the user, a line each: what of the input was left out or joined.
   const std::vector<std::string>& notes() const { return shape_.notes; }
+  // All that is read, also what the input only points to.
+  const std::vector<std::string>& files() const { return shape_.files; }
 
   // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
   // success. frame < num_frames(), in any order.
@@ -75,9 +78,10 @@ class FrameSource {
 //
 // Frame rate: `frame_rate` if given; else that of the .rlpd header, or of a comment
 // "# frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), which
-// our own writers leave there; else 30. The sample rate of a point cache is not a frame rate:
-// it counts frames per sample, is 1 in nearly every file whatever the speed of the animation,
-// and is not used, nor are the times of MDD. Animations of glTF are sampled at the frame rate.
+// our own writers leave there; else that of the times of an MDD file; else 30. The sample rate
+// of a PC2 file is not a frame rate: it counts frames per sample, is 1 in nearly every file
+// whatever the speed of the animation, and is not used. Animations of glTF are sampled at the
+// frame rate.
 struct InputOptions {
   std::string path;
   std::string points;  // empty: none
@@ -95,5 +99,9 @@ std::optional<InputError> check_gltf_options(const InputOptions& options);
 
 // "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
 InputResult<FrameRate> parse_frame_rate(std::string_view text);
+
+// The rate that is meant by a number of about five digits: a whole one, N * 1000 / 1001, or
+// thousandths. None outside 2 to 1000.
+std::optional<FrameRate> frame_rate_near(double frames_per_second);
 
 }  // namespace rlpc

@@ -46,11 +46,12 @@ InputResult<SingleMesh> read_mesh(const std::string& path) {
 }
 
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
-                            const std::optional<FrameRate>& frame_rate) {
+                            const std::optional<FrameRate>& frame_rate,
+                            const FrameRate& usual) {
   FrameSource::Shape shape;
   shape.num_vertices = static_cast<std::uint32_t>(mesh.xyz.size() / 3);
   shape.num_frames = num_frames;
-  shape.frame_rate = frame_rate.value_or(mesh.frame_rate.value_or(FrameRate{}));
+  shape.frame_rate = frame_rate.value_or(mesh.frame_rate.value_or(usual));
   shape.triangles = std::move(mesh.triangles);
   return shape;
 }

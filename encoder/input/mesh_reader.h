@@ -26,9 +26,10 @@ std::string mesh_format_of(const std::string& path);
 InputResult<SingleMesh> read_mesh(const std::string& path);
 
 // Of a source with the triangles of `mesh`. The frame rate: the one given, else that of the
-// mesh, else the default.
+// mesh, else the usual one.
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
-                            const std::optional<FrameRate>& frame_rate);
+                            const std::optional<FrameRate>& frame_rate,
+                            const FrameRate& usual = {});
 
 // Of the last part of `path`, in small letters: ".obj" of "a/B.OBJ".
 std::string lower_extension(const std::string& path);

@@ -274,6 +274,7 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
   auto shape =
       shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
   shape.notes = notes_on(paths);
+  shape.files = paths;
   return std::unique_ptr<FrameSource>(
       std::make_unique<MeshSequence>(std::move(shape), std::move(paths)));
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -110,6 +111,26 @@ InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
                     " vertices, as MDD"};
 }
 
+// Frames per second, where the times of an MDD file tell: seconds, evenly spaced. Others are
+// numbers of frames, or not meant.
+InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layout& layout) {
+  const auto count = static_cast<std::size_t>(layout.frames);
+  std::vector<char> bytes(4 * count);
+  if (auto error = file.read(kMddHeaderBytes, bytes)) return *error;
+  std::vector<double> times(count);
+  for (std::size_t f = 0; f < count; ++f) times[f] = load_f32_be(bytes, 4 * f);
+  if (count < 2) return std::optional<FrameRate>();
+  const double interval = (times.back() - times.front()) / static_cast<double>(count - 1);
+  constexpr double kUneven = 0.02;  // of an interval
+  for (std::size_t f = 0; f < count; ++f) {
+    const double expected = times.front() + interval * static_cast<double>(f);
+    if (!(std::abs(times[f] - expected) <= kUneven * interval)) {
+      return std::optional<FrameRate>();
+    }
+  }
+  return frame_rate_near(1.0 / interval);
+}
+
 class PointCache : public FrameSource {
  public:
   PointCache(Shape shape, InputFile file, const Layout& layout)
@@ -150,8 +171,15 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   const auto layout = read_header(*file, mesh_path, num_vertices);
   if (!layout) return layout.error();
   if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
-  auto shape =
-      shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate);
+  FrameRate usual;
+  if (layout->big_endian) {
+    const auto rate = rate_of_times(*file, *layout);
+    if (!rate) return rate.error();
+    usual = rate->value_or(usual);
+  }
+  auto shape = shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames),
+                        frame_rate, usual);
+  shape.files = {mesh_path, points_path};
   return std::unique_ptr<FrameSource>(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
 }

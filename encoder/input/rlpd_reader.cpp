@@ -148,6 +148,7 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(
   if (!triangles) return triangles.error();
   FrameSource::Shape shape{header->num_vertices, *frames,
                            frame_rate.value_or(header->frame_rate), std::move(*triangles)};
+  shape.files = {path};
   return std::unique_ptr<FrameSource>(
       std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
 }

@@ -112,6 +112,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
     for (std::uint32_t& v : t) v = welded[v];
   }
   shape.notes = source->notes();
+  shape.files = source->files();
   if (vertices.size() < welded.size()) {
     shape.notes.push_back(std::to_string(vertices.size()) + " of " +
                           std::to_string(welded.size()) +

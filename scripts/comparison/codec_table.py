@@ -127,9 +127,14 @@ class Toolbox:
         self.folder = folder
         self._said = {}
 
+    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "make_tentacle")
+
     def path(self, tool):
+        """None: it is not there. Tools of this project are those of the folder and no others."""
+        if tool not in self.OWN:
+            return shutil.which(tool)
         own = self.folder / tool
-        return str(own) if own.is_file() else shutil.which(tool)
+        return str(own) if own.is_file() else None
 
     def _says(self, *command):
         if command not in self._said:
@@ -141,6 +146,8 @@ class Toolbox:
     def missing(self, codec):
         """Why the codec cannot be run here; None: it can."""
         for tool in codec.tools:
+            if self.path(tool) is None and tool in self.OWN:
+                return f"{tool} is not in {self.folder}"
             if self.path(tool) is None:
                 return f"{tool} is not installed (scripts/setup --compare)"
         if "peer_codec" in codec.tools:
