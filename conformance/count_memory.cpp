@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 
 namespace rlpc {
@@ -10,11 +11,14 @@ MemoryCount memory_count;
 
 namespace {
 
+std::mutex counting;
+
 // The size stands before what is given.
 constexpr std::size_t kBefore = alignof(std::max_align_t);
 
 // Null if there is no memory.
 void* take(std::size_t size) noexcept {
+  const std::lock_guard<std::mutex> lock(counting);
   if (memory_count.calls_left == 0) return nullptr;
   --memory_count.calls_left;
   auto* start = static_cast<std::byte*>(std::malloc(size + kBefore));
@@ -34,6 +38,7 @@ void* take_or_throw(std::size_t size) {
 
 void give_back(void* place) noexcept {
   if (place == nullptr) return;
+  const std::lock_guard<std::mutex> lock(counting);
   std::byte* start = static_cast<std::byte*>(place) - kBefore;
   memory_count.now -= *reinterpret_cast<std::size_t*>(start);
   std::free(start);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/crc32.h"
 #include "conformance/sliced_animation.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -218,6 +219,21 @@ TEST(Decoder, AMissingFileCannotBeRead) {
   const auto source = file_source("/nonexistent/clip.rlpc");
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Errc::kIo);
+}
+
+// By every seek that needs it: not only by the first.
+TEST(Decoder, ReportsABadIndexAgain) {
+  StreamBytes stream = indexed_stream();
+  const UnitPlace end = units_of(stream).back();
+  const std::size_t distance = end.payload() + 3;  // its last byte
+  stream[distance] = static_cast<std::uint8_t>(stream[distance] ^ 1);
+  const std::uint32_t crc = crc32_of(std::span(stream).subspan(end.offset, 9));
+  for (std::size_t i = 0; i < 4; ++i) {
+    stream[end.crc() + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
+  }
+  auto decoder = open(stream);
+  ASSERT_TRUE(decoder);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(decoder->seek(decoder->header().num_frames - 1));
 }
 
 TEST(DecodeLimits, NameTheElementThatGoesBeyond) {

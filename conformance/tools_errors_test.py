@@ -4,14 +4,22 @@
     tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
 """
 
+import json
 import math
+import os
 import signal
 import struct
 import subprocess
+import sys
 import time
+import zlib
 
-from tools_testing import INPUTS, Tools, ToolsTest, limited, main, run, write_pc2
+from tools_testing import INPUTS, ROOT, Tools, ToolsTest, limited, main, run, write_pc2
 
+sys.path.insert(0, str(ROOT / "conformance" / "specdec"))
+from specdec_testing import stream_of, units_of  # noqa: E402
+
+METADATA = 0x83
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 
@@ -227,6 +235,22 @@ class BadOutput(ToolsTest):
         self.assertIn("none/x", result.err)
 
 
+    def test_a_full_disk_on_standard_output(self):
+        self.assertEqual(self.encode_to(self.path("a.rlpc")).code, 0)
+        stream, mesh = self.path("a.rlpc"), INPUTS / "elephant.obj"
+        for code, command in (
+                (4, ["rlpcinfo", stream]), (4, ["rlpcinfo", stream, "--json"]),
+                (4, ["rlpcinfo", stream, "--trace"]), (4, ["rlpcdec", stream, "--verify", "--json"]),
+                (4, ["rlpcval", stream]), (4, ["rlpcval", "--explain", "R-UNT-03"]),
+                (2, ["rlpccmp", stream, stream]), (2, ["rlpccmp", stream, stream, "--json"]),
+                (1, ["rlpcenc", mesh, "--dry-run"]), (1, ["rlpcenc", mesh, "--dry-run", "--json"])):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([Tools.folder / command[0], *command[1:]], stdout=full,
+                                      stderr=subprocess.PIPE, text=True, check=False)
+            self.assertEqual(done.returncode, code, command)
+            self.assertIn("standard output: No space left", done.stderr, command)
+
+
 class Interrupts(ToolsTest):
     """Nothing is left of what was not finished."""
 
@@ -282,6 +306,37 @@ class SamePlaces(ToolsTest):
         for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
                         ["-o", out, "--order-map", "-", "--json"]):
             self.refused("cannot both", "rlpcenc", obj, *options)
+
+    def test_of_files_that_the_input_points_to(self):
+        self.path("frames").mkdir()
+        for f in range(3):
+            frame = self.path(f"frames/w_{f}.obj")
+            frame.write_bytes(self.path("clip.obj").read_bytes())
+        last, frames = frame.read_bytes(), self.path("frames")
+        out = self.path("x.rlpc")
+        for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", frame)
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", out, "--order-map", frame)
+            self.fails(64, "written over", "rlpccmp", source, source, "--csv", frame)
+        self.assertEqual(frame.read_bytes(), last)
+        self.assertFalse(out.exists())
+        # The mesh beside the cache, which nobody named.
+        self.fails(64, "written over", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
+                   "--csv", self.path("clip.obj"))
+        buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+        self.path("data.bin").write_bytes(buffer)
+        self.path("a.gltf").write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+            "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
+        self.fails(64, "is read, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
+        self.assertEqual(self.path("data.bin").read_bytes(), buffer)
+        self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
 
     def test_of_the_decoder(self):
         stream = self.path("a.rlpc")
@@ -339,6 +394,44 @@ class BadStreams(ToolsTest):
             self.expect(1, "R-UNT-03", bytes(damaged))
         self.expect(1, "R-END-02", self.stream + b"\0")
         self.expect(2, "R-STR-02", self.stream[:8] + b"\2" + self.stream[9:])
+
+    def test_no_page_of_a_damaged_stream(self):
+        bad, page = self.path("bad.rlpc"), self.path("page.html")
+        player = self.path("player.html")
+        player.write_text("")
+        bad.write_bytes(self.stream[:len(self.stream) // 2])
+        result = run("rlpcdec", bad, "--html", page, "--player", player)
+        self.assertNotEqual(result.code, 0)
+        self.assertFalse(page.exists())
+
+    def test_pipes_and_what_is_no_file(self):
+        info = self.ok("rlpcinfo", self.path("a.rlpc")).out.split(b"\n", 1)[1]
+        self.assertEqual(self.ok("rlpcinfo", "-", input=self.stream).out.split(b"\n", 1)[1], info)
+        self.ok("rlpcval", "-", input=self.stream)
+        cut = self.ok("rlpcinfo", "-", "--extract", "components=0", "-o", "-",
+                      input=self.stream).out
+        self.ok("rlpcval", "-", input=cut)
+        pipe = self.path("pipe")
+        os.mkfifo(pipe)
+        with subprocess.Popen(["/bin/sh", "-c", f"cat '{self.path('a.rlpc')}' > '{pipe}'"]):
+            self.ok("rlpcdec", pipe, "--verify")
+        for tool in ("rlpcdec", "rlpcinfo", "rlpcval"):
+            verify = ["--verify"] if tool == "rlpcdec" else []
+            self.fails(4, "it is a folder", tool, self.folder, *verify)
+            self.fails(4, "no such file", tool, self.path("none.rlpc"), *verify)
+
+    def test_any_metadata_can_be_told(self):
+        for text in ('{"a": 1}', "no JSON \x1b[31m", "[" * 100000 + "]" * 100000, '"\\ud800"'):
+            self.path("meta.json").write_text('{"a": 1}')
+            self.encode(self.path("m.rlpc"), "--metadata", self.path("meta.json"))
+            stream = self.path("m.rlpc").read_bytes()
+            metadata = struct.pack(">I", len(text)) + zlib.compress(text.encode())
+            changed = [(code, metadata if code == METADATA else payload)
+                       for code, payload in units_of(stream)]
+            self.path("m.rlpc").write_bytes(stream_of(stream, changed))
+            told = self.ok("rlpcinfo", self.path("m.rlpc"), "--json").json()["metadata"]
+            self.assertEqual(told, {"a": 1} if text[0] == "{" else text)
+            self.assertNotIn(b"\x1b", self.ok("rlpcinfo", self.path("m.rlpc")).out)
 
     def test_limits(self):
         for option in (["--max-vertices", 500], ["--max-memory", "50KB"]):

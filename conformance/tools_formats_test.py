@@ -35,9 +35,9 @@ def off(xyz, polygons):
     return ("\n".join(lines) + "\n").encode()
 
 
-def mdd(frames):
+def mdd(frames, times=None):
     head = struct.pack(f">ii{len(frames)}f", len(frames), len(frames[0]) // 3,
-                       *(f / 30 for f in range(len(frames))))
+                       *(times or [f / 30 for f in range(len(frames))]))
     return head + b"".join(struct.pack(f">{len(xyz)}f", *xyz) for xyz in frames)
 
 
@@ -125,6 +125,27 @@ class FormatsIn(ToolsTest):
         self.fails(1, "standard input: unknown kind of file", "rlpcenc", "-", *out, input=b"hello")
 
 
+class MddTimes(ToolsTest):
+    def rate_of(self, times, *options):
+        _, frames = self.clip(len(times))
+        self.path("clip.mdd").write_bytes(mdd(frames, times))
+        self.ok("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.mdd"), "-o",
+                self.path("out.rlpc"), "--kg", 5, "--preset", "fast", *options)
+        return self.ok("rlpcinfo", self.path("out.rlpc"), "--json").json()["frame_rate"]
+
+    def test_evenly_spaced_they_are_the_frame_rate(self):
+        for rate, expected in ((24, [24, 1]), (30000 / 1001, [30000, 1001]), (12.5, [25, 2]),
+                               (60, [60, 1])):
+            self.assertEqual(self.rate_of([3 + f / rate for f in range(12)]), expected)
+        self.assertEqual(self.rate_of([f / 24 for f in range(12)], "--fps", 50), [50, 1])
+
+    def test_others_tell_nothing(self):
+        nan = float("nan")
+        for times in ([0] * 5, [0, 1, 2, 3, 4], [0, 0.1, 0.15, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1, 0],
+                      [nan] * 5, [0, nan, 0.2, 0.3, 0.4], [0, 1e-9, 2e-9], [7]):
+            self.assertEqual(self.rate_of(times), [30, 1], times)
+
+
 class FormatsOut(ToolsTest):
     def setUp(self):
         super().setUp()
@@ -181,11 +202,11 @@ class FormatsOut(ToolsTest):
         self.fails(64, "--ascii", "rlpcdec", stream, "-o", self.path("frames"), "--ascii")
         self.fails(64, "--ascii", "rlpcdec", stream, "--verify", "--ascii")
         self.fails(64, "--format", "rlpcdec", stream, "--verify", "--format", "ply")
-        self.fails(4, "without the mesh", "rlpcdec", stream, "-o", "-", "--format", "mdd")
-        self.fails(4, "one frame of .ply", "rlpcdec", stream, "-o", "-", "--format", "ply")
-        self.fails(4, "holds one frame", "rlpcdec", stream, "-o", self.path("x.ply"))
-        self.fails(4, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.glb"))
-        self.fails(4, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.ply"),
+        self.fails(64, "without the mesh", "rlpcdec", stream, "-o", "-", "--format", "mdd")
+        self.fails(64, "one frame of .ply", "rlpcdec", stream, "-o", "-", "--format", "ply")
+        self.fails(64, "holds one frame", "rlpcdec", stream, "-o", self.path("x.ply"))
+        self.fails(64, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.glb"))
+        self.fails(64, "a name with a number", "rlpcdec", stream, "-o", self.path("x%d.ply"),
                    "--format", "rlpd")
         self.assertEqual(self.files(), ["a.rlpc", "clip.obj", "clip.pc2"])
 

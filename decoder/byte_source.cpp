@@ -74,8 +74,8 @@ Result<std::unique_ptr<ByteSource>> file_source(const std::string& path) {
   if (fstat(fileno(file.get()), &about) != 0) return cannot_open(errno);
   if (S_ISDIR(about.st_mode)) return cannot_open(EISDIR);
   if (!S_ISREG(about.st_mode)) return read_whole(file.get());
-  std::unique_ptr<ByteSource> source = std::make_unique<FileSource>(
-      std::move(file), static_cast<std::uint64_t>(about.st_size));
+  std::unique_ptr<ByteSource> source =
+      std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(about.st_size));
   return source;
 }
 

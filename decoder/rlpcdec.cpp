@@ -22,9 +22,9 @@
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
-#include "decoder/output/standard_output.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/standard_output.h"
 
 namespace {
 
@@ -219,7 +219,10 @@ int decode(const Options& o) {
     options.ascii = o.ascii;
     catch_interrupts();
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
-    if (!opened) return complain(opened.error().message, rlpc::kExitIo);
+    if (!opened) {
+      return complain(opened.error().message,
+                      opened.error().is_usage ? rlpc::kExitUsage : rlpc::kExitIo);
+    }
     sink = std::move(*opened);
   }
   if (span->first > 0) {

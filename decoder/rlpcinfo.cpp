@@ -18,11 +18,11 @@
 #include "decoder/describe_error.h"
 #include "decoder/extract_verb.h"
 #include "decoder/output/output_file.h"
-#include "decoder/output/standard_output.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/slice_listing.h"
+#include "decoder/standard_output.h"
 
 namespace {
 
@@ -384,8 +384,7 @@ int main(int argc, char** argv) try {
   rlpc::DecodeLimits limits;
   limits.max_memory_bytes = options.max_memory_bytes;
   return rlpc::after_standard_output(
-      "rlpcinfo",
-      rlpc::extract({options.input, options.output, *cut, limits, options.json}));
+      "rlpcinfo", rlpc::extract({options.input, options.output, *cut, limits, options.json}));
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcinfo: out of memory\n");
   return rlpc::kExitLimit;

@@ -34,8 +34,8 @@ StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,
       cuts_any_(std::any_of(gofs_.begin(), gofs_.end(),
                             [this](const ListedGof& gof) { return cuts(gof); })) {}
 
-Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source,
-                                        const SliceCut& cut, const DecodeLimits& limits) {
+Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source, const SliceCut& cut,
+                                        const DecodeLimits& limits) {
   const std::shared_ptr<ByteSource> shared = std::move(source);
   ListingTrace trace;
   DecoderOptions options;

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/write_units.h"
+
 namespace rlpc {
 namespace {
 
@@ -170,6 +172,45 @@ TEST(UnitReader, PayloadStartGivesNoMoreThanThereIs) {
   const auto all = reader.payload_start(*unit, 100);
   ASSERT_TRUE(all);
   EXPECT_EQ(*all, (Bytes{0, 0, 0, 7}));
+}
+
+TEST(UnitReader, TakesNoMemoryForLargerPayloadsThanAllowed) {
+  const Bytes stream = joined({kHeader, kUnit});
+  for (const std::uint64_t most : {0U, 3U, 4U}) {
+    UnitReader reader(memory_source(Bytes(stream)), nullptr, most);
+    const auto unit = reader.header_at(10);
+    ASSERT_TRUE(unit);
+    if (most < 4) {
+      expect_error(reader.payload(*unit), Errc::kLimitExceeded, "", "unit_size", 88);
+    } else {
+      EXPECT_TRUE(reader.payload(*unit));
+    }
+    EXPECT_TRUE(reader.skip(*unit)) << most;
+  }
+}
+
+// Blocks and their ends.
+TEST(UnitReader, SkipsUnitsWhoseCrcHolds) {
+  for (const std::size_t size : {0U, 1U, 4090U, 4091U, 4092U, 8187U, 10000U}) {
+    SCOPED_TRACE(size);
+    Bytes payload(size);
+    for (std::size_t i = 0; i < size; ++i) payload[i] = static_cast<std::uint8_t>(i * i);
+    const Bytes unit_bytes = write_unit(UnitType::kMetadata, payload);
+    // In the CRC, and in the payload if there is one.
+    for (std::size_t damaged = 0; 3 * damaged <= 4 + size && damaged < 3; ++damaged) {
+      Bytes stream = joined({kHeader, unit_bytes, kUnit});
+      if (damaged > 0) stream[stream.size() - kUnit.size() - damaged * 3] ^= 1;
+      UnitReader reader = reader_of(stream);
+      const auto unit = reader.header_at(10);
+      ASSERT_TRUE(unit);
+      if (damaged == 0) {
+        EXPECT_TRUE(reader.skip(*unit));
+      } else {
+        expect_error(reader.skip(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc",
+                     (unit->end() - 4) * 8);
+      }
+    }
+  }
 }
 
 class Log : public Trace {

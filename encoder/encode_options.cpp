@@ -256,7 +256,7 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--fps", line.fps,
                  "Frame rate: 25, 29.97 or 30000/1001 (default: as in the input; else 30)");
   app.add_option("--animation", line.options.input.animation,
-                 "Of a glTF file: a name, an index from 0, or `all`, one after another "
+                 "Of a glTF file: a name, else an index from 0, or `all`, one after another "
                  "(default: the first)");
   add_off_switch(app, "--no-weld", line.options.input.weld,
                  "Of a glTF file: keep vertices apart that coincide in every frame");

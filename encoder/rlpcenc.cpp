@@ -1,6 +1,8 @@
 // rlpcenc: animations to .rlpc streams.
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -37,8 +39,8 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
   const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
   std::printf("%s: %u vertices, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
-              r.header.num_vertices, r.header.num_triangles, s(r.header.num_triangles), r.header.num_frames,
-              s(r.header.num_frames), r.header.level_idc);
+              r.header.num_vertices, r.header.num_triangles, s(r.header.num_triangles),
+              r.header.num_frames, s(r.header.num_frames), r.header.level_idc);
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
   if (!e.exact()) {
@@ -54,6 +56,17 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               r.trials, s(r.trials));
 }
 
+// Whether floats so far from the origin are farther apart than the error.
+bool is_far_away(const EncodeReport& report) {
+  double farthest = 0.0;
+  for (const std::int32_t origin : report.header.grid.origin) {
+    farthest = std::max(farthest, std::abs(static_cast<double>(origin)));
+  }
+  constexpr double kFloatSteps = 0x1p23;
+  return std::ldexp(farthest, report.header.grid.log2_step) >
+         kFloatSteps * report.metrics.rms_error;
+}
+
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
   const Target& target = o.settings.target;
   constexpr double kNearRate = 0.95;
@@ -65,9 +78,12 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
                       : "no encoding was found that comes closer\n");
   }
   if (report.target_met) return kEncoded;
-  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. Try a "
-            << (target.kind == Target::kBpvf ? "higher --bpvf, or a longer --gof"
-                                             : "larger error")
+  const char* const advice =
+      target.kind == Target::kBpvf ? "Try a higher --bpvf, or a longer --gof"
+      : is_far_away(report) ? "The animation lies so far from the origin that floats are "
+                              "coarser than that: move it there, or try a larger error"
+                            : "Try a larger error";
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. " << advice
             << ".\n";
   return kTargetMissed;
 }

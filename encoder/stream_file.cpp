@@ -52,6 +52,11 @@ void StreamFile::open() {
       temporary_ = std::move(name);
       return;
     }
+    if (errno == ENOENT) {
+      failure_ =
+          "there is no folder " + fs::path(target_).parent_path().string() + "; make it first";
+      return;
+    }
     if (errno != EEXIST) {
       failure_ = reason(errno);
       return;

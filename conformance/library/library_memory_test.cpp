@@ -143,22 +143,26 @@ TEST(Library, TheDecoderEndsWithMemory) {
   std::vector<std::uint8_t> stream;
   ASSERT_EQ(encode(stream), RLPC_OK);
   std::vector<float> xyz(3 * kVertices);
-  run_out_of_memory(
-      [&] {
-        rlpc_decoder* decoder = nullptr;
-        rlpc_status status =
-            rlpc_decoder_open_memory(stream.data(), stream.size(), nullptr, &decoder);
-        while (status == RLPC_OK) {
-          status = rlpc_decoder_next_floats(decoder, xyz.data(), xyz.size());
-        }
-        if (status == RLPC_OUT_OF_MEMORY && decoder != nullptr) {
-          EXPECT_EQ(std::strcmp(rlpc_decoder_error_text(decoder), "out of memory"), 0);
-          EXPECT_EQ(rlpc_decoder_seek(decoder, 0), RLPC_OUT_OF_MEMORY);
-        }
-        rlpc_decoder_close(decoder);
-        return status == RLPC_END ? RLPC_OK : status;
-      },
-      64);
+  rlpc_decode_options options;
+  rlpc_decode_options_init(&options, sizeof options);
+  const auto decode = [&] {
+    rlpc_decoder* decoder = nullptr;
+    rlpc_status status =
+        rlpc_decoder_open_memory(stream.data(), stream.size(), &options, &decoder);
+    while (status == RLPC_OK) {
+      status = rlpc_decoder_next_floats(decoder, xyz.data(), xyz.size());
+    }
+    if (status == RLPC_OUT_OF_MEMORY && decoder != nullptr) {
+      EXPECT_EQ(std::strcmp(rlpc_decoder_error_text(decoder), "out of memory"), 0);
+      EXPECT_EQ(rlpc_decoder_seek(decoder, 0), RLPC_OUT_OF_MEMORY);
+    }
+    rlpc_decoder_close(decoder);
+    return status == RLPC_END ? RLPC_OK : status;
+  };
+  run_out_of_memory(decode, 64);
+  // Threads count together: not the same call fails each time.
+  options.threads = 4;
+  for (int i = 0; i < 5; ++i) run_out_of_memory(decode, 64);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
 #include "decoder/output/output_file.h"
-#include "decoder/output/standard_output.h"
+#include "decoder/standard_output.h"
 #include "decoder/report/mesh_view.h"
 #include "encoder/metrics.h"
 #include "encoder/progress_bar.h"
@@ -243,7 +243,8 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
 
 constexpr const char* kWrittenOver = " would be written over; give another name";
 
-std::optional<std::string> written_over(const Options& o, const std::vector<std::string>& read) {
+std::optional<std::string> written_over(const Options& o,
+                                        const std::vector<std::string>& read) {
   for (const std::string& written : {o.csv, o.html}) {
     for (const std::string& file : read) {
       if (rlpc::OutputFile::is_same_file(written, file)) return written + kWrittenOver;
@@ -259,8 +260,7 @@ std::optional<std::string> check_places(const Options& o) {
     return "--html and another output cannot both go to standard output";
   }
   if (rlpc::OutputFile::is_same_file(o.csv, o.html)) return o.csv + kWrittenOver;
-  return written_over(
-      o, {o.a.path, o.a.points, o.b.path, o.b.points, o.stream, o.order_map});
+  return written_over(o, {o.a.path, o.a.points, o.b.path, o.b.points, o.stream, o.order_map});
 }
 
 int run(Options& o) {
@@ -273,7 +273,8 @@ int run(Options& o) {
   const auto pair = rlpc::open_comparison_pair(o.a, o.b);
   if (!pair) return complain(pair.error().message);
   for (const auto* side : {&pair->a, &pair->b}) {
-    if (const auto wrong = written_over(o, side->frames->files())) return complain(*wrong), kUsage;
+    if (const auto wrong = written_over(o, side->frames->files()))
+      return complain(*wrong), kUsage;
   }
   if (!o.fps.empty() && !rlpc::is_gltf(o.a) && !rlpc::is_gltf(o.b)) {
     return complain("--fps: neither A nor B is a glTF file"), kUsage;

@@ -62,20 +62,22 @@ OutputResult<std::unique_ptr<FrameSink>> open_one_file(const std::string& path,
   }
 }
 
+OutputError misuse(std::string message) { return {std::move(message), true}; }
+
 OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions options) {
   const SinkFormat format = options.format;
   const std::string name = "standard output: ";
   if (format == SinkFormat::kByName) {
-    return OutputError{name + "has no name to tell the format; give it"};
+    return misuse(name + "has no name to tell the format; give it");
   }
   if (format == SinkFormat::kPc2 || format == SinkFormat::kMdd) {
-    return OutputError{name +
-                       "a point cache is of no use without the mesh beside it; write .rlpd or "
-                       ".glb there"};
+    return misuse(name +
+                  "a point cache is of no use without the mesh beside it; write .rlpd or "
+                  ".glb there");
   }
   if (is_mesh(format) && options.num_frames > 1) {
-    return OutputError{name + "takes one frame of " + std::string(extension_of(format)) +
-                       ", not several"};
+    return misuse(name + "takes one frame of " + std::string(extension_of(format)) +
+                  ", not several");
   }
   return open_one_file("-", format, std::move(options));
 }
@@ -95,8 +97,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
   const fs::path name = fs::path(path).filename();
   if (name.string().find('%') != std::string::npos) {
     if (!is_mesh(format)) {
-      return OutputError{path + ": a name with a number is for .obj and .ply files; " +
-                         std::string(extension_of(format)) + " takes all frames in one"};
+      return misuse(path + ": a name with a number is for .obj and .ply files; " +
+                    std::string(extension_of(format)) + " takes all frames in one");
     }
     return open_mesh_sink(path, format, std::move(options));
   }
@@ -106,23 +108,22 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
   if (is_mesh(named)) {
     if (options.num_frames == 1) return open_one_file(path, format, std::move(options));
     const std::string kind = named == SinkFormat::kObj ? "OBJ" : "PLY";
-    return OutputError{path + ": one " + kind +
-                       " file holds one frame; give a folder, a name with a number as in "
-                       "frame_%04d" +
-                       extension + ", or X.pc2 (which also writes X.obj)"};
+    return misuse(path + ": one " + kind +
+                  " file holds one frame; give a folder, a name with a number as in "
+                  "frame_%04d" +
+                  extension + ", or X.pc2 (which also writes X.obj)");
   }
   if (named != SinkFormat::kByName) {
-    return OutputError{path + ": " + std::string(extension_of(format)) +
-                       " files were asked for, one for each frame; give a folder, or a name "
-                       "with a number as in frame_%04d" +
-                       std::string(extension_of(format))};
+    return misuse(path + ": " + std::string(extension_of(format)) +
+                  " files were asked for, one for each frame; give a folder, or a name "
+                  "with a number as in frame_%04d" +
+                  std::string(extension_of(format)));
   }
   std::error_code ignored;
   if (!extension.empty() && !fs::is_directory(path, ignored)) {
-    return OutputError{
-        path + ": cannot write " + extension +
-        " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
-        "frame_%04d.ply, or a folder, with / at the end if there is a dot in it"};
+    return misuse(path + ": cannot write " + extension +
+                  " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
+                  "frame_%04d.ply, or a folder, with / at the end if there is a dot in it");
   }
   const std::string pattern = "frame_%04d" + std::string(extension_of(format));
   return open_mesh_sink((fs::path(path) / pattern).string(), format, std::move(options));

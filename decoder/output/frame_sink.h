@@ -16,6 +16,7 @@ namespace rlpc {
 // One line for the user: path, what failed, and the system's reason.
 struct OutputError {
   std::string message;
+  bool is_usage = false;  // what was asked for cannot be; no file is at fault
 };
 template <class T>
 using OutputResult = Result<T, OutputError>;

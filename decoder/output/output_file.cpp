@@ -47,6 +47,10 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path) {
     std::string temporary = temporary_name(target, attempt);
     std::FILE* const file = std::fopen(temporary.c_str(), "wbx");
     if (file != nullptr) return OutputFile(path, std::move(target), std::move(temporary), file);
+    if (errno == ENOENT) {
+      return OutputError{path + ": there is no folder " +
+                         fs::path(target).parent_path().string() + "; make it first"};
+    }
     if (errno != EEXIST) return output_error(path, "create", errno);
   }
   return OutputError{path + ": too many unfinished files; remove " + target + ".partial*"};

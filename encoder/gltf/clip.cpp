@@ -154,8 +154,16 @@ std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
     std::iota(all.begin(), all.end(), 0U);
     return all;
   }
+  std::vector<std::uint32_t> named;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (document.animations[i].name == name) return {i};
+    if (document.animations[i].name == name) named.push_back(i);
+  }
+  if (named.size() == 1) return named;
+  if (named.size() > 1) {
+    errors.add("animations", "the name " + gltf_quoted(name) + " is that of " +
+                                 to_string(named.size()) + " there; give an index, such as " +
+                                 to_string(named[0]) + " or " + to_string(named[1]));
+    return {};
   }
   std::uint32_t index = 0;
   const char* const last = name.data() + name.size();

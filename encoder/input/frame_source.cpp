@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/stream_format.h"
 #include "encoder/gltf/source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
@@ -63,7 +64,7 @@ InputResult<std::unique_ptr<FrameSource>> open_listed(
   return open_mesh_sequence(std::move(*paths), options.frame_rate);
 }
 
-enum class FileKind : std::uint8_t { kUnknown, kGltf, kRlpd, kMesh, kPointCache };
+enum class FileKind : std::uint8_t { kUnknown, kGltf, kRlpd, kMesh, kPointCache, kStream };
 
 // By the extension; if that says nothing, by how the file begins.
 FileKind kind_of(const std::string& path) {
@@ -78,6 +79,9 @@ FileKind kind_of(const std::string& path) {
     return FileKind::kGltf;
   }
   if (begin.starts_with("RLPD")) return FileKind::kRlpd;
+  if (begin.starts_with(std::string(kSignature.begin(), kSignature.end()))) {
+    return FileKind::kStream;
+  }
   if (begin.starts_with("POINTCACHE2")) return FileKind::kPointCache;
   return mesh_format_of(path).empty() ? FileKind::kUnknown : FileKind::kMesh;
 }
@@ -95,6 +99,10 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
       return InputError{name_of_input(path) +
                         ": a point cache has no triangles; give its mesh as the input and the "
                         "cache with --points"};
+    case FileKind::kStream:
+      return InputError{name_of_input(path) +
+                        ": is an RLPC stream already; rlpcdec decodes it, and rlpcinfo "
+                        "--extract makes a smaller one of it"};
     default:
       return InputError{name_of_input(path) +
                         (exists ? ": unknown kind of file" : ": no such file or folder") +

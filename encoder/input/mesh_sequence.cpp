@@ -118,6 +118,8 @@ NameParts parts_of(std::string_view path) {
 
 // What looks as if it were not meant.
 std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
+  std::size_t gaps = 0;
+  std::string first_gap;
   for (std::size_t i = 1; i < paths.size(); ++i) {
     const NameParts a = parts_of(paths[i - 1]);
     const NameParts b = parts_of(paths[i]);
@@ -125,12 +127,15 @@ std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
       return {paths[i - 1] + " and " + paths[i] + " are frames " + std::to_string(i - 1) +
               " and " + std::to_string(i) + ", though their names are of different kinds"};
     }
-    if (*b.number != *a.number + 1) {
-      return {"there is no frame between " + paths[i - 1] + " and " + paths[i] +
-              "; they follow each other"};
-    }
+    if (*b.number == *a.number + 1) continue;
+    if (gaps++ == 0) first_gap = paths[i - 1] + " and " + paths[i];
   }
-  return {};
+  if (gaps == 0) return {};
+  if (gaps == 1) {
+    return {"there is no frame between " + first_gap + "; they follow each other"};
+  }
+  return {"the numbers of the frames have " + std::to_string(gaps) +
+          " gaps, the first between " + first_gap + "; frames follow each other without them"};
 }
 
 class MeshSequence : public FrameSource {

@@ -177,8 +177,8 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     if (!rate) return rate.error();
     usual = rate->value_or(usual);
   }
-  auto shape = shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames),
-                        frame_rate, usual);
+  auto shape =
+      shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
   shape.files = {mesh_path, points_path};
   return std::unique_ptr<FrameSource>(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
