@@ -395,15 +395,6 @@ class BadStreams(ToolsTest):
         self.expect(1, "R-END-02", self.stream + b"\0")
         self.expect(2, "R-STR-02", self.stream[:8] + b"\2" + self.stream[9:])
 
-    def test_no_page_of_a_damaged_stream(self):
-        bad, page = self.path("bad.rlpc"), self.path("page.html")
-        player = self.path("player.html")
-        player.write_text("")
-        bad.write_bytes(self.stream[:len(self.stream) // 2])
-        result = run("rlpcdec", bad, "--html", page, "--player", player)
-        self.assertNotEqual(result.code, 0)
-        self.assertFalse(page.exists())
-
     def test_pipes_and_what_is_no_file(self):
         info = self.ok("rlpcinfo", self.path("a.rlpc")).out.split(b"\n", 1)[1]
         self.assertEqual(self.ok("rlpcinfo", "-", input=self.stream).out.split(b"\n", 1)[1], info)

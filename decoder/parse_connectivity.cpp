@@ -6,7 +6,7 @@
 #include "common/connectivity_models.h"
 #include "common/cut_border.h"
 #include "common/int_math.h"
-#include "common/range_decoder.h"
+#include "decoder/section_reader.h"
 
 namespace rlpc {
 namespace {
@@ -17,9 +17,7 @@ class ConnectivityParser {
  public:
   ConnectivityParser(BitReader& r, std::uint32_t num_vertices, std::uint32_t urgent_degree,
                      bool vertex_reuse)
-      : reader_(r),
-        first_bit_(r.bit_pos()),
-        rd_(r.remaining_bytes()),
+      : section_(r, "connectivity_section"),
         num_vertices_(num_vertices),
         vertex_reuse_(vertex_reuse),
         border_(urgent_degree) {}
@@ -27,19 +25,7 @@ class ConnectivityParser {
   std::vector<Triangle> parse(std::uint32_t num_regular, std::uint32_t num_degenerate);
 
  private:
-  std::uint64_t bit_pos() const { return first_bit_ + rd_.bits_spent(); }
-  bool failed() const { return reader_.error().has_value(); }
-  void fail(const char* rule, const char* element) {
-    reader_.fail(Errc::kInvalid, rule, element, bit_pos());
-  }
-  bool ae(BitModel& model, const char* element);
-  std::uint32_t bypass(int n, const char* element);
-  // Position of the element that comes, if anybody wants to know.
-  std::uint64_t mark() const { return reader_.trace() != nullptr ? bit_pos() : 0; }
-  void trace(const char* element, std::uint32_t value, std::uint64_t at) {
-    if (reader_.trace() != nullptr) reader_.trace()->element(element, value, at);
-  }
-
+  bool failed() const { return section_.failed(); }
   void component_start();
   void gate();
   bool can_add_vertex() const { return vertex_reuse_ || num_coded_vertices_ < num_vertices_; }
@@ -47,9 +33,7 @@ class ConnectivityParser {
   std::uint32_t join_target();
   Triangle degenerate_triangle();
 
-  BitReader& reader_;
-  std::uint64_t first_bit_;
-  RangeDecoder rd_;
+  SectionReader section_;
   std::uint32_t num_vertices_;
   bool vertex_reuse_;
   CutBorder border_;
@@ -58,37 +42,22 @@ class ConnectivityParser {
   std::vector<Triangle> triangles_;
 };
 
-bool ConnectivityParser::ae(BitModel& model, const char* element) {
-  const std::uint64_t at = mark();
-  const bool value = rd_.bin(model);
-  trace(element, value ? 1 : 0, at);
-  return value;
-}
-
-std::uint32_t ConnectivityParser::bypass(int n, const char* element) {
-  const std::uint64_t at = mark();
-  const std::uint32_t value = rd_.bypass(n);
-  trace(element, value, at);
-  return value;
-}
-
 // 6.4.2 connectivity_section( )
 std::vector<Triangle> ConnectivityParser::parse(std::uint32_t num_regular,
                                                 std::uint32_t num_degenerate) {
-  if (!rd_.starts_legally()) fail("R-RNG-02", "connectivity_section");
   while (!failed() && triangles_.size() < num_regular) {
     if (border_.select_gate()) {
       gate();
     } else {
       component_start();
     }
-    if (rd_.overrun()) fail("R-RNG-01", "connectivity_section");
+    section_.check_overrun("connectivity_section");
   }
   for (std::uint32_t i = 0; !failed() && i < num_degenerate; ++i) {
     triangles_.push_back(degenerate_triangle());
-    if (rd_.overrun()) fail("R-RNG-01", "connectivity_section");
+    section_.check_overrun("connectivity_section");
   }
-  if (!rd_.at_exact_end()) fail("R-RNG-01", "connectivity_section");
+  section_.finish();
   return std::move(triangles_);
 }
 
@@ -96,7 +65,7 @@ std::vector<Triangle> ConnectivityParser::parse(std::uint32_t num_regular,
 void ConnectivityParser::component_start() {
   Triangle corners{};
   for (std::uint32_t& v : corners) {
-    if (!can_add_vertex()) return fail("R-CON-02", "component_start");
+    if (!can_add_vertex()) return section_.fail("R-CON-02", "component_start");
     v = vertex_instance();
     if (failed()) return;
   }
@@ -106,27 +75,28 @@ void ConnectivityParser::component_start() {
 // 6.4.4 gate( )
 void ConnectivityParser::gate() {
   const GateContexts ctx = gate_contexts(border_);
-  if (ae(models_.boundary_flag[ctx.boundary_flag], "boundary_flag")) {
+  if (section_.bin(models_.boundary_flag[ctx.boundary_flag], "boundary_flag")) {
     return border_.mark_boundary();
   }
-  if (border_.can_close() && ae(models_.close_flag[ctx.close_flag], "close_flag")) {
+  if (border_.can_close() && section_.bin(models_.close_flag[ctx.close_flag], "close_flag")) {
     return triangles_.push_back(border_.close_loop());
   }
-  if (can_add_vertex() && ae(models_.new_vertex_flag[ctx.new_vertex_flag], "new_vertex_flag")) {
+  if (can_add_vertex() &&
+      section_.bin(models_.new_vertex_flag[ctx.new_vertex_flag], "new_vertex_flag")) {
     const std::uint32_t v = vertex_instance();
     if (!failed()) triangles_.push_back(border_.add_vertex(v));
     return;
   }
   if (border_.can_glue_previous() &&
-      ae(models_.glue_previous_flag[ctx.glue_previous_flag], "glue_previous_flag")) {
+      section_.bin(models_.glue_previous_flag[ctx.glue_previous_flag], "glue_previous_flag")) {
     return triangles_.push_back(border_.glue_previous());
   }
   if (border_.can_glue_next() &&
-      ae(models_.glue_next_flag[ctx.glue_next_flag], "glue_next_flag")) {
+      section_.bin(models_.glue_next_flag[ctx.glue_next_flag], "glue_next_flag")) {
     return triangles_.push_back(border_.glue_next());
   }
   const std::uint32_t target = join_target();
-  if (!border_.is_join_target(target)) return fail("R-CON-04", "join_target");
+  if (!border_.is_join_target(target)) return section_.fail("R-CON-04", "join_target");
   triangles_.push_back(border_.join(target));
 }
 
@@ -136,13 +106,13 @@ std::uint32_t ConnectivityParser::vertex_instance() {
   if (vertex_reuse_) {
     reused = num_coded_vertices_ == num_vertices_;
     if (num_coded_vertices_ > 0 && num_coded_vertices_ < num_vertices_) {
-      reused = ae(models_.vertex_reused_flag, "vertex_reused_flag");
+      reused = section_.bin(models_.vertex_reused_flag, "vertex_reused_flag");
     }
   }
   if (!reused) return num_coded_vertices_++;
-  const std::uint32_t v = bypass(ceil_log2(num_coded_vertices_), "reused_vertex");
+  const std::uint32_t v = section_.bypass(ceil_log2(num_coded_vertices_), "reused_vertex");
   if (v >= num_coded_vertices_) {
-    fail("R-CON-03", "reused_vertex");
+    section_.fail("R-CON-03", "reused_vertex");
     return 0;
   }
   return v;
@@ -150,18 +120,19 @@ std::uint32_t ConnectivityParser::vertex_instance() {
 
 // 6.4.6 join_target( )
 std::uint32_t ConnectivityParser::join_target() {
-  if (ae(models_.far_join_flag, "far_join_flag")) {
-    return bypass(ceil_log2(border_.num_nodes()), "join_node");
+  if (section_.bin(models_.far_join_flag, "far_join_flag")) {
+    return section_.bypass(ceil_log2(border_.num_nodes()), "join_node");
   }
-  const bool forward = ae(models_.forward_join_flag, "forward_join_flag");
+  const bool forward = section_.bin(models_.forward_join_flag, "forward_join_flag");
   auto& prefix_models = models_.join_prefix_flag[forward ? 1 : 0];
   std::uint32_t prefix = 0;
-  while (prefix < kMaxJoinPrefix && ae(prefix_models[prefix], "join_prefix_flag")) ++prefix;
+  while (prefix < kMaxJoinPrefix && section_.bin(prefix_models[prefix], "join_prefix_flag"))
+    ++prefix;
   std::uint32_t distance = 1;
   if (prefix > 0) {
-    distance = 2 + (ae(models_.join_top_bit[prefix], "join_top_bit") ? 1 : 0);
+    distance = 2 + (section_.bin(models_.join_top_bit[prefix], "join_top_bit") ? 1 : 0);
     const int rest = static_cast<int>(prefix) - 1;
-    distance = (distance << rest) | bypass(rest, "join_low_bits");
+    distance = (distance << rest) | section_.bypass(rest, "join_low_bits");
   }
   return border_.walk(forward, distance);
 }
@@ -170,9 +141,9 @@ std::uint32_t ConnectivityParser::join_target() {
 Triangle ConnectivityParser::degenerate_triangle() {
   Triangle triangle{};
   for (std::uint32_t& v : triangle) {
-    v = bypass(ceil_log2(num_vertices_), "degenerate_vertex");
+    v = section_.bypass(ceil_log2(num_vertices_), "degenerate_vertex");
     if (v >= num_vertices_) {
-      fail("R-CON-05", "degenerate_vertex");
+      section_.fail("R-CON-05", "degenerate_vertex");
       v = 0;
     }
   }

@@ -5,9 +5,7 @@
 #include "common/bit_writer.h"
 #include "common/gof_models.h"
 #include "common/int_math.h"
-#include "common/range_encoder.h"
-#include "encoder/write_residual.h"
-#include "encoder/write_track.h"
+#include "encoder/section_writer.h"
 
 namespace rlpc {
 namespace {
@@ -21,8 +19,6 @@ class GofSectionWriter {
 
  private:
   void header_delta(HeaderField field, int value, int previous);
-  template <std::size_t N>
-  void truncated_unary(std::array<BitModel, N>& models, int value);
   void cluster_headers();
   void cluster_map();
   void cluster_idx(const ClusterPrediction& prediction, std::uint16_t cluster);
@@ -33,7 +29,7 @@ class GofSectionWriter {
   const SequenceHeader& header_;
   const Topology& topology_;
   const Gof& gof_;
-  RangeEncoder re_;
+  SectionWriter section_;
   GofModels models_;
   std::vector<std::uint32_t> frame_mean_;
   int previous_scale_idx_ = Component{}.scale_idx;
@@ -44,28 +40,17 @@ class GofSectionWriter {
 // 9.5.4 ae_header( field )
 void GofSectionWriter::header_delta(HeaderField field, int value, int previous) {
   std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
-  write_residual(re_, models_.header, mean >> 4, value - previous);
-  mean = update_mean(mean, magnitude_of(value - previous), 2);
-}
-
-template <std::size_t N>
-void GofSectionWriter::truncated_unary(std::array<BitModel, N>& models, int value) {
-  assert(value >= 0 && value <= static_cast<int>(N));
-  for (std::size_t i = 0; i < N; ++i) {
-    const bool more = static_cast<int>(i) < value;
-    re_.bin(models[i], more);
-    if (!more) break;
-  }
+  section_.header_value(models_.header, mean, value, previous);
 }
 
 // 6.5.2 cluster_headers( )
 void GofSectionWriter::cluster_headers() {
   for (const Cluster& cluster : gof_.clusters) {
-    re_.bin(models_.lcf_flag, cluster.lcf_flag);
+    section_.bin(models_.lcf_flag, cluster.lcf_flag);
     if (!cluster.lcf_flag) continue;
     for (const std::uint32_t v : cluster.seed_vertex) {
       assert(v < header_.num_vertices);
-      re_.bypass(ceil_log2(header_.num_vertices), v);
+      section_.bypass(ceil_log2(header_.num_vertices), v);
     }
   }
 }
@@ -86,12 +71,12 @@ void GofSectionWriter::cluster_map() {
 
 void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uint16_t cluster) {
   const bool predicted = prediction.cluster == cluster;
-  re_.bin(models_.cluster_predicted_flag[prediction.context], predicted);
+  section_.bin(models_.cluster_predicted_flag[prediction.context], predicted);
   if (predicted) return;
   std::uint32_t node = 1;
   for (int bit = ceil_log2(gof_.clusters.size()) - 1; bit >= 0; --bit) {
     const bool one = ((cluster >> bit) & 1) != 0;
-    re_.bin(models_.cluster_idx[node], one);
+    section_.bin(models_.cluster_idx[node], one);
     node = 2 * node + (one ? 1 : 0);
   }
 }
@@ -100,7 +85,7 @@ void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uin
 void GofSectionWriter::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
   for (const SeedTrack& track : gof_.seed_tracks) {
-    write_track(re_, models_.seed, frame_mean_, track.residual);
+    section_.track(models_.seed, frame_mean_, track.residual);
   }
 }
 
@@ -122,13 +107,14 @@ void GofSectionWriter::component(const Component& component) {
   previous_scale_idx_ = component.scale_idx;
   previous_spatial_bits_ = component.spatial_bits;
   previous_temporal_bits_ = component.temporal_bits;
-  truncated_unary(models_.temporal_predictor, component.temporal_predictor);
-  truncated_unary(models_.spatial_predictor, static_cast<int>(component.spatial_predictor));
+  section_.truncated_unary(models_.temporal_predictor, component.temporal_predictor);
+  section_.truncated_unary(models_.spatial_predictor,
+                           static_cast<int>(component.spatial_predictor));
 
   TemporalContext temporal(frame_mean_, component);
   for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
     const std::int32_t residual = component.temporal_residual[f];
-    write_residual(re_, models_.temporal, temporal.expected(f), residual);
+    section_.residual(models_.temporal, temporal.expected(f), residual);
     temporal.update(f, residual);
   }
   SpatialContext spatial(component);
@@ -136,7 +122,7 @@ void GofSectionWriter::component(const Component& component) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::int32_t residual = component.spatial_residual[c * n + i];
-      write_residual(re_, models_.spatial, spatial.expected(c), residual);
+      section_.residual(models_.spatial, spatial.expected(c), residual);
       spatial.update(c, residual);
     }
   }
@@ -152,7 +138,7 @@ std::vector<std::uint8_t> GofSectionWriter::write() {
     frame_mean_.assign(gof_.num_frames, 0);
     for (const Component& c : cluster.components) component(c);
   }
-  return re_.finish();
+  return section_.finish();
 }
 
 }  // namespace

@@ -35,15 +35,18 @@ class Borrowed final : public ByteSource {
   ByteSource& source_;
 };
 
-// Decodes it whole: no page is to be written that stops in the middle.
 Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
-  auto decoder = Decoder::open(std::make_unique<Borrowed>(source), options);
-  if (!decoder) return decoder;
-  std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+  return Decoder::open(std::make_unique<Borrowed>(source), options);
+}
+
+// Of a stream that is damaged behind its first GOF a page shows the damage; but whoever asks for
+// it should know.
+int check_whole(const std::string& input, Decoder& decoder) {
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
   for (;;) {
-    const auto more = decoder->next_frame(positions);
-    if (!more) return more.error();
-    if (!*more) return decoder;
+    const auto more = decoder.next_frame(positions);
+    if (!more) return complain(input + " (the page shows which frames)", more.error());
+    if (!*more) return kExitDone;
   }
 }
 
@@ -65,7 +68,7 @@ std::string title(const std::string& input) {
 int write_html(const HtmlRequest& request, ByteSource& stream) {
   const auto player = read_player(request.player);
   if (!player) return complain(player.error().message, kExitIo);
-  const auto decoder = look_at(stream, request.decoder);
+  auto decoder = look_at(stream, request.decoder);
   if (!decoder) return complain(request.input, decoder.error());
   std::unique_ptr<ByteSource> reference;
   if (!request.reference.empty()) {
@@ -91,7 +94,7 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
                  request.output.c_str(), decoder->header().num_frames,
                  decoder->header().num_vertices);
   }
-  return kExitDone;
+  return check_whole(request.input, *decoder);
 }
 
 }  // namespace rlpc

@@ -17,7 +17,8 @@ struct HtmlRequest {
   bool quiet = false;
 };
 
-// Looks at the first units of the streams, writes the page, and returns the exit code.
+// Looks at the first units of the streams, writes the page, and returns the exit code: that of
+// decoding the stream whole.
 int write_html(const HtmlRequest& request, ByteSource& stream);
 
 }  // namespace rlpc

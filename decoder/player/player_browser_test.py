@@ -29,10 +29,10 @@ class Browser(InFolder):
         cls.addClassCleanup(browser.__exit__)
         cls.stream = cls.encode("clip.rlpc", "--gof", "20")
 
-    def open(self, stream, fragment="", *arguments):
+    def open(self, stream, fragment="", *arguments, code=0):
         page = self.folder / f"{stream.stem}.html"
         done = run("rlpcdec", stream, "--html", page, "--player", PLAYER, *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.returncode, code, done.stderr)
         self.browser.open("about:blank")
         self.browser.open(f"{page.as_uri()}#{fragment}")
         self.browser.wait_for("document.body?.dataset.state === 'ready'")
@@ -119,7 +119,7 @@ class Browser(InFolder):
 
     def test_a_hash_that_differs(self):
         stream = STREAMS / "v1.0" / "reject" / "HSH" / "HSH-0001x1.rlpc"
-        self.open(stream, "frame=0")
+        self.open(stream, "frame=0", code=1)
         self.wait_for_frame(0)
         self.wait_for_check()
         self.assertIn("hash mismatch", self.text("hash"))
@@ -139,7 +139,7 @@ class Browser(InFolder):
         return damaged
 
     def test_a_damaged_frame(self):
-        self.open(self.damaged(), "frame=30")
+        self.open(self.damaged(), "frame=30", code=1)
         self.wait_for_check()
         self.assertEqual(self.states(), [2] * 20 + [4] * 20 + [2] * 20)
         self.browser.wait_for("document.getElementById('hash').dataset.state === 'error'")

@@ -58,7 +58,8 @@ class Writing(InFolder):
                 stream = self.folder / "long.rlpc"
                 stream.write_bytes(accepted.ljust(size, b"\7"))  # what is behind its end is kept
                 done, out = self.page(stream)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.returncode, 0 if size == len(accepted) else 1, done.stderr)
+                self.assertEqual(b"R-END-02" in done.stderr, size > len(accepted))
                 held, parts = self.embedded(out.read_text(), "stream")
                 self.assertEqual(held, stream.read_bytes())
                 self.assertEqual(parts, 1 + (size > 3 * 2**20))

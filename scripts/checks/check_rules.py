@@ -7,7 +7,7 @@ rule the list has: id, clause, effect, sentence, and which process of the pseudo
 decoding in order, only random access, or none.
 
 Every rule is checked by rlpcval: its id is a string in the code of the validator, in the parsers
-that the validator includes, or in the reader of bits that these share.
+that the validator includes, or in the readers of bits and sections that these share.
 
 Every rule is broken by a stream of some version in streams/, or by one that a decoder may refuse;
 and sidecars name no other rules.
@@ -94,7 +94,7 @@ def validator_code(root):
     text = "".join(cpp_source.without_comments(path.read_text(encoding="utf-8")) for path in own)
     if not own:
         return ""
-    seen, waiting = set(), {"common/bit_reader.cpp"}
+    seen, waiting = set(), {"common/bit_reader.cpp", "decoder/section_reader.h"}
     while waiting:
         seen |= waiting
         paths = [root / name for name in sorted(waiting) if (root / name).exists()]
