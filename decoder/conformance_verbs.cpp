@@ -16,6 +16,7 @@
 
 #include "common/stream_format.h"
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
 #include "decoder/rlpc_decoder.h"

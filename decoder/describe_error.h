@@ -1,4 +1,4 @@
-// Errors of a stream in words, and as exit codes of the tools.
+// Errors of a stream in words.
 #pragma once
 
 #include <string>
@@ -7,31 +7,6 @@
 #include "common/result.h"
 
 namespace rlpc {
-
-// Exit codes of rlpcdec and rlpcinfo; 0 to 3 are those of the conformance contract.
-enum ExitCode : int {
-  kExitDone = 0,
-  kExitInvalid = 1,      // not a conforming stream
-  kExitUnsupported = 2,  // a later version, another profile
-  kExitLimit = 3,        // beyond the caller's limits
-  kExitIo = 4,           // a file could not be read or written
-  kExitUsage = 64,
-};
-
-inline ExitCode exit_code(Errc code) {
-  switch (code) {
-    case Errc::kTruncated:
-    case Errc::kInvalid:
-      return kExitInvalid;
-    case Errc::kUnsupported:
-      return kExitUnsupported;
-    case Errc::kLimitExceeded:
-      return kExitLimit;
-    case Errc::kIo:
-      break;
-  }
-  return kExitIo;
-}
 
 // For example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is damaged or ...".
 inline std::string describe_error(const Error& error) {

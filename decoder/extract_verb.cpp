@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/output/output_file.h"
 #include "decoder/stream_cutter.h"
 

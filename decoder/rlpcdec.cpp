@@ -20,6 +20,7 @@
 
 #include "decoder/conformance_verbs.h"
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/output_file.h"
 #include "decoder/player/html_verb.h"

@@ -16,6 +16,7 @@
 
 #include "decoder/bit_counter.h"
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/extract_verb.h"
 #include "decoder/output/output_file.h"
 #include "decoder/report/html_page.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <system_error>
 
-#include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 
 namespace rlpc {
 

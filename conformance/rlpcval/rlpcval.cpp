@@ -15,6 +15,7 @@
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/standard_output.h"
 #include "encoder/progress_bar.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/player/player_page.h"
 
 namespace rlpc {

@@ -8,6 +8,7 @@
 
 #include "common/crc32.h"
 #include "decoder/describe_error.h"
+#include "decoder/exit_code.h"
 #include "decoder/player/stream_player.h"
 
 #define RLPC_EXPORT(name) extern "C" [[clang::export_name(#name)]]

@@ -1,5 +1,6 @@
 // Decodes a stream, frame by frame:  decode walk.rlpc frames.f32
 // To frames.f32 go x, y and z of each vertex as floats, one frame after another.
+#include <rlpc/decoder/describe_error.h>
 #include <rlpc/decoder/rlpc_decoder.h>
 
 #include <cstdio>
@@ -8,8 +9,7 @@
 #include <vector>
 
 int complain(const rlpc::Error& error) {
-  std::fprintf(stderr, "%s at bit %llu (rule %s)\n", error.element,
-               static_cast<unsigned long long>(error.bit_pos), error.rule);
+  std::fprintf(stderr, "%s\n", rlpc::describe_error(error).c_str());
   return 1;
 }
 
