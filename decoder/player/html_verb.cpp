@@ -40,8 +40,8 @@ Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
   return Decoder::open(std::make_unique<Borrowed>(source), options);
 }
 
-// Of a stream that is damaged behind its first GOF a page shows the damage; but whoever asks for
-// it should know.
+// Of a stream that is damaged behind its first GOF a page shows the damage; but whoever asks
+// for it should know.
 int check_whole(const std::string& input, Decoder& decoder) {
   std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
   for (;;) {
