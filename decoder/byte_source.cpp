@@ -79,8 +79,6 @@ Result<std::unique_ptr<ByteSource>> file_source(const std::string& path) {
   return source;
 }
 
-Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path) {
-  return path == "-" ? read_whole(stdin) : file_source(path);
-}
+Result<std::unique_ptr<ByteSource>> standard_input_source() { return read_whole(stdin); }
 
 }  // namespace rlpc
