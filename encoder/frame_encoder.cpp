@@ -99,7 +99,7 @@ class FrameEncoder::Impl {
 
   std::optional<InputError> check_frame(std::span<const float> xyz) const;
   std::optional<InputError> encode_gof();
-  // In place of the header before, after prepare().
+  // Replaces the header that prepare() has made.
   void use_header(const SequenceHeader& header);
   // With the grid for the finest error that matters.
   SequenceHeader header_for(double finest) const;

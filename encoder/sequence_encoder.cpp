@@ -52,7 +52,7 @@ class SequenceEncoder {
   };
 
   std::optional<InputError> prepare();
-  // In place of the header before, after prepare().
+  // Replaces the header that prepare() has made.
   void use_header(const SequenceHeader& header);
   std::optional<InputError> cut_gofs(std::uint32_t longest);
   InputResult<Found> search();
