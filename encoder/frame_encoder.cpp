@@ -69,8 +69,9 @@ std::optional<InputError> check_format(const FrameFormat& format) {
   return std::nullopt;
 }
 
-// Later GOFs may need errors this much smaller than the first one, of which the grid is.
-constexpr double kReserve = 4.0;
+// Later GOFs may need errors this much smaller than the first one, by which the grid is chosen.
+// Steps stay far below their largest size.
+constexpr double kReserve = 16.0;
 
 }  // namespace
 
