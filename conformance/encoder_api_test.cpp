@@ -152,6 +152,19 @@ TEST(Settings, ATargetMayAllowAnyError) {
   }
 }
 
+TEST(Settings, AsManyClustersAsAskedForAreMade) {
+  for (const Preset preset : {Preset::kFast, Preset::kMedium}) {
+    MemoryFrames source = bending_tube(40, 6);
+    EncoderSettings settings;
+    settings.profile = Profile::kBaseline;
+    settings.preset = preset;
+    settings.baseline.clusters = 40;
+    const auto report = encode(source, settings, discard);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->clusters, 40U);
+  }
+}
+
 TEST(Encoder, RefusesWhatNoLevelAllows) {
   // 16384 frames are the most of a GOF.
   std::vector<std::vector<float>> frames(16385, std::vector<float>{0.0F, 1.0F, 2.0F});

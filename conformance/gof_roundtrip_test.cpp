@@ -16,7 +16,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint64_t kAmple = std::uint64_t{1} << 40;
+constexpr std::uint64_t kAmple = std::uint64_t{1} << 30;
 constexpr int kResidualBits = floor_log2(kMaxResidual) + 1;  // of a magnitude
 
 // Random legal GOFs. Fields take the ends of their ranges often.
@@ -260,7 +260,7 @@ TEST(GofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
 std::uint64_t estimated_memory(const Generator& from, const Gof& gof,
                                const std::vector<std::uint8_t>& payload) {
   std::uint64_t too_few = 0;
-  std::uint64_t enough = std::uint64_t{1} << 32;
+  std::uint64_t enough = kAmple;
   while (enough - too_few > enough / 50) {
     const std::uint64_t middle = too_few + (enough - too_few) / 2;
     BitReader r(payload);

@@ -3,7 +3,8 @@
 include(CMakePackageConfigHelpers)
 
 set(public_headers "")
-foreach(header decoder/rlpc_decoder.h decoder/describe_error.h encoder/rlpc_encoder.h encoder/frame_encoder.h)
+foreach(header decoder/rlpc_decoder.h decoder/describe_error.h encoder/rlpc_encoder.h
+               encoder/frame_encoder.h)
   get_filename_component(side ${header} DIRECTORY)
   if(TARGET rlpc_${side} AND EXISTS ${PROJECT_SOURCE_DIR}/${header})
     list(APPEND public_headers ${header})

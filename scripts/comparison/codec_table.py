@@ -123,11 +123,11 @@ ABLATIONS = (
 class Toolbox:
     """Where the programs are, and what they can do."""
 
+    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "make_tentacle")
+
     def __init__(self, folder):
         self.folder = folder
         self._said = {}
-
-    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "make_tentacle")
 
     def path(self, tool):
         """None: it is not there. Tools of this project are those of the folder and no others."""
