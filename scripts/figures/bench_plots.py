@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Speed against rate, as SVG, from what the benchmarks report as JSON.
+
+  bench_plots.py BENCH.json FOLDER
+
+writes FOLDER/decode.svg and FOLDER/encode.svg, each where its benchmarks ran, and prints their
+paths.
+"""
+
+import json
+import pathlib
+import re
+import statistics
+import sys
+
+import svg_plot
+
+NAME = re.compile(r"(Decode|EncodeTarget)/kg:[\d.]+(?:/(fast|medium))?/(.+)/real_time")
+COLOURS = ("#0f6fb4", "#c8501e", "#2d8a4e", "#7f4fa8", "#8a6d00", "#b03070")
+TITLES = {"Decode": "Decoding, one thread", "EncodeTarget": "Encoding to a KG error, one thread"}
+FILES = {"Decode": "decode.svg", "EncodeTarget": "encode.svg"}
+
+
+def curves(results):
+    """{kind: {(animation, preset): [(bpvf, million vertex-frames a second)]}}, kind as in TITLES;
+    of benchmarks that were repeated, medians."""
+    runs = {}
+    for run in results["benchmarks"]:
+        match = NAME.fullmatch(run["run_name"])
+        if match and run["run_type"] == "iteration" and not run.get("error_occurred"):
+            runs.setdefault(run["run_name"], (match, []))[1].append(run)
+    found = {}
+    for match, repeated in runs.values():
+        kind, preset, animation = match.groups()
+        speed = statistics.median(run["vertex_frames/s"] for run in repeated) / 1e6
+        points = found.setdefault(kind, {}).setdefault((animation, preset), [])
+        points.append((repeated[0]["bpvf"], speed))
+    return found
+
+
+def plot(kind, lines):
+    animations = list(dict.fromkeys(animation for animation, _ in lines))
+    series = []
+    for (animation, preset), points in lines.items():
+        fast = preset == "fast"
+        series.append(svg_plot.Series(animation + (f", {preset}" if preset else ""),
+                                      sorted(points),
+                                      COLOURS[animations.index(animation) % len(COLOURS)],
+                                      "dashed" if fast else "solid",
+                                      "square" if fast else "circle"))
+    return svg_plot.plot(TITLES[kind], series, "bits per vertex and frame (whole file)",
+                         "million vertices times frames a second")
+
+
+def main():
+    results, folder = map(pathlib.Path, sys.argv[1:])
+    for kind, lines in curves(json.loads(results.read_text(encoding="utf-8"))).items():
+        path = folder / FILES[kind]
+        path.write_text(plot(kind, lines), encoding="utf-8")
+        print(path)
+
+
+if __name__ == "__main__":
+    main()
