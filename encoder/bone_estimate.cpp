@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "encoder/component_cost.h"
 #include "encoder/det_math.h"
@@ -30,12 +31,12 @@ std::vector<double> differences(const BoneSample& sample, const PrincipalCompone
 
 }  // namespace
 
-double expected_cost(const BoneSample& sample, const std::vector<double>& residuals,
+double expected_cost(const BoneSample& sample, std::vector<double> residuals,
                      std::uint32_t num_vertices, std::uint32_t num_frames, double step) {
   TrajectoryMatrix matrix;
   matrix.num_values = sample.num_vertices();
   matrix.num_frames = 3 * sample.num_frames;
-  matrix.a = residuals;
+  matrix.a = std::move(residuals);
   const PrincipalComponents pc = principal_components(matrix, matrix.num_frames, 0.0);
   const std::vector<double> difference = differences(sample, pc);
   const double vertices = num_vertices;

@@ -15,7 +15,7 @@ namespace rlpc {
 //   residuals               [vertex of the sample][3 * frame of the sample], grid units
 //   num_vertices, num_frames  of the GOF
 //   step                    of the quantisers, grid units
-double expected_cost(const BoneSample& sample, const std::vector<double>& residuals,
+double expected_cost(const BoneSample& sample, std::vector<double> residuals,
                      std::uint32_t num_vertices, std::uint32_t num_frames, double step);
 
 // Of some vertices, how far each is in each frame but the first from where it would be if it

@@ -142,6 +142,7 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   const Neighbours neighbours = neighbours_of(n, triangles);
   BoneSample sample;
   sample.num_frames = chosen_.size();
+  sample.positions.reserve(chosen_.size() * std::min(n, options_.sample_vertices));
   std::vector<std::uint32_t>& index = sample.place;
   index.assign(n, BoneSample::kNone);
   std::uint32_t count = 0;
@@ -179,6 +180,7 @@ double BoneFit::expected_cost() const {
 
 double BoneFit::expected_sliding_cost() const {
   std::vector<double> residuals;
+  residuals.reserve(3 * sample_.positions.size());
   for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
     Vec3d mean = Vec3d::Zero();
     for (const Vec3d& x : sample_.trajectory(v)) mean += x;
@@ -188,8 +190,8 @@ double BoneFit::expected_sliding_cost() const {
       residuals.insert(residuals.end(), {left(0), left(1), left(2)});
     }
   }
-  return rlpc::expected_cost(sample_, residuals, frames_.num_vertices, frames_.num_frames,
-                             options_.step);
+  return rlpc::expected_cost(sample_, std::move(residuals), frames_.num_vertices,
+                             frames_.num_frames, options_.step);
 }
 
 double BoneFit::rms_error() const {

@@ -1,5 +1,7 @@
 #include "encoder/matrix_products.h"
 
+#include <algorithm>
+
 #include "encoder/widest.h"
 
 namespace rlpc {
@@ -91,13 +93,18 @@ std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
 
 std::vector<std::vector<double>> project(std::span<const double> rows, std::size_t width,
                                          const std::vector<std::vector<double>>& vectors) {
+  constexpr std::size_t kRowsTogether = 512;  // so that products take little memory
   const std::size_t count = vectors.size();
-  const std::vector<double> products =
-      matrix_product(rows, width, as_columns(vectors, width), count);
   const std::size_t num_rows = rows.size() / width;
+  const std::vector<double> columns = as_columns(vectors, width);
   std::vector<std::vector<double>> result(count, std::vector<double>(num_rows));
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t r = 0; r < num_rows; ++r) result[k][r] = products[r * count + k];
+  for (std::size_t first = 0; first < num_rows; first += kRowsTogether) {
+    const std::size_t together = std::min(kRowsTogether, num_rows - first);
+    const std::vector<double> products =
+        matrix_product(rows.subspan(first * width, together * width), width, columns, count);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t r = 0; r < together; ++r) result[k][first + r] = products[r * count + k];
+    }
   }
   return result;
 }
