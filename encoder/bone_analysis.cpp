@@ -107,8 +107,7 @@ class BoneAnalyser {
     code_rest();
     // Steps that are tried later may be finer.
     constexpr double kReserve = 0.4;
-    const double least =
-        kReserve * least_energy(step_, frames_.num_vertices, frames_.num_frames);
+    const double least = kReserve * least_energy(step_, gof, frames_.num_vertices);
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);
   }
@@ -162,7 +161,8 @@ class BoneAnalyser {
       }
       const BoneMotion* parent =
           bone.parent < 0 ? nullptr : &found_.bones[static_cast<std::size_t>(bone.parent)];
-      found_.bones.push_back(code_bone(wanted, parent, rotations, origins, bone));
+      found_.bones.push_back(code_bone(wanted, parent, settings_.rounding == Rounding::kNearest,
+                                       rotations, origins, bone));
       motions_.push_back(motions_of(found_.bones.back()));
       found_.gof.bones.push_back(std::move(bone));
     }
@@ -278,11 +278,17 @@ class BoneAnalyser {
 
 }  // namespace
 
-double least_energy(double step, std::uint32_t num_vertices, std::uint32_t num_frames) {
-  constexpr double kOfSpatial = 0.25;  // squared errors of a coded value
+double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices) {
+  constexpr double kLeast = 0.4;  // squared errors of a coded value, per vertex
+  // One bone leaves trajectories of all vertices, of which many are worth their bits: those of
+  // long vectors need more.
+  constexpr double kOfSpatial = 0.25;
   constexpr double kOfTemporal = 12.0;
-  const double share = static_cast<double>(num_frames) / num_vertices;
-  const double values = std::clamp(kOfSpatial + kOfTemporal * share, 0.4, 1.2);
+  constexpr double kMost = 1.2;
+  const double share = static_cast<double>(gof.num_frames) / num_vertices;
+  const double values = gof.bones.size() > 1
+                            ? kLeast
+                            : std::clamp(kOfSpatial + kOfTemporal * share, kLeast, kMost);
   return values * step * step / 12.0 * num_vertices;
 }
 

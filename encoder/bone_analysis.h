@@ -16,6 +16,12 @@
 
 namespace rlpc {
 
+enum class Rounding : std::uint8_t {
+  kCheapest,  // by rate and distortion
+  kDeadZone,  // of spatial residuals; others likewise by rate and distortion
+  kNearest,   // where the largest error counts
+};
+
 struct BoneSettings {
   Prediction prediction = Prediction::kLayers;
   int weight_bits = 6;
@@ -24,11 +30,10 @@ struct BoneSettings {
   int outer_scale = 3;
   bool layer_steps = true;       // finer steps in coarser layers
   bool temporal_weights = true;  // not only the orders of 8.2.2
-  bool optimised = true;         // spatial residuals, by rate and distortion; else a dead zone
-  bool cobra_steps = false;      // of temporal values; else of equal distortion
+  Rounding rounding = Rounding::kCheapest;
+  bool cobra_steps = false;            // of temporal values; else of equal distortion
   std::uint32_t component_groups = 0;  // 0: as many as suit
   std::uint32_t layer_groups = 0;
-  double temporal_error = 0.8;  // of a temporal value, relative to that of a spatial one
   std::size_t max_trajectories = 1024;
 };
 
@@ -47,8 +52,7 @@ BoneAnalysis analyse_bones(const CodedMesh& mesh, int position_bits, const GofFr
                            std::uint32_t first_frame, const Rig& rig,
                            const BoneSettings& settings, double step);
 
-// Energy below which a trajectory costs more than it saves: it has spatial factors that are
-// small and cheap, and a temporal vector that is not.
-double least_energy(double step, std::uint32_t num_vertices, std::uint32_t num_frames);
+// Energy below which a trajectory costs more than it saves, whatever its temporal vector costs.
+double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices);
 
 }  // namespace rlpc

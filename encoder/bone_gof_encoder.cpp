@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include "common/bone_recon.h"
 #include "common/gof.h"
 #include "common/int_math.h"
-#include "common/slice_models.h"
-#include "encoder/bit_cost.h"
+#include "common/sequence_header.h"
 #include "encoder/det_math.h"
+#include "encoder/gof_coder.h"
 #include "encoder/matrix_products.h"
+#include "encoder/residual_choice.h"
 #include "encoder/track_coding.h"
-#include "encoder/write_residual.h"
 
 namespace rlpc {
 namespace {
@@ -24,48 +23,19 @@ constexpr double kBytesOfSlice = 4000.0;
 // Temporal values are scaled so that their step is 2^3 units of the sums, if that can be.
 constexpr int kWantedScaleIdx = 56;
 
+// Squared error of a temporal value, relative to that of a spatial one; and what a vertex costs
+// at least for a trajectory, in squared steps. What bones leave is in few places, where
+// neighbours tell little about it.
+constexpr double kTemporalError = 0.8;
+constexpr double kTemporalErrorOfBones = 2.0;
+constexpr double kSpatialCost = 0.02;
+constexpr double kSpatialCostOfBones = 0.06;
+
 // Products of steps, in eighths of an octave, have a scale_idx up to this one.
 constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;
 // Wanted values up to these fit their widths, whatever they are rounded to.
 constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);
 constexpr double kMostSpatial = (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;
-
-// Chooses magnitudes of spatial residuals by what they cost, as if there were one slice.
-class SpatialCost {
- public:
-  SpatialCost(const CodedMesh& mesh, std::size_t num_factors)
-      : contexts_(mesh, num_factors), models_(std::make_unique<VertexModels>()) {}
-
-  void start(std::uint32_t v) { contexts_.start(v); }
-  // One of the two next to `steps`. A bit is worth half of what it would be if no other vertex
-  // were predicted from this one.
-  std::int32_t choose(double steps) {
-    constexpr double kWorthOfBit = 0.06;  // squared steps
-    constexpr double kNearlyUp = 0.95;
-    const auto below = static_cast<std::int32_t>(steps);
-    const double part = steps - below;
-    if (part < 0.5) return below;
-    if (part > kNearlyUp) return below + 1;
-    const double more_error = part * part - (1.0 - part) * (1.0 - part);
-    return kWorthOfBit * (bits(below + 1) - bits(below)) < more_error ? below + 1 : below;
-  }
-  void code(std::int32_t residual) {
-    BitCost cost;
-    write_residual(cost, models(), contexts_.expected(), residual);
-    contexts_.update(residual);
-  }
-
- private:
-  ResidualModels& models() { return (*models_)[contexts_.activity()]; }
-  double bits(std::int32_t magnitude) {
-    BitEstimate estimate;
-    write_residual(estimate, models(), contexts_.expected(), magnitude);
-    return estimate.bits();
-  }
-
-  VertexContexts contexts_;
-  std::unique_ptr<VertexModels> models_;
-};
 
 // Trajectories and their spatial factors.
 class TrajectoryCoder {
@@ -83,6 +53,10 @@ class TrajectoryCoder {
     gof_.outer_scale = settings.outer_scale;
   }
 
+  bool has(std::size_t count) {
+    code_temporal(count);
+    return count_ == count;
+  }
   BoneGof code() {
     while (!code_trajectories()) {
     }
@@ -93,10 +67,8 @@ class TrajectoryCoder {
  private:
   // False: some values do not fit their widths, and steps have become coarser for the next try.
   bool code_trajectories() {
-    count_ = num_trajectories(analysis_, step_);
-    gof_.trajectories.clear();
-    if (count_ == 0) return true;
     code_temporal();
+    if (count_ == 0) return true;
     fit_spatial();
     code_spatial();
     constexpr double kReserve = 1.02;
@@ -107,37 +79,72 @@ class TrajectoryCoder {
     return scale();
   }
 
-  // Temporal values, each vector with the step at which its error is as large as the others'.
-  void code_temporal() {
+  // Temporal values of the trajectories that are worth their bits, or the first of them.
+  void code_temporal(std::size_t most = kLevels.back().max_components) {
+    constexpr int kMostInVain = 4;  // of the next ones, none will do better
     TrackState state(gof_.num_frames);
-    gof_.trajectories.resize(count_);
-    decoded_.assign(count_, std::vector<double>(3 * num_frames_));
-    eighths_.resize(count_);
+    gof_.trajectories.clear();
+    decoded_.clear();
+    eighths_.clear();
     indices_.clear();
+    const std::vector<double>& energy = analysis_.pc.energy;
+    const double least = least_energy(step_, analysis_.gof, mesh_.num_vertices());
+    int in_vain = 0;
+    for (num_tried_ = 0; num_tried_ < analysis_.pc.temporal.size(); ++num_tried_) {
+      const bool enough = gof_.trajectories.size() == most || in_vain == kMostInVain;
+      if (enough || energy[num_tried_] <= least) break;
+      in_vain = code_temporal(num_tried_, state) ? 0 : in_vain + 1;
+    }
+    count_ = gof_.trajectories.size();
+  }
+
+  // Those of one, with the step at which its error is as large as the others'. False: it is not
+  // worth its bits.
+  bool code_temporal(std::size_t l, TrackState& state) {
+    // The product of both steps is 2^(eighths / 8), of which the stream keeps the exponent.
+    const std::vector<double>& temporal = analysis_.pc.temporal[l];
+    const double wanted = step_ * std::sqrt(temporal_error() / importance(l)) * step_;
+    const double least = step_ * largest(temporal) / kMostTemporal;
+    const int eighths =
+        std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),
+                   least_eighths_, kMostEighths);
+    const double unit = power_of_eighths(eighths) / step_;
     std::vector<std::array<double, 3>> values(num_frames_);
-    for (std::size_t l = 0; l < count_; ++l) {
-      // The product of both steps is 2^(eighths / 8), of which the stream keeps the exponent.
-      const double wanted = step_ * std::sqrt(settings_.temporal_error / importance(l)) * step_;
-      const double least = step_ * largest(analysis_.pc.temporal[l]) / kMostTemporal;
-      eighths_[l] =
-          std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),
-                     least_eighths_, kMostEighths);
-      const double unit = power_of_eighths(eighths_[l]) / step_;
-      for (std::size_t f = 0; f < num_frames_; ++f) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          values[f][c] = analysis_.pc.temporal[l][c * num_frames_ + f];
-        }
-      }
-      Trajectory& trajectory = gof_.trajectories[l];
-      code_trajectory(values, unit, settings_.temporal_weights, state, trajectory);
-      indices_.push_back(recon_trajectory(trajectory));
-      for (std::size_t f = 0; f < num_frames_; ++f) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          decoded_[l][c * num_frames_ + f] = unit * indices_[l][f][c];
-        }
+    for (std::size_t f = 0; f < num_frames_; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) values[f][c] = temporal[c * num_frames_ + f];
+    }
+    Trajectory trajectory;
+    TrackState after = state;
+    const TrackCost cost =
+        code_trajectory(values, unit,
+                        {.refine = settings_.temporal_weights,
+                         .nearest = settings_.rounding == Rounding::kNearest},
+                        after, trajectory);
+    const double saved = analysis_.pc.energy[l] * (1.0 - cost.error * unit * unit);
+    if (saved < least_worth(cost.bits)) return false;
+    state = std::move(after);
+    eighths_.push_back(eighths);
+    indices_.push_back(recon_trajectory(trajectory));
+    gof_.trajectories.push_back(std::move(trajectory));
+    std::vector<double>& decoded = decoded_.emplace_back(3 * num_frames_);
+    for (std::size_t f = 0; f < num_frames_; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        decoded[c * num_frames_ + f] = unit * indices_.back()[f][c];
       }
     }
+    return true;
   }
+
+  // The energy that a trajectory must save: what its temporal values cost, and its spatial
+  // factors cost and leave.
+  double least_worth(double bits) const {
+    const double of_vertex = has_bones() ? kSpatialCostOfBones : kSpatialCost;
+    return step_ * step_ * (kErrorPerBit * bits + of_vertex * mesh_.num_vertices());
+  }
+
+  bool has_bones() const { return analysis_.gof.bones.size() > 1; }
+
+  double temporal_error() const { return has_bones() ? kTemporalErrorOfBones : kTemporalError; }
 
   // How much an error of a temporal value weighs: its sum of squared spatial factors, or as in
   // Vasa and Skala 2009, (18) and (19), the square of their summed magnitudes.
@@ -182,8 +189,8 @@ class TrajectoryCoder {
     }
     // The matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in the decoded
     // temporal vectors. So the factors are pc.spatial * mixing.
-    std::vector<double> mixing(count_ * count_);  // [component][factor]
-    for (std::size_t l = 0; l < count_; ++l) {
+    std::vector<double> mixing(num_tried_ * count_);  // [component][factor]
+    for (std::size_t l = 0; l < num_tried_; ++l) {
       double* s = &mixing[l * count_];
       for (std::size_t k = 0; k < count_; ++k) {
         for (std::size_t f = 0; f < decoded_[k].size(); ++f) {
@@ -218,23 +225,21 @@ class TrajectoryCoder {
     largest_.assign(count_, 0);
     double most = 0.0;
     const double per_step = kMaxLayerStep / step_;
-    constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
-    constexpr double kRoundUp = 0.42;
-    std::optional<SpatialCost> cost;
-    if (settings_.optimised) cost.emplace(mesh_, count_);
+    std::optional<VertexResidualChoice> choice;
+    if (settings_.rounding == Rounding::kCheapest) choice.emplace(mesh_, count_);
+    constexpr double kRoundUpOfDeadZone = 0.42;
+    const double round_up = settings_.rounding == Rounding::kNearest ? 0.5 : kRoundUpOfDeadZone;
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
-      if (cost) cost->start(v);
+      if (choice) choice->start(v);
       for (std::size_t l = 0; l < count_; ++l) {
         const double wanted = spatial_[v * count_ + l] * per_step;
         most = std::max(most, std::abs(wanted));
         const double difference = wanted - static_cast<double>(predicted[l]);
-        const double steps = std::min(std::abs(difference) / layer_step, kMost);
-        const std::int32_t magnitude =
-            cost ? cost->choose(steps) : static_cast<std::int32_t>(steps + kRoundUp);
-        const std::int32_t residual = difference < 0.0 ? -magnitude : magnitude;
-        if (cost) cost->code(residual);
+        const std::int32_t residual = choice
+                                          ? choice->next(difference / layer_step)
+                                          : rounded_residual(difference / layer_step, round_up);
         residual_[v * count_ + l] = residual;
         const std::int32_t value = clip_signed(
             kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));
@@ -362,7 +367,8 @@ class TrajectoryCoder {
   double excess_ = 0.0;        // largest spatial value, of those that fit
   std::size_t num_frames_;
   BoneGof gof_;
-  std::size_t count_ = 0;                     // trajectories
+  std::size_t num_tried_ = 0;                 // trajectories: the first components,
+  std::size_t count_ = 0;                     // of which so many are coded
   std::vector<int> eighths_;                  // of the product of both steps
   std::vector<std::vector<Vec3i>> indices_;   // temporal values
   std::vector<std::vector<double>> decoded_;  // [count][3 * num_frames]
@@ -373,12 +379,9 @@ class TrajectoryCoder {
 
 }  // namespace
 
-std::size_t num_trajectories(const BoneAnalysis& analysis, double step) {
-  const double least = least_energy(step, static_cast<std::uint32_t>(analysis.rest[0].size()),
-                                    analysis.gof.num_frames);
-  std::size_t count = 0;
-  while (count < analysis.pc.temporal.size() && analysis.pc.energy[count] > least) ++count;
-  return count;
+bool has_trajectories(std::size_t count, const CodedMesh& mesh, const BoneAnalysis& analysis,
+                      const BoneSettings& settings, double step) {
+  return TrajectoryCoder(mesh, analysis, settings, step).has(count);
 }
 
 BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,

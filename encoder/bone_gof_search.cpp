@@ -39,7 +39,9 @@ constexpr double kSure = 0.3;
 // real one: what makes that low, such as vertices at rest, is there with bones, too.
 constexpr double kStrongPromise = 0.5;
 // Limits of promises are so much higher where a trial takes little time.
-constexpr double kHopeOfSmallMesh = 1.25;
+constexpr double kHopeOfSmallMesh = 1.35;
+constexpr double kHopeOfFewValues = 1.07;
+constexpr std::uint64_t kFewValues = 200'000;  // vertices times frames
 // Expected costs, relative to the least, of numbers of bones to be tried.
 constexpr double kNearLeast = 1.06;
 constexpr double kWorthACost = 1.2;
@@ -78,6 +80,12 @@ EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
   return encoded;
 }
 
+double hope_of(const GofFrames& frames) {
+  if (frames.num_vertices <= kSmallMesh) return kHopeOfSmallMesh;
+  const std::uint64_t values = std::uint64_t{frames.num_vertices} * frames.num_frames;
+  return values <= kFewValues ? kHopeOfFewValues : 1.0;
+}
+
 // One bone that does not turn: it follows the centre of the vertices.
 Rig sliding_rig(const GofFrames& frames) {
   Rig rig;
@@ -111,7 +119,7 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
       first_frame_(first_frame),
       tools_(settings.main),
       preset_(settings.preset),
-      hope_(frames.num_vertices <= kSmallMesh ? kHopeOfSmallMesh : 1.0),
+      hope_(hope_of(frames)),
       max_influences_(tools_.influences == 0 ? kUsualInfluences : tools_.influences),
       choice_(choice) {
   usual_.prediction = tools_.prediction.value_or(Prediction::kLayers);
@@ -119,7 +127,8 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
   if (!tools_.outer_ring) usual_.outer_weight = 0;
   if (!tools_.outer_ring) usual_.outer_scale = 0;
   usual_.layer_steps = tools_.layer_steps;
-  usual_.optimised = preset_ != Preset::kFast;
+  if (preset_ == Preset::kFast) usual_.rounding = Rounding::kDeadZone;
+  if (settings.target.kind == Target::kMaxError) usual_.rounding = Rounding::kNearest;
   usual_.temporal_weights = tools_.temporal_weights;
   usual_.cobra_steps = tools_.cobra_steps;
   usual_.component_groups = tools_.component_groups;
@@ -364,9 +373,17 @@ void BoneGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
   }
 }
 
+// Whether what is coded follows the step, with the analysis that there is: it has trajectories.
+bool BoneGofSearch::follows(double step) const {
+  constexpr std::size_t kEnough = 4;
+  const BoneSettings& settings = choice_->settings;
+  return has_trajectories(kEnough, mesh_of(context_, settings.prediction), cached_->analysis,
+                          settings, step);
+}
+
 bool BoneGofSearch::needs_frames(double step, double analysis_step) const {
   return !choice_ || choice_->is_far(analysis_step) || !cached_ ||
-         cached_->step != analysis_step || num_trajectories(cached_->analysis, step) == 0;
+         cached_->step != analysis_step || !follows(step);
 }
 
 EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
@@ -377,8 +394,7 @@ EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
     }
   };
   analyse_for(analysis_step);
-  // Without trajectories, nothing but the analysis depends on the step.
-  if (num_trajectories(cached_->analysis, step) == 0) analyse_for(step);
+  if (!follows(step)) analyse_for(step);
   return encoded_gof(context_, code(cached_->analysis, choice_->settings, step));
 }
 

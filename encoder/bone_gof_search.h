@@ -75,6 +75,7 @@ class BoneGofSearch : public GofCoder {
   BoneFit fit(std::size_t influences, double step) const;
   BoneFit quick_fit(std::size_t influences, double step) const;
   Promise promise(std::size_t influences, double step) const;
+  bool follows(double step) const;
   void choose_one_bone();
   double consider(Rig rig, const BoneCounts& counts);
   void consider(const BoneSettings& settings);

@@ -33,6 +33,8 @@ MainGofSearch::MainGofSearch(const BoneContext& bones, const EncodingContext& co
 // asked for of bones is not asked for of clusters.
 bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) {
   if (settings_.preset == Preset::kFast || settings_.main != MainTools{}) return false;
+  // Costs do not tell which has the smaller largest error; mostly, it is bones.
+  if (settings_.target.kind == Target::kMaxError) return false;
   if (settings_.preset == Preset::kSlow) return true;
   const std::uint32_t most = std::min(frames_.num_vertices, 3 * frames_.num_frames);
   if (bones.components < kHighRank * most) return false;

@@ -7,10 +7,12 @@
 
 #include "common/bone_recon.h"
 #include "common/gof.h"
+#include "common/gof_models.h"
 #include "encoder/bit_cost.h"
 #include "encoder/det_math.h"
 #include "encoder/elimination.h"
-#include "encoder/write_track.h"
+#include "encoder/residual_choice.h"
+#include "encoder/write_residual.h"
 
 namespace rlpc {
 namespace {
@@ -20,11 +22,8 @@ constexpr double kMaxWeight = 255.0;
 constexpr int kWeightBits = 9;
 // The smallest real part of a residual rotation that its vector part is divided by.
 constexpr double kMinRealPart = 0.1;
-
-std::int32_t to_residual(double x) {
-  constexpr auto kMost = static_cast<double>(kMaxResidual);
-  return static_cast<std::int32_t>(round_to_int(std::clamp(x, -kMost, kMost)));
-}
+// What a bit is worth, in squared steps.
+constexpr double kWorthOfBit = 0.1;
 
 // Weights of the `count` values before that predict the series best, in least squares.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
@@ -54,17 +53,58 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
   return true;
 }
 
+// Residuals of a track, frame by frame.
+class ResidualChoice {
+ public:
+  ResidualChoice(const TrackState& before, bool nearest)
+      : state_(before), context_(state_.mean), nearest_(nearest) {}
+  ResidualChoice(const ResidualChoice&) = delete;  // the context refers to the state
+  ResidualChoice& operator=(const ResidualChoice&) = delete;
+
+  // Of the next frame; wanted, in steps.
+  Vec3i next(const std::array<double, 3>& wanted) {
+    Vec3i residual{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t expected = context_.expected(frame_, c);
+      residual[c] = nearest_
+                        ? rounded_residual(wanted[c], 0.5)
+                        : cheaper_residual(state_.models, expected, wanted[c], kWorthOfBit);
+      const double error = wanted[c] - residual[c];
+      error_ += error * error;
+      write_residual(bits_, state_.models, expected, residual[c]);
+      context_.update(frame_, c, residual[c]);
+    }
+    ++frame_;
+    return residual;
+  }
+  TrackCost cost() const { return {bits_.bits(), error_}; }
+  TrackState take_state() { return std::move(state_); }
+
+ private:
+  TrackState state_;
+  TrackContext context_;
+  bool nearest_;
+  std::uint32_t frame_ = 0;
+  BitCost bits_;
+  double error_ = 0.0;
+};
+
+double worth(const TrackCost& cost) { return cost.error + kWorthOfBit * cost.bits; }
+
 TrackResiduals residuals_of(std::span<const std::array<double, 3>> values, double step,
-                            const Trajectory& trajectory) {
+                            const Trajectory& trajectory, ResidualChoice& choice) {
   TrackResiduals residuals;
   std::vector<Vec3i> coded;
   coded.reserve(values.size());
   for (const auto& value : values) {
     const Vec3l prediction = predict_trajectory(trajectory, coded);
-    Vec3i residual{};
+    std::array<double, 3> wanted{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      wanted[c] = value[c] / step - static_cast<double>(prediction[c]);
+    }
+    const Vec3i residual = choice.next(wanted);
     Vec3i now{};
     for (std::size_t c = 0; c < 3; ++c) {
-      residual[c] = to_residual(value[c] / step - static_cast<double>(prediction[c]));
       now[c] = clip_signed(kTemporalIndexBits, prediction[c] + residual[c]);
     }
     residuals.push_back(residual);
@@ -88,23 +128,24 @@ QuaternionD inverse(const Quaternion& q) {
           -static_cast<double>(q[2]) * one, -static_cast<double>(q[3]) * one};
 }
 
-// The residual that turns what is predicted into what is wanted.
-Vec3i rotation_residual(const QuaternionD& relative, const Quaternion& predicted, double step) {
+// The residual that turns what is predicted into what is wanted, in steps.
+std::array<double, 3> rotation_residual(const QuaternionD& relative,
+                                        const Quaternion& predicted, double step) {
   QuaternionD turn = product(inverse(predicted), relative);
   if (turn[0] < 0.0) {
     for (double& x : turn) x = -x;
   }
   const double real = std::max(turn[0], kMinRealPart);
-  Vec3i residual{};
+  std::array<double, 3> residual{};
   for (std::size_t c = 0; c < 3; ++c) {
-    residual[c] = to_residual(turn[c + 1] / real * exact_exp2(kQuaternionFractionBits) / step);
+    residual[c] = turn[c + 1] / real * exact_exp2(kQuaternionFractionBits) / step;
   }
   return residual;
 }
 
 // One coding of a bone with the orders that it has.
-BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
-                      Bone& bone) {
+BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, Bone& bone,
+                      ResidualChoice& rotations, ResidualChoice& origins) {
   BoneTracker tracker(bone, parent);
   bone.rotation_residual.clear();
   bone.origin_residual.clear();
@@ -115,16 +156,18 @@ BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* pare
     if (bone.rotation_flag) {
       QuaternionD relative = wanted[f].rotation;
       if (parent != nullptr) relative = product(inverse(parent->poses[f].rotation), relative);
-      rotation = rotation_residual(relative, tracker.predicted_rotation(), rotation_step);
+      rotation = rotations.next(
+          rotation_residual(relative, tracker.predicted_rotation(), rotation_step));
       bone.rotation_residual.push_back(rotation);
     }
     Vec3i origin{};
     if (bone.origin_flag) {
       const Vec3l predicted = tracker.predicted_origin();
+      std::array<double, 3> steps{};
       for (std::size_t c = 0; c < 3; ++c) {
-        origin[c] = to_residual((wanted[f].origin[c] - static_cast<double>(predicted[c])) /
-                                origin_step);
+        steps[c] = (wanted[f].origin[c] - static_cast<double>(predicted[c])) / origin_step;
       }
+      origin = origins.next(steps);
       bone.origin_residual.push_back(origin);
     }
     tracker.add(rotation, origin);
@@ -134,57 +177,55 @@ BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* pare
 
 }  // namespace
 
-double track_bits(TrackState& state, const TrackResiduals& residuals) {
-  BitCost cost;
-  write_track(cost, state.models, state.mean, residuals);
-  return cost.bits();
-}
-
-void code_trajectory(std::span<const std::array<double, 3>> values, double step, bool refine,
-                     TrackState& state, Trajectory& trajectory) {
+TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double step,
+                          const TrackOptions& options, TrackState& state,
+                          Trajectory& trajectory) {
   TrackState best_state = state;
-  double best = std::numeric_limits<double>::infinity();
+  TrackCost best{0.0, std::numeric_limits<double>::infinity()};
   Trajectory tried = trajectory;
-  const int last = refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
+  const int last = options.refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
   for (tried.temporal_predictor = 1; tried.temporal_predictor <= last;
        ++tried.temporal_predictor) {
     const int count = tried.temporal_predictor - kMaxPredictorOrder;
     if (count > 0 && !fit_weights(values, step, count, tried.temporal_weight)) continue;
-    tried.residual = residuals_of(values, step, tried);
-    TrackState after = state;
-    const double bits =
-        track_bits(after, tried.residual) + (count > 0 ? kWeightBits * count : 0);
-    if (bits >= best) continue;
-    best = bits;
+    ResidualChoice choice(state, options.nearest);
+    tried.residual = residuals_of(values, step, tried, choice);
+    TrackCost cost = choice.cost();
+    if (count > 0) cost.bits += kWeightBits * count;
+    if (worth(cost) >= worth(best)) continue;
+    best = cost;
     trajectory = tried;
-    best_state = std::move(after);
+    best_state = choice.take_state();
   }
   state = std::move(best_state);
+  return best;
 }
 
-BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
+BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
                      TrackState& rotations, TrackState& origins, Bone& bone) {
   // The orders do not depend on each other but for rounding: first rotations, then origins.
-  const auto choose = [&](TrackState& state, int& order, int first,
-                          const TrackResiduals& residuals) {
-    TrackState best_state = state;
+  const auto choose = [&](int& order, int first, bool of_rotations) {
     double best = std::numeric_limits<double>::infinity();
     int best_order = first;
     for (order = first; order <= kMaxPredictorOrder; ++order) {
-      track_bone(wanted, parent, bone);
-      TrackState after = state;
-      const double bits = track_bits(after, residuals);
-      if (bits >= best) continue;
-      best = bits;
+      ResidualChoice rotation(rotations, nearest);
+      ResidualChoice origin(origins, nearest);
+      track_bone(wanted, parent, bone, rotation, origin);
+      const double now = worth((of_rotations ? rotation : origin).cost());
+      if (now >= best) continue;
+      best = now;
       best_order = order;
-      best_state = std::move(after);
     }
     order = best_order;
-    state = std::move(best_state);
   };
-  if (bone.rotation_flag) choose(rotations, bone.rotation_order, 1, bone.rotation_residual);
-  if (bone.origin_flag) choose(origins, bone.origin_order, 0, bone.origin_residual);
-  return track_bone(wanted, parent, bone);
+  if (bone.rotation_flag) choose(bone.rotation_order, 1, true);
+  if (bone.origin_flag) choose(bone.origin_order, 0, false);
+  ResidualChoice rotation(rotations, nearest);
+  ResidualChoice origin(origins, nearest);
+  BoneMotion motion = track_bone(wanted, parent, bone, rotation, origin);
+  rotations = rotation.take_state();
+  origins = origin.take_state();
+  return motion;
 }
 
 }  // namespace rlpc

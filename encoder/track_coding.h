@@ -1,5 +1,5 @@
-// Tracks of the Main profile, 8.12 and 8.14.2 backwards: residuals in closed loop, with the
-// predictor that costs the fewest bits.
+// Tracks of the Main profile, 8.12 and 8.14.2 backwards: residuals in closed loop, chosen by
+// rate and distortion, with the predictor that does best.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,21 @@ struct TrackState {
   std::vector<std::uint32_t> mean;
 };
 
-// Bits of a track in this state, which moves on past it.
-double track_bits(TrackState& state, const TrackResiduals& residuals);
+struct TrackCost {
+  double bits = 0.0;
+  double error = 0.0;  // squared, of all values, in squared steps
+};
 
-// A trajectory: values [num_frames] of unit `step`, 3 coordinates each.
-//   refine  also tries weights fitted to the series
-// Sets predictor, weights and residuals; the state moves on past it.
-void code_trajectory(std::span<const std::array<double, 3>> values, double step, bool refine,
-                     TrackState& state, Trajectory& trajectory);
+struct TrackOptions {
+  bool refine = true;    // also try weights fitted to the series
+  bool nearest = false;  // residuals are not more than half a step off; else less than one
+};
+
+// A trajectory: values [num_frames] of unit `step`, 3 coordinates each. Sets predictor, weights
+// and residuals, and returns what they cost; the state moves on past it.
+TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double step,
+                          const TrackOptions& options, TrackState& state,
+                          Trajectory& trajectory);
 
 // Where a bone is to be in a frame, in world coordinates and 1/16 grid units.
 struct WantedPose {
@@ -35,8 +42,8 @@ struct WantedPose {
 };
 
 // A bone: its flags, pivot, parent and steps are given; sets orders and residuals, and returns
-// the motion that a decoder sees.
-BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
+// the motion that a decoder sees. The states move on past it. nearest: see above.
+BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
                      TrackState& rotations, TrackState& origins, Bone& bone);
 
 }  // namespace rlpc
