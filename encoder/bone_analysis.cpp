@@ -105,8 +105,8 @@ class BoneAnalyser {
       gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
     }
     code_rest();
-    // Steps that are tried later may be finer.
-    constexpr double kReserve = 0.4;
+    // Steps that are tried later may be finer (AnalysisRange).
+    constexpr double kReserve = 0.69;
     const double least = kReserve * least_energy(step_, gof, frames_.num_vertices);
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);

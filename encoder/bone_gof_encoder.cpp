@@ -384,6 +384,17 @@ bool has_trajectories(std::size_t count, const CodedMesh& mesh, const BoneAnalys
   return TrajectoryCoder(mesh, analysis, settings, step).has(count);
 }
 
+double expected_squared_error(const BoneAnalysis& analysis, double step) {
+  constexpr double kOfCoded = 0.52;  // of what uniform quantisation adds to each value
+  const double num_values = static_cast<double>(analysis.rest[0].size()) +
+                            3.0 * kTemporalError * analysis.gof.num_frames;
+  const double quantised = kOfCoded * step * step / 12.0 * num_values;
+  double error = analysis.pc.total_energy;
+  for (const double energy : analysis.pc.energy)
+    error -= energy * energy / (energy + quantised);
+  return error;
+}
+
 BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
                       const BoneSettings& settings, double step) {
   return TrajectoryCoder(mesh, analysis, settings, step).code();

@@ -30,7 +30,7 @@ constexpr double kFlexiblePart = 1.0;
 // Expected costs at which bones are looked for: relative to those expected without bones, to
 // the real ones without, and to the real ones once the first bones are there. If the first are
 // very low, nothing else is tried.
-constexpr double kPromising = 0.78;
+constexpr double kPromising = 0.72;
 constexpr double kPromisingOfReal = 0.85;
 constexpr double kPromisingUnsettled = 0.93;
 constexpr double kPromisingSettled = 0.9;
@@ -386,14 +386,22 @@ bool BoneGofSearch::needs_frames(double step, double analysis_step) const {
          cached_->step != analysis_step || !follows(step);
 }
 
-EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
+void BoneGofSearch::analyse_for(double step) {
+  if (!cached_ || cached_->step != step) cached_ = Cached{step, analyse(*choice_, step)};
+}
+
+void BoneGofSearch::analyse(double analysis_step) {
   if (!choice_ || choice_->is_far(analysis_step)) choose(analysis_step);
-  const auto analyse_for = [&](double wanted) {
-    if (!cached_ || cached_->step != wanted) {
-      cached_ = Cached{wanted, analyse(*choice_, wanted)};
-    }
-  };
   analyse_for(analysis_step);
+}
+
+std::optional<double> BoneGofSearch::expected_error(double step) const {
+  if (!cached_ || cached_->analysis.gof.bones.size() > 1) return std::nullopt;
+  return expected_squared_error(cached_->analysis, step);
+}
+
+EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
+  analyse(analysis_step);
   if (!follows(step)) analyse_for(step);
   return encoded_gof(context_, code(cached_->analysis, choice_->settings, step));
 }

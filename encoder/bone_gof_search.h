@@ -53,6 +53,8 @@ class BoneGofSearch : public GofCoder {
   BoneGofSearch(const BoneContext& context, const GofFrames& frames, std::uint32_t first_frame,
                 const EncoderSettings& settings, std::optional<BoneChoice>& choice);
 
+  void analyse(double analysis_step) override;
+  std::optional<double> expected_error(double step) const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
 
@@ -76,6 +78,7 @@ class BoneGofSearch : public GofCoder {
   BoneFit quick_fit(std::size_t influences, double step) const;
   Promise promise(std::size_t influences, double step) const;
   bool follows(double step) const;
+  void analyse_for(double step);
   void choose_one_bone();
   double consider(Rig rig, const BoneCounts& counts);
   void consider(const BoneSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -147,6 +148,38 @@ TEST(BoneGofSearch, TheErrorFollowsTheStep) {
     last_error = outcome.rms_error;
     last_bytes = outcome.bytes;
   }
+}
+
+// The real error is another, by about the same factor at all steps.
+TEST(BoneGofSearch, ExpectsTheErrorOfOneBone) {
+  const Animation a(bending);
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, fast(), choice);
+  EXPECT_FALSE(search.expected_error(10.0));
+  search.analyse(10.0);
+  double least = 1e9;
+  double most = 0.0;
+  for (const double step : {10.0, 13.0, 16.0, 20.0}) {
+    const double real = squared_error(a.frames, search.encode(step, 10.0).frame);
+    const double factor = std::sqrt(real / search.expected_error(step).value());
+    least = std::min(least, factor);
+    most = std::max(most, factor);
+  }
+  EXPECT_GT(least, 0.6);
+  EXPECT_LT(most, 1.6);
+  EXPECT_LT(most, 1.1 * least);
+}
+
+TEST(BoneGofSearch, ExpectsNothingOfManyBones) {
+  const Animation a(bending);
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  EncoderSettings settings = fast();
+  settings.main.bones = 2;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  search.analyse(10.0);
+  EXPECT_FALSE(search.expected_error(10.0));
 }
 
 TEST(BoneGofSearch, IsTheSameEachTime) {

@@ -231,8 +231,19 @@ InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& 
   GofMemory memory;
   const auto coder = coding_->make_coder(*frames, span.first, memory);
   TargetSearch search = search_for(settings_, header_, rms_spread);
-  // GOFs are much alike.
-  if (last_step_ > 0.0) search.begin_at(last_step_);
+  const bool for_kg = settings_.target.kind == Target::kKg;
+  const double spread = rms_spread * exact_exp2(-header_.grid.log2_step);
+  const auto expected = [&] {
+    if (!for_kg) return TargetSearch::Expected{};
+    return expected_kg({coder.get()},
+                       spread * spread * static_cast<double>(frames->xyz.size()));
+  };
+  if (last_step_ > 0.0) {
+    search.begin_at(last_step_);  // GOFs are much alike
+  } else if (for_kg) {
+    coder->analyse(search.analysis_step());
+    if (const auto by_analysis = expected()) search.begin_at(by_analysis);
+  }
   std::optional<Best> best;
   while (!search.finished()) {
     ++report_.trials;
@@ -242,7 +253,7 @@ InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& 
     if (!hash_unit) return hash_unit.error();
     trial.bytes = {span.count, write_gof_units(trial.encoded), std::move(*hash_unit)};
     trial.kg_error_percent = metrics.result().kg_error_percent;
-    const bool better = search.report(measured(metrics.result(), trial.bytes));
+    const bool better = search.report(measured(metrics.result(), trial.bytes), expected());
     if (better || !best) best = std::move(trial);
   }
   best->met = search.met();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,11 @@ inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames
 class GofCoder {
  public:
   virtual ~GofCoder() = default;
+  // As encode() does first, where expected_error() tells more afterwards.
+  virtual void analyse(double /*analysis_step*/) {}
+  // Squared error of what encode() would give, by the last analysis; the real one is larger or
+  // smaller by a factor that hardly depends on the step. None: nothing is known.
+  virtual std::optional<double> expected_error(double /*step*/) const { return std::nullopt; }
   // Whether encode() looks at the frames; else they may be gone.
   virtual bool needs_frames(double step, double analysis_step) const = 0;
   // step: of the quantisers, in grid steps. analysis_step: that the analysis is made for, near

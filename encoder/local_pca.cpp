@@ -71,14 +71,16 @@ ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t ma
     PrincipalComponents pc = principal_components(matrix, max_components, min_energy);
     const std::vector<double> spatial = as_columns(pc.spatial, matrix.num_values);
     result.spatial.assign(spatial.begin(), spatial.end());
+    result.total_energy = pc.total_energy;
     result.energy = std::move(pc.energy);
     result.temporal = std::move(pc.temporal);
     return result;
   }
   const std::size_t width = matrix.num_frames;
   if (width == 0) return result;
+  result.total_energy = squared_norm(matrix.a);
   EigenPairs pairs = leading_eigenvectors(gram_matrix(matrix.a, width), width, max_components,
-                                          least_energy(squared_norm(matrix.a), min_energy));
+                                          least_energy(result.total_energy, min_energy));
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
   const std::vector<double> vectors = as_columns(result.temporal, width);

@@ -33,6 +33,7 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
 
 // The same, with little memory beside the matrix.
 struct ComponentsByRow {
+  double total_energy = 0.0;
   std::vector<double> energy;
   std::vector<std::vector<double>> temporal;  // [component][num_frames]
   std::vector<float> spatial;                 // [num_values][component]

@@ -62,6 +62,15 @@ EncodedGof MainGofSearch::encode_clusters(double step, double analysis_step) {
   return clusters_->encode(kStepOfClusters * step, kStepOfClusters * analysis_step);
 }
 
+void MainGofSearch::analyse(double analysis_step) {
+  if (!choice_.has_clusters) bones_.analyse(analysis_step);
+}
+
+std::optional<double> MainGofSearch::expected_error(double step) const {
+  if (choice_.has_clusters) return std::nullopt;
+  return bones_.expected_error(step);
+}
+
 bool MainGofSearch::needs_frames(double step, double analysis_step) const {
   return choice_.is_far(analysis_step) || choice_.has_clusters ||
          bones_.needs_frames(step, analysis_step);

@@ -35,6 +35,8 @@ class MainGofSearch : public GofCoder {
                 const GofFrames& frames, std::uint32_t first_frame,
                 const EncoderSettings& settings, MainChoice& choice);
 
+  void analyse(double analysis_step) override;
+  std::optional<double> expected_error(double step) const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
 

@@ -31,6 +31,10 @@ std::uint32_t longest_gof(const EncoderSettings& settings);
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread);
 
+// KG error that coders of GOFs expect, if all of them do; squared_spread: sum of the squared
+// coordinates about the means of their frames, over all of these, grid units.
+TargetSearch::Expected expected_kg(std::vector<const GofCoder*> coders, double squared_spread);
+
 // The choices of a search that hold for later coders of the same GOF.
 struct GofMemory {
   std::optional<GofChoice> clusters;  // of the Baseline profile

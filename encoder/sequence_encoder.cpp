@@ -58,6 +58,9 @@ class SequenceEncoder {
   InputResult<Found> search();
   std::optional<InputError> search_on_finer_grid(Found& best);
   InputResult<SequenceTrial> encode_at(double step, double analysis_step);
+  std::optional<InputError> begin(TargetSearch& search);
+  TargetSearch::Expected expected() const;
+  std::optional<InputError> prepare_coder(std::size_t g, double step, double analysis_step);
   std::optional<InputError> encode_gof(std::size_t g, double step, double analysis_step,
                                        SequenceTrial& trial, MetricsAccumulator& metrics);
   double measured(const SequenceTrial& trial) const;
@@ -116,10 +119,8 @@ std::optional<InputError> SequenceEncoder::cut_gofs(std::uint32_t longest) {
   return std::nullopt;
 }
 
-std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step,
-                                                      double analysis_step,
-                                                      SequenceTrial& trial,
-                                                      MetricsAccumulator& metrics) {
+std::optional<InputError> SequenceEncoder::prepare_coder(std::size_t g, double step,
+                                                         double analysis_step) {
   GofState& state = gofs_[g];
   const bool needed = !state.coder || state.coder->needs_frames(step, analysis_step);
   if (needed && state.frames.xyz.empty()) {
@@ -130,6 +131,15 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
   if (!state.coder) {
     state.coder = coding_->make_coder(state.frames, spans_[g].first, state.memory);
   }
+  return std::nullopt;
+}
+
+std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step,
+                                                      double analysis_step,
+                                                      SequenceTrial& trial,
+                                                      MetricsAccumulator& metrics) {
+  if (auto error = prepare_coder(g, step, analysis_step)) return error;
+  GofState& state = gofs_[g];
   const EncodedGof encoded = state.coder->encode(step, analysis_step);
   if (!keep_coders_) state.coder.reset();
   if (!keep_coders_ || !state.coder->needs_frames(step, analysis_step)) state.frames = {};
@@ -192,13 +202,35 @@ InputResult<EncodeReport> SequenceEncoder::write(SequenceTrial trial, double ste
   return report;
 }
 
+TargetSearch::Expected SequenceEncoder::expected() const {
+  if (settings_.target.kind != Target::kKg || !keep_coders_) return {};
+  std::vector<const GofCoder*> coders;
+  for (const GofState& gof : gofs_) coders.push_back(gof.coder.get());
+  const double spread = extent_.rms_spread * exact_exp2(-header_.grid.log2_step);
+  return expected_kg(std::move(coders),
+                     spread * spread * 3.0 * header_.num_vertices * header_.num_frames);
+}
+
+// With the step that analyses promise, where these are kept.
+std::optional<InputError> SequenceEncoder::begin(TargetSearch& search) {
+  if (settings_.target.kind != Target::kKg || !keep_coders_) return std::nullopt;
+  for (std::size_t g = 0; g < spans_.size(); ++g) {
+    if (auto error = prepare_coder(g, search.step(), search.analysis_step())) return error;
+    gofs_[g].coder->analyse(search.analysis_step());
+    gofs_[g].frames = {};
+  }
+  if (const auto by_analyses = expected()) search.begin_at(by_analyses);
+  return std::nullopt;
+}
+
 InputResult<SequenceEncoder::Found> SequenceEncoder::search() {
   TargetSearch search = search_for(settings_, header_, extent_.rms_spread);
+  if (auto error = begin(search)) return *error;
   Found best;
   for (bool is_first = true; !search.finished(); is_first = false) {
     auto trial = encode_at(search.step(), search.analysis_step());
     if (!trial) return trial.error();
-    const bool better = search.report(measured(*trial));
+    const bool better = search.report(measured(*trial), expected());
     if (better || is_first) {
       best.trial = std::move(*trial);
       best.step = search.last_step();

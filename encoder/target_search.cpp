@@ -20,8 +20,8 @@ constexpr double kSteepest = 2.0;
 }  // namespace
 
 TargetSearch::TargetSearch(const Target& target, double spread, double steps_per_unit,
-                           double step_of_error)
-    : target_(target), slope_(usual_slope()) {
+                           double step_of_error, const AnalysisRange& analysis_range)
+    : target_(target), range_(analysis_range), slope_(usual_slope()) {
   double first = 64.0;
   if (target.kind == Target::kKg) first = step_of_error * spread * target.value / 100.0;
   if (target.kind == Target::kMaxError) first = target.value * steps_per_unit;
@@ -29,7 +29,14 @@ TargetSearch::TargetSearch(const Target& target, double spread, double steps_per
   step_ = std::clamp(first, kFinestStep, kCoarsestStep);
 }
 
-bool TargetSearch::report(double measured) {
+void TargetSearch::begin_at(const Expected& expected) {
+  constexpr double kFar = 2.5;  // expectations that are farther off are not believed
+  if (target_.kind == Target::kNone) return;
+  frozen_ = analysis_step();
+  step_ = std::clamp(step_for(target_.value, expected), step_ / kFar, step_ * kFar);
+}
+
+bool TargetSearch::report(double measured, const Expected& expected) {
   ++trials_;
   last_step_ = step_;
   if (target_.kind == Target::kNone) {
@@ -37,9 +44,9 @@ bool TargetSearch::report(double measured) {
     return true;
   }
   const bool within = measured <= target_.value;
-  if (analysis_step() == step_ && is_near(measured)) {
+  if (analysis_step() != frozen_ && is_near(measured)) {
     // What was measured before belongs to other analyses.
-    frozen_ = step_;
+    frozen_ = analysis_step();
     fine_ = coarse_ = 0.0;
   }
   // The rate falls as the step grows, errors rise.
@@ -55,7 +62,7 @@ bool TargetSearch::report(double measured) {
   }
   if (better) best_ = measured;
   met_ = met_ || within;
-  choose_next(measured);
+  choose_next(measured, expected);
   return better;
 }
 
@@ -64,10 +71,22 @@ bool TargetSearch::is_near(double measured) const {
   const double ratio = measured / target_.value;
   if (!(ratio > 0.5 && ratio < 2.0)) return false;
   const double factor = det_exp2(-det_log2(ratio) / usual_slope());
-  return factor < kServes && factor * kServes > 1.0;
+  return serves(analysis_step(), factor * step_);
 }
 
-void TargetSearch::choose_next(double measured) {
+// Where such a value is expected: for errors, which rise with the step.
+double TargetSearch::step_for(double value, const Expected& expected) const {
+  constexpr int kHalvings = 20;
+  double low = step_ / kFarthest;
+  double high = step_ * kFarthest;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = std::sqrt(low * high);
+    (expected(middle) > value ? high : low) = middle;
+  }
+  return std::clamp(low, kFinestStep, kCoarsestStep);
+}
+
+void TargetSearch::choose_next(double measured, const Expected& expected) {
   const double target = target_.value;
   const bool close = met_ && best_ >= target * (1.0 - kTolerance);
   if (close || trials_ >= kMaxTrials) {
@@ -97,8 +116,17 @@ void TargetSearch::choose_next(double measured) {
   last_value_ = value;
   previous_step_ = step_;
   const double aim = target * (1.0 - 0.4 * kTolerance);
-  const double factor =
-      std::clamp(det_exp2(det_log2(aim / value) / slope_), 1.0 / kFarthest, kFarthest);
+  const double rise = det_log2(aim / value);
+  double factor = det_exp2(rise / slope_);
+  if (expected && expected(step_) > 0.0) {
+    // Errors rise a little less than expected.
+    constexpr double kMore = 1.08;
+    const double flat = det_exp2(rise / (kFlattest * usual_slope()));
+    const double steep = det_exp2(rise / (kSteepest * usual_slope()));
+    factor = std::clamp(step_for(expected(step_) * det_exp2(kMore * rise), expected) / step_,
+                        std::min(flat, steep), std::max(flat, steep));
+  }
+  factor = std::clamp(factor, 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // as fine or as coarse as it goes
   step_ = next;

@@ -1,45 +1,61 @@
 // Finds the quantiser step that reaches a target error or rate.
 #pragma once
 
+#include <functional>
+
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
 
+// Steps relative to that of an analysis: it is made for one that serves those in between.
+struct AnalysisRange {
+  double finest = 1.0 / 1.2;
+  double made_for = 1.0;
+  double coarsest = 1.2;
+};
+
 // Ask step(), encode, tell report() what was measured; again until finished().
 class TargetSearch {
  public:
+  // What a step will give, but for a factor that hardly depends on it; empty: nothing is known.
+  using Expected = std::function<double(double step)>;
+
   // spread: root mean square of the coordinates about their frame's mean; steps_per_unit: of
   // the grid. step_of_error: typical ratio of the step to the error of a coordinate, to start
   // with. Steps are in grid steps.
   TargetSearch(const Target& target, double spread, double steps_per_unit,
-               double step_of_error = 6.0);
+               double step_of_error = 6.0, const AnalysisRange& analysis_range = {});
 
   // Before the first encoding: the step to try first, where a target is searched for.
   void begin_at(double step) {
     if (target_.kind != Target::kNone) step_ = step;
   }
+  // Where the target, an error, is expected by analyses that are there, for analysis_step().
+  void begin_at(const Expected& expected);
   double step() const { return step_; }
   // The step that the analysis is made for. Close to the target it stays as it is, as the
   // measured value jumps from one analysis to the next; but it serves nearby steps only.
   double analysis_step() const {
-    const bool near = step_ < kServes * frozen_ && frozen_ < kServes * step_;
-    return near ? frozen_ : step_;
+    return serves(frozen_, step_) ? frozen_ : step_ / range_.made_for;
   }
   double last_step() const { return last_step_; }
-  // True if this is the best encoding so far.
-  bool report(double measured);
+  // True if this is the best encoding so far. expected: of an error, by the same analyses.
+  bool report(double measured, const Expected& expected = {});
   bool finished() const { return finished_; }
   // The best encoding does not exceed the target.
   bool met() const { return target_.kind == Target::kNone || met_; }
 
  private:
-  static constexpr double kServes = 1.2;
-
+  bool serves(double analysis_step, double step) const {
+    return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
+  }
   bool is_near(double measured) const;
   double usual_slope() const { return target_.kind == Target::kBpvf ? -0.5 : 0.85; }
-  void choose_next(double measured);
+  void choose_next(double measured, const Expected& expected);
+  double step_for(double value, const Expected& expected) const;
 
   Target target_;
+  AnalysisRange range_;
   double step_ = 1.0;
   double frozen_ = 0.0;  // analysis step; 0: not yet
   double last_step_ = 1.0;

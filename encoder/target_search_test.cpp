@@ -131,6 +131,64 @@ TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
   EXPECT_EQ(outcome.best, 0.6);
 }
 
+// Errors that level out where much is left out, as measured and as expected.
+double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step * step / 1e6); }
+
+int trials_with(const TargetSearch::Expected& expected, double value, double factor) {
+  const Target target{Target::kKg, value};
+  TargetSearch search(target, 10000.0, 1000.0);
+  search.begin_at(expected);
+  Outcome outcome;
+  while (!search.finished() && outcome.trials < kEnough) {
+    // A little flatter than the expectation that is right, as those of GOFs are.
+    const double measured =
+        factor * value * std::pow(expected_error(search.step()) / value, 0.94);
+    ++outcome.trials;
+    if (search.report(measured, expected)) outcome.best = measured;
+  }
+  outcome.met = search.met();
+  expect_within_two_per_cent(target, outcome);
+  return outcome.trials;
+}
+
+TEST(TargetSearch, TakesTwoTrialsWhereOnlyTheFactorIsNotAsExpected) {
+  for (const double value : {0.2, 0.5, 0.9}) {
+    EXPECT_EQ(trials_with(expected_error, value, 0.991), 1);
+    for (const double factor : {0.7, 0.9, 1.1, 1.4}) {
+      SCOPED_TRACE(testing::Message() << value << " " << factor);
+      EXPECT_LE(trials_with(expected_error, value, factor), 2);
+    }
+  }
+}
+
+TEST(TargetSearch, FindsItsTargetDespiteWrongExpectations) {
+  for (const double factor : {0.3, 1.0, 5.0}) {
+    SCOPED_TRACE(factor);
+    trials_with([](double) { return 0.0; }, 0.5, factor);
+    trials_with([](double) { return 7.0; }, 0.5, factor);
+    trials_with([](double step) { return 1.0 / step; }, 0.5, factor);
+    trials_with([](double step) { return step * step * step; }, 0.5, factor);
+  }
+}
+
+TEST(TargetSearch, KeepsTheAnalysisOfStepsThatItServes) {
+  const AnalysisRange range{.finest = 0.9, .made_for = 1.25, .coarsest = 1.6};
+  const auto analysis_for = [&](double factor) {
+    TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, 6.0, range);
+    const double made = search.analysis_step();
+    EXPECT_DOUBLE_EQ(made, search.step() / 1.25);
+    const double target = 0.5;
+    // expected to be met at `factor` times the analysis step
+    search.begin_at([&](double step) { return target * step / (factor * made); });
+    EXPECT_NEAR(search.step(), factor * made, 1e-3 * made);
+    return search.analysis_step() / made;
+  };
+  EXPECT_EQ(analysis_for(0.95), 1.0);
+  EXPECT_EQ(analysis_for(1.5), 1.0);
+  EXPECT_NEAR(analysis_for(0.85), 0.85 / 1.25, 1e-3);
+  EXPECT_NEAR(analysis_for(1.7), 1.7 / 1.25, 1e-3);
+}
+
 TEST(TargetSearch, OfAnErrorThatCannotBeReachedEndsWithTheSmallest) {
   for (const double floor : {0.11, 3.0}) {
     const Outcome outcome =
