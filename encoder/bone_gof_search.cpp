@@ -387,7 +387,9 @@ bool BoneGofSearch::needs_frames(double step, double analysis_step) const {
 }
 
 void BoneGofSearch::analyse_for(double step) {
-  if (!cached_ || cached_->step != step) cached_ = Cached{step, analyse(*choice_, step)};
+  if (cached_ && cached_->step == step) return;
+  cached_.reset();  // before there is another
+  cached_ = Cached{step, analyse(*choice_, step)};
 }
 
 void BoneGofSearch::analyse(double analysis_step) {
