@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "common/bone_recon.h"
@@ -240,28 +241,31 @@ class BoneAnalyser {
   }
 
   // What bones and rest positions leave.
-  TrajectoryMatrix displacement() {
-    TrajectoryMatrix matrix;
+  TrajectoryRows displacement() {
+    const std::size_t width = 3 * std::size_t{frames_.num_frames};
+    return {frames_.num_vertices, width,
+            [this, width](std::size_t first, std::span<double> rows) {
+              for (std::size_t i = 0; i * width < rows.size(); ++i) {
+                write_displacement(static_cast<std::uint32_t>(first + i), &rows[i * width]);
+              }
+            }};
+  }
+
+  // Of one vertex, all frames of each coordinate.
+  void write_displacement(std::uint32_t v, double* row) {
+    find_mean_motion(v);
     const std::size_t num_frames = frames_.num_frames;
-    matrix.num_values = frames_.num_vertices;
-    matrix.num_frames = 3 * num_frames;
-    matrix.a.resize(matrix.num_values * matrix.num_frames);
-    for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-      double* row = matrix.row(v);
-      find_mean_motion(v);
-      for (std::uint32_t f = 0; f < num_frames; ++f) {
-        const MeanMotion& motion = mean_[f];
-        const double* x = frames_.at(f, v);
-        for (std::size_t c = 0; c < 3; ++c) {
-          double left = x[c] - motion.shift[c];
-          for (std::size_t k = 0; k < 3; ++k) {
-            left -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
-          }
-          row[c * num_frames + f] = left;
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      const MeanMotion& motion = mean_[f];
+      const double* x = frames_.at(f, v);
+      for (std::size_t c = 0; c < 3; ++c) {
+        double left = x[c] - motion.shift[c];
+        for (std::size_t k = 0; k < 3; ++k) {
+          left -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
         }
+        row[c * num_frames + f] = left;
       }
     }
-    return matrix;
   }
 
   const CodedMesh& mesh_;

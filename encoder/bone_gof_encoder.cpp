@@ -69,7 +69,7 @@ class TrajectoryCoder {
   bool code_trajectories() {
     code_temporal();
     if (count_ == 0) return true;
-    fit_spatial();
+    find_mixing();
     code_spatial();
     constexpr double kReserve = 1.02;
     if (excess_ > 1.0) {
@@ -164,8 +164,9 @@ class TrajectoryCoder {
     return static_cast<double>(kScaleMantissa[part]) / 32768.0 * exact_exp2(whole);
   }
 
-  // Spatial factors by least squares against the decoded temporal ones.
-  void fit_spatial() {
+  // What spatial factors are made with from those of the components: least squares against the
+  // decoded temporal vectors.
+  void find_mixing() {
     std::vector<double> g(count_ * count_);
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
@@ -189,9 +190,9 @@ class TrajectoryCoder {
     }
     // The matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in the decoded
     // temporal vectors. So the factors are pc.spatial * mixing.
-    std::vector<double> mixing(num_tried_ * count_);  // [component][factor]
+    mixing_.assign(num_tried_ * count_, 0.0);
     for (std::size_t l = 0; l < num_tried_; ++l) {
-      double* s = &mixing[l * count_];
+      double* s = &mixing_[l * count_];
       for (std::size_t k = 0; k < count_; ++k) {
         for (std::size_t f = 0; f < decoded_[k].size(); ++f) {
           s[k] += analysis_.pc.temporal[l][f] * decoded_[k][f];
@@ -206,8 +207,15 @@ class TrajectoryCoder {
         s[i] = g[i * count_ + i] > 0.0 ? s[i] / g[i * count_ + i] : 0.0;
       }
     }
-    const std::vector<double> spatial(analysis_.pc.spatial.begin(), analysis_.pc.spatial.end());
-    spatial_ = matrix_product(spatial, analysis_.pc.temporal.size(), mixing, count_);
+  }
+
+  // Spatial factors of a vertex, grid units.
+  void fit_spatial(std::uint32_t v, std::span<double> factors) {
+    const auto from = analysis_.pc.spatial.begin() +
+                      static_cast<std::ptrdiff_t>(v * analysis_.pc.temporal.size());
+    of_vertex_.assign(from, from + static_cast<std::ptrdiff_t>(num_tried_));
+    std::fill(factors.begin(), factors.end(), 0.0);
+    add_matrix_product(of_vertex_, num_tried_, mixing_, count_, factors);
   }
 
   // Residuals in closed loop.
@@ -219,8 +227,9 @@ class TrajectoryCoder {
                       std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
     }
     const ValuePrediction prediction(mesh_, false, weights ? &*weights : nullptr);
-    residual_.resize(spatial_.size());
-    std::vector<std::int32_t> values(spatial_.size());
+    residual_.resize(mesh_.num_vertices() * count_);
+    std::vector<std::int32_t> values(residual_.size());
+    std::vector<double> factors(count_);
     std::vector<std::int64_t> predicted(count_);
     largest_.assign(count_, 0);
     double most = 0.0;
@@ -231,10 +240,11 @@ class TrajectoryCoder {
     const double round_up = settings_.rounding == Rounding::kNearest ? 0.5 : kRoundUpOfDeadZone;
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
+      fit_spatial(v, factors);
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
       if (choice) choice->start(v);
       for (std::size_t l = 0; l < count_; ++l) {
-        const double wanted = spatial_[v * count_ + l] * per_step;
+        const double wanted = factors[l] * per_step;
         most = std::max(most, std::abs(wanted));
         const double difference = wanted - static_cast<double>(predicted[l]);
         const std::int32_t residual = choice
@@ -372,8 +382,9 @@ class TrajectoryCoder {
   std::vector<int> eighths_;                  // of the product of both steps
   std::vector<std::vector<Vec3i>> indices_;   // temporal values
   std::vector<std::vector<double>> decoded_;  // [count][3 * num_frames]
-  std::vector<double> spatial_;               // [num_vertices][count], grid units
-  std::vector<std::int32_t> residual_;        // likewise, coded
+  std::vector<double> mixing_;                // [num_tried][count]
+  std::vector<double> of_vertex_;             // spatial values of the components
+  std::vector<std::int32_t> residual_;        // [num_vertices][count], coded
   std::vector<std::int32_t> largest_;         // magnitude of the values of each factor
 };
 

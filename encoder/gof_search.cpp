@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 
 #include "common/int_math.h"
 #include "encoder/det_math.h"
@@ -21,6 +23,26 @@ constexpr double kSeedStepFactor = 0.18;
 // A component with less energy than this many squared steps costs more than it brings.
 constexpr double kMinEnergySteps = 1.2;
 
+EncodedGof encoded_gof(const EncodingContext& context, const Gof& gof) {
+  EncodedGof encoded;
+  encoded.units.push_back({UnitType::kGof, write_gof(gof, context.header, context.topology)});
+  const auto recon = std::make_shared<GofRecon>(context.header, context.topology, gof);
+  encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
+    recon->frame(f, positions);
+  };
+  encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
+  encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
+  for (const Cluster& cluster : gof.clusters) {
+    const auto components = static_cast<std::uint32_t>(cluster.components.size());
+    encoded.components += components;
+    encoded.most_components = std::max(encoded.most_components, components);
+    for (const Component& component : cluster.components) {
+      encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
+    }
+  }
+  return encoded;
+}
+
 }  // namespace
 
 GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
@@ -31,7 +53,6 @@ GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
       first_frame_(first_frame),
       settings_(settings),
       tools_(settings.baseline),
-      motion_(frames, context.triangles, context.header.position_bits),
       choice_(choice) {
   const bool world = tools_.frame_mode == FrameMode::kWorld;
   if (!choice_ && tools_.clusters > 0 && tools_.frame_mode != FrameMode::kAuto) {
@@ -78,24 +99,27 @@ CodingSettings GofSearch::coding_settings(double step) const {
   return c;
 }
 
-GofAnalysis GofSearch::analyse(double step, const GofChoice& choice) {
+Clustering GofSearch::cluster(const GofChoice& choice) {
+  if (!motion_) motion_.emplace(frames_, context_.triangles, context_.header.position_bits);
   const bool spread = tools_.seed_mode == SeedMode::kSpread ||
                       (tools_.seed_mode == SeedMode::kAuto && tools_.qu == 0);
-  const Clustering clustering =
-      spread ? motion_.spread_clusters(choice.clusters) : motion_.clusters(choice.clusters);
+  return spread ? motion_->spread_clusters(choice.clusters)
+                : motion_->clusters(choice.clusters);
+}
+
+GofAnalysis GofSearch::analyse(double step, const GofChoice& choice,
+                               const Clustering& clustering) const {
   return analyse_gof(context_, frames_, first_frame_, clustering,
                      analysis_settings(step, choice));
 }
 
 double GofSearch::cost(double step, const GofChoice& choice) {
-  const CodingSettings coding = coding_settings(step);
-  const Gof gof = code_gof(frames_, analyse(step, choice), coding);
-  const auto payload = write_gof(gof, context_.header, context_.topology);
-  const GofRecon recon(context_.header, context_.topology, gof);
-  const double error = squared_error(
-      frames_, [&](std::uint32_t f, std::span<std::int32_t> out) { recon.frame(f, out); });
-  const double bits = 8.0 * static_cast<double>(payload.size());
-  return error + coding.lambda_factor * step * step * bits;
+  const EncodedGof encoded = encoded_gof(
+      context_,
+      code_gof(frames_, analyse(step, choice, cluster(choice)), coding_settings(step)));
+  const double error = squared_error(frames_, encoded.frame);
+  const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
+  return error + coding_settings(step).lambda_factor * step * step * bits;
 }
 
 // Climbs from a middling number of clusters while the cost falls.
@@ -142,27 +166,20 @@ GofChoice GofSearch::choose(double step) {
 
 EncodedGof GofSearch::encode(double step, double analysis_step) {
   if (!choice_) choice_ = choose(step);
+  if (!clustering_) clustering_ = cluster(*choice_);
+  motion_.reset();
   if (!cached_ || cached_->step != analysis_step) {
-    cached_ = Cached{analysis_step, analyse(analysis_step, *choice_)};
+    cached_.reset();  // before there is another
+    cached_ = Cached{analysis_step, analyse(analysis_step, *choice_, *clustering_)};
   }
-  EncodedGof encoded;
-  const Gof gof = code_gof(frames_, cached_->analysis, coding_settings(step));
-  encoded.units.push_back({UnitType::kGof, write_gof(gof, context_.header, context_.topology)});
-  const auto recon = std::make_shared<GofRecon>(context_.header, context_.topology, gof);
-  encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
-    recon->frame(f, positions);
-  };
-  encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
-  encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
-  for (const Cluster& cluster : gof.clusters) {
-    const auto components = static_cast<std::uint32_t>(cluster.components.size());
-    encoded.components += components;
-    encoded.most_components = std::max(encoded.most_components, components);
-    for (const Component& component : cluster.components) {
-      encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
-    }
-  }
-  return encoded;
+  return encoded_gof(context_, code_gof(frames_, cached_->analysis, coding_settings(step)));
+}
+
+EncodedGof GofSearch::encode_once(double step, const GofChoice& choice) {
+  const Clustering clustering = cluster(choice);
+  motion_.reset();
+  const Gof gof = code_gof(frames_, analyse(step, choice, clustering), coding_settings(step));
+  return encoded_gof(context_, gof);
 }
 
 }  // namespace rlpc

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "encoder/clustering.h"
 #include "encoder/gof_coder.h"
 #include "encoder/gof_encoder.h"
 #include "encoder/rlpc_encoder.h"
@@ -30,6 +31,8 @@ class GofSearch : public GofCoder {
   // quantiser step that is given, in grid steps.
   // analysis_step: the step that the analysis is made for, near it.
   EncodedGof encode(double step, double analysis_step) override;
+  // The same with clusters that are given, for that step; nothing is kept.
+  EncodedGof encode_once(double step, const GofChoice& choice);
 
  private:
   struct Cached {
@@ -39,7 +42,8 @@ class GofSearch : public GofCoder {
 
   AnalysisSettings analysis_settings(double step, const GofChoice& choice) const;
   CodingSettings coding_settings(double step) const;
-  GofAnalysis analyse(double step, const GofChoice& choice);
+  Clustering cluster(const GofChoice& choice);
+  GofAnalysis analyse(double step, const GofChoice& choice, const Clustering& clustering) const;
   double cost(double step, const GofChoice& choice);
   GofChoice choose(double step);
   std::uint32_t choose_count(double step, bool world);
@@ -49,8 +53,9 @@ class GofSearch : public GofCoder {
   std::uint32_t first_frame_;
   const EncoderSettings& settings_;
   const BaselineTools& tools_;
-  MotionClusters motion_;
   std::optional<GofChoice>& choice_;
+  std::optional<MotionClusters> motion_;  // while clusters are looked for,
+  std::optional<Clustering> clustering_;  // of which these were chosen
   std::optional<Cached> cached_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "encoder/eigenvectors.h"
@@ -28,6 +30,18 @@ double squared_norm(const std::vector<double>& a) {
   double sum = 0.0;
   for (const double x : a) sum += x * x;
   return sum;
+}
+
+// All rows in order, some at a time.
+void for_some_rows(const TrajectoryRows& rows,
+                   const std::function<void(std::span<const double>)>& use) {
+  constexpr std::size_t kTogether = 256;  // a multiple of 4 (add_gram_matrix)
+  std::vector<double> some;
+  for (std::size_t first = 0; first < rows.num_values; first += kTogether) {
+    some.resize(std::min(kTogether, rows.num_values - first) * rows.num_frames);
+    rows.write(first, some);
+    use(some);
+  }
 }
 
 }  // namespace
@@ -63,34 +77,39 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
   return pc;
 }
 
-ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t max_components,
+ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_components,
                                   double min_energy) {
-  constexpr std::size_t kRowsTogether = 512;
   ComponentsByRow result;
-  if (matrix.num_frames > matrix.num_values) {
+  const std::size_t width = rows.num_frames;
+  if (width > rows.num_values) {
+    TrajectoryMatrix matrix{rows.num_values, width,
+                            std::vector<double>(rows.num_values * width)};
+    rows.write(0, matrix.a);
     PrincipalComponents pc = principal_components(matrix, max_components, min_energy);
-    const std::vector<double> spatial = as_columns(pc.spatial, matrix.num_values);
+    const std::vector<double> spatial = as_columns(pc.spatial, rows.num_values);
     result.spatial.assign(spatial.begin(), spatial.end());
     result.total_energy = pc.total_energy;
     result.energy = std::move(pc.energy);
     result.temporal = std::move(pc.temporal);
     return result;
   }
-  const std::size_t width = matrix.num_frames;
   if (width == 0) return result;
-  result.total_energy = squared_norm(matrix.a);
-  EigenPairs pairs = leading_eigenvectors(gram_matrix(matrix.a, width), width, max_components,
+  std::vector<double> gram(width * width);
+  for_some_rows(rows, [&](std::span<const double> some) {
+    for (const double x : some) result.total_energy += x * x;
+    add_gram_matrix(some, width, gram);
+  });
+  EigenPairs pairs = leading_eigenvectors(std::move(gram), width, max_components,
                                           least_energy(result.total_energy, min_energy));
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
   const std::vector<double> vectors = as_columns(result.temporal, width);
-  result.spatial.reserve(matrix.num_values * result.temporal.size());
-  for (std::size_t row = 0; row < matrix.num_values; row += kRowsTogether) {
-    const std::size_t count = std::min(kRowsTogether, matrix.num_values - row);
-    const std::vector<double> products = matrix_product(
-        std::span(matrix.row(row), count * width), width, vectors, result.temporal.size());
+  result.spatial.reserve(rows.num_values * result.temporal.size());
+  for_some_rows(rows, [&](std::span<const double> some) {
+    const std::vector<double> products =
+        matrix_product(some, width, vectors, result.temporal.size());
     result.spatial.insert(result.spatial.end(), products.begin(), products.end());
-  }
+  });
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,7 +32,15 @@ struct PrincipalComponents {
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 
-// The same, with little memory beside the matrix.
+// Rows of a matrix that is never there as a whole, [num_values][num_frames].
+struct TrajectoryRows {
+  std::size_t num_values = 0;
+  std::size_t num_frames = 0;
+  // Writes some rows, from the first on; each is asked for twice.
+  std::function<void(std::size_t first, std::span<double> rows)> write;
+};
+
+// The same of such rows, with little memory beside the result.
 struct ComponentsByRow {
   double total_energy = 0.0;
   std::vector<double> energy;
@@ -39,7 +48,7 @@ struct ComponentsByRow {
   std::vector<float> spatial;                 // [num_values][component]
 };
 
-ComponentsByRow components_by_row(const TrajectoryMatrix& matrix, std::size_t max_components,
+ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_components,
                                   double min_energy);
 
 }  // namespace rlpc

@@ -49,10 +49,9 @@ bool MainGofSearch::clusters_promise(const EncodedGof& bones, double step) {
 }
 
 double MainGofSearch::cost_of_clusters(const GofChoice& clusters, double step) const {
-  std::optional<GofChoice> choice = clusters;
-  GofSearch search(context_, frames_, first_frame_, settings_, choice);
-  const double at = kStepOfClusters * step;
-  return lagrangian_cost(search.encode(at, at), frames_, step);
+  std::optional<GofChoice> none;
+  GofSearch search(context_, frames_, first_frame_, settings_, none);
+  return lagrangian_cost(search.encode_once(kStepOfClusters * step, clusters), frames_, step);
 }
 
 EncodedGof MainGofSearch::encode_clusters(double step, double analysis_step) {

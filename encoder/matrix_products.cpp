@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kTogether = 4;  // rows in one pass over the sums
 
-RLPC_WIDEST void add_gram_matrix(std::span<const double> rows, std::size_t width,
-                                 std::span<double> result) noexcept {
+RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
+                          std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
   for (; r + kTogether <= num_rows; r += kTogether) {
@@ -70,8 +70,12 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
 
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
   std::vector<double> result(width * width, 0.0);
-  add_gram_matrix(rows, width, result);
+  add_gram(rows, width, result);
   return result;
+}
+
+void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram) {
+  add_gram(rows, width, gram);
 }
 
 std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
@@ -80,6 +84,12 @@ std::vector<double> matrix_product(std::span<const double> a, std::size_t a_widt
   std::vector<double> result(num_rows * b_width, 0.0);
   add_product(a, a_width, b, b_width, result);
   return result;
+}
+
+void add_matrix_product(std::span<const double> a, std::size_t a_width,
+                        std::span<const double> b, std::size_t b_width,
+                        std::span<double> result) {
+  add_product(a, a_width, b, b_width, result);
 }
 
 std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,

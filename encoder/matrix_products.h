@@ -11,6 +11,10 @@ namespace rlpc {
 // Lower triangle, with the diagonal, of rows^T rows; [width][width], the rest is 0.
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width);
 
+// The same, added to that of the rows before: if these are a multiple of 4, the sums are those
+// of all rows together.
+void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram);
+
 // Left columns of a, as many as b has rows, times b.
 //
 //   a       [num_rows][a_width]
@@ -18,6 +22,11 @@ std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width)
 //   result  [num_rows][b_width]
 std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
                                    std::span<const double> b, std::size_t b_width);
+
+// The same, added to a result.
+void add_matrix_product(std::span<const double> a, std::size_t a_width,
+                        std::span<const double> b, std::size_t b_width,
+                        std::span<double> result);
 
 // columns[i][k] = vectors[k][i], i < width
 std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
