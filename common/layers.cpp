@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstdlib>
 #include <functional>
@@ -17,7 +18,7 @@ constexpr std::uint32_t kMaxFan = 6;  // triangles around a vertex that can be t
 // nothing to outer_ring (8.9.6): nothing but the base walks along their
 // triangles.
 constexpr std::uint32_t kMaxValence = 12;
-constexpr std::int64_t kGoodValence = 6;
+constexpr std::int32_t kGoodValence = 6;
 
 // A set of edges between places in a ring.
 using EdgeSet = std::uint64_t;
@@ -78,7 +79,8 @@ static_assert(kTriangulations[6].size == 14 && kTriangulations[7].size == 42);
 
 // 8.9.2 Rest of the mesh: its triangles. Those of a vertex are linked through their
 // corners, so that one leaves in constant time; corner k of triangle i is 3 * i
-// + k.
+// + k. Each has the vertices of the other two, so that a walk along a vertex's
+// corners looks at nothing else.
 class Rest {
  public:
   Rest(std::uint32_t num_vertices, std::span<const Triangle> triangles)
@@ -92,21 +94,21 @@ class Rest {
   }
 
   std::uint32_t valence(std::uint32_t v) const { return valence_[v]; }
-  std::uint32_t vertex(std::uint32_t corner) const { return corners_[corner].vertex; }
   // The corners at a vertex, until kNone.
   std::uint32_t first(std::uint32_t v) const { return first_[v]; }
   std::uint32_t next(std::uint32_t corner) const { return corners_[corner].next; }
-  // The other two corners of a triangle, in its orientation.
-  static std::uint32_t after(std::uint32_t corner) {
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-  }
-  static std::uint32_t before(std::uint32_t corner) {
-    return corner % 3 == 0 ? corner + 2 : corner - 1;
+  // The other two vertices of a triangle, in its orientation.
+  std::uint32_t after(std::uint32_t corner) const { return corners_[corner].others[0]; }
+  std::uint32_t before(std::uint32_t corner) const { return corners_[corner].others[1]; }
+  const std::array<std::uint32_t, 2>& others(std::uint32_t corner) const {
+    return corners_[corner].others;
   }
 
   // Triangle i has been taken out before, or is new.
   void add(std::uint32_t i, const Triangle& t) {
-    for (std::uint32_t k = 0; k < 3; ++k) link(3 * i + k, t[k]);
+    link(3 * i, t[0], {t[1], t[2]});
+    link(3 * i + 1, t[1], {t[2], t[0]});
+    link(3 * i + 2, t[2], {t[0], t[1]});
   }
   void take(std::uint32_t i) {
     for (std::uint32_t k = 0; k < 3; ++k) unlink(3 * i + k);
@@ -117,10 +119,11 @@ class Rest {
     std::uint32_t vertex = 0;
     std::uint32_t next = kNone;
     std::uint32_t previous = kNone;
+    std::array<std::uint32_t, 2> others{};
   };
 
-  void link(std::uint32_t corner, std::uint32_t v) {
-    corners_[corner] = {v, first_[v], kNone};
+  void link(std::uint32_t corner, std::uint32_t v, const std::array<std::uint32_t, 2>& others) {
+    corners_[corner] = {v, first_[v], kNone, others};
     if (first_[v] != kNone) corners_[first_[v]].previous = corner;
     first_[v] = corner;
     ++valence_[v];
@@ -147,63 +150,13 @@ struct Ring {
   std::span<const std::uint32_t> span() const { return std::span(vertices).first(size); }
 };
 
-// The triangles around a vertex, as they start and end.
-struct Fan {
-  std::array<std::uint32_t, kMaxFan> starts{};
-  std::array<std::uint32_t, kMaxFan> ends{};
-  std::size_t size = 0;
-
-  std::size_t start_at(std::uint32_t v) const { return place_in(starts, v); }
-  std::size_t end_at(std::uint32_t v) const { return place_in(ends, v); }
-
- private:
-  // size if it is not there
-  std::size_t place_in(const std::array<std::uint32_t, kMaxFan>& list, std::uint32_t v) const {
-    return static_cast<std::size_t>(std::find(list.begin(), list.begin() + size, v) -
-                                    list.begin());
-  }
+// What is around a ring: edges that a triangulation may not have (8.9.5), and vertices for
+// outer_ring (8.9.6).
+struct Surroundings {
+  EdgeSet barred = 0;
+  std::size_t num_vertices = 0;
+  std::array<std::uint32_t, 2 * kMaxValence * kMaxRing + 1> vertices{};
 };
-
-// 8.9.3 Ring of a vertex: WalkFan( starts, ends, first ), none if the walk misses a triangle.
-std::optional<Ring> walk_fan(const Fan& fan, std::size_t first) {
-  Ring ring;
-  std::size_t last = first;
-  for (std::size_t i = first; i < fan.size; i = fan.start_at(fan.ends[i])) {
-    if (i == first && ring.size > 0) {
-      ring.closed = true;
-      break;
-    }
-    ring.append(fan.starts[i]);
-    last = i;
-  }
-  if (ring.size < fan.size) return std::nullopt;
-  if (!ring.closed) ring.append(fan.ends[last]);
-  return ring;
-}
-
-// 8.9.3 Ring of a vertex: FindRing( v ), none if the triangles around v are not a fan.
-std::optional<Ring> find_ring(const Rest& rest, std::uint32_t v) {
-  assert(rest.valence(v) > 0 && rest.valence(v) <= kMaxFan);
-  Fan fan;
-  for (std::uint32_t c = rest.first(v); c != kNone; c = rest.next(c)) {
-    fan.starts[fan.size] = rest.vertex(Rest::after(c));
-    fan.ends[fan.size] = rest.vertex(Rest::before(c));
-    ++fan.size;
-  }
-  std::size_t first = 0;
-  std::size_t breaks = 0;
-  for (std::size_t i = 0; i < fan.size; ++i) {
-    if (fan.start_at(fan.starts[i]) < i || fan.end_at(fan.ends[i]) < i) return std::nullopt;
-    if (fan.end_at(fan.starts[i]) == fan.size) {
-      first = i;
-      ++breaks;
-    } else if (breaks == 0 && fan.starts[i] < fan.starts[first]) {
-      first = i;
-    }
-  }
-  if (breaks > 1 || (breaks == 0 && fan.size < 3)) return std::nullopt;
-  return walk_fan(fan, first);
-}
 
 // Layers, pass by pass.
 class LayerMaker {
@@ -219,10 +172,10 @@ class LayerMaker {
 
  private:
   void remove_layer(std::vector<std::uint32_t>& rest);
-  const Triangulation* choose_triangulation(const Ring& ring);
-  EdgeSet barred_edges(const Ring& ring);
+  std::optional<Ring> find_ring(std::uint32_t v);
+  const Triangulation* choose_triangulation(const Ring& ring, EdgeSet barred) const;
+  void look_around(std::uint32_t v, const Ring& ring);
   bool remove_vertex(std::uint32_t v);
-  void note_around_ring(std::uint32_t v, const Ring& ring);
   void set_outer_rings(std::span<const std::uint32_t> removed);
   void order_layers(const std::vector<std::uint32_t>& base);
   void set_base_rings(const std::vector<std::uint32_t>& base);
@@ -239,18 +192,84 @@ class LayerMaker {
   // [num_vertices]: 0, except within a function that sets it: place in a ring
   // plus 1
   std::vector<std::uint8_t> place_;
+  Surroundings surroundings_;  // of the vertex at hand
 };
+
+// 8.9.3 Ring of a vertex: FindRing( v ), none if the triangles around v are not a fan, which
+// each vertex around starts and ends once at most.
+std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
+  assert(rest_.valence(v) > 0 && rest_.valence(v) <= kMaxFan);
+  std::array<std::uint32_t, kMaxFan> starts{};
+  std::array<std::uint32_t, kMaxFan> ends{};
+  std::size_t size = 0;
+  for (std::uint32_t c = rest_.first(v); c != kNone; c = rest_.next(c)) {
+    starts[size] = rest_.after(c);
+    ends[size] = rest_.before(c);
+    ++size;
+  }
+  bool is_fan = true;
+  for (std::size_t i = 0; i < size; ++i) {
+    is_fan = is_fan && place_[starts[i]] == 0;
+    place_[starts[i]] = static_cast<std::uint8_t>(i + 1);
+  }
+  std::array<std::uint8_t, kMaxFan> follower{};  // plus 1
+  unsigned followers = 0;                        // bit i: one ends where i starts
+  for (std::size_t i = 0; i < size; ++i) {
+    follower[i] = place_[ends[i]];
+    const unsigned bit = (1U << follower[i]) >> 1U;
+    is_fan = is_fan && (followers & bit) == 0;
+    followers |= bit;
+  }
+  for (std::size_t i = 0; i < size; ++i) place_[starts[i]] = 0;
+  const unsigned leaders = ((1U << size) - 1U) & ~followers;
+  if (!is_fan || (leaders & (leaders - 1U)) != 0 || (leaders == 0 && size < 3)) {
+    return std::nullopt;
+  }
+  const std::size_t first =
+      leaders != 0
+          ? static_cast<std::size_t>(std::countr_zero(leaders))
+          : static_cast<std::size_t>(std::min_element(starts.begin(), starts.begin() + size) -
+                                     starts.begin());
+  Ring ring;
+  ring.closed = leaders == 0;
+  std::size_t last = first;
+  ring.append(starts[first]);
+  while (follower[last] != 0 && follower[last] != first + 1) {
+    last = follower[last] - 1U;
+    ring.append(starts[last]);
+  }
+  if (ring.size < size) return std::nullopt;
+  if (!ring.closed) ring.append(ends[last]);
+  return ring;
+}
+
+// [i][place + 1]: the edge between two places in a ring; none from a place to itself, nor where
+// there is no place.
+constexpr std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges_to_places() {
+  std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges{};
+  for (std::size_t i = 0; i < kMaxRing; ++i) {
+    for (std::size_t j = 0; j < kMaxRing; ++j) {
+      if (i != j) edges[i][j + 1] = edge(i, j);
+    }
+  }
+  return edges;
+}
 
 // 8.9.5 Choice of a triangulation: edges between vertices that are no
 // neighbours in the ring, but share a triangle of the rest, or have many
-// triangles both.
-EdgeSet LayerMaker::barred_edges(const Ring& ring) {
+// triangles both. And 8.9.6 Removal of a vertex: VerticesAroundRing( v, ring ), here in any
+// order.
+void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
+  static constexpr auto kEdgesToPlaces = edges_to_places();
   EdgeSet sides = ring.closed ? edge(0, ring.size - 1) : 0;
-  EdgeSet found = 0;
   for (std::size_t i = 0; i + 1 < ring.size; ++i) sides |= edge(i, i + 1);
+  constexpr std::uint8_t kNoPlace = kMaxRing + 1;  // looked at before, but not of the ring
+  place_[v] = kNoPlace;
   for (std::size_t i = 0; i < ring.size; ++i) {
     place_[ring.vertices[i]] = static_cast<std::uint8_t>(i + 1);
   }
+  EdgeSet found = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < ring.size; ++i) {
     const std::uint32_t a = ring.vertices[i];
     if (rest_.valence(a) > kMaxValence) {
@@ -260,75 +279,64 @@ EdgeSet LayerMaker::barred_edges(const Ring& ring) {
       continue;
     }
     for (std::uint32_t c = rest_.first(a); c != kNone; c = rest_.next(c)) {
-      for (const std::uint32_t corner : {Rest::after(c), Rest::before(c)}) {
-        const std::uint8_t place = place_[rest_.vertex(corner)];
-        if (place > 0) found |= edge(i, place - 1U);
+      for (const std::uint32_t u : rest_.others(c)) {
+        const std::uint8_t place = place_[u];
+        found |= kEdgesToPlaces[i][place];
+        // Without branches: half of them are new.
+        surroundings_.vertices[count] = u;
+        count += place == 0 ? 1 : 0;
+        place_[u] = place == 0 ? kNoPlace : place;
       }
     }
   }
+  place_[v] = 0;
   for (const std::uint32_t u : ring.span()) place_[u] = 0;
-  return found & ~sides;
+  for (std::size_t i = 0; i < count; ++i) place_[surroundings_.vertices[i]] = 0;
+  surroundings_.barred = found & ~sides;
+  surroundings_.num_vertices = count;
 }
 
 // 8.9.5 Choice of a triangulation: nullptr if none is allowed.
-const Triangulation* LayerMaker::choose_triangulation(const Ring& ring) {
-  const EdgeSet barred = barred_edges(ring);
-  const std::int64_t fewest = ring.closed ? 3 : 1;
-  std::array<std::int64_t, kMaxRing> valences{};
+const Triangulation* LayerMaker::choose_triangulation(const Ring& ring, EdgeSet barred) const {
+  constexpr std::int32_t kForbidden = 1 << 28;
+  const std::int32_t fewest = ring.closed ? 3 : 1;
+  std::array<std::array<std::int32_t, kMaxRing>, kMaxRing> costs{};  // [place][new triangles]
   for (std::size_t i = 0; i < ring.size; ++i) {
     const bool at_end = !ring.closed && (i == 0 || i + 1 == ring.size);
-    valences[i] = std::int64_t{rest_.valence(ring.vertices[i])} - (at_end ? 1 : 2);
+    auto valence =
+        static_cast<std::int32_t>(rest_.valence(ring.vertices[i])) - (at_end ? 1 : 2);
+    for (std::int32_t& cost : costs[i]) {
+      cost = valence < fewest ? kForbidden : std::abs(valence - kGoodValence);
+      ++valence;
+    }
   }
   const Triangulation* best = nullptr;
-  std::int64_t least = 0;
+  std::int32_t least = kForbidden;
   const TriangulationList& all = kTriangulations[ring.size];
   for (std::size_t t = 0; t < all.size; ++t) {
     const Triangulation& triangulation = all.items[t];
     if ((triangulation.edges & barred) != 0) continue;
-    std::int64_t cost = 0;
-    bool allowed = true;
-    for (std::size_t i = 0; i < ring.size; ++i) {
-      const std::int64_t valence = valences[i] + triangulation.corners[i];
-      allowed = allowed && valence >= fewest;
-      cost += std::abs(valence - kGoodValence);
-    }
-    if (!allowed || (best != nullptr && cost >= least)) continue;
+    std::int32_t cost = 0;
+    for (std::size_t i = 0; i < ring.size; ++i) cost += costs[i][triangulation.corners[i]];
+    if (cost >= least) continue;
     best = &triangulation;
     least = cost;
   }
   return best;
 }
 
-// 8.9.6 Removal of a vertex: VerticesAroundRing( v, ring ), here in any order.
-void LayerMaker::note_around_ring(std::uint32_t v, const Ring& ring) {
-  const std::size_t begin = around_.size();
-  place_[v] = 1;
-  for (const std::uint32_t r : ring.span()) place_[r] = 1;
-  for (const std::uint32_t r : ring.span()) {
-    if (rest_.valence(r) > kMaxValence) continue;
-    for (std::uint32_t c = rest_.first(r); c != kNone; c = rest_.next(c)) {
-      for (const std::uint32_t corner : {Rest::after(c), Rest::before(c)}) {
-        const std::uint32_t u = rest_.vertex(corner);
-        if (place_[u] != 0) continue;
-        place_[u] = 1;
-        around_.push_back(u);
-      }
-    }
-  }
-  place_[v] = 0;
-  for (const std::uint32_t r : ring.span()) place_[r] = 0;
-  for (std::size_t i = begin; i < around_.size(); ++i) place_[around_[i]] = 0;
-  around_end_.push_back(static_cast<std::uint32_t>(around_.size()));
-}
-
 // 8.9.6 Removal of a vertex: false if it has to stay.
 bool LayerMaker::remove_vertex(std::uint32_t v) {
-  const std::optional<Ring> ring = find_ring(rest_, v);
+  const std::optional<Ring> ring = find_ring(v);
   if (!ring) return false;
-  const Triangulation* const chosen = choose_triangulation(*ring);
+  look_around(v, *ring);
+  const Triangulation* const chosen = choose_triangulation(*ring, surroundings_.barred);
   if (chosen == nullptr) return false;
   layers_.ring.set(v, ring->span());
-  note_around_ring(v, *ring);
+  const auto around = surroundings_.vertices.begin();
+  around_.insert(around_.end(), around,
+                 around + static_cast<std::ptrdiff_t>(surroundings_.num_vertices));
+  around_end_.push_back(static_cast<std::uint32_t>(around_.size()));
   std::array<std::uint32_t, kMaxFan> taken{};
   std::size_t num_taken = 0;
   while (rest_.first(v) != kNone) {
@@ -413,8 +421,7 @@ void LayerMaker::set_base_rings(const std::vector<std::uint32_t>& base) {
     std::array<std::uint32_t, kMaxRing + 1> highest{};  // descending
     std::size_t size = 0;
     for (std::uint32_t c = rest_.first(v); c != kNone; c = rest_.next(c)) {
-      for (const std::uint32_t corner : {Rest::after(c), Rest::before(c)}) {
-        const std::uint32_t u = rest_.vertex(corner);
+      for (const std::uint32_t u : rest_.others(c)) {
         const auto end = highest.begin() + size;
         if (u > v || std::find(highest.begin(), end, u) != end) continue;
         highest[size] = u;
