@@ -233,10 +233,16 @@ void BoneRecon::add_factors(const CodedMesh& mesh, const BoneGof& gof,
 
 // Where their bones take the rest positions of a tile, times the sum of the weights.
 void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
-  for (auto& of_coordinate : sums) of_coordinate.fill(0);
+  const auto runs =
+      std::span(runs_).subspan(first_run_[tile], first_run_[tile + 1] - first_run_[tile]);
+  // All vertices follow one bone alone: their places are those of the run.
+  const std::size_t n = std::min(kTileValues, num_vertices_ - tile * kTileValues);
+  const bool alone = runs.size() == 1 && runs[0].end - runs[0].first == n;
+  if (!alone) {
+    for (auto& of_coordinate : sums) of_coordinate.fill(0);
+  }
   std::array<std::int64_t, kTileValues> places{};
-  for (std::size_t r = first_run_[tile]; r < first_run_[tile + 1]; ++r) {
-    const Run& run = runs_[r];
+  for (const Run& run : runs) {
     const BonePose& pose = bones_[run.bone].poses[f];
     const BoneArms arms{{&arm_[0][run.first], &arm_[1][run.first], &arm_[2][run.first]},
                         &weight_[run.first],
@@ -245,7 +251,8 @@ void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
       Vec3i axis{};
       for (std::size_t k = 0; k < 3; ++k) axis[k] = static_cast<std::int32_t>(pose.axes[k][c]);
       const auto origin = static_cast<std::int32_t>(pose.origin[c]);
-      loops_.weighted_places(arms, axis, origin, places.data());
+      loops_.weighted_places(arms, axis, origin, alone ? sums[c].data() : places.data());
+      if (alone) continue;
       for (std::size_t i = 0; i < arms.size; ++i) sums[c][place_[run.first + i]] += places[i];
     }
   }
