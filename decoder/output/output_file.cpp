@@ -1,5 +1,6 @@
 #include "decoder/output/output_file.h"
 
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cerrno>
@@ -119,7 +120,10 @@ OutputResult<std::string> create_temporary_folder(const std::string& path) {
 }
 
 void append_u32(std::string& bytes, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
+  std::array<char, 4> of_value{};
+  for (std::size_t i = 0; i < 4; ++i)
+    of_value[i] = static_cast<char>((value >> (8 * i)) & 0xFF);
+  bytes.append(of_value.data(), of_value.size());
 }
 
 void append_i32(std::string& bytes, std::int32_t value) {
@@ -131,7 +135,8 @@ void append_f32(std::string& bytes, float value) {
 }
 
 void append_u32_be(std::string& bytes, std::uint32_t value) {
-  for (int i = 3; i >= 0; --i) bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
+  const std::uint32_t halves = (value >> 16) | (value << 16);
+  append_u32(bytes, ((halves & 0x00FF00FF) << 8) | ((halves >> 8) & 0x00FF00FF));
 }
 
 void append_f32_be(std::string& bytes, float value) {
