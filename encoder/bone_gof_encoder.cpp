@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "common/bone_recon.h"
@@ -165,18 +166,41 @@ class TrajectoryCoder {
   }
 
   // What spatial factors are made with from those of the components: least squares against the
-  // decoded temporal vectors.
+  // decoded temporal vectors. The matrix is nearly pc.spatial * pc.temporal; what it lacks
+  // hardly shows in those. So the factors are pc.spatial * mixing.
   void find_mixing() {
-    std::vector<double> g(count_ * count_);
-    for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        double sum = 0.0;
-        for (std::size_t f = 0; f < decoded_[i].size(); ++f)
-          sum += decoded_[i][f] * decoded_[j][f];
-        g[i * count_ + j] = sum;
-      }
+    const std::size_t width = 3 * num_frames_;
+    const std::vector<double> decoded = as_columns(decoded_, width);
+    std::vector<double> g;
+    for (const auto& vector : decoded_) {
+      const std::vector<double> row = ordered_product(vector, decoded, count_);
+      g.insert(g.end(), row.begin(), row.end());
     }
-    // Cholesky decomposition; vectors that vanished in quantisation get no factor.
+    decompose(g);
+    const auto tried = std::span(analysis_.pc.temporal).first(num_tried_);
+    const std::vector<double> temporal = as_columns(tried, width);
+    std::vector<std::vector<double>> mixing;  // [factor][component]
+    for (const auto& vector : decoded_) {
+      mixing.push_back(ordered_product(vector, temporal, num_tried_));
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        subtract_multiple(g[i * count_ + k], mixing[k], mixing[i]);
+      }
+      divide(mixing[i], g[i * count_ + i]);
+    }
+    for (std::size_t i = count_; i-- > 0;) {
+      for (std::size_t k = i + 1; k < count_; ++k) {
+        subtract_multiple(g[k * count_ + i], mixing[k], mixing[i]);
+      }
+      divide(mixing[i], g[i * count_ + i]);
+    }
+    mixing_ = as_columns(mixing, num_tried_);
+  }
+
+  // Cholesky decomposition of a matrix, [count][count], in place; only the lower triangle
+  // counts. Vectors that vanished in quantisation get no factor: a root of 0.
+  void decompose(std::vector<double>& g) const {
     for (std::size_t j = 0; j < count_; ++j) {
       double d = g[j * count_ + j];
       for (std::size_t k = 0; k < j; ++k) d -= g[j * count_ + k] * g[j * count_ + k];
@@ -188,25 +212,11 @@ class TrajectoryCoder {
         g[i * count_ + j] = root > 0.0 ? x / root : 0.0;
       }
     }
-    // The matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in the decoded
-    // temporal vectors. So the factors are pc.spatial * mixing.
-    mixing_.assign(num_tried_ * count_, 0.0);
-    for (std::size_t l = 0; l < num_tried_; ++l) {
-      double* s = &mixing_[l * count_];
-      for (std::size_t k = 0; k < count_; ++k) {
-        for (std::size_t f = 0; f < decoded_[k].size(); ++f) {
-          s[k] += analysis_.pc.temporal[l][f] * decoded_[k][f];
-        }
-      }
-      for (std::size_t i = 0; i < count_; ++i) {
-        for (std::size_t k = 0; k < i; ++k) s[i] -= g[i * count_ + k] * s[k];
-        s[i] = g[i * count_ + i] > 0.0 ? s[i] / g[i * count_ + i] : 0.0;
-      }
-      for (std::size_t i = count_; i-- > 0;) {
-        for (std::size_t k = i + 1; k < count_; ++k) s[i] -= g[k * count_ + i] * s[k];
-        s[i] = g[i * count_ + i] > 0.0 ? s[i] / g[i * count_ + i] : 0.0;
-      }
-    }
+  }
+
+  // 0 where there is no factor.
+  static void divide(std::vector<double>& values, double root) {
+    for (double& x : values) x = root > 0.0 ? x / root : 0.0;
   }
 
   // Spatial factors of a vertex, grid units.

@@ -66,6 +66,31 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
   }
 }
 
+RLPC_WIDEST void add_ordered_product(std::span<const double> row, std::span<const double> b,
+                                     std::span<double> result) noexcept {
+  const std::size_t width = result.size();
+  double* out = result.data();
+  std::size_t i = 0;
+  for (; i + kTogether <= row.size(); i += kTogether) {
+    const double* b0 = &b[i * width];
+    const double* b1 = b0 + width;
+    const double* b2 = b1 + width;
+    const double* b3 = b2 + width;
+    for (std::size_t j = 0; j < width; ++j) {
+      out[j] = (((out[j] + row[i] * b0[j]) + row[i + 1] * b1[j]) + row[i + 2] * b2[j]) +
+               row[i + 3] * b3[j];
+    }
+  }
+  for (; i < row.size(); ++i) {
+    for (std::size_t j = 0; j < width; ++j) out[j] += row[i] * b[i * width + j];
+  }
+}
+
+RLPC_WIDEST void subtract(double factor, std::span<const double> from,
+                          std::span<double> to) noexcept {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] -= factor * from[i];
+}
+
 }  // namespace
 
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
@@ -92,7 +117,18 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
   add_product(a, a_width, b, b_width, result);
 }
 
-std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
+std::vector<double> ordered_product(std::span<const double> row, std::span<const double> b,
+                                    std::size_t b_width) {
+  std::vector<double> result(b_width, 0.0);
+  add_ordered_product(row, b, result);
+  return result;
+}
+
+void subtract_multiple(double factor, std::span<const double> from, std::span<double> to) {
+  subtract(factor, from, to);
+}
+
+std::vector<double> as_columns(std::span<const std::vector<double>> vectors,
                                std::size_t width) {
   std::vector<double> columns(width * vectors.size());
   for (std::size_t k = 0; k < vectors.size(); ++k) {

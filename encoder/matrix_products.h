@@ -28,9 +28,19 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result);
 
+// A row times b, each sum in the order of the rows of b.
+//
+//   row     [width]
+//   b       [width][b_width]
+//   result  [b_width]
+std::vector<double> ordered_product(std::span<const double> row, std::span<const double> b,
+                                    std::size_t b_width);
+
+// to[i] -= factor * from[i]
+void subtract_multiple(double factor, std::span<const double> from, std::span<double> to);
+
 // columns[i][k] = vectors[k][i], i < width
-std::vector<double> as_columns(const std::vector<std::vector<double>>& vectors,
-                               std::size_t width);
+std::vector<double> as_columns(std::span<const std::vector<double>> vectors, std::size_t width);
 
 // result[k][row] = sum over i of rows[row][i] * vectors[k][i], i < width
 std::vector<std::vector<double>> project(std::span<const double> rows, std::size_t width,
