@@ -189,8 +189,8 @@ class LayerMaker {
   // Of the vertices removed in this pass, in order: noted for outer_ring.
   std::vector<std::uint32_t> around_;
   std::vector<std::uint32_t> around_end_;
-  // [num_vertices]: 0, except within a function that sets it: place in a ring
-  // plus 1
+  // [num_vertices]: 0, except within a function that sets it: place in a fan or
+  // a ring plus 1
   std::vector<std::uint8_t> place_;
   Surroundings surroundings_;  // of the vertex at hand
 };
@@ -212,8 +212,9 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
     is_fan = is_fan && place_[starts[i]] == 0;
     place_[starts[i]] = static_cast<std::uint8_t>(i + 1);
   }
-  std::array<std::uint8_t, kMaxFan> follower{};  // plus 1
-  unsigned followers = 0;                        // bit i: one ends where i starts
+  // The triangle that starts where one ends, plus 1; and, as bits, all that do.
+  std::array<std::uint8_t, kMaxFan> follower{};
+  unsigned followers = 0;
   for (std::size_t i = 0; i < size; ++i) {
     follower[i] = place_[ends[i]];
     const unsigned bit = (1U << follower[i]) >> 1U;
@@ -234,7 +235,7 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   ring.closed = leaders == 0;
   std::size_t last = first;
   ring.append(starts[first]);
-  while (follower[last] != 0 && follower[last] != first + 1) {
+  while (ring.size < size && follower[last] != 0 && follower[last] != first + 1) {
     last = follower[last] - 1U;
     ring.append(starts[last]);
   }
