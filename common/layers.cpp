@@ -98,8 +98,6 @@ class Rest {
   std::uint32_t first(std::uint32_t v) const { return first_[v]; }
   std::uint32_t next(std::uint32_t corner) const { return corners_[corner].next; }
   // The other two vertices of a triangle, in its orientation.
-  std::uint32_t after(std::uint32_t corner) const { return corners_[corner].others[0]; }
-  std::uint32_t before(std::uint32_t corner) const { return corners_[corner].others[1]; }
   const std::array<std::uint32_t, 2>& others(std::uint32_t corner) const {
     return corners_[corner].others;
   }
@@ -203,8 +201,8 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   std::array<std::uint32_t, kMaxFan> ends{};
   std::size_t size = 0;
   for (std::uint32_t c = rest_.first(v); c != kNone; c = rest_.next(c)) {
-    starts[size] = rest_.after(c);
-    ends[size] = rest_.before(c);
+    starts[size] = rest_.others(c)[0];
+    ends[size] = rest_.others(c)[1];
     ++size;
   }
   bool is_fan = true;
