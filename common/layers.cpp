@@ -153,7 +153,7 @@ struct Ring {
 struct Surroundings {
   EdgeSet barred = 0;
   std::size_t num_vertices = 0;
-  std::array<std::uint32_t, 2 * kMaxValence * kMaxRing + 1> vertices{};
+  std::array<std::uint32_t, std::size_t{2} * kMaxValence * kMaxRing + 1> vertices{};
 };
 
 // Layers, pass by pass.

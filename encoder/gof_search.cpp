@@ -107,8 +107,8 @@ Clustering GofSearch::cluster(const GofChoice& choice) {
                 : motion_->clusters(choice.clusters);
 }
 
-GofAnalysis GofSearch::analyse(double step, const GofChoice& choice,
-                               const Clustering& clustering) const {
+GofAnalysis GofSearch::analysis_for(double step, const GofChoice& choice,
+                                    const Clustering& clustering) const {
   return analyse_gof(context_, frames_, first_frame_, clustering,
                      analysis_settings(step, choice));
 }
@@ -116,7 +116,7 @@ GofAnalysis GofSearch::analyse(double step, const GofChoice& choice,
 double GofSearch::cost(double step, const GofChoice& choice) {
   const EncodedGof encoded = encoded_gof(
       context_,
-      code_gof(frames_, analyse(step, choice, cluster(choice)), coding_settings(step)));
+      code_gof(frames_, analysis_for(step, choice, cluster(choice)), coding_settings(step)));
   const double error = squared_error(frames_, encoded.frame);
   const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
   return error + coding_settings(step).lambda_factor * step * step * bits;
@@ -170,7 +170,7 @@ EncodedGof GofSearch::encode(double step, double analysis_step) {
   motion_.reset();
   if (!cached_ || cached_->step != analysis_step) {
     cached_.reset();  // before there is another
-    cached_ = Cached{analysis_step, analyse(analysis_step, *choice_, *clustering_)};
+    cached_ = Cached{analysis_step, analysis_for(analysis_step, *choice_, *clustering_)};
   }
   return encoded_gof(context_, code_gof(frames_, cached_->analysis, coding_settings(step)));
 }
@@ -178,7 +178,8 @@ EncodedGof GofSearch::encode(double step, double analysis_step) {
 EncodedGof GofSearch::encode_once(double step, const GofChoice& choice) {
   const Clustering clustering = cluster(choice);
   motion_.reset();
-  const Gof gof = code_gof(frames_, analyse(step, choice, clustering), coding_settings(step));
+  const Gof gof =
+      code_gof(frames_, analysis_for(step, choice, clustering), coding_settings(step));
   return encoded_gof(context_, gof);
 }
 

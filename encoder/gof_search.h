@@ -43,7 +43,8 @@ class GofSearch : public GofCoder {
   AnalysisSettings analysis_settings(double step, const GofChoice& choice) const;
   CodingSettings coding_settings(double step) const;
   Clustering cluster(const GofChoice& choice);
-  GofAnalysis analyse(double step, const GofChoice& choice, const Clustering& clustering) const;
+  GofAnalysis analysis_for(double step, const GofChoice& choice,
+                           const Clustering& clustering) const;
   double cost(double step, const GofChoice& choice);
   GofChoice choose(double step);
   std::uint32_t choose_count(double step, bool world);

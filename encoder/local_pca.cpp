@@ -99,7 +99,7 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
     for (const double x : some) result.total_energy += x * x;
     add_gram_matrix(some, width, gram);
   });
-  EigenPairs pairs = leading_eigenvectors(std::move(gram), width, max_components,
+  EigenPairs pairs = leading_eigenvectors(gram, width, max_components,
                                           least_energy(result.total_energy, min_energy));
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
