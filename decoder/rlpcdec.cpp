@@ -159,8 +159,10 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
                                          {"cut", decoder.was_cut()}};
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
-    std::fprintf(stderr, "%s: %u frames of %u vertices and %u triangles decoded%s\n",
-                 name_of(o.input).c_str(), frames.decoded, h.num_vertices, h.num_triangles,
+    const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
+    std::fprintf(stderr, "%s: %u frame%s of %u vertices and %u triangle%s decoded%s\n",
+                 name_of(o.input).c_str(), frames.decoded, plural(frames.decoded),
+                 h.num_vertices, h.num_triangles, plural(h.num_triangles),
                  hashes_text(o, decoder, frames).c_str());
   }
 }

@@ -173,13 +173,25 @@ void print_json(const Summary& s) {
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
-// "12", or "3 to 12"
+struct Noun {
+  const char* one;
+  const char* many;
+};
+
+// "1 cluster", "12 clusters"
+std::string counted(std::uint64_t count, const Noun& noun) {
+  return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
+}
+
+// "12 clusters", or "3 to 12 clusters"
 template <class Count>
-std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Count& count) {
+std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Noun& noun,
+                       const Count& count) {
   const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
   const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
-  const std::string high = std::to_string(count(*most));
-  return count(*least) == count(*most) ? high : std::to_string(count(*least)) + " to " + high;
+  const std::string most_counted = counted(count(*most), noun);
+  return count(*least) == count(*most) ? most_counted
+                                       : std::to_string(count(*least)) + " to " + most_counted;
 }
 
 std::vector<rlpc::ListedGof> of_kind(std::vector<rlpc::ListedGof> gofs, bool has_bones) {
@@ -189,36 +201,48 @@ std::vector<rlpc::ListedGof> of_kind(std::vector<rlpc::ListedGof> gofs, bool has
 
 void print_clusters(const std::vector<rlpc::ListedGof>& gofs) {
   using Entry = rlpc::ListedGof;
-  std::printf("  GOFs of clusters: %zu, with %s clusters and %s components each\n", gofs.size(),
-              range_over(gofs, [](const Entry& g) { return g.num_clusters; }).c_str(),
-              range_over(gofs, [](const Entry& g) { return g.num_components; }).c_str());
+  std::printf(
+      "  GOFs of clusters: %zu, with %s and %s each\n", gofs.size(),
+      range_over(gofs, {"cluster", "clusters"}, [](const Entry& g) { return g.num_clusters; })
+          .c_str(),
+      range_over(gofs, {"component", "components"}, [](const Entry& g) {
+        return g.num_components;
+      }).c_str());
 }
 
 void print_bones(const std::vector<rlpc::ListedGof>& gofs) {
   using Entry = rlpc::ListedGof;
-  const auto over = [&](const auto& count) { return range_over(gofs, count); };
+  const auto over = [&](const Noun& noun, const auto& count) {
+    return range_over(gofs, noun, count);
+  };
   std::printf(
-      "  GOFs of bones: %zu, with %s bones, %s trajectories in %s component groups, %s layers "
-      "in %s groups and %s slices each\n",
-      gofs.size(), over([](const Entry& g) { return g.num_bones; }).c_str(),
-      over([](const Entry& g) { return g.num_trajectories(); }).c_str(),
-      over([](const Entry& g) { return g.num_component_groups; }).c_str(),
-      over([](const Entry& g) { return g.num_layers; }).c_str(),
-      over([](const Entry& g) { return g.layer_group_size.size(); }).c_str(),
-      over([](const Entry& g) { return g.slices.size(); }).c_str());
+      "  GOFs of bones: %zu, with %s, %s in %s, %s in %s and %s each\n", gofs.size(),
+      over({"bone", "bones"}, [](const Entry& g) { return g.num_bones; }).c_str(),
+      over({"trajectory", "trajectories"}, [](const Entry& g) { return g.num_trajectories(); })
+          .c_str(),
+      over({"component group", "component groups"},
+           [](const Entry& g) { return g.num_component_groups; })
+          .c_str(),
+      over({"layer", "layers"}, [](const Entry& g) { return g.num_layers; }).c_str(),
+      over({"layer group", "layer groups"},
+           [](const Entry& g) { return g.layer_group_size.size(); })
+          .c_str(),
+      over({"slice", "slices"}, [](const Entry& g) { return g.slices.size(); }).c_str());
 }
 
 // Of a GOF of bones, a line for each component group, a column for each layer group; and what
 // stays of the GOF if it is cut behind one of them.
 void print_gof(const rlpc::ListedGof& gof) {
   if (!gof.has_bones()) {
-    std::printf("\n  frames %u to %u: %u clusters, %u components in %" PRIu64 " bytes\n",
-                gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.num_clusters,
-                gof.num_components, gof.bytes);
+    std::printf("\n  frames %u to %u: %s, %s in %" PRIu64 " bytes\n", gof.first_frame,
+                gof.first_frame + gof.num_frames - 1,
+                counted(gof.num_clusters, {"cluster", "clusters"}).c_str(),
+                counted(gof.num_components, {"component", "components"}).c_str(), gof.bytes);
     return;
   }
-  std::printf("\n  frames %u to %u: %u bones in %" PRIu64 " bytes; slices in bytes\n",
-              gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.num_bones, gof.bytes);
+  std::printf("\n  frames %u to %u: %s in %" PRIu64 " bytes; slices in bytes\n",
+              gof.first_frame, gof.first_frame + gof.num_frames - 1,
+              counted(gof.num_bones, {"bone", "bones"}).c_str(), gof.bytes);
   std::printf("  %-40s", "layers");
   for (const std::uint32_t size : gof.layer_group_size) std::printf(" %9u", size);
   std::printf(" %12s\n", "GOF to here");
@@ -249,9 +273,11 @@ void print_table(const Options& o, const Summary& s) {
   const double total = 8.0 * static_cast<double>(s.bytes);
   std::printf("%s: %s profile, level %u\n", o.input.c_str(),
               h.profile_idc == rlpc::kProfileMain ? "Main" : "Baseline", h.level_idc);
-  std::printf("  %u vertices, %u triangles, %u frames at %u/%u per second, %u GOFs\n",
-              h.num_vertices, h.num_triangles, h.num_frames, h.frame_rate.numerator,
-              h.frame_rate.denominator, s.num_gofs);
+  std::printf("  %s, %s, %s at %u/%u per second, %s\n",
+              counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
+              counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
+              counted(h.num_frames, {"frame", "frames"}).c_str(), h.frame_rate.numerator,
+              h.frame_rate.denominator, counted(s.num_gofs, {"GOF", "GOFs"}).c_str());
   const auto clusters = of_kind(s.counter.gofs(), false);
   const auto bones = of_kind(s.counter.gofs(), true);
   if (!clusters.empty()) print_clusters(clusters);
