@@ -10,6 +10,7 @@ import unittest
 import xml.etree.ElementTree
 
 import bench_plots
+import svg_plot
 
 
 def run(name, bpvf, speed, **others):
@@ -49,6 +50,13 @@ class BenchPlots(unittest.TestCase):
                 texts = [e.text for e in xml.etree.ElementTree.parse(path).iter() if e.text]
                 for word in words:
                     self.assertIn(word, texts)
+
+    def test_long_names_have_room(self):
+        def width(name):
+            svg = svg_plot.plot("", [svg_plot.Series(name, [(1, 1), (2, 2)], "black")], "x", "y")
+            return int(xml.etree.ElementTree.fromstring(svg).get("width"))
+        self.assertEqual(width("a"), width("ab"))
+        self.assertGreater(width(30 * "a"), width("a") + 40)
 
     def test_nothing_measured_nothing_written(self):
         self.assertEqual(bench_plots.curves({"benchmarks": RESULTS["benchmarks"][:1]}), {})

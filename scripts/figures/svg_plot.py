@@ -3,8 +3,10 @@
 import html
 import math
 
-WIDTH, HEIGHT = 920, 600
-LEFT, RIGHT, TOP, BOTTOM = 80, 250, 56, 64
+HEIGHT = 600
+LEFT, RIGHT, TOP, BOTTOM = 80, 670, 56, 536  # of the plot
+LEGEND_LEFT, NAME_LEFT, LEGEND_WIDTH = 22, 44, 228  # right of the plot; wider if names are long
+CHARACTER = 8  # width, in pixels: names in wide fonts have room
 INK, FAINT = "#222222", "#e4e4e4"
 
 
@@ -66,41 +68,42 @@ def marker(series, x, y):
 
 
 def grid(x_axis, y_axis):
-    left, right, top, bottom = LEFT, WIDTH - RIGHT, TOP, HEIGHT - BOTTOM
     for value in x_axis.ticks():
         x = x_axis.pixel(value)
-        yield f'<path d="M{x:.1f} {top}V{bottom}" stroke="{FAINT}"/>'
-        yield text(x, bottom + 20, f"{value:g}", anchor="middle")
+        yield f'<path d="M{x:.1f} {TOP}V{BOTTOM}" stroke="{FAINT}"/>'
+        yield text(x, BOTTOM + 20, f"{value:g}", anchor="middle")
     for value in y_axis.ticks():
         y = y_axis.pixel(value)
-        yield f'<path d="M{left} {y:.1f}H{right}" stroke="{FAINT}"/>'
-        yield text(left - 8, y + 4.5, f"{value:g}", anchor="end")
-    yield (f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" '
+        yield f'<path d="M{LEFT} {y:.1f}H{RIGHT}" stroke="{FAINT}"/>'
+        yield text(LEFT - 8, y + 4.5, f"{value:g}", anchor="end")
+    yield (f'<rect x="{LEFT}" y="{TOP}" width="{RIGHT - LEFT}" height="{BOTTOM - TOP}" '
            f'fill="none" stroke="{INK}"/>')
-    yield text((left + right) / 2, HEIGHT - 18, x_axis.label, 14, "middle")
-    middle = (top + bottom) / 2
+    yield text((LEFT + RIGHT) / 2, HEIGHT - 18, x_axis.label, 14, "middle")
+    middle = (TOP + BOTTOM) / 2
     yield text(22, middle, y_axis.label, 14, "middle",
                extra=f' transform="rotate(-90 22 {middle:.1f})"')
 
 
 def legend(series_list):
-    x, y = WIDTH - RIGHT + 22, TOP + 14
+    x, y = RIGHT + LEGEND_LEFT, TOP + 14
     for series in series_list:
         if series.line != "none":
             yield f'<path d="M{x} {y}h34" {line_style(series)}/>'
         yield marker(series, x + 17, y)
-        yield text(x + 44, y + 4.5, series.name)
+        yield text(x + NAME_LEFT, y + 4.5, series.name)
         y += 24
 
 
 def plot(title, series_list, x_label, y_label, log_x=True, log_y=True):
     """The SVG text. Points are (x, y); above zero where an axis is logarithmic."""
     points = [p for series in series_list for p in series.points]
-    x_axis = Axis(x_label, [p[0] for p in points], log_x, LEFT, WIDTH - RIGHT)
-    y_axis = Axis(y_label, [p[1] for p in points], log_y, HEIGHT - BOTTOM, TOP)
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
-             f'viewBox="0 0 {WIDTH} {HEIGHT}" font-family="Helvetica, Arial, sans-serif">',
-             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
+    x_axis = Axis(x_label, [p[0] for p in points], log_x, LEFT, RIGHT)
+    y_axis = Axis(y_label, [p[1] for p in points], log_y, BOTTOM, TOP)
+    longest = NAME_LEFT + CHARACTER * max(len(series.name) for series in series_list)
+    width = RIGHT + LEGEND_LEFT + max(LEGEND_WIDTH, longest)
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{HEIGHT}" '
+             f'viewBox="0 0 {width} {HEIGHT}" font-family="Helvetica, Arial, sans-serif">',
+             f'<rect width="{width}" height="{HEIGHT}" fill="white"/>',
              text(LEFT, 32, title, 17, extra=' font-weight="bold"')]
     parts += grid(x_axis, y_axis)
     for series in series_list:
