@@ -36,7 +36,7 @@ Quaternion normalize_quaternion(Quaternion q) {
   const int shift = floor_log2(static_cast<std::uint64_t>(largest)) - kScaledBits;
   std::int64_t squares = 0;
   for (std::int64_t& x : q) {
-    x = shift > 0 ? round2(x, shift) : x * (std::int64_t{1} << -shift);
+    x = shift_by(x, shift);
     squares += x * x;
   }
   const std::int64_t norm = isqrt(squares);

@@ -19,10 +19,6 @@ using Moment = std::array<std::int64_t, 6>;  // xx, yy, zz, xy, xz, yz
 constexpr std::array<std::size_t, 6> kMomentRow{0, 1, 2, 0, 0, 1};
 constexpr std::array<std::size_t, 6> kMomentColumn{0, 1, 2, 1, 2, 2};
 
-std::int64_t shift_by(std::int64_t x, int shift) {
-  return shift > 0 ? round2(x, shift) : x * (std::int64_t{1} << -shift);
-}
-
 // 8.11.2 SolveMoment( m ): nothing if the determinant is not positive.
 std::optional<Vec3l> solve_moment(const Moment& m, const Vec3l& gap) {
   const std::int64_t xx = m[1] * m[2] - m[5] * m[5];

@@ -17,6 +17,11 @@ constexpr std::int64_t round2(std::int64_t x, int n) {
 }
 static_assert(round2(5, 1) == 3 && round2(-5, 1) == -2);  // ties go up
 
+// 8.11.1 ShiftBy(x, shift): as round2 if shift > 0; |x| * 2^-shift < 2^62 else.
+constexpr std::int64_t shift_by(std::int64_t x, int shift) {
+  return shift > 0 ? round2(x, shift) : x * (std::int64_t{1} << -shift);
+}
+
 // 5.3 DivRound(x, n): floor(x / n + 1/2). |x| < 2^61, 0 < n < 2^61.
 constexpr std::int64_t div_round(std::int64_t x, std::int64_t n) {
   assert(n > 0);
