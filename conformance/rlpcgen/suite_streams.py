@@ -22,6 +22,11 @@ _ID = re.compile(r"[A-Z]{2,3}-\d{4}([a-w]|x\d+[b-w]?)$")
 _SETTINGS = {"profile_idc": 0, "level_idc": 1}
 
 
+def specification_of(folder):
+    """The version of the document: 1.1 of streams/v1.1, and of its supplement streams/v1.1s1."""
+    return pathlib.Path(folder).name[1:].partition("s")[0]
+
+
 class StreamsError(Exception):
     """A recipe and what comes of it do not agree."""
 
@@ -82,7 +87,7 @@ def sidecar_of(recipe, data, folder, program):
     expect = _expect(recipe, found, place)
     found.pop("expect")
     level = recipe.meta.get("level", _header_value(recipe, "level_idc"))
-    return {"id": recipe.path.stem, "title": recipe.meta["title"], "spec": folder.name[1:],
+    return {"id": recipe.path.stem, "title": recipe.meta["title"], "spec": specification_of(folder),
             "profile": _profile(recipe),
             "level": max(1, min(4, int(level))), "expect": expect, "tier": recipe.meta["tier"],
             "rules": recipe.meta["rules"], "features": recipe.meta["features"],
@@ -94,7 +99,7 @@ def sidecar_of(recipe, data, folder, program):
 
 
 class Version:
-    """The folder of a version, such as streams/v1.0."""
+    """The folder of a version, such as streams/v1.0, or of a supplement, streams/v1.1s1."""
 
     def __init__(self, folder, spec):
         self.folder = pathlib.Path(folder).resolve()

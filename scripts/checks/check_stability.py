@@ -2,7 +2,7 @@
 """What is released does not change.
 
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
-  calls just those versions released that have one.
+  calls just those versions and supplements released that have one.
 * The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
   has the digests by version of the project (CMakeLists.txt); what the encoder makes of a profile
   is kept from its release on. They may change with the version, or with an erratum
@@ -36,7 +36,7 @@ def released(root):
     """Complaints about the streams of released versions."""
     text = (root / "spec" / "versions.md").read_text(encoding="utf-8")
     stated = {m.group(1): m.group(2).strip() for m in
-              re.finditer(r"^\| (\d+\.\d+) \|[^|]*\|([^|]*)\|$", text, re.MULTILINE)}
+              re.finditer(r"^\| (\d+\.\d+(?:s\d+)?) \|[^|]*\|([^|]*)\|$", text, re.MULTILINE)}
     for version, status in stated.items():
         sums = root / "streams" / f"v{version}" / "SHA256SUMS"
         if status.startswith("released") != sums.is_file():

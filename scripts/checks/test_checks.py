@@ -410,6 +410,15 @@ class Stability(TreeTest):
         unsaid = {**self.RELEASED, "spec/versions.md": "| 1.0 | Baseline | not released |\n"}
         self.assert_one(self.released, unsaid, "1.0 is `not released`")
 
+    def test_supplements_are_released_by_themselves(self):
+        said = self.RELEASED["spec/versions.md"]
+        row = "| 1.0s1 | more streams | released 2026-11-22 |\n"
+        tree = {**self.RELEASED, "spec/versions.md": said + row}
+        self.assert_one(self.released, tree, "1.0s1 is `released 2026-11-22`", "missing")
+        sums = "streams/v1.0s1/SHA256SUMS"
+        self.assert_clean(self.released, {**tree, sums: ""})
+        self.assert_one(self.released, {**self.RELEASED, sums: ""}, sums, "does not know")
+
     def test_another_state_of_the_encoder_has_a_reason(self):
         def tree(*errata, text="# Errata\n"):
             listed = "[" + ", ".join(self.ENTRY % e for e in errata) + "]"
