@@ -108,8 +108,41 @@ TEST(Settings, OfTheMainProfileAreRefusedInTheBaselineProfile) {
                   {"--no-layer-steps", [](auto& s) { s.main.layer_steps = false; }},
                   {"--no-temporal-weights", [](auto& s) { s.main.temporal_weights = false; }},
                   {"--basis-steps", [](auto& s) { s.main.cobra_steps = true; }},
+                  {"--no-clusters", [](auto& s) { s.main.clusters = false; }},
                   {"--component-groups", [](auto& s) { s.main.component_groups = 2; }},
                   {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}});
+}
+
+TEST(Settings, OfLayersAreRefusedWithoutThem) {
+  const std::vector<Parameter> list{
+      {"--no-geometry-weights", [](auto& s) { s.main.geometry_weights = false; }},
+      {"--no-outer-ring", [](auto& s) { s.main.outer_ring = false; }},
+      {"--no-layer-steps", [](auto& s) { s.main.layer_steps = false; }},
+      {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}};
+  for (const Parameter& p : list) {
+    EXPECT_EQ(error_of([&](auto& s) { s.main.prediction = Prediction::kLayers, p.give(s); }),
+              "");
+    EXPECT_EQ(
+        error_of([&](auto& s) { s.main.prediction = Prediction::kNone, p.give(s); }),
+        std::string(p.option) + " needs layers: leave it out, or use --prediction layers");
+  }
+  EXPECT_EQ(error_of([](auto& s) {
+              s.main.prediction = Prediction::kNone;
+              s.main.layer_groups = 1;
+            }),
+            "");
+}
+
+TEST(Settings, TheLevelIsThatOfTheStream) {
+  MemoryFrames source = bending_tube(40, 6);
+  EncoderSettings settings;
+  settings.preset = Preset::kFast;
+  settings.components = 1024;
+  settings.main.bones = 1024;
+  const auto report = encode(source, settings, discard);
+  ASSERT_TRUE(report);
+  EXPECT_LT(report->components, 20U);
+  EXPECT_EQ(report->header.level_idc, 1U);
 }
 
 TEST(Settings, AVertexFollowsAtMostFourBones) {

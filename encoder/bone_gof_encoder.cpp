@@ -293,13 +293,17 @@ class TrajectoryCoder {
     return bits / 8.0;
   }
 
-  // Each group of layers but the last ends where an eighth of the vertices of the next is left.
+  // Each group of layers but the last ends where an eighth of the vertices of the next is left,
+  // or sooner, if else there were not as many groups as are asked for.
   void cut_layers(std::size_t num_groups) {
     const std::uint32_t num_layers = mesh_.num_layers();
+    const std::uint32_t asked = std::min(settings_.layer_groups, num_layers);
     std::vector<std::uint32_t> ends{num_layers};
     for (std::uint32_t last = num_layers; ends.size() < num_groups; ends.push_back(last)) {
       const std::size_t most = mesh_.vertices_of_layers(0, last).size() / 8;
-      while (last > 1 && mesh_.vertices_of_layers(0, last).size() > most) --last;
+      const auto num_ends = static_cast<std::uint32_t>(ends.size());
+      const std::uint32_t first = std::max(asked, num_ends + 1) - num_ends;
+      while (last > first && mesh_.vertices_of_layers(0, last).size() > most) --last;
       if (last == ends.back()) break;
     }
     gof_.layer_group_size.clear();
@@ -310,10 +314,15 @@ class TrajectoryCoder {
     }
   }
 
-  // Each group of trajectories has about three times as many as those before.
+  // Each group of trajectories has about three times as many as those before, or fewer, if else
+  // there were not as many groups as are asked for.
   void cut_components(std::size_t num_groups) {
+    const std::size_t asked = std::min<std::size_t>(settings_.component_groups, count_);
     std::vector<std::size_t> ends{count_};
-    while (ends.size() < num_groups && ends.back() > 1) ends.push_back(ends.back() / 3 + 1);
+    while (ends.size() < num_groups && ends.back() > 1) {
+      const std::size_t least = std::max(asked, ends.size() + 1) - ends.size();
+      ends.push_back(std::max(ends.back() / 3 + 1, least));
+    }
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::size_t first = 0;
     for (std::size_t i = ends.size(); i-- > 0;) {

@@ -122,6 +122,7 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
       hope_(hope_of(frames)),
       max_influences_(tools_.influences == 0 ? kUsualInfluences : tools_.influences),
       choice_(choice) {
+  if (tools_.layer_groups > 1) tools_.prediction = Prediction::kLayers;
   usual_.prediction = tools_.prediction.value_or(Prediction::kLayers);
   if (!tools_.geometry_weights) usual_.damping_log2 = 0;
   if (!tools_.outer_ring) usual_.outer_weight = 0;

@@ -31,7 +31,7 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
-               temporal_weights, cobra_steps, component_groups, layer_groups] = tools;
+               temporal_weights, cobra_steps, clusters, component_groups, layer_groups] = tools;
   const MainTools usual;
   return {{"--bones", bones != usual.bones},
           {"--prediction", prediction != usual.prediction},
@@ -41,6 +41,7 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"--no-layer-steps", layer_steps != usual.layer_steps},
           {"--no-temporal-weights", temporal_weights != usual.temporal_weights},
           {"--basis-steps", cobra_steps != usual.cobra_steps},
+          {"--no-clusters", clusters != usual.clusters},
           {"--component-groups", component_groups != usual.component_groups},
           {"--layer-groups", layer_groups != usual.layer_groups}};
 }
@@ -52,6 +53,24 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
     if (p.given) {
       return InputError{std::string(p.option) + " needs --profile " + profile +
                         ": use that, or leave out " + p.option};
+    }
+  }
+  return std::nullopt;
+}
+
+// Parameters of layers would do nothing if there are none.
+std::optional<InputError> check_layers(const MainTools& tools) {
+  if (tools.prediction.value_or(Prediction::kLayers) == Prediction::kLayers)
+    return std::nullopt;
+  const MainTools usual;
+  for (const Parameter& p :
+       {Parameter{"--no-geometry-weights", tools.geometry_weights != usual.geometry_weights},
+        Parameter{"--no-outer-ring", tools.outer_ring != usual.outer_ring},
+        Parameter{"--no-layer-steps", tools.layer_steps != usual.layer_steps},
+        Parameter{"--layer-groups", tools.layer_groups > 1}}) {
+    if (p.given) {
+      return InputError{std::string(p.option) +
+                        " needs layers: leave it out, or use --prediction layers"};
     }
   }
   return std::nullopt;
@@ -104,6 +123,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
     return error;
   }
   if (auto error = check_baseline(s)) return error;
+  if (auto error = check_layers(s.main)) return error;
   if (auto error = check_counts(s)) return error;
   // A vertex of which no bone is a candidate can have no more (6.12.2).
   if (s.main.influences > kMaxExtraBones) {

@@ -47,8 +47,8 @@ Examples
   visually-lossless  0.01 %  below 0.13 degrees: half a step of a display of 8 bits
 A warning tells if the RMS error is above 3 % of the median length of edges (about one degree).
 
---dry-run encodes up to 1024 frames to tell the exact size. Of longer animations, it encodes eight
-stretches, and says `about`.
+--dry-run encodes up to 1024 frames (or eight times --gof, if that is more) to tell the exact size.
+Of longer animations, it encodes eight stretches, and says `about`.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was out of reach; 64 usage.)";
 
@@ -132,7 +132,8 @@ void add_method_options(CLI::App& app, CommandLine& line) {
       ->group(method);
   app.add_option(
          "--components", line.options.settings.components,
-         "Components per GOF; Baseline: per cluster (L; default: by rate and distortion)")
+         "At most so many components per GOF; Baseline: as many per cluster, in the mean (L; "
+         "default: by rate and distortion)")
       ->check(CLI::Range(1, 1024))
       ->group(method);
   app.add_option("--gof", line.gof, "Longest group of frames, or `all` for one group")
@@ -175,9 +176,9 @@ void add_baseline_options(CLI::App& app, CommandLine& line) {
 }
 
 void add_main_options(CLI::App& app, CommandLine& line) {
-  const std::string tools = "Main profile alone: its tools";
+  const std::string tools = "Main profile alone: its tools; with any of these, no clusters";
   MainTools& t = line.options.settings.main;
-  app.add_option("--bones", t.bones, "Bones per GOF (default: chosen)")
+  app.add_option("--bones", t.bones, "At most so many bones per GOF (default: chosen)")
       ->check(CLI::Range(1, 1024))
       ->group(tools);
   app.add_option("--influences", t.influences, "Most bones of a vertex (default: chosen)")
@@ -210,12 +211,19 @@ void add_main_options(CLI::App& app, CommandLine& line) {
   add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
                  "Only the fixed predictors of temporal factors")
       ->group(tools);
-  app.add_option("--component-groups", t.component_groups,
-                 "Groups of trajectories that a stream can be cut at (default: by size)")
+  add_off_switch(app, "--no-clusters", t.clusters,
+                 "Bones in all GOFs, where clusters cost less")
+      ->group(tools);
+  app.add_option(
+         "--component-groups", t.component_groups,
+         "Groups of trajectories that a stream can be cut at, one for each if there are "
+         "fewer (default: by size)")
       ->check(CLI::Range(1, 255))
       ->group(tools);
-  app.add_option("--layer-groups", t.layer_groups,
-                 "Groups of layers that a stream can be cut at (default: by size)")
+  app.add_option(
+         "--layer-groups", t.layer_groups,
+         "Groups of layers that a stream can be cut at, one for each if there are fewer "
+         "(default: by size)")
       ->check(CLI::Range(1, 255))
       ->group(tools);
 }

@@ -105,11 +105,11 @@ def variant(name, title, colour, options):
     return Codec(name, title, colour, f"Main with {options}", options=f"--profile main {options}")
 
 
-# What Main loses without one of its tools. The encoder tries several clusters only where every tool
-# is at its choice, so all other rows are without them too.
+# What Main loses without one of its tools. The encoder tries clusters only where every tool is at
+# its choice; so all rows are without them, and compared with that one.
 ABLATIONS = (
     MAIN,
-    variant("clusters", "one cluster", "#000000", "--influences 4"),
+    variant("clusters", "Main, no clusters", "#000000", "--no-clusters"),
     variant("prediction-none", "no prediction over the mesh", "#0072b2", "--prediction none"),
     variant("parallelogram", "parallelogram", "#56b4e9", "--prediction parallelogram"),
     variant("parallelograms", "mean of parallelograms", "#009e73", "--prediction parallelograms"),

@@ -166,6 +166,18 @@ class Reports(unittest.TestCase):
         extra = report.extra_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
         self.assertEqual(extra.rows[0], ["Baseline", "+100.0 / +100.0", "+100.0 / +100.0"])
 
+    def test_tools_are_compared_with_main_without_clusters(self):
+        curves = report.curves_of(codec_table.ABLATIONS[:3], ("all",))
+        names = [curve.codec.name for curve in curves]
+        points = [point(name, kg, size) for name, sizes in zip(names, ((500, 50), (600, 60), (900, 90)))
+                  for kg, size in zip((0.1, 1.1), sizes)]
+        tables = report.ablation_tables([SEQUENCE], curves, points, [0.1])
+        self.assertEqual([t.title.split(" at ")[0] for t in tables[::2]],
+                         ["Per cent more bytes than Main",
+                          "Per cent more bytes than Main, no clusters"])
+        self.assertEqual([[row[1] for row in t.rows] for t in tables[::2]], [["+20.0"], ["+50.0"]])
+        self.assertEqual([len(t.rows) for t in tables], [1, 1, 1, 1])
+
     def test_tables_of_the_readme(self):
         rates = report.readme_rates([SEQUENCE], self.curves, self.POINTS, [0.1, 1.1])
         self.assertEqual(rates.rows, [["Main", "4.00 / 0.400"], ["Baseline", "8.00 / 0.800 (+100 %)"],

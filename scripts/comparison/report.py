@@ -123,6 +123,17 @@ def ratios_table(sequences, curves, points, kgs):
                  ["codec", *(f"KG {kg:g} %" for kg in kgs)], rows)
 
 
+def ablation_tables(sequences, curves, points, kgs):
+    """What clusters are worth; and what the other tools are, compared with Main without clusters,
+    which all variants behind it are too."""
+    names = list(dict.fromkeys(curve.codec.name for curve in curves))
+    found = []
+    for chosen in (names[:2], names[1:]):
+        part = [curve for curve in curves if curve.codec.name in chosen]
+        found += [extra_table(sequences, part, points, kgs), bd_table(sequences, part, points)]
+    return found
+
+
 def extra_table(sequences, curves, points, kgs):
     """As ratios_table, in per cent more, for every sequence."""
     rows = []
@@ -138,7 +149,7 @@ def extra_table(sequences, curves, points, kgs):
         rows.append([curve.title, *cells, " / ".join(map(_extra, means))])
     title = (f"Per cent more bytes than {curves[0].title} at KG error "
              + " / ".join(f"{kg:g}" for kg in kgs) + " %")
-    return Table(title, ["without", *(s.name for s in sequences), "mean"], rows)
+    return Table(title, ["variant", *(s.name for s in sequences), "mean"], rows)
 
 
 def _extra(ratio):
