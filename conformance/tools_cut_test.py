@@ -174,9 +174,29 @@ class Cutting(CutTest):
         self.assertNotIn("nothing was left out", said)
         self.assertIn("nothing was left out", self.extract(path, "components=9999").out.decode())
         self.assertIn("hashes of GOFs that are cut were not compared",
-                      self.ok("rlpcdec", path, "--verify", "--max-components", 0).err)
+                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 0).err)
         self.assertIn("have no hashes",
-                      self.ok("rlpcdec", path, "--verify", "--max-components", 9999).err)
+                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 9999).err)
+
+    def test_as_many_groups_as_are_asked_for(self):
+        """One for each layer, and each trajectory, if there are fewer."""
+        for asked in ((4, 2), (2, 5), (255, 1), (1, 255)):
+            self.encode(self.path("a.rlpc"), "--gof", 30, "--layer-groups", asked[0],
+                        "--component-groups", asked[1])
+            gofs = self.gofs_of_bones(self.path("a.rlpc"))
+            self.assertEqual(len(gofs), 2)
+            for gof in gofs:
+                self.assertEqual(len(gof["layer_group_size"]),
+                                 min(asked[0], sum(gof["layer_group_size"])))
+                sizes = [s["num_trajectories"] for s in gof["slices"]
+                         if s["layer_group_idx"] == 0]
+                self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # beside the rest
+            self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
+
+    def test_what_is_cut_cannot_be_verified(self):
+        path = self.rich_stream()
+        for cut in ("--max-components", "--max-layers"):
+            self.fails(64, "--verify excludes " + cut, "rlpcdec", path, "--verify", cut, 1)
 
     def test_gofs_of_clusters_stay_whole(self):
         """What comes of a stream of the suite is another one of it."""

@@ -30,6 +30,10 @@ std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
 Result<std::unique_ptr<ByteSource>> file_source(const std::string& path);
 // Reads standard input whole.
 Result<std::unique_ptr<ByteSource>> standard_input_source();
+// For messages.
+inline std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : path;
+}
 // The one or, for "-", the other.
 inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path) {
   return path == "-" ? standard_input_source() : file_source(path);

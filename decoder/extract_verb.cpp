@@ -31,7 +31,7 @@ int complain(const std::string& message, int code) {
 }
 
 int complain(const ExtractOptions& o, const Error& error) {
-  return complain(o.input + ": " + describe_error(error), exit_code(error.code));
+  return complain(name_of_input(o.input) + ": " + describe_error(error), exit_code(error.code));
 }
 
 double bpvf(const StreamCutter& cutter, std::uint64_t bytes) {
@@ -77,8 +77,8 @@ void print_json(const ExtractOptions& o, const StreamCutter& cutter, std::uint64
 }
 
 void print_text(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
-  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.input.c_str(), cutter.size(),
-              bpvf(cutter, cutter.size()));
+  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", name_of_input(o.input).c_str(),
+              cutter.size(), bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
               bpvf(cutter, bytes));
   for (const ListedGof& gof : cutter.gofs()) {
@@ -143,9 +143,7 @@ int extract(const ExtractOptions& o) {
   auto cutter = StreamCutter::open(std::move(*source), o.cut, o.limits);
   if (!cutter) return complain(o, cutter.error());
   if (cutter->header().profile_idc != kProfileMain) {
-    return complain(
-        o.input + ": a stream of the Baseline profile has no slices, and cannot be cut",
-        kExitUnsupported);
+    return complain(name_of_input(o.input) + ": " + SliceCut::kNoSlices, kExitUnsupported);
   }
   auto file = OutputFile::create(o.output);
   if (!file) return complain(file.error().message, kExitIo);

@@ -81,10 +81,8 @@ int complain(const std::string& message, int code) {
   return code;
 }
 
-std::string name_of(const std::string& path) { return path == "-" ? "standard input" : path; }
-
 int complain(const Options& o, const rlpc::Error& error) {
-  std::string text = name_of(o.input) + ": " + rlpc::describe_error(error);
+  std::string text = rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error);
   if (error.code == rlpc::Errc::kLimitExceeded) text += " (--max-memory, --max-vertices)";
   return complain(text, rlpc::exit_code(error.code));
 }
@@ -160,10 +158,10 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
-    std::fprintf(stderr, "%s: %u frame%s of %u vertices and %u triangle%s decoded%s\n",
-                 name_of(o.input).c_str(), frames.decoded, plural(frames.decoded),
-                 h.num_vertices, h.num_triangles, plural(h.num_triangles),
-                 hashes_text(o, decoder, frames).c_str());
+    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s\n",
+                 rlpc::name_of_input(o.input).c_str(), frames.decoded, plural(frames.decoded),
+                 h.num_vertices, h.num_vertices == 1 ? "ex" : "ices", h.num_triangles,
+                 plural(h.num_triangles), hashes_text(o, decoder, frames).c_str());
   }
 }
 
@@ -199,8 +197,7 @@ int decode(const Options& o) {
   if (!decoder) return complain(o, decoder.error());
   const rlpc::SequenceHeader& header = decoder->header();
   if (o.decoder.cut.cuts() && header.profile_idc != rlpc::kProfileMain) {
-    return complain(name_of(o.input) +
-                        ": a stream of the Baseline profile has no slices, and cannot be cut",
+    return complain(rlpc::name_of_input(o.input) + ": " + rlpc::SliceCut::kNoSlices,
                     rlpc::kExitUnsupported);
   }
   const auto span = parse_frames(o.frames, header.num_frames);
@@ -292,10 +289,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream")
       ->excludes(verify);
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Only the component groups with up to K trajectories of a GOF of bones");
+                 "Only the component groups with up to K trajectories of a GOF of bones")
+      ->check(CLI::Range(0U, rlpc::SliceCut::kAll - 1))
+      ->excludes(verify);
   app.add_option("--max-layers", o.decoder.cut.max_layers,
                  "Only the layer groups with up to L vertex layers, the coarsest")
-      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1));
+      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
+      ->excludes(verify);
   app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
                  "Give up on streams that need more, for example 500MB")
       ->transform(CLI::AsSizeValue(false));

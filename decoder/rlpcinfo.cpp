@@ -58,7 +58,8 @@ struct Options {
 };
 
 int complain(const Options& o, const rlpc::Error& error) {
-  std::cerr << "rlpcinfo: " << o.input << ": " << rlpc::describe_error(error) << "\n";
+  std::cerr << "rlpcinfo: " << rlpc::name_of_input(o.input) << ": "
+            << rlpc::describe_error(error) << "\n";
   return rlpc::exit_code(error.code);
 }
 
@@ -271,7 +272,7 @@ void print_gof(const rlpc::ListedGof& gof) {
 void print_table(const Options& o, const Summary& s) {
   const rlpc::SequenceHeader& h = s.header;
   const double total = 8.0 * static_cast<double>(s.bytes);
-  std::printf("%s: %s profile, level %u\n", o.input.c_str(),
+  std::printf("%s: %s profile, level %u\n", rlpc::name_of_input(o.input).c_str(),
               h.profile_idc == rlpc::kProfileMain ? "Main" : "Baseline", h.level_idc);
   std::printf("  %s, %s, %s at %u/%u per second, %s\n",
               counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
@@ -402,10 +403,9 @@ int main(int argc, char** argv) try {
   if (extract->count() == 0) return rlpc::after_standard_output("rlpcinfo", inform(options));
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {
-    std::cerr
-        << "rlpcinfo: --extract: expected components=K, layers=L (L is 1 or more) or both, "
-           "got `"
-        << options.extract << "`\n";
+    std::cerr << "rlpcinfo: --extract: expected components=K, layers=L, or both; K is at "
+                 "least 0 and L at least 1, at most 4294967294; got `"
+              << options.extract << "`\n";
     return rlpc::kExitUsage;
   }
   rlpc::DecodeLimits limits;

@@ -16,6 +16,8 @@ struct SliceCut {
   std::uint32_t max_components = kAll;
   std::uint32_t max_layers = kAll;
 
+  static constexpr const char* kNoSlices =
+      "a stream of the Baseline profile has no slices, and cannot be cut";
   bool cuts() const { return max_components != kAll || max_layers != kAll; }
 };
 

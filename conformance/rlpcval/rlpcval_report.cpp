@@ -156,10 +156,10 @@ void print_report(std::FILE* out, const std::string& path, const ValidationRepor
                counted(report.count(Severity::kError), "error").c_str(),
                counted(report.count(Severity::kUnsupported), "unsupported feature").c_str(),
                counted(report.count(Severity::kWarning), "warning").c_str());
-  std::fprintf(out, "  read: %s in %s; %s with %s, of which %u have the right hash\n",
+  std::fprintf(out, "  read: %s in %s; %s with %s, of which %u %s the right hash\n",
                counted(report.bytes, "byte").c_str(), counted(report.units, "unit").c_str(),
                counted(report.gofs, "GOF").c_str(), counted(report.frames, "frame").c_str(),
-               report.hashed_frames);
+               report.hashed_frames, report.hashed_frames == 1 ? "has" : "have");
   for (const Finding& f : report.findings) print_finding(out, f);
   if (report.omitted > 0) {
     std::fprintf(out, "\n  %s not listed\n", counted(report.omitted, "error").c_str());
