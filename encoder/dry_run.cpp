@@ -45,7 +45,7 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
                                          const Progress& progress) {
   const ByteSink nowhere = [](std::span<const std::uint8_t>) { return true; };
   const std::uint64_t stretch = stretch_frames(settings.gof_frames);
-  if (source.num_frames() <= kStretches * stretch) {
+  if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
     auto report = encode(source, settings, nowhere, progress);
     if (!report) return report.error();
     return Expectation{std::move(*report), source.num_frames()};
@@ -65,7 +65,9 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
   report.header.num_frames = source.num_frames();
   report.bpvf =
       bits_per_vertex_per_frame(report.bytes, source.num_vertices(), source.num_frames());
-  report.num_gofs = static_cast<std::uint32_t>(std::llround(report.num_gofs * times));
+  for (std::uint32_t* of_gofs : {&report.num_gofs, &report.clusters, &report.components}) {
+    *of_gofs = static_cast<std::uint32_t>(std::llround(*of_gofs * times));
+  }
   return Expectation{std::move(report), sample.num_frames()};
 }
 

@@ -13,10 +13,11 @@ struct Expectation {
   bool exact() const { return frames_encoded == report.header.num_frames; }
 };
 
-// Up to 1024 frames, everything is encoded as encode() does, and what it reports is exact. Of
-// longer sequences, eight stretches that are spread evenly are, as if they were all: the bits
-// of GOFs are taken for those of as many frames, errors are those of the stretches. A stretch
-// has 128 frames, or is as long as a GOF may be.
+// Up to 1024 frames, or eight times as many as a GOF may have, everything is encoded as
+// encode() does, and what it reports is exact. Of longer sequences, eight stretches that are
+// spread evenly are, as if they were all: bits and numbers of GOFs are taken for those of as
+// many frames, errors are those of the stretches. A stretch has about 128 frames, whole GOFs,
+// or is as long as a GOF may be.
 InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress = {});
 

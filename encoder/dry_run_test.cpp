@@ -67,12 +67,12 @@ std::uint64_t encoded_bytes(FrameSource& source, const EncoderSettings& settings
 
 TEST(DryRun, IsExactUpToEightStretches) {
   EncoderSettings settings = fast();
-  settings.gof_frames = 50;  // stretches of 100 frames
-  Waves source(800);
+  settings.gof_frames = 50;  // stretches of longer ones would have 100 frames
+  Waves source(1024);
   const auto expected = expect_encoding(source, settings);
   ASSERT_TRUE(expected);
   EXPECT_TRUE(expected->exact());
-  EXPECT_EQ(expected->frames_encoded, 800U);
+  EXPECT_EQ(expected->frames_encoded, 1024U);
   EXPECT_EQ(expected->report.bytes, encoded_bytes(source, settings));
 }
 
@@ -86,7 +86,8 @@ TEST(DryRun, ExtrapolatesLongerOnes) {
   EXPECT_EQ(expected->frames_encoded, 800U);
   EXPECT_EQ(expected->report.header.num_frames, 2400U);
   EXPECT_EQ(expected->report.num_gofs, 48U);
-  EXPECT_EQ(source.last(), 2399U);  // to the end
+  EXPECT_GE(expected->report.clusters, 48U);  // one at least of each
+  EXPECT_EQ(source.last(), 2399U);            // to the end
   const double bytes = static_cast<double>(encoded_bytes(source, settings));
   EXPECT_NEAR(static_cast<double>(expected->report.bytes), bytes, 0.05 * bytes);
   EXPECT_DOUBLE_EQ(expected->report.bpvf,
