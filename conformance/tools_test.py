@@ -370,9 +370,10 @@ class Figures(ToolsTest):
 
 class Targets(ToolsTest):
     """Reached from below: most of them within 2 %, none by much less. (Few values of a small
-    animation lie at the edges of what is coded, so that its error moves in jumps.)"""
+    animation lie at the edges of what is coded, so that its error moves in jumps. And a largest
+    error is farther below where that saves bytes.)"""
 
-    def check(self, option, targets, value_of, names=NAMES, *options):
+    def check(self, option, targets, value_of, names=NAMES, *options, near=0.98):
         reached = []
         for name in names:
             for target in targets:
@@ -381,7 +382,7 @@ class Targets(ToolsTest):
         for share, name, target in reached:
             self.assertLessEqual(share, 1, f"{name} {option} {target}")
             self.assertGreater(share, 0.6, f"{name} {option} {target}")
-        close = [share for share, _, _ in reached if share >= 0.98]
+        close = [share for share, _, _ in reached if share >= near]
         self.assertGreaterEqual(len(close), len(reached) / 2, reached)
 
     def test_kg(self):
@@ -408,7 +409,7 @@ class Targets(ToolsTest):
 
     def test_max_error(self):
         self.check("--max-error", (0.002, 0.02), lambda report: report["metrics"]["max_error"],
-                   ("elephant", "curtain"))
+                   ("elephant", "curtain"), near=0.95)
 
     def test_several_gofs(self):
         self.check("--kg", (0.1, 0.3), lambda report: report["metrics"]["kg_error_percent"], NAMES,

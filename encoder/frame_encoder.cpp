@@ -141,7 +141,9 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   spans_ = equal_gofs(header_.num_frames, longest_gof(settings_));
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
-  if (auto error = choose_level(header_, settings_, longest, format_.least_level)) return error;
+  if (auto error = choose_level(header_, longest, format_.least_level)) return error;
+  // GOFs that come later can have all that is asked for.
+  if (auto error = raise_level(header_.level_idc, LevelNeeds(settings_), longest)) return error;
   coding_.emplace(header_, settings_, format_.triangles);
   format_.triangles = {};
   return std::nullopt;
@@ -253,7 +255,8 @@ InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& 
     if (!hash_unit) return hash_unit.error();
     trial.bytes = {span.count, write_gof_units(trial.encoded), std::move(*hash_unit)};
     trial.kg_error_percent = metrics.result().kg_error_percent;
-    const bool better = search.report(measured(metrics.result(), trial.bytes), expected());
+    const bool better =
+        search.report(measured(metrics.result(), trial.bytes), trial.bytes.size(), expected());
     if (better || !best) best = std::move(trial);
   }
   best->met = search.met();
@@ -276,13 +279,13 @@ InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search_first(const Gof
 // The first GOF sets the level, with a reserve; the others keep to it.
 std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& needs) {
   const GofSpan& span = spans_[num_coded_];
-  if (num_coded_ == 0) return raise_level(header_, needs.with_reserve(), span.count);
-  SequenceHeader needed = header_;
+  if (num_coded_ == 0) return raise_level(header_.level_idc, needs.with_reserve(), span.count);
+  std::uint32_t needed = header_.level_idc;
   if (auto error = raise_level(needed, needs, span.count)) return error;
-  if (needed.level_idc == header_.level_idc) return std::nullopt;
+  if (needed == header_.level_idc) return std::nullopt;
   return InputError{"frames " + std::to_string(span.first) + " to " +
                     std::to_string(span.first + span.count - 1) + " need level " +
-                    std::to_string(needed.level_idc) +
+                    std::to_string(needed) +
                     " (specification, Annex B), but the stream was begun at level " +
                     std::to_string(header_.level_idc) +
                     ": encode again with that as the least level, or with fewer components"};

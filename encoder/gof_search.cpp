@@ -63,7 +63,7 @@ GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
 AnalysisSettings GofSearch::analysis_settings(double step, const GofChoice& choice) const {
   AnalysisSettings a;
   a.world = choice.world;
-  a.max_components = context_.header.level().max_components;
+  a.max_components = kLevels.back().max_components;
   const double seed_step =
       tools_.qdelta > 0 ? exact_exp2(std::max(context_.header.position_bits - tools_.qdelta, 0))
                         : step * kSeedStepFactor;

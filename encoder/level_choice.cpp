@@ -5,14 +5,12 @@
 
 namespace rlpc {
 
-std::optional<InputError> choose_level(SequenceHeader& header, const EncoderSettings& settings,
-                                       std::uint32_t longest, std::uint32_t least_level) {
+std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t longest,
+                                       std::uint32_t least_level) {
   for (header.level_idc = least_level; header.level_idc <= kMaxLevelIdc; ++header.level_idc) {
     const Level& level = header.level();
     if (header.num_vertices <= level.max_vertices &&
         header.num_triangles <= level.max_triangles && longest <= level.max_gof_frames &&
-        std::max(settings.baseline.clusters, settings.main.bones) <= level.max_clusters &&
-        settings.components <= level.max_components &&
         std::uint64_t{longest} * header.num_vertices <= level.max_gof_values) {
       return std::nullopt;
     }
@@ -31,6 +29,10 @@ LevelNeeds::LevelNeeds(const EncodedGof& encoded)
     unit_bytes = std::max<std::uint64_t>(unit_bytes, unit.payload.size());
   }
 }
+
+LevelNeeds::LevelNeeds(const EncoderSettings& settings)
+    : clusters(std::max(settings.baseline.clusters, settings.main.bones)),
+      components(settings.components) {}
 
 LevelNeeds LevelNeeds::with_reserve() const {
   const Level& most = kLevels.back();
@@ -57,17 +59,17 @@ std::optional<std::uint32_t> LevelNeeds::level_from(std::uint32_t level_idc) con
   return std::nullopt;
 }
 
-std::optional<InputError> raise_level(SequenceHeader& header, const LevelNeeds& needs,
+std::optional<InputError> raise_level(std::uint32_t& level_idc, const LevelNeeds& needs,
                                       std::uint32_t num_frames) {
-  const auto level_idc = needs.level_from(header.level_idc);
-  if (!level_idc) {
+  const auto raised = needs.level_from(level_idc);
+  if (!raised) {
     return InputError{"a GOF of " + std::to_string(num_frames) + " frames has " +
                       std::to_string(needs.factors) + " factors and units of " +
                       std::to_string(needs.unit_bytes) +
                       " bytes, more than any level allows (specification, Annex B); use a " +
                       "smaller --gof or fewer --components"};
   }
-  header.level_idc = *level_idc;
+  level_idc = *raised;
   return std::nullopt;
 }
 

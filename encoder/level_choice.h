@@ -11,9 +11,9 @@
 namespace rlpc {
 
 // Sets level_idc to the lowest level, not below least_level, that allows the mesh of the
-// header, GOFs of `longest` frames and what the settings ask for. Error: there is none.
-std::optional<InputError> choose_level(SequenceHeader& header, const EncoderSettings& settings,
-                                       std::uint32_t longest, std::uint32_t least_level = 1);
+// header and GOFs of `longest` frames. Error: there is none.
+std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t longest,
+                                       std::uint32_t least_level = 1);
 
 // What coded GOFs need that choose_level cannot foresee.
 struct LevelNeeds {
@@ -23,6 +23,8 @@ struct LevelNeeds {
   std::uint32_t components = 0;
 
   explicit LevelNeeds(const EncodedGof& encoded);
+  // Of the clusters, bones and components that are asked for; a GOF can have fewer.
+  explicit LevelNeeds(const EncoderSettings& settings);
   // Twice as much of everything, where some level has it.
   LevelNeeds with_reserve() const;
   // The lowest level from level_idc on that has all of it; none if there is no such level.
@@ -30,7 +32,7 @@ struct LevelNeeds {
 };
 
 // Raises level_idc to a level that has what a GOF of num_frames needs. Error: there is none.
-std::optional<InputError> raise_level(SequenceHeader& header, const LevelNeeds& needs,
+std::optional<InputError> raise_level(std::uint32_t& level_idc, const LevelNeeds& needs,
                                       std::uint32_t num_frames);
 
 }  // namespace rlpc

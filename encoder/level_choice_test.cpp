@@ -16,7 +16,7 @@ SequenceHeader mesh(std::uint32_t num_vertices, std::uint32_t num_triangles) {
 
 std::uint32_t level_of(SequenceHeader header, std::uint32_t longest,
                        std::uint32_t least_level = 1) {
-  const auto error = choose_level(header, {}, longest, least_level);
+  const auto error = choose_level(header, longest, least_level);
   return error ? 0 : header.level_idc;
 }
 
@@ -52,6 +52,18 @@ TEST(LevelNeeds, AskForALevelThatHasAll) {
   EXPECT_FALSE(LevelNeeds(coded(100, 10, 2, 1025)).level_from(1));
 }
 
+TEST(LevelNeeds, AskForWhatTheSettingsDo) {
+  EncoderSettings settings;
+  EXPECT_EQ(LevelNeeds(settings).level_from(1), 1U);
+  settings.components = 513;
+  EXPECT_EQ(LevelNeeds(settings).level_from(1), 2U);
+  settings.main.bones = 513;
+  EXPECT_EQ(LevelNeeds(settings).level_from(1), 3U);
+  settings.main.bones = 0;
+  settings.baseline.clusters = 513;
+  EXPECT_EQ(LevelNeeds(settings).level_from(1), 3U);
+}
+
 TEST(LevelNeeds, HaveAReserveWithinTheHighestLevel) {
   const auto reserved = [](const EncodedGof& gof) {
     return LevelNeeds(gof).with_reserve().level_from(1);
@@ -64,13 +76,12 @@ TEST(LevelNeeds, HaveAReserveWithinTheHighestLevel) {
 }
 
 TEST(LevelNeeds, RaiseALevelButNeverLowerIt) {
-  SequenceHeader header = mesh(10, 0);
-  header.level_idc = 2;
-  EXPECT_FALSE(raise_level(header, LevelNeeds(coded(100, 10, 2, 5)), 8));
-  EXPECT_EQ(header.level_idc, 2U);
-  EXPECT_FALSE(raise_level(header, LevelNeeds(coded(100, 10, 513, 5)), 8));
-  EXPECT_EQ(header.level_idc, 3U);
-  const auto error = raise_level(header, LevelNeeds(coded(100, 10, 1025, 5)), 8);
+  std::uint32_t level_idc = 2;
+  EXPECT_FALSE(raise_level(level_idc, LevelNeeds(coded(100, 10, 2, 5)), 8));
+  EXPECT_EQ(level_idc, 2U);
+  EXPECT_FALSE(raise_level(level_idc, LevelNeeds(coded(100, 10, 513, 5)), 8));
+  EXPECT_EQ(level_idc, 3U);
+  const auto error = raise_level(level_idc, LevelNeeds(coded(100, 10, 1025, 5)), 8);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->message.find("a GOF of 8 frames has 100 factors"), 0U) << error->message;
 }

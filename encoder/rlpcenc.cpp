@@ -38,9 +38,10 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   const Metrics& m = r.metrics;
   const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
   const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
-  std::printf("%s: %u vertices, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
-              r.header.num_vertices, r.header.num_triangles, s(r.header.num_triangles),
-              r.header.num_frames, s(r.header.num_frames), r.header.level_idc);
+  std::printf("%s: %u vert%s, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
+              r.header.num_vertices, r.header.num_vertices == 1 ? "ex" : "ices",
+              r.header.num_triangles, s(r.header.num_triangles), r.header.num_frames,
+              s(r.header.num_frames), r.header.level_idc);
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
   if (!e.exact()) {
@@ -67,24 +68,46 @@ bool is_far_away(const EncodeReport& report) {
          kFloatSteps * report.metrics.rms_error;
 }
 
-int report_target(const EncodeOptions& o, const EncodeReport& report) {
-  const Target& target = o.settings.target;
-  constexpr double kNearRate = 0.95;
+// Where the target is met, but an encoding that comes closer was not found.
+void tell_if_far_below(const Target& target, const EncodeReport& report) {
+  constexpr double kNear = 0.95;
   constexpr double kNoError = 0.002;  // per cent: about what the finest grid leaves
-  if (target.kind == Target::kBpvf && report.bpvf < kNearRate * target.value && !o.quiet) {
+  const bool is_exact = report.metrics.kg_error_percent < kNoError;
+  if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
     std::cerr << "rlpcenc: fewer bits than --bpvf allows: "
-              << (report.metrics.kg_error_percent < kNoError
-                      ? "this is as exact as it gets\n"
-                      : "no encoding was found that comes closer\n");
+              << (is_exact ? "this is as exact as it gets\n"
+                           : "no encoding was found that comes closer\n");
   }
-  if (report.target_met) return kEncoded;
-  const char* const advice =
-      target.kind == Target::kBpvf ? "Try a higher --bpvf, or a longer --gof"
-      : is_far_away(report) ? "The animation lies so far from the origin that floats are "
-                              "coarser than that: move it there, or try a larger error"
-                            : "Try a larger error";
-  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. " << advice
-            << ".\n";
+  const double error = target.kind == Target::kMaxError ? report.metrics.max_error
+                                                        : report.metrics.kg_error_percent;
+  if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
+    std::cerr << "rlpcenc: a smaller error than asked for: no encoding was found that saves by "
+                 "coming closer\n";
+  }
+}
+
+std::string advice(const EncodeOptions& o, const EncodeReport& report) {
+  if (o.settings.target.kind == Target::kBpvf) {
+    return report.num_gofs > 1 ? "Try a higher --bpvf, or a longer --gof"
+                               : "Try a higher --bpvf";
+  }
+  if (is_far_away(report)) {
+    return "The animation lies so far from the origin that floats are coarser than that: move "
+           "it there, or try a larger error";
+  }
+  return o.settings.components > 0 ? "Try more --components, or a larger error"
+                                   : "Try a larger error";
+}
+
+int report_target(const EncodeOptions& o, const EncodeReport& report) {
+  if (report.target_met) {
+    if (!o.quiet && o.settings.target.kind != Target::kNone) {
+      tell_if_far_below(o.settings.target, report);
+    }
+    return kEncoded;
+  }
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. "
+            << advice(o, report) << ".\n";
   return kTargetMissed;
 }
 

@@ -27,6 +27,8 @@ struct SequenceTrial {
   std::uint32_t clusters = 0;
   std::uint32_t components = 0;
   Metrics metrics;
+  std::uint32_t level_idc = 0;
+  std::optional<InputError> beyond_levels;
 };
 
 class SequenceEncoder {
@@ -93,7 +95,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   if (auto error = cut_gofs(longest_gof(settings_))) return error;
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
-  if (auto error = choose_level(header_, settings_, longest)) return error;
+  if (auto error = choose_level(header_, longest)) return error;
   gofs_.resize(spans_.size());
   keep_coders_ = std::uint64_t{header_.num_vertices} * header_.num_frames * 24 <= kKeepBytes;
   coding_.emplace(header_, settings_, source_.triangles());
@@ -143,7 +145,9 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
   const EncodedGof encoded = state.coder->encode(step, analysis_step);
   if (!keep_coders_) state.coder.reset();
   if (!keep_coders_ || !state.coder->needs_frames(step, analysis_step)) state.frames = {};
-  if (auto error = raise_level(header_, LevelNeeds(encoded), spans_[g].count)) return error;
+  if (!trial.beyond_levels) {
+    trial.beyond_levels = raise_level(trial.level_idc, LevelNeeds(encoded), spans_[g].count);
+  }
   auto hash_unit = coding_->measure(source_, spans_[g], encoded, metrics);
   if (!hash_unit) return hash_unit.error();
   trial.gofs.push_back({spans_[g].count, write_gof_units(encoded), std::move(*hash_unit)});
@@ -156,6 +160,7 @@ std::optional<InputError> SequenceEncoder::encode_gof(std::size_t g, double step
 InputResult<SequenceTrial> SequenceEncoder::encode_at(double step, double analysis_step) {
   ++trials_;
   SequenceTrial trial;
+  trial.level_idc = header_.level_idc;  // that the mesh needs
   MetricsAccumulator metrics(header_.num_vertices);
   for (std::size_t g = 0; g < spans_.size(); ++g) {
     if (auto error = encode_gof(g, step, analysis_step, trial, metrics)) return *error;
@@ -188,6 +193,8 @@ double SequenceEncoder::measured(const SequenceTrial& trial) const {
 
 InputResult<EncodeReport> SequenceEncoder::write(SequenceTrial trial, double step,
                                                  const ByteSink& sink) {
+  if (trial.beyond_levels) return *trial.beyond_levels;
+  header_.level_idc = trial.level_idc;
   bool ok = stream_->write_lead(header_, sink);
   for (const GofBytes& gof : trial.gofs) ok = ok && stream_->write_gof(gof, sink);
   ok = ok && stream_->write_end(sink);
@@ -230,7 +237,7 @@ InputResult<SequenceEncoder::Found> SequenceEncoder::search() {
   for (bool is_first = true; !search.finished(); is_first = false) {
     auto trial = encode_at(search.step(), search.analysis_step());
     if (!trial) return trial.error();
-    const bool better = search.report(measured(*trial), expected());
+    const bool better = search.report(measured(*trial), trial->gof_bytes, expected());
     if (better || is_first) {
       best.trial = std::move(*trial);
       best.step = search.last_step();

@@ -36,7 +36,21 @@ void TargetSearch::begin_at(const Expected& expected) {
   step_ = std::clamp(step_for(target_.value, expected), step_ / kFar, step_ * kFar);
 }
 
-bool TargetSearch::report(double measured, const Expected& expected) {
+// Within the target, mostly the value closest to it. But errors jump where the analysis does:
+// one that is a per cent farther off is better if it saves more than a per cent of the bytes.
+// While none is within the target, the smallest value.
+bool TargetSearch::is_better(double measured, std::uint64_t bytes) const {
+  if (measured > target_.value) return trials_ == 0 || (!met_ && measured < best_);
+  if (!met_) return true;
+  if (target_.kind == Target::kBpvf) return measured > best_;
+  const auto cost = [&](double value, std::uint64_t size) {
+    return static_cast<double>(size) * (2.0 - value / target_.value);
+  };
+  return cost(measured, bytes) < cost(best_, best_bytes_);
+}
+
+bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& expected) {
+  const bool better = is_better(measured, bytes);
   ++trials_;
   last_step_ = step_;
   if (target_.kind == Target::kNone) {
@@ -53,14 +67,11 @@ bool TargetSearch::report(double measured, const Expected& expected) {
   const bool fine = (target_.kind == Target::kBpvf) != within;
   (fine ? fine_ : coarse_) = step_;
   (fine ? fine_value_ : coarse_value_) = measured;
-  // Within the target, the value closest to it is best; while none is, the smallest.
-  bool better = trials_ == 1;
-  if (within) {
-    better = !met_ || measured > best_;
-  } else if (!met_) {
-    better = better || measured < best_;
+  if (better) {
+    best_ = measured;
+    best_bytes_ = bytes;
   }
-  if (better) best_ = measured;
+  close_ = close_ || (within && measured >= target_.value * (1.0 - kTolerance));
   met_ = met_ || within;
   choose_next(measured, expected);
   return better;
@@ -88,8 +99,7 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   const double target = target_.value;
-  const bool close = met_ && best_ >= target * (1.0 - kTolerance);
-  if (close || trials_ >= kMaxTrials) {
+  if (close_ || trials_ >= kMaxTrials) {
     finished_ = true;
     return;
   }

@@ -1,6 +1,7 @@
 // Finds the quantiser step that reaches a target error or rate.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "encoder/rlpc_encoder.h"
@@ -39,8 +40,9 @@ class TargetSearch {
     return serves(frozen_, step_) ? frozen_ : step_ / range_.made_for;
   }
   double last_step() const { return last_step_; }
-  // True if this is the best encoding so far. expected: of an error, by the same analyses.
-  bool report(double measured, const Expected& expected = {});
+  // What an encoding came to: the error or rate that is searched for, and all its bytes.
+  // True if it is the best so far. expected: of an error, by the same analyses.
+  bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
   // The best encoding does not exceed the target.
   bool met() const { return target_.kind == Target::kNone || met_; }
@@ -49,6 +51,7 @@ class TargetSearch {
   bool serves(double analysis_step, double step) const {
     return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
   }
+  bool is_better(double measured, std::uint64_t bytes) const;
   bool is_near(double measured) const;
   double usual_slope() const { return target_.kind == Target::kBpvf ? -0.5 : 0.85; }
   void choose_next(double measured, const Expected& expected);
@@ -60,6 +63,7 @@ class TargetSearch {
   double frozen_ = 0.0;  // analysis step; 0: not yet
   double last_step_ = 1.0;
   double best_ = 0.0;  // measured value of the best encoding
+  std::uint64_t best_bytes_ = 0;
   double fine_ = 0.0;  // largest step known to be too fine or just right; 0: none
   double fine_value_ = 0.0;
   double coarse_ = 0.0;  // smallest step known to be too coarse
@@ -68,7 +72,8 @@ class TargetSearch {
   double last_value_ = 0.0;  // measured; 0: none
   double previous_step_ = 1.0;
   int trials_ = 0;
-  bool met_ = false;
+  bool met_ = false;    // there is an encoding within the target
+  bool close_ = false;  // and one as close to it as asked for
   bool finished_ = false;
 };
 

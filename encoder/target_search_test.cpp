@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
@@ -21,6 +22,9 @@ struct Outcome {
   bool met = false;
 };
 
+// Coarser steps take fewer bytes.
+std::uint64_t bytes_with(double step) { return static_cast<std::uint64_t>(1e12 / step); }
+
 // measure(step) stands for an encoding.
 Outcome search(const Target& target, const std::function<double(double)>& measure,
                double spread = 10000.0, double steps_per_unit = 1000.0) {
@@ -33,7 +37,7 @@ Outcome search(const Target& target, const std::function<double(double)>& measur
     const double measured = measure(step);
     outcome.least = std::min(outcome.least, measured);
     ++outcome.trials;
-    if (s.report(measured)) {
+    if (s.report(measured, bytes_with(step))) {
       outcome.best = measured;
       outcome.best_step = step;
     }
@@ -131,6 +135,31 @@ TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
   EXPECT_EQ(outcome.best, 0.6);
 }
 
+TEST(TargetSearch, OfErrorsWithinTheTargetTheClosestIsBestUnlessBytesAreSaved) {
+  for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
+    TargetSearch search({kind, 1.0}, 10000.0, 1000.0);
+    EXPECT_TRUE(search.report(3.0, 10));
+    EXPECT_FALSE(search.report(4.0, 5));
+    EXPECT_TRUE(search.report(2.0, 20));
+    EXPECT_TRUE(search.report(0.5, 1000));
+    EXPECT_TRUE(search.report(0.7, 1010));
+    EXPECT_FALSE(search.report(0.8, 1200));
+    EXPECT_FALSE(search.report(1.2, 10));
+    EXPECT_TRUE(search.report(0.9, 1100));
+    EXPECT_FALSE(search.report(0.8, 1050));
+    EXPECT_TRUE(search.report(0.8, 900));
+    EXPECT_TRUE(search.met());
+  }
+}
+
+TEST(TargetSearch, OfRatesWithinTheTargetTheHighestIsBest) {
+  TargetSearch search({Target::kBpvf, 1.0}, 10000.0, 1000.0);
+  EXPECT_TRUE(search.report(2.0, 2000));
+  EXPECT_TRUE(search.report(0.5, 500));
+  EXPECT_FALSE(search.report(0.4, 400));
+  EXPECT_TRUE(search.report(0.9, 900));
+}
+
 // Errors that level out where much is left out, as measured and as expected.
 double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step * step / 1e6); }
 
@@ -144,7 +173,8 @@ int trials_with(const TargetSearch::Expected& expected, double value, double fac
     const double measured =
         factor * value * std::pow(expected_error(search.step()) / value, 0.94);
     ++outcome.trials;
-    if (search.report(measured, expected)) outcome.best = measured;
+    const std::uint64_t bytes = bytes_with(search.step());
+    if (search.report(measured, bytes, expected)) outcome.best = measured;
   }
   outcome.met = search.met();
   expect_within_two_per_cent(target, outcome);
