@@ -30,7 +30,7 @@ typedef enum rlpc_status {
 // null, for any number.
 RLPC_API const char* rlpc_status_text(int status);
 
-// Of the library, such as "1.1.5".
+// Of the library, such as "1.1.6".
 RLPC_API const char* rlpc_version(void);
 
 #ifdef __cplusplus

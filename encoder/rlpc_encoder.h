@@ -74,10 +74,12 @@ enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 // What the settings of the quantisers are searched for.
 struct Target {
   enum Kind : std::uint8_t {
-    kNone,      // quantisers as given
-    kKg,        // KG error in per cent: reached from below, within 2 %
-    kBpvf,      // bits per vertex and frame: likewise
-    kMaxError,  // largest distance of a vertex from its original, in units: likewise
+    kNone,  // quantisers as given
+    kKg,    // KG error in per cent: reached from below, within 2 %
+    kBpvf,  // bits per vertex and frame: likewise
+    // Largest distance of a vertex from its original, in units: likewise, or as close as was
+    // found where it jumps, or less where that saves bytes.
+    kMaxError,
   };
   Kind kind = kKg;
   double value = 0.1;  // above zero and finite

@@ -16,6 +16,11 @@ constexpr double kFarthest = 50.0;  // from one step to the next, as a factor
 // Slopes that are believed, relative to the usual one.
 constexpr double kFlattest = 0.5;
 constexpr double kSteepest = 2.0;
+// Largest errors jump from step to step. Where they do, a narrower bracket tells nothing: some
+// steps beyond it are tried instead, as one of them may do as well by chance.
+constexpr double kNarrow = 1.006;
+constexpr int kSamples = 8;
+constexpr double kBetweenSamples = 0.006;  // relative
 
 }  // namespace
 
@@ -101,6 +106,15 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   const double target = target_.value;
   if (close_ || trials_ >= kMaxTrials) {
     finished_ = true;
+    return;
+  }
+  const bool jumps = target_.kind == Target::kMaxError && fine_ > 0.0 && coarse_ > 0.0 &&
+                     coarse_ < kNarrow * fine_;
+  if (jumps && sampled_from_ == 0.0) sampled_from_ = coarse_;
+  if (sampled_from_ > 0.0) {
+    ++samples_;
+    if (samples_ > kSamples) finished_ = true;
+    step_ = std::min(sampled_from_ * (1.0 + kBetweenSamples * samples_), kCoarsestStep);
     return;
   }
   if (fine_ > 0.0 && coarse_ > 0.0) {

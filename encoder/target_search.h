@@ -72,6 +72,8 @@ class TargetSearch {
   double last_value_ = 0.0;  // measured; 0: none
   double previous_step_ = 1.0;
   int trials_ = 0;
+  double sampled_from_ = 0.0;  // the step that others are tried beyond; 0: none yet
+  int samples_ = 0;
   bool met_ = false;    // there is an encoding within the target
   bool close_ = false;  // and one as close to it as asked for
   bool finished_ = false;

@@ -160,6 +160,15 @@ TEST(TargetSearch, OfRatesWithinTheTargetTheHighestIsBest) {
   EXPECT_TRUE(search.report(0.9, 900));
 }
 
+TEST(TargetSearch, FindsALargestErrorThatIsSmallerBeyondAJump) {
+  const Outcome outcome = search({Target::kMaxError, 1.0}, [](double step) {
+    const bool lucky = step > 704.0 && step < 709.0;
+    return step < 700.0 ? 0.6 : lucky ? 0.9 : 1.5;
+  });
+  EXPECT_LT(outcome.trials, kEnough);
+  EXPECT_EQ(outcome.best, 0.9);
+}
+
 // Errors that level out where much is left out, as measured and as expected.
 double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step * step / 1e6); }
 
