@@ -126,11 +126,14 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
 
+// Relative to the centre of the vertices in the frame.
+Vec3d BoneFit::centred(std::uint32_t frame, std::uint32_t vertex) const {
+  const double* p = frames_.at(frame, vertex);
+  return Vec3d(p[0], p[1], p[2]) - centre_[frame];
+}
+
 void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const {
-  for (const std::uint32_t f : chosen_) {
-    const double* p = frames_.at(f, vertex);
-    to.push_back(Vec3d(p[0], p[1], p[2]) - centre_[f]);
-  }
+  for (const std::uint32_t f : chosen_) to.push_back(centred(f, vertex));
 }
 
 // All vertices, or if they are many the patches around some.
@@ -216,11 +219,13 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
   constexpr int kRounds = 3;
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * error_per_bit() * part;
+  std::vector<Vec3d> positions;
+  SkinSums sums(positions, solver.motions());
   for (std::uint32_t first = 0; first < frames_.num_vertices; first += kTogether) {
     const std::uint32_t end = std::min(first + kTogether, frames_.num_vertices);
-    std::vector<Vec3d> positions;
+    positions.clear();
     for (std::uint32_t v = first; v < end; ++v) append_trajectory(v, positions);
-    const SkinSums sums(positions, solver.motions());
+    sums.set_positions(positions);
     for (std::uint32_t v = first; v < end; ++v) {
       const std::size_t i = v - first;
       const auto place = sample_.place_of(v);
@@ -243,25 +248,31 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
 // The motions of all frames, each starting from the nearest of the chosen ones.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
+  constexpr std::uint32_t kTogether = 64;
   constexpr int kSweeps = 3;
   constexpr int kSteps = 3;
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   std::vector<Motion> now(n);
   std::size_t nearest = 0;
-  for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
-    while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
-    PoseTargets targets(n);
+  for (std::uint32_t first = 0; first < frames_.num_frames; first += kTogether) {
+    const std::uint32_t end = std::min(first + kTogether, frames_.num_frames);
+    PoseTargets targets(n, end - first);
+    std::vector<Vec3d> trajectory(end - first);
     for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-      const double* p = frames_.at(f, v);
-      targets.add(rest_of(rig, v), rig.weights[v], Vec3d(p[0], p[1], p[2]) - centre_[f]);
+      for (std::uint32_t f = first; f < end; ++f) trajectory[f - first] = centred(f, v);
+      targets.add(rest_of(rig, v), rig.weights[v], trajectory);
     }
-    for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, targets, now);
-    for (int i = 0; i < kSteps; ++i) solve_poses(moments, targets, now);
-    for (std::size_t b = 0; b < n; ++b) {
-      result[b][f] = now[b];
-      result[b][f].col(3) += centre_[f];
+    for (std::uint32_t f = first; f < end; ++f) {
+      while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
+      const std::vector<Motion> wanted = targets.of_frame(f - first);
+      for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
+      for (int i = 0; i < kSweeps; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < kSteps; ++i) solve_poses(moments, wanted, now);
+      for (std::size_t b = 0; b < n; ++b) {
+        result[b][f] = now[b];
+        result[b][f].col(3) += centre_[f];
+      }
     }
   }
   return result;

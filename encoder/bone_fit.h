@@ -55,6 +55,7 @@ class BoneFit {
  private:
   double error_per_bit() const;
   double cost_of_bone() const;
+  Vec3d centred(std::uint32_t frame, std::uint32_t vertex) const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;
   BoneSample sample_of(std::span<const Triangle> triangles) const;
   void fit_vertices(const BoneSolver& solver, std::size_t max_influences, Rig& rig) const;

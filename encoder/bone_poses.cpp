@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "encoder/matrix_products.h"
 #include "encoder/symmetric_solve.h"
 
 namespace rlpc {
@@ -39,12 +40,29 @@ double SkinMoments::spread2(std::size_t bone) const {
 }
 
 void PoseTargets::add(const Vec3d& rest, std::span<const RigWeight> weights,
-                      const Vec3d& position) {
-  const Motion products = position * homogeneous(rest).transpose();
-  for (const RigWeight& a : weights) sum_[a.bone] += a.weight * products;
+                      std::span<const Vec3d> trajectory) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  const Column4 p = homogeneous(rest);
+  const std::size_t size = Motion::ColsAtCompileTime * values_;
+  for (const RigWeight& w : weights) {
+    add_outer_product(w.weight, {p.data(), Motion::ColsAtCompileTime},
+                      {trajectory.data()->data(), values_},
+                      std::span(sum_).subspan(w.bone * size, size));
+  }
 }
 
-void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
+std::vector<Motion> PoseTargets::of_frame(std::size_t frame) const {
+  std::vector<Motion> result(num_bones_);
+  const double* sum = &sum_[3 * frame];
+  for (Motion& m : result) {
+    for (Eigen::Index k = 0; k < m.cols(); ++k, sum += values_) {
+      m.col(k) = Vec3d(sum[0], sum[1], sum[2]);
+    }
+  }
+  return result;
+}
+
+void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
                   std::vector<Motion>& motions) {
   for (std::size_t b = 0; b < motions.size(); ++b) {
     const double mass = moments.mass(b);
@@ -93,7 +111,7 @@ Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen
 
 }  // namespace
 
-void solve_poses(const SkinMoments& moments, const PoseTargets& targets,
+void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions) {
   constexpr double kDamping = 1e-3;  // of the diagonal
   const std::size_t n = motions.size();

@@ -31,25 +31,32 @@ class SkinMoments {
   std::vector<Eigen::Matrix4d> block_;
 };
 
-// Sums of w_b x (p, 1)^T over the vertices of one frame at positions x.
+// Sums of w_b x (p, 1)^T over the vertices at positions x, for all bones in some frames.
 class PoseTargets {
  public:
-  explicit PoseTargets(std::size_t num_bones) : sum_(num_bones, Motion::Zero()) {}
-  void add(const Vec3d& rest, std::span<const RigWeight> weights, const Vec3d& position);
-  const Motion& operator[](std::size_t bone) const { return sum_[bone]; }
+  PoseTargets(std::size_t num_bones, std::size_t num_frames)
+      : num_bones_(num_bones),
+        values_(3 * num_frames),
+        sum_(num_bones * Motion::ColsAtCompileTime * values_, 0.0) {}
+  // trajectory: [frame]
+  void add(const Vec3d& rest, std::span<const RigWeight> weights,
+           std::span<const Vec3d> trajectory);
+  std::vector<Motion> of_frame(std::size_t frame) const;  // [bone]
 
  private:
-  std::vector<Motion> sum_;
+  std::size_t num_bones_;
+  std::size_t values_;       // of a trajectory
+  std::vector<double> sum_;  // [bone][column][frame][3]
 };
 
 // Lowers the squared error of a frame: each bone in turn takes the best motion that the others
-// leave it.
-void refine_poses(const SkinMoments& moments, const PoseTargets& targets,
+// leave it. targets: PoseTargets of the frame.
+void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
                   std::vector<Motion>& motions);
 
 // The same for all bones at once, by a step of Gauss and Newton: slower, but it gets there
 // where vertices follow several bones. The motions must be near already.
-void solve_poses(const SkinMoments& moments, const PoseTargets& targets,
+void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions);
 
 }  // namespace rlpc

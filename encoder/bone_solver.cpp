@@ -1,6 +1,7 @@
 #include "encoder/bone_solver.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -32,15 +33,18 @@ BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
   std::vector<std::uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0U);
   motions_ = {motion_of(all)};
-  improve(1);
+  SkinSums sums(sample.positions, motions_);
+  improve(1, sums);
 }
 
 bool BoneSolver::grow(std::size_t num_bones) {
   const std::size_t before = motions_.size();
+  if (before >= num_bones) return false;
+  SkinSums sums(sample_.positions, motions_);
   while (motions_.size() < num_bones) {
     const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
-    const std::size_t added = add_bones(count);
-    if (added > 0) improve(kRounds);
+    const std::size_t added = add_bones(count, sums);
+    if (added > 0) improve(kRounds, sums);
     if (added < count) break;
   }
   return motions_.size() > before;
@@ -49,8 +53,9 @@ bool BoneSolver::grow(std::size_t num_bones) {
 void BoneSolver::exchange_bones(int times) {
   constexpr std::size_t kExchangedPart = 8;
   std::size_t count = 1 + motions_.size() / kExchangedPart;
+  SkinSums sums(sample_.positions, motions_);
   for (int i = 0; i < times && count > 0; ++i) {
-    if (!exchange(count)) count /= 2;
+    if (!exchange(count, sums)) count /= 2;
   }
 }
 
@@ -78,7 +83,7 @@ void BoneSolver::find_patch_errors() {
 }
 
 // Returns how many there were.
-std::size_t BoneSolver::add_bones(std::size_t count) {
+std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   if (patch_error_.empty()) find_patch_errors();
   std::vector<double> error(weights_.size());
   for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
@@ -90,7 +95,8 @@ std::size_t BoneSolver::add_bones(std::size_t count) {
     const double negligible = negligible_ * static_cast<double>(error.size());
     if (most <= std::max(kLeastPart * sum, negligible)) break;
     motions_.push_back(std::move(best));
-    fit_all_weights(true);
+    sums.add_bone(motions_.back());
+    fit_all_weights(true, sums);
     for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
   }
   return added;
@@ -126,43 +132,70 @@ std::vector<std::size_t> BoneSolver::ill_explained_patches(
   return result;
 }
 
-// Tries the motions of some patches. Each is then taken from all vertices that follow it as
-// well as the patch does.
-BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) const {
+// The motions of patches, each then taken from all vertices that follow it as well as the patch
+// does.
+std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
+    std::span<const std::size_t> patches) const {
   constexpr int kFits = 3;
-  struct Trial {
-    std::vector<std::uint32_t> core;
-    double tolerance;
-    double saved = 0.0;
-  };
-  std::vector<Trial> trials;
-  for (const std::size_t patch : ill_explained_patches(error)) {
-    const auto& core = sample_.patches[patch];
-    trials.push_back(
-        {core,
-         std::max(4.0 * patch_error_[patch] / static_cast<double>(core.size()), negligible_)});
+  std::vector<PatchMotion> result;
+  if (patches.empty()) return result;
+  std::vector<std::vector<std::uint32_t>> cores;
+  BoneMotions motions(patches.size());
+  for (const std::size_t patch : patches) {
+    cores.push_back(sample_.patches[patch]);
+    result.push_back({patch, {}, std::vector<double>(sample_.num_vertices())});
   }
-  NewBone best;
-  if (trials.empty()) return best;
-  BoneMotions motions(trials.size());
-  for (int i = 0; i < kFits; ++i) {
-    for (std::size_t t = 0; t < trials.size(); ++t) motions[t] = motion_of(trials[t].core);
-    const SkinSums sums(sample_.positions, motions);
-    for (std::size_t t = 0; t < trials.size(); ++t) {
-      Trial& trial = trials[t];
-      trial.saved = 0.0;
+  std::optional<SkinSums> sums;
+  bool changed = true;
+  for (int i = 0; i < kFits && changed; ++i) {
+    for (std::size_t t = 0; t < cores.size(); ++t) motions[t] = motion_of(cores[t]);
+    if (sums) {
+      sums->set_motions(motions);
+    } else {
+      sums.emplace(sample_.positions, motions);
+    }
+    changed = false;
+    for (std::size_t t = 0; t < cores.size(); ++t) {
+      const auto& patch = sample_.patches[patches[t]];
+      const double tolerance = std::max(
+          4.0 * patch_error_[patches[t]] / static_cast<double>(patch.size()), negligible_);
       std::vector<std::uint32_t> close;
       for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
-        const double alone = sums.rigid_error(v, t, rest_[v]);
-        trial.saved += std::max(error[v] - alone, 0.0);
-        if (alone < trial.tolerance) close.push_back(v);
+        const double alone = sums->rigid_error(v, t, rest_[v]);
+        result[t].error[v] = alone;
+        if (alone < tolerance) close.push_back(v);
       }
-      if (close.size() >= trial.core.size()) trial.core = std::move(close);
+      if (close.size() < cores[t].size() || close == cores[t]) continue;
+      cores[t] = std::move(close);
+      changed = true;
     }
   }
-  for (std::size_t t = 0; t < trials.size(); ++t) {
-    if (trials[t].saved <= best.saved) continue;
-    best = {std::move(motions[t]), trials[t].saved};
+  for (std::size_t t = 0; t < cores.size(); ++t) result[t].motion = std::move(motions[t]);
+  return result;
+}
+
+// Of the motions of some patches, that which saves most.
+BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
+  const std::vector<std::size_t> patches = ill_explained_patches(error);
+  const auto is_known = [&](std::size_t patch) {
+    return std::any_of(tried_.begin(), tried_.end(),
+                       [&](const PatchMotion& m) { return m.patch == patch; });
+  };
+  std::vector<std::size_t> others;
+  std::remove_copy_if(patches.begin(), patches.end(), std::back_inserter(others), is_known);
+  for (PatchMotion& m : patch_motions(others)) tried_.push_back(std::move(m));
+  std::vector<PatchMotion> now;
+  for (const std::size_t patch : patches) {
+    now.push_back(std::move(*std::find_if(
+        tried_.begin(), tried_.end(), [&](const PatchMotion& m) { return m.patch == patch; })));
+  }
+  tried_ = std::move(now);
+  NewBone best;
+  for (const PatchMotion& m : tried_) {
+    double saved = 0.0;
+    for (std::size_t v = 0; v < error.size(); ++v)
+      saved += std::max(error[v] - m.error[v], 0.0);
+    if (saved > best.saved) best = {m.motion, saved};
   }
   return best;
 }
@@ -179,8 +212,7 @@ void BoneSolver::choose_candidates(const SkinSums& sums) {
   }
 }
 
-void BoneSolver::fit_all_weights(bool new_candidates) {
-  const SkinSums sums(sample_.positions, motions_);
+void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
   if (new_candidates) choose_candidates(sums);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     const auto fit = [&] {
@@ -198,19 +230,21 @@ void BoneSolver::fit_all_weights(bool new_candidates) {
   }
 }
 
-void BoneSolver::improve(int rounds) {
+void BoneSolver::improve(int rounds, SkinSums& sums) {
   constexpr int kKeepCandidates = 3;
   for (int i = 0; i < rounds; ++i) {
-    fit_all_weights(i % kKeepCandidates == 0);
+    fit_all_weights(i % kKeepCandidates == 0, sums);
     improve_motions();
+    sums.set_motions(motions_);
   }
-  fit_all_weights(false);
+  fit_all_weights(false, sums);
 }
 
 void BoneSolver::settle() {
   constexpr int kSettlingRounds = 10;
   rests_move_ = true;
-  improve(kSettlingRounds);
+  SkinSums sums(sample_.positions, motions_);
+  improve(kSettlingRounds, sums);
 }
 
 void BoneSolver::improve_motions() {
@@ -218,14 +252,15 @@ void BoneSolver::improve_motions() {
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
+  PoseTargets targets(n, sample_.num_frames);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v));
+  }
   std::vector<Motion> frame(n);
   for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-    PoseTargets targets(n);
-    for (std::size_t v = 0; v < rest_.size(); ++v) {
-      targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v)[f]);
-    }
+    const std::vector<Motion> wanted = targets.of_frame(f);
     for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
-    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, targets, frame);
+    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, wanted, frame);
     for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
   }
 }
@@ -256,10 +291,11 @@ std::vector<double> BoneSolver::missed() const {
   return loss;
 }
 
-void BoneSolver::remove_bone(std::size_t bone) {
+void BoneSolver::remove_bone(std::size_t bone, SkinSums& sums) {
   motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
+  sums.remove_bone(bone);
   for (BoneWeights& w : weights_) w.weights.clear();
-  fit_all_weights(true);
+  fit_all_weights(true, sums);
 }
 
 double BoneSolver::error() const {
@@ -291,17 +327,19 @@ std::vector<double> BoneSolver::residuals() const {
 }
 
 // Exchanges the bones that are missed least for new ones, if that is better.
-bool BoneSolver::exchange(std::size_t count) {
+bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   const BoneSolver before = *this;
   for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
     const std::vector<double> loss = missed();
     remove_bone(
-        static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()));
+        static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()),
+        sums);
   }
-  add_bones(before.motions_.size() - motions_.size());
-  improve(kRounds);
+  add_bones(before.motions_.size() - motions_.size(), sums);
+  improve(kRounds, sums);
   if (error() < before.error()) return true;
   take(before);
+  sums.set_motions(motions_);
   return false;
 }
 
@@ -314,15 +352,15 @@ void BoneSolver::take(const BoneSolver& other) {
 }
 
 void BoneSolver::remove_worthless_bones(double worth) {
-  bool removed = false;
+  std::optional<SkinSums> sums;  // once one is removed
   while (motions_.size() > 1) {
     const std::vector<double> loss = missed();
     const auto least = std::min_element(loss.begin(), loss.end());
     if (*least >= worth) break;
-    remove_bone(static_cast<std::size_t>(least - loss.begin()));
-    removed = true;
+    if (!sums) sums.emplace(sample_.positions, motions_);
+    remove_bone(static_cast<std::size_t>(least - loss.begin()), *sums);
   }
-  if (removed) improve(kRounds);
+  if (sums) improve(kRounds, *sums);
 }
 
 }  // namespace rlpc

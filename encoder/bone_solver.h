@@ -59,29 +59,36 @@ class BoneSolver {
 
  private:
   void find_patch_errors();
-  bool exchange(std::size_t count);
+  bool exchange(std::size_t count, SkinSums& sums);
   void take(const BoneSolver& other);
-  std::size_t add_bones(std::size_t count);
+  std::size_t add_bones(std::size_t count, SkinSums& sums);
   std::vector<std::size_t> ill_explained_patches(std::span<const double> error) const;
+  struct PatchMotion {
+    std::size_t patch = 0;
+    std::vector<Motion> motion;
+    std::vector<double> error;  // of each vertex of the sample if it moves so
+  };
+  std::vector<PatchMotion> patch_motions(std::span<const std::size_t> patches) const;
   struct NewBone {
     std::vector<Motion> motion;
     double saved = 0.0;  // squared error
   };
-  NewBone best_new_bone(std::span<const double> error) const;
+  NewBone best_new_bone(std::span<const double> error);
   std::vector<Motion> motion_of(std::span<const std::uint32_t> vertices) const;
 
-  void improve(int rounds);
+  void improve(int rounds, SkinSums& sums);
   void improve_motions();
   void choose_candidates(const SkinSums& sums);
-  void fit_all_weights(bool new_candidates);
+  void fit_all_weights(bool new_candidates, const SkinSums& sums);
 
   std::vector<double> missed() const;
-  void remove_bone(std::size_t bone);
+  void remove_bone(std::size_t bone, SkinSums& sums);
 
   const BoneSample& sample_;
   std::size_t max_influences_;
   double negligible_ = 0.0;          // squared error of a vertex over the frames
   std::vector<double> patch_error_;  // when moved rigidly; once needed
+  std::vector<PatchMotion> tried_;   // when a bone was added last: most are tried again
   bool rests_move_ = false;
   BoneMotions motions_;
   std::vector<Vec3d> rest_;

@@ -7,12 +7,40 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 4;  // rows in one pass over the sums
+// Rows whose products are one sum, which then goes to what there is. Loops over outputs take
+// more of these sums, or two rows of outputs, at a time: what they read comes from the second
+// cache, and costs more than the arithmetic.
+constexpr std::size_t kTogether = 4;
 
 RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
                           std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
+  for (; r + 2 * kTogether <= num_rows; r += 2 * kTogether) {
+    const double* r0 = &rows[r * width];
+    const double* r1 = r0 + width;
+    const double* r2 = r1 + width;
+    const double* r3 = r2 + width;
+    const double* r4 = r3 + width;
+    const double* r5 = r4 + width;
+    const double* r6 = r5 + width;
+    const double* r7 = r6 + width;
+    for (std::size_t i = 0; i < width; ++i) {
+      double* out = &result[i * width];
+      const double x0 = r0[i];
+      const double x1 = r1[i];
+      const double x2 = r2[i];
+      const double x3 = r3[i];
+      const double x4 = r4[i];
+      const double x5 = r5[i];
+      const double x6 = r6[i];
+      const double x7 = r7[i];
+      for (std::size_t j = 0; j <= i; ++j) {
+        out[j] = (out[j] + ((x0 * r0[j] + x1 * r1[j]) + (x2 * r2[j] + x3 * r3[j]))) +
+                 ((x4 * r4[j] + x5 * r5[j]) + (x6 * r6[j] + x7 * r7[j]));
+      }
+    }
+  }
   for (; r + kTogether <= num_rows; r += kTogether) {
     const double* r0 = &rows[r * width];
     const double* r1 = r0 + width;
@@ -38,14 +66,38 @@ RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
   }
 }
 
+RLPC_WIDEST void add_row_product(const double* x, std::size_t inner, std::span<const double> b,
+                                 std::size_t b_width, double* out) noexcept {
+  std::size_t i = 0;
+  for (; i + kTogether <= inner; i += kTogether) {
+    const double* b0 = &b[i * b_width];
+    const double* b1 = b0 + b_width;
+    const double* b2 = b1 + b_width;
+    const double* b3 = b2 + b_width;
+    const double x0 = x[i];
+    const double x1 = x[i + 1];
+    const double x2 = x[i + 2];
+    const double x3 = x[i + 3];
+    for (std::size_t j = 0; j < b_width; ++j) {
+      out[j] += (x0 * b0[j] + x1 * b1[j]) + (x2 * b2[j] + x3 * b3[j]);
+    }
+  }
+  for (; i < inner; ++i) {
+    for (std::size_t j = 0; j < b_width; ++j) out[j] += x[i] * b[i * b_width + j];
+  }
+}
+
 RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
                              std::span<const double> b, std::size_t b_width,
                              std::span<double> result) noexcept {
   const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
   const std::size_t inner = b_width == 0 ? 0 : b.size() / b_width;
-  for (std::size_t r = 0; r < num_rows; ++r) {
+  double* out = result.data();  // b may have no columns
+  std::size_t r = 0;
+  for (; r + 2 <= num_rows; r += 2, out += 2 * b_width) {
     const double* x = &a[r * a_width];
-    double* out = result.data() + r * b_width;  // b may have no columns
+    const double* y = x + a_width;
+    double* below = out + b_width;
     std::size_t i = 0;
     for (; i + kTogether <= inner; i += kTogether) {
       const double* b0 = &b[i * b_width];
@@ -56,14 +108,23 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
       const double x1 = x[i + 1];
       const double x2 = x[i + 2];
       const double x3 = x[i + 3];
+      const double y0 = y[i];
+      const double y1 = y[i + 1];
+      const double y2 = y[i + 2];
+      const double y3 = y[i + 3];
       for (std::size_t j = 0; j < b_width; ++j) {
         out[j] += (x0 * b0[j] + x1 * b1[j]) + (x2 * b2[j] + x3 * b3[j]);
+        below[j] += (y0 * b0[j] + y1 * b1[j]) + (y2 * b2[j] + y3 * b3[j]);
       }
     }
     for (; i < inner; ++i) {
-      for (std::size_t j = 0; j < b_width; ++j) out[j] += x[i] * b[i * b_width + j];
+      for (std::size_t j = 0; j < b_width; ++j) {
+        out[j] += x[i] * b[i * b_width + j];
+        below[j] += y[i] * b[i * b_width + j];
+      }
     }
   }
+  if (r < num_rows) add_row_product(&a[r * a_width], inner, b, b_width, out);
 }
 
 RLPC_WIDEST void add_ordered_product(std::span<const double> row, std::span<const double> b,
@@ -83,6 +144,15 @@ RLPC_WIDEST void add_ordered_product(std::span<const double> row, std::span<cons
   }
   for (; i < row.size(); ++i) {
     for (std::size_t j = 0; j < width; ++j) out[j] += row[i] * b[i * width + j];
+  }
+}
+
+RLPC_WIDEST void add_outer(double weight, std::span<const double> p, std::span<const double> x,
+                           std::span<double> sum) noexcept {
+  double* out = sum.data();
+  for (const double factor : p) {
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] += weight * (x[i] * factor);
+    out += x.size();
   }
 }
 
@@ -122,6 +192,11 @@ std::vector<double> ordered_product(std::span<const double> row, std::span<const
   std::vector<double> result(b_width, 0.0);
   add_ordered_product(row, b, result);
   return result;
+}
+
+void add_outer_product(double weight, std::span<const double> p, std::span<const double> x,
+                       std::span<double> sum) {
+  add_outer(weight, p, x, sum);
 }
 
 void subtract_multiple(double factor, std::span<const double> from, std::span<double> to) {

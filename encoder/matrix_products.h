@@ -36,6 +36,12 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
 std::vector<double> ordered_product(std::span<const double> row, std::span<const double> b,
                                     std::size_t b_width);
 
+// sum[k][i] += weight * (x[i] * p[k])
+//
+//   sum  [p.size()][x.size()]
+void add_outer_product(double weight, std::span<const double> p, std::span<const double> x,
+                       std::span<double> sum);
+
 // to[i] -= factor * from[i]
 void subtract_multiple(double factor, std::span<const double> from, std::span<double> to);
 

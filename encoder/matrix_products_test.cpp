@@ -71,6 +71,12 @@ TEST(GramMatrix, IsTheSameFourRowsAtATime) {
   }
 }
 
+TEST(OuterProduct, IsAdded) {
+  std::vector<double> sum{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  add_outer_product(0.5, std::vector{1.0, -2.0}, std::vector{2.0, 4.0, 8.0}, sum);
+  EXPECT_EQ(sum, (std::vector{2.0, 4.0, 7.0, 2.0, 1.0, -2.0}));
+}
+
 TEST(SubtractMultiple, Subtracts) {
   std::vector<double> to{1.0, 2.0, 3.0};
   subtract_multiple(2.0, std::vector{0.5, 0.25, -1.0}, to);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -13,40 +14,93 @@ namespace {
 
 Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 
-}  // namespace
+constexpr std::size_t kColumns = 4;  // of a motion
 
-SkinSums::SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions)
-    : num_bones_(motions.size()),
-      num_frames_(motions.front().size()),
-      product_(num_bones_ * num_bones_, Eigen::Matrix4d::Zero()) {
-  const std::size_t columns = 4 * num_bones_;
-  std::vector<double> by_frame(3 * num_frames_ * columns);
-  for (std::size_t b = 0; b < num_bones_; ++b) {
-    for (std::size_t f = 0; f < num_frames_; ++f) {
+// The motions of some bones side by side: [frame][3][bone][4].
+std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motions) {
+  const std::size_t columns = kColumns * motions.size();
+  const std::size_t num_frames = motions.front().size();
+  std::vector<double> by_frame(3 * num_frames * columns);
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    for (std::size_t f = 0; f < num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t k = 0; k < 4; ++k) {
-          by_frame[(3 * f + c) * columns + 4 * b + k] =
+        for (std::size_t k = 0; k < kColumns; ++k) {
+          by_frame[(3 * f + c) * columns + kColumns * b + k] =
               motions[b][f](static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k));
         }
       }
     }
   }
+  return by_frame;
+}
+
+// Appends the columns of a bone to each row of a matrix of `width` columns, in place.
+void append_columns(std::vector<double>& matrix, std::size_t width,
+                    std::span<const double> added) {
+  const std::size_t wider = width + kColumns;
+  matrix.resize(matrix.size() + added.size());
+  for (std::size_t r = added.size() / kColumns; r-- > 0;) {
+    const auto from = matrix.begin() + static_cast<std::ptrdiff_t>(r * width);
+    const auto to = matrix.begin() + static_cast<std::ptrdiff_t>(r * wider + width);
+    std::copy_backward(from, from + static_cast<std::ptrdiff_t>(width), to);
+    std::copy_n(added.begin() + static_cast<std::ptrdiff_t>(r * kColumns), kColumns, to);
+  }
+}
+
+// Leaves out the columns of a bone.
+void erase_columns(std::vector<double>& matrix, std::size_t width, std::size_t bone) {
+  const auto at = static_cast<std::ptrdiff_t>(kColumns * bone);
+  auto to = matrix.begin();
+  for (auto row = matrix.begin(); row != matrix.end();) {
+    const auto end = row + static_cast<std::ptrdiff_t>(width);
+    to = std::copy(row, row + at, to);
+    to = std::copy(row + at + kColumns, end, to);
+    row = end;
+  }
+  matrix.erase(to, matrix.end());
+}
+
+}  // namespace
+
+SkinSums::SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions)
+    : num_frames_(motions.front().size()) {
+  set_positions(positions);
+  set_motions(motions);
+}
+
+void SkinSums::set_positions(std::span<const Vec3d> positions) {
   static_assert(sizeof(Vec3d) == 3 * sizeof(double));
-  const std::span<const double> flat(positions.data()->data(), 3 * positions.size());
-  along_ = matrix_product(flat, 3 * num_frames_, by_frame, columns);
+  positions_ = {};
+  if (!positions.empty()) positions_ = {positions.front().data(), 3 * positions.size()};
+  square_.clear();
   for (std::size_t i = 0; i < positions.size(); i += num_frames_) {
     double square = 0.0;
     for (const Vec3d& x : positions.subspan(i, num_frames_)) square += x.squaredNorm();
     square_.push_back(square);
   }
-  const std::vector<double> gram = gram_matrix(by_frame, columns);
+  sum_along();
+}
+
+void SkinSums::sum_along() {
+  const std::size_t columns = kColumns * num_bones_;
+  along_.assign(square_.size() * columns, 0.0);
+  add_matrix_product(positions_, 3 * num_frames_, by_frame_, columns, along_);
+}
+
+void SkinSums::set_motions(const BoneMotions& motions) {
+  num_bones_ = motions.size();
+  const std::size_t columns = kColumns * num_bones_;
+  by_frame_ = motions_by_frame(motions);
+  sum_along();
+  const std::vector<double> gram = gram_matrix(by_frame_, columns);
+  product_.resize(num_bones_ * num_bones_);
   for (std::size_t a = 0; a < num_bones_; ++a) {
     for (std::size_t b = 0; b <= a; ++b) {
       Eigen::Matrix4d& sum = product_[a * num_bones_ + b];
-      for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t k = 0; k < 4; ++k) {
-          const std::size_t row = std::max(4 * a + i, 4 * b + k);
-          const std::size_t column = std::min(4 * a + i, 4 * b + k);
+      for (std::size_t i = 0; i < kColumns; ++i) {
+        for (std::size_t k = 0; k < kColumns; ++k) {
+          const std::size_t row = std::max(kColumns * a + i, kColumns * b + k);
+          const std::size_t column = std::min(kColumns * a + i, kColumns * b + k);
           sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
               gram[row * columns + column];
         }
@@ -54,6 +108,50 @@ SkinSums::SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions)
       if (b < a) product_[b * num_bones_ + a] = sum.transpose();
     }
   }
+}
+
+void SkinSums::add_bone(const std::vector<Motion>& motion) {
+  const std::size_t width = kColumns * num_bones_;
+  const std::vector<double> added = motions_by_frame(std::span(&motion, 1));
+  append_columns(along_, width, matrix_product(positions_, 3 * num_frames_, added, kColumns));
+  append_columns(by_frame_, width, added);
+  const std::size_t rows = 3 * num_frames_;
+  std::vector<double> across(added.size());
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t k = 0; k < kColumns; ++k) across[k * rows + r] = added[r * kColumns + k];
+  }
+  const std::size_t before = num_bones_++;
+  const std::vector<double> gram =
+      matrix_product(across, rows, by_frame_, kColumns * num_bones_);
+  std::vector<Eigen::Matrix4d> product(num_bones_ * num_bones_);
+  for (std::size_t a = 0; a < before; ++a) {
+    for (std::size_t b = 0; b < before; ++b) {
+      product[a * num_bones_ + b] = product_[a * before + b];
+    }
+  }
+  for (std::size_t b = 0; b < num_bones_; ++b) {
+    Eigen::Matrix4d& sum = product[before * num_bones_ + b];
+    for (std::size_t i = 0; i < kColumns; ++i) {
+      for (std::size_t k = 0; k < kColumns; ++k) {
+        sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+            gram[i * kColumns * num_bones_ + kColumns * b + k];
+      }
+    }
+    if (b < before) product[b * num_bones_ + before] = sum.transpose();
+  }
+  product_ = std::move(product);
+}
+
+void SkinSums::remove_bone(std::size_t bone) {
+  const std::size_t width = kColumns * num_bones_;
+  erase_columns(along_, width, bone);
+  erase_columns(by_frame_, width, bone);
+  auto to = product_.begin();
+  for (std::size_t i = 0; i < product_.size(); ++i) {
+    if (i / num_bones_ != bone && i % num_bones_ != bone) *to++ = product_[i];
+  }
+  product_.erase(to, product_.end());
+  --num_bones_;
 }
 
 double SkinSums::rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& rest) const {
