@@ -219,13 +219,16 @@ class TrajectoryCoder {
     for (double& x : values) x = root > 0.0 ? x / root : 0.0;
   }
 
-  // Spatial factors of a vertex, grid units.
-  void fit_spatial(std::uint32_t v, std::span<double> factors) {
-    const auto from = analysis_.pc.spatial.begin() +
-                      static_cast<std::ptrdiff_t>(v * analysis_.pc.temporal.size());
-    of_vertex_.assign(from, from + static_cast<std::ptrdiff_t>(num_tried_));
-    std::fill(factors.begin(), factors.end(), 0.0);
-    add_matrix_product(of_vertex_, num_tried_, mixing_, count_, factors);
+  // Spatial factors of some vertices, grid units.
+  std::vector<double> fit_spatial(std::span<const std::uint32_t> vertices) {
+    of_vertices_.clear();
+    for (const std::uint32_t v : vertices) {
+      const auto from = analysis_.pc.spatial.begin() +
+                        static_cast<std::ptrdiff_t>(v * analysis_.pc.temporal.size());
+      of_vertices_.insert(of_vertices_.end(), from,
+                          from + static_cast<std::ptrdiff_t>(num_tried_));
+    }
+    return matrix_product(of_vertices_, num_tried_, mixing_, count_);
   }
 
   // Residuals in closed loop.
@@ -239,7 +242,8 @@ class TrajectoryCoder {
     const ValuePrediction prediction(mesh_, false, weights ? &*weights : nullptr);
     residual_.resize(mesh_.num_vertices() * count_);
     std::vector<std::int32_t> values(residual_.size());
-    std::vector<double> factors(count_);
+    constexpr std::size_t kTogether = 16;
+    std::vector<double> factors;  // of so many vertices
     std::vector<std::int64_t> predicted(count_);
     largest_.assign(count_, 0);
     double most = 0.0;
@@ -248,13 +252,18 @@ class TrajectoryCoder {
     if (settings_.rounding == Rounding::kCheapest) choice.emplace(mesh_, count_);
     constexpr double kRoundUpOfDeadZone = 0.42;
     const double round_up = settings_.rounding == Rounding::kNearest ? 0.5 : kRoundUpOfDeadZone;
-    for (const std::uint32_t v : mesh_.order()) {
+    const std::span<const std::uint32_t> order = mesh_.order();
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const std::uint32_t v = order[i];
       prediction.predict(v, values, predicted);
-      fit_spatial(v, factors);
+      const std::size_t place = i % kTogether;
+      if (place == 0) {
+        factors = fit_spatial(order.subspan(i, std::min(kTogether, order.size() - i)));
+      }
       const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
       if (choice) choice->start(v);
       for (std::size_t l = 0; l < count_; ++l) {
-        const double wanted = factors[l] * per_step;
+        const double wanted = factors[place * count_ + l] * per_step;
         most = std::max(most, std::abs(wanted));
         const double difference = wanted - static_cast<double>(predicted[l]);
         const std::int32_t residual = choice
@@ -402,7 +411,7 @@ class TrajectoryCoder {
   std::vector<std::vector<Vec3i>> indices_;   // temporal values
   std::vector<std::vector<double>> decoded_;  // [count][3 * num_frames]
   std::vector<double> mixing_;                // [num_tried][count]
-  std::vector<double> of_vertex_;             // spatial values of the components
+  std::vector<double> of_vertices_;           // spatial values of the components
   std::vector<std::int32_t> residual_;        // [num_vertices][count], coded
   std::vector<std::int32_t> largest_;         // magnitude of the values of each factor
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/bone_recon.h"
@@ -91,12 +92,15 @@ class ResidualChoice {
 
 double worth(const TrackCost& cost) { return cost.error + kWorthOfBit * cost.bits; }
 
-TrackResiduals residuals_of(std::span<const std::array<double, 3>> values, double step,
-                            const Trajectory& trajectory, ResidualChoice& choice) {
+// Nothing as soon as they cost no less than another coding.
+std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,
+                                           double step, const Trajectory& trajectory,
+                                           const TrackCost& other, ResidualChoice& choice) {
   TrackResiduals residuals;
   std::vector<Vec3i> coded;
   coded.reserve(values.size());
   for (const auto& value : values) {
+    if (worth(choice.cost()) >= worth(other)) return std::nullopt;
     const Vec3l prediction = predict_trajectory(trajectory, coded);
     std::array<double, 3> wanted{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -189,7 +193,9 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
     const int count = tried.temporal_predictor - kMaxPredictorOrder;
     if (count > 0 && !fit_weights(values, step, count, tried.temporal_weight)) continue;
     ResidualChoice choice(state, options.nearest);
-    tried.residual = residuals_of(values, step, tried, choice);
+    auto residuals = residuals_of(values, step, tried, best, choice);
+    if (!residuals) continue;
+    tried.residual = std::move(*residuals);
     TrackCost cost = choice.cost();
     if (count > 0) cost.bits += kWeightBits * count;
     if (worth(cost) >= worth(best)) continue;
