@@ -58,6 +58,7 @@ class BoneSolver {
   const Vec3d& rest(std::size_t vertex) const { return rest_[vertex]; }  // of the sample
 
  private:
+  // `sums` are those of the motions, before and after.
   void find_patch_errors();
   bool exchange(std::size_t count, SkinSums& sums);
   void take(const BoneSolver& other);
