@@ -185,6 +185,7 @@ BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
   std::remove_copy_if(patches.begin(), patches.end(), std::back_inserter(others), is_known);
   for (PatchMotion& m : patch_motions(others)) tried_.push_back(std::move(m));
   std::vector<PatchMotion> now;
+  now.reserve(patches.size());
   for (const std::size_t patch : patches) {
     now.push_back(std::move(*std::find_if(
         tried_.begin(), tried_.end(), [&](const PatchMotion& m) { return m.patch == patch; })));
