@@ -227,7 +227,8 @@ TEST(ComponentsByRow, AreThePrincipalComponents) {
     const TrajectoryMatrix m = random_matrix(8, size.num_values, size.num_frames, 6);
     const PrincipalComponents pc = principal_components(m, 4, 0.0);
     const TrajectoryRows rows{m.num_values, m.num_frames, [&](std::size_t first, auto some) {
-                                std::copy_n(&m.a[first * m.num_frames], some.size(), &some[0]);
+                                std::copy_n(m.a.data() + first * m.num_frames, some.size(),
+                                            some.begin());
                               }};
     const ComponentsByRow same = components_by_row(rows, 4, 0.0);
     EXPECT_EQ(same.temporal, pc.temporal);

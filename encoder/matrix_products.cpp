@@ -133,7 +133,7 @@ RLPC_WIDEST void add_ordered_product(std::span<const double> row, std::span<cons
   double* out = result.data();
   std::size_t i = 0;
   for (; i + kTogether <= row.size(); i += kTogether) {
-    const double* b0 = &b[i * width];
+    const double* b0 = b.data() + i * width;  // there may be no columns
     const double* b1 = b0 + width;
     const double* b2 = b1 + width;
     const double* b3 = b2 + width;
