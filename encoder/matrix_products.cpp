@@ -7,54 +7,52 @@
 namespace rlpc {
 namespace {
 
-// Rows whose products are one sum, which then goes to what there is. Loops over outputs take
-// more of these sums, or two rows of outputs, at a time: what they read comes from the second
-// cache, and costs more than the arithmetic.
 constexpr std::size_t kTogether = 4;
+
+// Products of four rows with a factor each, summed first; then the sum goes to what there is.
+// Loops over outputs take two of these at a time, as what they read comes from the second
+// cache, and costs more than the arithmetic.
+class FourProducts {
+ public:
+  // Factors are x[0], x[stride], ...; rows are `width` apart.
+  FourProducts(const double* x, std::size_t stride, const double* rows, std::size_t width)
+      : x0_(x[0]),
+        x1_(x[stride]),
+        x2_(x[2 * stride]),
+        x3_(x[3 * stride]),
+        r0_(rows),
+        r1_(rows + width),
+        r2_(rows + 2 * width),
+        r3_(rows + 3 * width) {}
+  double operator[](std::size_t j) const {
+    return (x0_ * r0_[j] + x1_ * r1_[j]) + (x2_ * r2_[j] + x3_ * r3_[j]);
+  }
+
+ private:
+  double x0_, x1_, x2_, x3_;
+  const double *r0_, *r1_, *r2_, *r3_;
+};
 
 RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
                           std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
   for (; r + 2 * kTogether <= num_rows; r += 2 * kTogether) {
-    const double* r0 = &rows[r * width];
-    const double* r1 = r0 + width;
-    const double* r2 = r1 + width;
-    const double* r3 = r2 + width;
-    const double* r4 = r3 + width;
-    const double* r5 = r4 + width;
-    const double* r6 = r5 + width;
-    const double* r7 = r6 + width;
+    const double* four = &rows[r * width];
+    const double* next = four + kTogether * width;
     for (std::size_t i = 0; i < width; ++i) {
       double* out = &result[i * width];
-      const double x0 = r0[i];
-      const double x1 = r1[i];
-      const double x2 = r2[i];
-      const double x3 = r3[i];
-      const double x4 = r4[i];
-      const double x5 = r5[i];
-      const double x6 = r6[i];
-      const double x7 = r7[i];
-      for (std::size_t j = 0; j <= i; ++j) {
-        out[j] = (out[j] + ((x0 * r0[j] + x1 * r1[j]) + (x2 * r2[j] + x3 * r3[j]))) +
-                 ((x4 * r4[j] + x5 * r5[j]) + (x6 * r6[j] + x7 * r7[j]));
-      }
+      const FourProducts first(four + i, width, four, width);
+      const FourProducts second(next + i, width, next, width);
+      for (std::size_t j = 0; j <= i; ++j) out[j] = (out[j] + first[j]) + second[j];
     }
   }
   for (; r + kTogether <= num_rows; r += kTogether) {
-    const double* r0 = &rows[r * width];
-    const double* r1 = r0 + width;
-    const double* r2 = r1 + width;
-    const double* r3 = r2 + width;
+    const double* four = &rows[r * width];
     for (std::size_t i = 0; i < width; ++i) {
       double* out = &result[i * width];
-      const double x0 = r0[i];
-      const double x1 = r1[i];
-      const double x2 = r2[i];
-      const double x3 = r3[i];
-      for (std::size_t j = 0; j <= i; ++j) {
-        out[j] += (x0 * r0[j] + x1 * r1[j]) + (x2 * r2[j] + x3 * r3[j]);
-      }
+      const FourProducts products(four + i, width, four, width);
+      for (std::size_t j = 0; j <= i; ++j) out[j] += products[j];
     }
   }
   for (; r < num_rows; ++r) {
@@ -70,17 +68,8 @@ RLPC_WIDEST void add_row_product(const double* x, std::size_t inner, std::span<c
                                  std::size_t b_width, double* out) noexcept {
   std::size_t i = 0;
   for (; i + kTogether <= inner; i += kTogether) {
-    const double* b0 = &b[i * b_width];
-    const double* b1 = b0 + b_width;
-    const double* b2 = b1 + b_width;
-    const double* b3 = b2 + b_width;
-    const double x0 = x[i];
-    const double x1 = x[i + 1];
-    const double x2 = x[i + 2];
-    const double x3 = x[i + 3];
-    for (std::size_t j = 0; j < b_width; ++j) {
-      out[j] += (x0 * b0[j] + x1 * b1[j]) + (x2 * b2[j] + x3 * b3[j]);
-    }
+    const FourProducts products(x + i, 1, &b[i * b_width], b_width);
+    for (std::size_t j = 0; j < b_width; ++j) out[j] += products[j];
   }
   for (; i < inner; ++i) {
     for (std::size_t j = 0; j < b_width; ++j) out[j] += x[i] * b[i * b_width + j];
@@ -100,21 +89,11 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
     double* below = out + b_width;
     std::size_t i = 0;
     for (; i + kTogether <= inner; i += kTogether) {
-      const double* b0 = &b[i * b_width];
-      const double* b1 = b0 + b_width;
-      const double* b2 = b1 + b_width;
-      const double* b3 = b2 + b_width;
-      const double x0 = x[i];
-      const double x1 = x[i + 1];
-      const double x2 = x[i + 2];
-      const double x3 = x[i + 3];
-      const double y0 = y[i];
-      const double y1 = y[i + 1];
-      const double y2 = y[i + 2];
-      const double y3 = y[i + 3];
+      const FourProducts of_x(x + i, 1, &b[i * b_width], b_width);
+      const FourProducts of_y(y + i, 1, &b[i * b_width], b_width);
       for (std::size_t j = 0; j < b_width; ++j) {
-        out[j] += (x0 * b0[j] + x1 * b1[j]) + (x2 * b2[j] + x3 * b3[j]);
-        below[j] += (y0 * b0[j] + y1 * b1[j]) + (y2 * b2[j] + y3 * b3[j]);
+        out[j] += of_x[j];
+        below[j] += of_y[j];
       }
     }
     for (; i < inner; ++i) {

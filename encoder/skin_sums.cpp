@@ -34,6 +34,19 @@ std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motion
   return by_frame;
 }
 
+// The block of two bones in a matrix of `width` columns.
+Eigen::Matrix4d block_at(std::span<const double> matrix, std::size_t width, std::size_t row,
+                         std::size_t column) {
+  Eigen::Matrix4d block;
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    for (std::size_t k = 0; k < kColumns; ++k) {
+      block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          matrix[(kColumns * row + i) * width + kColumns * column + k];
+    }
+  }
+  return block;
+}
+
 // Appends the columns of a bone to each row of a matrix of `width` columns, in place.
 void append_columns(std::vector<double>& matrix, std::size_t width,
                     std::span<const double> added) {
@@ -95,18 +108,13 @@ void SkinSums::set_motions(const BoneMotions& motions) {
   const std::vector<double> gram = gram_matrix(by_frame_, columns);
   product_.resize(num_bones_ * num_bones_);
   for (std::size_t a = 0; a < num_bones_; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      Eigen::Matrix4d& sum = product_[a * num_bones_ + b];
-      for (std::size_t i = 0; i < kColumns; ++i) {
-        for (std::size_t k = 0; k < kColumns; ++k) {
-          const std::size_t row = std::max(kColumns * a + i, kColumns * b + k);
-          const std::size_t column = std::min(kColumns * a + i, kColumns * b + k);
-          sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-              gram[row * columns + column];
-        }
-      }
-      if (b < a) product_[b * num_bones_ + a] = sum.transpose();
+    for (std::size_t b = 0; b < a; ++b) {
+      const Eigen::Matrix4d sum = block_at(gram, columns, a, b);
+      product_[a * num_bones_ + b] = sum;
+      product_[b * num_bones_ + a] = sum.transpose();
     }
+    product_[a * num_bones_ + a] =
+        block_at(gram, columns, a, a).selfadjointView<Eigen::Lower>();
   }
 }
 
@@ -130,14 +138,9 @@ void SkinSums::add_bone(const std::vector<Motion>& motion) {
     }
   }
   for (std::size_t b = 0; b < num_bones_; ++b) {
-    Eigen::Matrix4d& sum = product[before * num_bones_ + b];
-    for (std::size_t i = 0; i < kColumns; ++i) {
-      for (std::size_t k = 0; k < kColumns; ++k) {
-        sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-            gram[i * kColumns * num_bones_ + kColumns * b + k];
-      }
-    }
-    if (b < before) product[b * num_bones_ + before] = sum.transpose();
+    const Eigen::Matrix4d sum = block_at(gram, kColumns * num_bones_, 0, b);
+    product[before * num_bones_ + b] = sum;
+    product[b * num_bones_ + before] = sum.transpose();
   }
   product_ = std::move(product);
 }
