@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 
 namespace rlpc {
 

@@ -26,13 +26,13 @@
 #include <utility>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/bitstream/trace.h"
+#include "common/mesh/mesh.h"
 #include "common/result.h"
-#include "common/sequence_header.h"
-#include "common/trace.h"
-#include "decoder/byte_source.h"
+#include "common/syntax/sequence_header.h"
 #include "decoder/float_position.h"
 #include "decoder/slice_cut.h"
+#include "decoder/stream/byte_source.h"
 
 namespace rlpc {
 

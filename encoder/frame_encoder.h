@@ -30,7 +30,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {

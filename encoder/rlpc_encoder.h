@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "common/bone_gof.h"
-#include "common/mesh.h"
-#include "common/sequence_header.h"
+#include "common/mesh/mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/sequence_header.h"
 #include "encoder/input/frame_source.h"
-#include "encoder/metrics.h"
+#include "encoder/metrics/metrics.h"
 
 namespace rlpc {
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "decoder/rlpc_decode.h"
-#include "encoder/rlpc_encode.h"
+#include "decoder/c_api/rlpc_decode.h"
+#include "encoder/c_api/rlpc_encode.h"
 
 #define VERTICES 12
 #define VALUES (3 * VERTICES)

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "conformance/count_memory.h"
-#include "decoder/rlpc_decode.h"
-#include "encoder/rlpc_encode.h"
+#include "conformance/roundtrip/count_memory.h"
+#include "decoder/c_api/rlpc_decode.h"
+#include "encoder/c_api/rlpc_encode.h"
 
 // What is taken when memory ends may stay taken, as the headers say: common/ and decoder/ are
 // built without exceptions. NOLINTNEXTLINE

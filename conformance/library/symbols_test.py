@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HEADERS = ("common/rlpc_status.h", "decoder/rlpc_decode.h", "encoder/rlpc_encode.h")
+HEADERS = ("common/c_api/rlpc_status.h", "decoder/c_api/rlpc_decode.h", "encoder/c_api/rlpc_encode.h")
 
 
 def declared():

@@ -102,7 +102,7 @@ class Workshop:
             shutil.copytree(root / name, self._source / name,
                             ignore=shutil.ignore_patterns("*_test.cpp", "*_fuzz.cpp"))
         (self._source / "CMakeLists.txt").write_text(_CMAKE, encoding="utf-8")
-        for path in self._source.glob("common/*.h"):
+        for path in self._source.glob("common/**/*.h"):
             # What is wrong must be seen by the streams, not by the compiler.
             text = re.sub(r"^static_assert\(.*?\);.*$", "", path.read_text(encoding="utf-8"),
                           flags=re.MULTILINE)
@@ -202,9 +202,9 @@ set(CMAKE_CXX_FLAGS "-O0 -DNDEBUG -w -fwrapv -DRLPC_VERSION=\\\\\\"mutant\\\\\\"
 find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
-file(GLOB sources common/*.cpp decoder/*.cpp decoder/output/*.cpp decoder/player/html_verb.cpp
-  decoder/player/player_page.cpp)
-list(FILTER sources EXCLUDE REGEX "rlpcinfo")
+file(GLOB_RECURSE sources common/*.cpp decoder/*.cpp)
+list(FILTER sources EXCLUDE REGEX "c_api|/report/|/extract|rlpcinfo")
+list(FILTER sources EXCLUDE REGEX "/player/(frame_surface|player_exports|stream_player|no_threads)")
 add_executable(rlpcdec ${sources})
 target_include_directories(rlpcdec PRIVATE ${CMAKE_SOURCE_DIR})
 target_precompile_headers(rlpcdec PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 #include "conformance/peers/peer_codecs.h"
 
 namespace rlpc::peers {

@@ -9,7 +9,7 @@ import pathlib
 import random
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from tools_testing import ROOT, ToolsTest, main, run  # noqa: E402
 
 for folder in ("judge", "specdec", "rlpcgen"):

@@ -15,9 +15,9 @@
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
-#include "decoder/exit_code.h"
-#include "decoder/standard_output.h"
-#include "encoder/progress_bar.h"
+#include "decoder/tools/exit_code.h"
+#include "decoder/tools/standard_output.h"
+#include "encoder/tools/progress_bar.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cinttypes>
 #include <string_view>
 
-#include "common/stream_format.h"
+#include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/rule_explanations.h"
 
 namespace rlpc {

@@ -10,7 +10,7 @@ import random
 import sys
 import zlib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2  # noqa: E402
 
 for folder in ("judge", "specdec"):

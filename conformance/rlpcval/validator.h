@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "common/result.h"
-#include "common/sequence_header.h"
-#include "decoder/byte_source.h"
+#include "common/syntax/sequence_header.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/stream/byte_source.h"
 
 namespace rlpc {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator.h"
-#include "conformance/sliced_animation.h"
-#include "conformance/small_animation.h"
+#include "conformance/roundtrip/sliced_animation.h"
+#include "conformance/roundtrip/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "common/bone_gof.h"
-#include "common/gof.h"
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
 namespace {

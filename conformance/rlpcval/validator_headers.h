@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/sequence_header.h"
+#include "common/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
-#include "decoder/parse_gof_index.h"
+#include "decoder/parse/parse_gof_index.h"
 
 namespace rlpc {
 

@@ -4,17 +4,17 @@
 #include <string>
 #include <utility>
 
-#include "common/bone_recon.h"
-#include "common/crc32.h"
-#include "common/gof_recon.h"
+#include "common/bitstream/crc32.h"
+#include "common/cluster_gof/recon/cluster_recon.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_json.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse_connectivity.h"
-#include "decoder/parse_gof.h"
-#include "decoder/parse_gof_hash.h"
-#include "decoder/parse_metadata.h"
-#include "decoder/parse_vertex_order.h"
+#include "decoder/parse/parse_cluster_gof.h"
+#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_gof_hash.h"
+#include "decoder/parse/parse_metadata.h"
+#include "decoder/parse/parse_vertex_order.h"
 
 namespace rlpc {
 namespace {

@@ -7,16 +7,16 @@
 #include <span>
 #include <vector>
 
-#include "common/bone_gof.h"
-#include "common/gof.h"
-#include "common/mesh.h"
-#include "common/topology.h"
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/mesh/mesh.h"
+#include "common/mesh/topology.h"
+#include "common/skinned_gof/skinned_gof.h"
 #include "conformance/rlpcval/validator.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
 #include "conformance/rlpcval/validator_units.h"
-#include "decoder/parse_bone_gof.h"
-#include "decoder/parse_gof_hash.h"
+#include "decoder/parse/parse_gof_hash.h"
+#include "decoder/parse/parse_skinned_gof.h"
 
 namespace rlpc {
 

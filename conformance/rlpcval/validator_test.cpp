@@ -10,12 +10,12 @@
 #include <tuple>
 #include <vector>
 
-#include "common/bit_writer.h"
-#include "conformance/sliced_animation.h"
-#include "conformance/small_animation.h"
-#include "encoder/write_connectivity.h"
-#include "encoder/write_gof.h"
-#include "encoder/write_stream.h"
+#include "common/bitstream/bit_writer.h"
+#include "conformance/roundtrip/sliced_animation.h"
+#include "conformance/roundtrip/small_animation.h"
+#include "encoder/write/write_cluster_gof.h"
+#include "encoder/write/write_connectivity.h"
+#include "encoder/write/write_stream.h"
 
 namespace rlpc {
 namespace {

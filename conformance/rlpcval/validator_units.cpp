@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "common/crc32.h"
-#include "common/stream_format.h"
+#include "common/bitstream/crc32.h"
+#include "common/syntax/stream_format.h"
 
 namespace rlpc {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "conformance/tools/comparison_input.h"
 #include "decoder/report/mesh_view.h"
-#include "encoder/metrics.h"
-#include "encoder/surface_metrics.h"
+#include "encoder/metrics/metrics.h"
+#include "encoder/metrics/surface_metrics.h"
 
 namespace rlpc {
 

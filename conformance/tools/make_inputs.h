@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 
 namespace rlpc::inputs {
 

@@ -18,12 +18,12 @@
 #include "conformance/tools/vertex_matching.h"
 #include "decoder/output/output_file.h"
 #include "decoder/report/mesh_view.h"
-#include "decoder/standard_output.h"
-#include "encoder/metrics.h"
-#include "encoder/progress_bar.h"
-#include "encoder/report_json.h"
-#include "encoder/stream_file.h"
-#include "encoder/surface_metrics.h"
+#include "decoder/tools/standard_output.h"
+#include "encoder/metrics/metrics.h"
+#include "encoder/metrics/surface_metrics.h"
+#include "encoder/tools/progress_bar.h"
+#include "encoder/tools/report_json.h"
+#include "encoder/tools/stream_file.h"
 
 namespace {
 

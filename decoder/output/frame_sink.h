@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 #include "common/result.h"
 
 namespace rlpc {

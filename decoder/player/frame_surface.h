@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 
 namespace rlpc {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "decoder/describe_error.h"
-#include "decoder/exit_code.h"
 #include "decoder/player/player_page.h"
+#include "decoder/tools/exit_code.h"
 
 namespace rlpc {
 namespace {

@@ -1,7 +1,7 @@
-// In place of decoder/run_apart.cpp: a page has one thread to decode on, and no exceptions.
+// In place of decoder/recon/async.cpp: a page has one thread to decode on, and no exceptions.
 #include <future>
 
-#include "decoder/run_apart.h"
+#include "decoder/recon/async.h"
 
 namespace rlpc {
 

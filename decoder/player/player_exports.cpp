@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-#include "common/crc32.h"
+#include "common/bitstream/crc32.h"
 #include "decoder/describe_error.h"
-#include "decoder/exit_code.h"
 #include "decoder/player/stream_player.h"
+#include "decoder/tools/exit_code.h"
 
 #define RLPC_EXPORT(name) extern "C" [[clang::export_name(#name)]]
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "decoder/byte_source.h"
 #include "decoder/output/frame_sink.h"
+#include "decoder/stream/byte_source.h"
 
 namespace rlpc {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "decoder/bit_counter.h"
+#include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
 
 namespace rlpc {

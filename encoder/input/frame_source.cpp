@@ -8,13 +8,13 @@
 #include <system_error>
 #include <utility>
 
-#include "common/stream_format.h"
-#include "encoder/gltf/source.h"
+#include "common/syntax/stream_format.h"
+#include "encoder/input/formats/mesh_sequence.h"
+#include "encoder/input/formats/point_cache.h"
+#include "encoder/input/formats/rlpd_reader.h"
+#include "encoder/input/gltf/source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
-#include "encoder/input/mesh_sequence.h"
-#include "encoder/input/point_cache.h"
-#include "encoder/input/rlpd_reader.h"
 
 namespace rlpc {
 

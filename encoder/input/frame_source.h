@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/mesh.h"
+#include "common/mesh/mesh.h"
 #include "common/result.h"
 
 namespace rlpc {

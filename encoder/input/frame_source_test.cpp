@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/mesh_sequence.h"
+#include "encoder/input/formats/mesh_sequence.h"
 
 namespace rlpc {
 namespace {

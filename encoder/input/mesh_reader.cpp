@@ -4,10 +4,10 @@
 #include <string_view>
 #include <utility>
 
+#include "encoder/input/formats/obj_reader.h"
+#include "encoder/input/formats/off_reader.h"
+#include "encoder/input/formats/ply_reader.h"
 #include "encoder/input/input_file.h"
-#include "encoder/input/obj_reader.h"
-#include "encoder/input/off_reader.h"
-#include "encoder/input/ply_reader.h"
 
 namespace rlpc {
 

@@ -24,8 +24,10 @@ OURS = {
 # What readers and writers of mesh files may include of their own layer: folders, and files.
 FORMATS = {
     "decoder/output": {"decoder/output", "decoder/float_position.h"},
-    "encoder/gltf": {"encoder/gltf", "encoder/input", "encoder/det_math.h"},
-    "encoder/input": {"encoder/gltf", "encoder/input", "encoder/grid_value.h"},
+    "encoder/input": {"encoder/input", "encoder/input/formats", "encoder/input/gltf"},
+    "encoder/input/formats": {"encoder/input", "encoder/input/formats"},
+    "encoder/input/gltf": {"encoder/input", "encoder/input/formats", "encoder/input/gltf",
+                           "encoder/math/det_math.h"},
 }
 TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
 PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
@@ -39,8 +41,8 @@ TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
 # common computes; it neither reads, writes nor logs.
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
-PUBLIC_HEADERS = ("common/rlpc_status.h", "decoder/rlpc_decode.h", "decoder/rlpc_decoder.h",
-                  "encoder/frame_encoder.h", "encoder/rlpc_encode.h", "encoder/rlpc_encoder.h")
+PUBLIC_HEADERS = ("common/c_api/rlpc_status.h", "decoder/c_api/rlpc_decode.h", "decoder/rlpc_decoder.h",
+                  "encoder/frame_encoder.h", "encoder/c_api/rlpc_encode.h", "encoder/rlpc_encoder.h")
 # That headers in C include.
 C_HEADERS = {"stddef.h", "stdint.h"}
 # Folder: other folders whose modules it may import.

@@ -111,13 +111,13 @@ class Layers(TreeTest):
                     "parsing must not know reconstruction")
 
     def test_readers_and_writers_of_files_know_nothing_of_coding(self):
-        tree = {"encoder/gof.h": "", "encoder/det_math.h": "", "common/a.h": "",
+        tree = {"encoder/gof.h": "", "encoder/math/det_math.h": "", "common/a.h": "",
                 "encoder/input/i.h": '#include "common/a.h"\n',
-                "encoder/gltf/g.h": '#include "encoder/det_math.h"\n#include "encoder/input/i.h"\n',
-                "encoder/e.cpp": '#include "encoder/gltf/g.h"\n#include "encoder/gof.h"\n'}
+                "encoder/input/gltf/g.h": '#include "encoder/math/det_math.h"\n#include "encoder/input/i.h"\n',
+                "encoder/e.cpp": '#include "encoder/input/gltf/g.h"\n#include "encoder/gof.h"\n'}
         self.run_on(tree)
-        self.run_on({**tree, "encoder/gltf/h.cpp": '#include "encoder/gof.h"\n'},
-                    "encoder/gltf/h.cpp:1", "encoder/gltf/ must know nothing of coding")
+        self.run_on({**tree, "encoder/input/gltf/h.cpp": '#include "encoder/gof.h"\n'},
+                    "encoder/input/gltf/h.cpp:1", "encoder/input/gltf/ must know nothing of coding")
         self.run_on({"decoder/p.h": "", "decoder/output/o.cpp": '#include "decoder/p.h"\n'},
                     "decoder/output/ must know nothing of coding")
 
@@ -130,9 +130,9 @@ class Layers(TreeTest):
         self.run_on({"encoder/rlpc_encoder.h": '#include "encoder/svd.h"\n',
                      "encoder/svd.h": "#include <Eigen/SVD>\n"},
                     "encoder/svd.h:1", "encoder/rlpc_encoder.h reaches <Eigen/SVD>")
-        self.run_on({"decoder/rlpc_decode.h": "#include <stdint.h>\n"})
-        self.run_on({"decoder/rlpc_decode.h": "#include <unistd.h>\n"},
-                    "decoder/rlpc_decode.h:1", "reaches <unistd.h>")
+        self.run_on({"decoder/c_api/rlpc_decode.h": "#include <stdint.h>\n"})
+        self.run_on({"decoder/c_api/rlpc_decode.h": "#include <unistd.h>\n"},
+                    "decoder/c_api/rlpc_decode.h:1", "reaches <unistd.h>")
 
     def test_specification_interpreter_is_plain_python(self):
         self.run_on({"conformance/specdec/run.py": "import re\nfrom specdec import blocks\n",
@@ -314,8 +314,8 @@ class Rules(TreeTest):
 
     def test_rule_without_check_in_the_validator(self):
         tools = "conformance/rlpcval/"
-        tree = {**self.tree(self.TEXT), "decoder/parse_a.cpp": 'fail("R-ABC-01");\n',
-                tools + "validator.cpp": '#include "decoder/parse_a.h"\n// "R-ABC-02"\n'}
+        tree = {**self.tree(self.TEXT), "decoder/parse/parse_a.cpp": 'fail("R-ABC-01");\n',
+                tools + "validator.cpp": '#include "decoder/parse/parse_a.h"\n// "R-ABC-02"\n'}
         self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")
         self.assert_clean(check_rules.check, {**tree, tools + "validator_b.cpp": '"R-ABC-02"\n'})
 

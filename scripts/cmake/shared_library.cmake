@@ -1,10 +1,10 @@
 # librlpc.so: the interface in C (rlpc.h) over the static libraries. Nothing but rlpc_* can be seen
 # of it, so that it may be changed within.
 add_library(rlpc SHARED
-  common/rlpc_status.cpp
-  decoder/rlpc_decode.cpp
-  encoder/rlpc_encode.cpp)
-set_source_files_properties(common/rlpc_status.cpp PROPERTIES
+  common/c_api/rlpc_status.cpp
+  decoder/c_api/rlpc_decode.cpp
+  encoder/c_api/rlpc_encode.cpp)
+set_source_files_properties(common/c_api/rlpc_status.cpp PROPERTIES
   COMPILE_DEFINITIONS RLPC_VERSION="${PROJECT_VERSION}")
 target_link_libraries(rlpc PRIVATE rlpc_decoder rlpc_encoder rlpc_flags)
 target_link_options(rlpc PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/scripts/cmake/rlpc.map)

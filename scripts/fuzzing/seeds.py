@@ -14,7 +14,7 @@ UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
 SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE = 1, 2, 3, 4, 6
 GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
-# In the order of decoder/payload_fuzz.cpp.
+# In the order of decoder/fuzz/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
 
 # Settings that make different streams of a small animation.
@@ -205,7 +205,7 @@ def connectivity_seeds(found, counts):
             yield struct.pack("<HH", counts["vertices"] - 1, counts["triangles"]) + payload
 
 
-def gof_seeds(found, _):
+def cluster_gof_seeds(found, _):
     first = {}
     for code, payload in found:
         first.setdefault(code, payload)
@@ -221,7 +221,7 @@ def is_main(header):
     return header[0] == 1
 
 
-def bone_gof_seeds(found, _):
+def skinned_gof_seeds(found, _):
     """GOFs with the slices behind them."""
     before = {}
     for place, (code, payload) in enumerate(found):
@@ -252,8 +252,8 @@ def sequence_header_seeds(found, _):
     yield found[0][1]
 
 
-FROM_PARTS = {"bone_gof_fuzz": bone_gof_seeds, "connectivity_fuzz": connectivity_seeds,
-              "gof_fuzz": gof_seeds, "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
+FROM_PARTS = {"skinned_gof_fuzz": skinned_gof_seeds, "connectivity_fuzz": connectivity_seeds,
+              "cluster_gof_fuzz": cluster_gof_seeds, "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
 
 
 def gltf_seeds(root):

@@ -1,0 +1,110 @@
+// What the handles of the interface in C have in common: their memory, their error, and that no
+// exception leaves them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include "common/c_api/rlpc_status.h"
+
+namespace rlpc {
+
+// The last error. Without memory of its own, so that its text is there when memory is not.
+class HandleError {
+ public:
+  rlpc_status set(rlpc_status status, std::string_view text) {
+    text_[text.copy(text_.data(), text_.size() - 1)] = '\0';
+    return status;
+  }
+  // Stands for ever: whatever the handle holds is not fit for use.
+  rlpc_status break_handle(rlpc_status status, std::string_view text) {
+    broken_ = status;
+    return set(status, text);
+  }
+  void clear() { text_[0] = '\0'; }
+  rlpc_status broken() const { return broken_; }  // RLPC_OK: it is not
+  const char* text() const { return text_.data(); }
+
+ private:
+  std::array<char, 512> text_{};
+  rlpc_status broken_ = RLPC_OK;
+};
+
+// Calls `call`, which returns a status. Handle has a HandleError `error`.
+template <class Handle, class Call>
+rlpc_status guarded(Handle* handle, const Call& call) noexcept {
+  if (handle == nullptr) return RLPC_BAD_ARGUMENT;
+  if (handle->error.broken() != RLPC_OK) return handle->error.broken();
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    return handle->error.break_handle(RLPC_OUT_OF_MEMORY, "out of memory");
+  } catch (const std::length_error&) {
+    return handle->error.break_handle(RLPC_OUT_OF_MEMORY, "out of memory");
+  } catch (const std::exception& error) {
+    return handle->error.break_handle(RLPC_INTERNAL_ERROR, error.what());
+  } catch (...) {
+    return handle->error.break_handle(RLPC_INTERNAL_ERROR, "internal error");
+  }
+}
+
+// A new handle, at `place` unless that is null. Handle has a flag `is_placed`. Null if `place`
+// is too small or not aligned, or if there is no memory.
+template <class Handle>
+Handle* make_handle(void* place, std::size_t place_bytes) noexcept {
+  static_assert(alignof(Handle) <= alignof(std::max_align_t));
+  if (place == nullptr) return new (std::nothrow) Handle();
+  const auto address = reinterpret_cast<std::uintptr_t>(place);
+  if (place_bytes < sizeof(Handle) || address % alignof(Handle) != 0) return nullptr;
+  auto* handle = new (place) Handle();
+  handle->is_placed = true;
+  return handle;
+}
+
+template <class Handle>
+void close_handle(Handle* handle) noexcept {
+  if (handle == nullptr) return;
+  if (handle->is_placed) {
+    std::destroy_at(handle);
+  } else {
+    delete handle;
+  }
+}
+
+// Structures of the interface begin with struct_size, what the caller thinks is their size:
+// they grow with the version, and a caller may be older. Options: as by default, as far as the
+// caller knows them.
+template <class T>
+void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
+  if (theirs == nullptr || struct_size < sizeof(std::size_t)) return;
+  std::memset(theirs, 0, struct_size);
+  std::memcpy(theirs, &ours, std::min(struct_size, sizeof(T)));
+  theirs->struct_size = struct_size;
+}
+
+// `ours` has the defaults, for members that the caller does not know. False: it was not
+// initialised, or has members set that this version does not know.
+template <class T>
+bool take_struct(const T* theirs, T& ours) {
+  constexpr std::size_t kMostBytes = 4096;
+  if (theirs == nullptr) return true;
+  const std::size_t size = theirs->struct_size;
+  if (size < sizeof(std::size_t) || size > kMostBytes) return false;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(theirs);
+  if (size > sizeof(T) && std::any_of(bytes + sizeof(T), bytes + size,
+                                      [](unsigned char byte) { return byte != 0; })) {
+    return false;
+  }
+  std::memcpy(&ours, theirs, std::min(size, sizeof(T)));
+  return true;
+}
+
+}  // namespace rlpc

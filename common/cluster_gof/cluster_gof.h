@@ -1,0 +1,65 @@
+// 6.5 Group of frames: what the parser hands to reconstruction, and the analysis to the writer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+inline constexpr int kMaxFractionBits = 24;
+inline constexpr std::uint32_t kMaxSeedStep = 1U << 16;
+inline constexpr int kMaxPredictorOrder = 4;
+inline constexpr int kMaxSpatialBits = 24;
+inline constexpr int kMaxTemporalBits = 26;
+inline constexpr int kTemporalIndexBits = 24;  // width of a temporal value before scaling
+inline constexpr int kMaxScaleIdx = 127;
+
+enum class SpatialPredictor : std::uint8_t { kNone = 0, kNeighbours = 1, kParallelogram = 2 };
+inline constexpr int kMaxSpatialPredictor = 2;
+
+// One product of a temporal and a spatial factor (clause 8.5). Residuals as coded, predictions
+// not yet undone.
+struct Component {
+  int scale_idx = 0;
+  int spatial_bits = 1;
+  int temporal_bits = 1;
+  int temporal_predictor = 0;  // order, 0 to kMaxPredictorOrder
+  SpatialPredictor spatial_predictor = SpatialPredictor::kNone;
+  std::vector<std::int32_t> temporal_residual;  // [num_gof_frames]
+  std::vector<std::int32_t> spatial_residual;   // [3][coded vertices of the cluster]
+};
+
+struct Cluster {
+  bool lcf_flag = false;
+  std::array<std::uint32_t, 3> seed_vertex{};  // if lcf_flag: three different vertices
+  std::vector<Component> components;
+};
+
+// Residuals of the track of one seed vertex, in steps. Tracks stand in the order of
+// clause 6.5.2: clusters in order, their seeds in order, each vertex once.
+struct SeedTrack {
+  std::uint32_t vertex = 0;
+  std::uint32_t anchor = 0;  // index of the track of seed 0 of the cluster; itself for seed 0
+  std::vector<Vec3i> residual;  // [num_gof_frames]
+};
+
+struct Gof {
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 1;
+  int fraction_bits = 0;
+  std::uint32_t seed_step = 1;
+  int seed_predictor = 1;  // order, 0 to kMaxPredictorOrder
+  bool seed_coupling_flag = false;
+  std::vector<Cluster> clusters;
+  std::vector<SeedTrack> seed_tracks;
+  std::vector<std::uint16_t>
+      cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
+};
+
+// In cluster_of_vertex: the vertex is a seed, and reconstructed from its track alone.
+inline constexpr std::uint16_t kSeedCluster = 0xFFFF;
+
+}  // namespace rlpc

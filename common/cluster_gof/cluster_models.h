@@ -1,0 +1,145 @@
+// Models and contexts of the range-coder section of a GOF (clause 9.6). The parser and the
+// writer drive them in the same way; they start afresh in each GOF.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/bitstream/bit_model.h"
+#include "common/bitstream/residual_models.h"
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/int_math.h"
+#include "common/mesh/topology.h"
+
+namespace rlpc {
+
+// 9.6.1: running magnitude of a residual, a quickly and a slowly adapting mean, 8 fractional
+// bits.
+struct RunningMagnitude {
+  std::uint32_t fast = 0;
+  std::uint32_t slow = 0;
+
+  void reset(std::uint32_t mean) { fast = slow = mean; }
+  void update(std::uint32_t magnitude) {
+    fast = update_mean(fast, magnitude, 2);
+    slow = update_mean(slow, magnitude, 4);
+  }
+};
+
+// 9.6.1 ClippedMagnitude( residual ): as of a running mean, with 8 fractional bits.
+constexpr std::uint32_t clipped_magnitude(std::int32_t residual) {
+  return std::min<std::uint32_t>(magnitude_of(residual), 0x100000) << 8;
+}
+
+// Small numbers of cluster and component headers, coded as differences.
+enum class HeaderField : std::uint8_t {
+  kNumComponents,
+  kScaleIdx,
+  kSpatialBits,
+  kTemporalBits
+};
+
+struct GofModels {
+  BitModel lcf_flag;
+  std::array<BitModel, 3> cluster_predicted_flag;
+  std::vector<BitModel> cluster_idx;  // binary tree, node n at index n
+  std::array<BitModel, kMaxPredictorOrder> temporal_predictor;
+  std::array<BitModel, kMaxSpatialPredictor> spatial_predictor;
+  ResidualModels header;
+  ResidualModels seed;
+  ResidualModels temporal;
+  ResidualModels spatial;
+  std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
+};
+
+// 9.6.2 Predicted cluster, from the neighbours decoded before.
+struct ClusterPrediction {
+  std::uint16_t cluster = 0;
+  std::size_t context = 0;  // of cluster_predicted_flag: no neighbour, all agree, they differ
+};
+
+inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_neighbours,
+                                         std::span<const std::uint16_t> cluster_of_vertex,
+                                         std::uint16_t previous) {
+  ClusterPrediction prediction{previous, 0};
+  for (const std::uint32_t u : earlier_neighbours) {
+    const std::uint16_t cluster = cluster_of_vertex[u];
+    if (cluster == kSeedCluster) continue;
+    if (prediction.context != 0 && cluster != prediction.cluster) prediction.context = 2;
+    prediction.context = std::max<std::size_t>(prediction.context, 1);
+    prediction.cluster = cluster;
+  }
+  return prediction;
+}
+
+// 9.6.3 and 9.8.2 Expected magnitude of a residual of a track: of a seed vertex, a bone, or a
+// trajectory.
+class TrackContext {
+ public:
+  // frame_mean [num_gof_frames]: mean of the tracks before, per frame.
+  explicit TrackContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
+  std::uint32_t expected(std::uint32_t f, std::size_t c) const {
+    return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;
+  }
+  void update(std::uint32_t f, std::size_t c, std::int32_t residual) {
+    const std::uint32_t magnitude = magnitude_of(residual);
+    mean_[c].update(magnitude);
+    frame_mean_[f] = update_mean(frame_mean_[f], magnitude, 3);
+  }
+
+ private:
+  std::span<std::uint32_t> frame_mean_;
+  std::array<RunningMagnitude, 3> mean_;
+};
+
+// 9.6.4 Expected magnitude of a temporal residual.
+class TemporalContext {
+ public:
+  // frame_mean [num_gof_frames]: mean of the components before, per frame.
+  TemporalContext(std::span<std::uint32_t> frame_mean, const Component& component)
+      : frame_mean_(frame_mean) {
+    const int bits = component.temporal_bits - component.scale_idx / 8 + 4;
+    const int fewer = component.temporal_predictor == 0 ? 3 : 5;
+    mean_.reset(std::uint32_t{256} << std::clamp(bits - fewer, 0, 20));
+  }
+  std::uint32_t expected(std::uint32_t f) const {
+    return (mean_.fast + mean_.slow + 2 * frame_mean_[f]) >> 6;
+  }
+  void update(std::uint32_t f, std::int32_t residual) {
+    const std::uint32_t magnitude = magnitude_of(residual);
+    mean_.update(magnitude);
+    frame_mean_[f] = update_mean(frame_mean_[f], magnitude, 1);
+  }
+
+ private:
+  std::span<std::uint32_t> frame_mean_;
+  RunningMagnitude mean_;
+};
+
+// 9.6.5 Expected magnitude of a spatial residual.
+class SpatialContext {
+ public:
+  explicit SpatialContext(const Component& component) {
+    const int fewer = component.spatial_predictor == SpatialPredictor::kNone ? 3 : 5;
+    for (RunningMagnitude& m : mean_) {
+      m.reset(std::uint32_t{256} << std::clamp(component.spatial_bits - fewer, 0, 20));
+    }
+  }
+  std::uint32_t expected(std::size_t c) const {
+    const std::uint32_t here = c == 0 ? mean_[0].fast : before_;
+    return (2 * mean_[c].slow + mean_[c].fast + here) >> 6;
+  }
+  void update(std::size_t c, std::int32_t residual) {
+    mean_[c].update(magnitude_of(residual));
+    before_ = clipped_magnitude(residual);
+  }
+
+ private:
+  std::array<RunningMagnitude, 3> mean_;
+  std::uint32_t before_ = 0;
+};
+
+}  // namespace rlpc

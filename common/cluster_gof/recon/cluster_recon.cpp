@@ -1,0 +1,168 @@
+#include "common/cluster_gof/recon/cluster_recon.h"
+
+#include <utility>
+
+#include "common/components/series_predictor.h"
+#include "common/int_math.h"
+
+namespace rlpc {
+
+// 8.3 Spatial prediction process
+SpatialPrediction::SpatialPrediction(const Topology& topology,
+                                     std::span<const std::uint32_t> vertices,
+                                     std::span<const std::uint16_t> cluster_of_vertex,
+                                     std::span<const std::uint32_t> local_index) {
+  std::vector<std::uint32_t> neighbour_first{0};
+  std::vector<std::uint32_t> parallelogram_first{0};
+  std::vector<std::uint32_t> neighbours;
+  std::vector<Parallelogram> parallelograms;
+  for (const std::uint32_t v : vertices) {
+    const std::uint16_t cluster = cluster_of_vertex[v];
+    const auto inside = [&](std::uint32_t u) { return cluster_of_vertex[u] == cluster; };
+    for (const std::uint32_t u : topology.earlier_neighbours[v]) {
+      if (inside(u)) neighbours.push_back(local_index[u]);
+    }
+    for (const Parallelogram& p : topology.parallelograms[v]) {
+      if (!inside(p.a) || !inside(p.b) || !inside(p.c)) continue;
+      parallelograms.push_back({local_index[p.a], local_index[p.b], local_index[p.c]});
+    }
+    neighbour_first.push_back(static_cast<std::uint32_t>(neighbours.size()));
+    parallelogram_first.push_back(static_cast<std::uint32_t>(parallelograms.size()));
+  }
+  neighbours_ = {std::move(neighbour_first), std::move(neighbours)};
+  parallelograms_ = {std::move(parallelogram_first), std::move(parallelograms)};
+}
+
+// 8.3.3 Prediction of a spatial value
+std::int64_t SpatialPrediction::predict(SpatialPredictor predictor,
+                                        std::span<const std::int32_t> plane,
+                                        std::size_t i) const {
+  if (predictor == SpatialPredictor::kNone || i == 0) return 0;
+  std::int64_t sum = 0;
+  if (predictor == SpatialPredictor::kParallelogram && !parallelograms_[i].empty()) {
+    const auto list = parallelograms_[i];
+    for (const Parallelogram& p : list) {
+      sum += std::int64_t{plane[p.a]} + plane[p.b] - plane[p.c];
+    }
+    return div_round(sum, static_cast<std::int64_t>(list.size()));
+  }
+  const auto list = neighbours_[i];
+  if (list.empty()) return plane[i - 1];
+  for (const std::uint32_t u : list) sum += plane[u];
+  return div_round(sum, static_cast<std::int64_t>(list.size()));
+}
+
+ClusterMembers cluster_members(const Gof& gof) {
+  ClusterMembers members;
+  members.vertices.resize(gof.clusters.size());
+  members.local_index.resize(gof.cluster_of_vertex.size());
+  for (std::uint32_t v = 0; v < gof.cluster_of_vertex.size(); ++v) {
+    const std::uint16_t cluster = gof.cluster_of_vertex[v];
+    if (cluster == kSeedCluster) continue;
+    auto& list = members.vertices[cluster];
+    members.local_index[v] = static_cast<std::uint32_t>(list.size());
+    list.push_back(v);
+  }
+  return members;
+}
+
+// 8.5.1 Temporal values
+std::vector<std::int32_t> recon_temporal(const Component& component) {
+  std::vector<std::int32_t> values(component.temporal_residual.size());
+  for (std::uint32_t f = 0; f < values.size(); ++f) {
+    const std::int64_t prediction =
+        predict_series([&](std::uint32_t g) { return std::int64_t{values[g]}; }, f,
+                       component.temporal_predictor);
+    values[f] = clip_signed(kTemporalIndexBits, prediction + component.temporal_residual[f]);
+  }
+  return values;
+}
+
+// 8.3 Spatial prediction process
+std::vector<std::int32_t> recon_spatial(const Component& component,
+                                        const SpatialPrediction& prediction) {
+  std::vector<std::int32_t> values = component.spatial_residual;
+  const std::size_t n = values.size() / 3;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::span<std::int32_t> plane(values.data() + c * n, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      plane[i] =
+          clip_signed(component.spatial_bits,
+                      prediction.predict(component.spatial_predictor, plane, i) + plane[i]);
+    }
+  }
+  return values;
+}
+
+// 8.1 Decoding a GOF
+GofRecon::GofRecon(const SequenceHeader& header, const Topology& topology, const Gof& gof)
+    : num_frames_(gof.num_frames),
+      position_bits_(header.position_bits),
+      fraction_bits_(gof.fraction_bits),
+      tracks_(recon_seed_tracks(gof, header.position_bits)) {
+  std::vector<std::size_t> track_of_vertex(header.num_vertices, 0);
+  for (const SeedTrack& track : gof.seed_tracks) {
+    track_of_vertex[track.vertex] = track_vertex_.size();
+    track_vertex_.push_back(track.vertex);
+  }
+  ClusterMembers members = cluster_members(gof);
+  clusters_.reserve(gof.clusters.size());
+  for (std::size_t i = 0; i < gof.clusters.size(); ++i) {
+    const Cluster& cluster = gof.clusters[i];
+    std::vector<std::uint32_t>& vertices = members.vertices[i];
+    const SpatialPrediction prediction(topology, vertices, gof.cluster_of_vertex,
+                                       members.local_index);
+    FactorSet factors(3 * vertices.size(), num_frames_);
+    for (const Component& component : cluster.components) {
+      std::vector<std::int32_t> temporal = recon_temporal(component);
+      for (std::int32_t& t : temporal) {
+        t = scale_temporal(t, component.scale_idx, component.temporal_bits);
+      }
+      factors.add(temporal, component.temporal_bits, recon_spatial(component, prediction),
+                  component.spatial_bits);
+    }
+    std::array<std::size_t, 3> seed_track{};
+    if (cluster.lcf_flag) {
+      for (std::size_t k = 0; k < 3; ++k)
+        seed_track[k] = track_of_vertex[cluster.seed_vertex[k]];
+    }
+    clusters_.push_back(
+        {cluster.lcf_flag, seed_track, std::move(vertices), std::move(factors)});
+  }
+}
+
+// 8.5.4 Positions of a cluster
+void GofRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
+                             std::span<std::int32_t> positions) const {
+  const std::size_t n = cluster.vertices.size();
+  std::vector<std::int64_t> local(3 * n);
+  cluster.factors.sum(f, local);
+  for (std::int64_t& q : local) q = clip_signed(kLocalBits, round2(q, fraction_bits_));
+  const std::int64_t* x = local.data();
+  const std::int64_t* y = x + n;
+  const std::int64_t* z = y + n;
+  Lcf lcf{};
+  if (cluster.lcf_flag) {
+    const auto& s = cluster.seed_track;
+    lcf = make_lcf(tracks_[s[0]][f], tracks_[s[1]][f], tracks_[s[2]][f]);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3l world = cluster.lcf_flag ? lcf_to_world(lcf, x[i], y[i], z[i])
+                                         : Vec3l{round2(x[i], kLocalFractionBits),
+                                                 round2(y[i], kLocalFractionBits),
+                                                 round2(z[i], kLocalFractionBits)};
+    std::int32_t* out = &positions[3 * std::size_t{cluster.vertices[i]}];
+    for (std::size_t c = 0; c < 3; ++c) out[c] = clip_signed(position_bits_, world[c]);
+  }
+}
+
+void GofRecon::frame(std::uint32_t f, std::span<std::int32_t> positions) const {
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      positions[3 * std::size_t{track_vertex_[t]} + c] = tracks_[t][f][c];
+    }
+  }
+  for (const ClusterState& cluster : clusters_) cluster_frame(cluster, f, positions);
+}
+
+}  // namespace rlpc

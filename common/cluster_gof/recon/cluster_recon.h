@@ -1,0 +1,86 @@
+// 8.1 Decoding a GOF: residuals to integer positions, frame by frame. Used by the
+// decoder and, closing its loop, by the encoder.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/cluster_gof/recon/lcf.h"
+#include "common/cluster_gof/recon/seed_tracks.h"
+#include "common/kernels/component_sum.h"
+#include "common/mesh/topology.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+// 8.3 Spatial prediction process: undoes it in place. `planes` are the x, y and z values [3][n]
+// of the coded vertices of one cluster; on return, values clipped to spatial_bits.
+class SpatialPrediction {
+ public:
+  // vertices: coded vertices of the cluster, ascending. local_index [num_vertices]: place of a
+  // vertex in its cluster's list.
+  SpatialPrediction(const Topology& topology, std::span<const std::uint32_t> vertices,
+                    std::span<const std::uint16_t> cluster_of_vertex,
+                    std::span<const std::uint32_t> local_index);
+
+  // 8.3.3 Prediction of a spatial value, at place i, from the values before it.
+  std::int64_t predict(SpatialPredictor predictor, std::span<const std::int32_t> plane,
+                       std::size_t i) const;
+
+ private:
+  ListOfLists<std::uint32_t> neighbours_;
+  ListOfLists<Parallelogram> parallelograms_;
+};
+
+// Coded vertices of each cluster, ascending, and the place of each vertex in its list.
+struct ClusterMembers {
+  std::vector<std::vector<std::uint32_t>> vertices;
+  std::vector<std::uint32_t> local_index;  // [num_vertices]; unspecified for seeds
+};
+ClusterMembers cluster_members(const Gof& gof);
+
+// 8.5.1 Temporal values of a component, predictions undone; [num_gof_frames], 24 bits.
+std::vector<std::int32_t> recon_temporal(const Component& component);
+// 8.3: spatial values of a component, predictions undone; [3][n], within spatial_bits.
+std::vector<std::int32_t> recon_spatial(const Component& component,
+                                        const SpatialPrediction& prediction);
+
+class GofRecon {
+ public:
+  // Prepares the GOF; all arguments are only read, during the call. Cannot fail: parse has
+  // checked every range, and sums are clipped.
+  GofRecon(const SequenceHeader& header, const Topology& topology, const Gof& gof);
+
+  // Positions of one frame of the GOF, grid units, [num_vertices][3].
+  void frame(std::uint32_t f, std::span<std::int32_t> positions) const;
+  // The same for frames first to first + count - 1, [count][num_vertices][3].
+  void frames(std::uint32_t first, std::uint32_t count,
+              std::span<std::int32_t> positions) const {
+    const std::size_t size = positions.size() / count;
+    for (std::uint32_t i = 0; i < count; ++i)
+      frame(first + i, positions.subspan(i * size, size));
+  }
+  std::uint32_t num_frames() const { return num_frames_; }
+
+ private:
+  struct ClusterState {
+    bool lcf_flag;
+    std::array<std::size_t, 3> seed_track;
+    std::vector<std::uint32_t> vertices;
+    FactorSet factors;
+  };
+
+  void cluster_frame(const ClusterState& cluster, std::uint32_t f,
+                     std::span<std::int32_t> positions) const;
+
+  std::uint32_t num_frames_;
+  int position_bits_;
+  int fraction_bits_;
+  std::vector<std::uint32_t> track_vertex_;
+  std::vector<Track> tracks_;
+  std::vector<ClusterState> clusters_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,209 @@
+#include "common/kernels/component_sum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+__extension__ using Int128 = __int128;
+
+struct Factor {
+  std::vector<std::int32_t> temporal;  // [num_frames]
+  std::vector<std::int32_t> spatial;   // [num_values]
+  int temporal_bits = 1;
+  int spatial_bits = 1;
+};
+
+// The plain twin of FactorSet: 8.5.3 as it stands, in 128 bits.
+std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t num_values,
+                              std::size_t frame) {
+  std::vector<Int128> sums(num_values, 0);
+  for (const Factor& f : factors) {
+    const int shift = f.spatial_bits < 13 ? 13 - f.spatial_bits : 0;
+    for (std::size_t i = 0; i < num_values; ++i) {
+      sums[i] += Int128{f.temporal[frame]} * (Int128{f.spatial[i]} * (1 << shift));
+    }
+  }
+  return sums;
+}
+
+void expect_sums_of_the_plain_twin(const std::vector<Factor>& factors, std::size_t num_values,
+                                   std::size_t num_frames) {
+  for (const TileLoops& loops : tile_loops()) {
+    FactorSet set(num_values, num_frames, loops);
+    for (const Factor& f : factors) {
+      set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
+    }
+    std::vector<std::int64_t> sums(num_values, 12345);
+    for (std::size_t frame = 0; frame < num_frames; ++frame) {
+      set.sum(frame, sums);
+      const std::vector<Int128> plain = plain_sum(factors, num_values, frame);
+      for (std::size_t i = 0; i < num_values; ++i) {
+        ASSERT_TRUE(plain[i] == sums[i]) << "frame " << frame << ", value " << i;
+      }
+    }
+  }
+}
+
+std::int32_t random_signed(std::mt19937& random, int bits) {
+  const auto span = std::uint64_t{1} << bits;
+  return static_cast<std::int32_t>(static_cast<std::int64_t>(random() % span) -
+                                   static_cast<std::int64_t>(span / 2));
+}
+
+struct Widths {
+  int least_spatial, most_spatial, least_temporal, most_temporal;
+};
+
+std::vector<Factor> random_factors(std::mt19937& random, const Widths& w, std::size_t count,
+                                   std::size_t num_values, std::size_t num_frames) {
+  const auto between = [&](int least, int most) {
+    return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+  };
+  std::vector<Factor> factors(count);
+  for (Factor& f : factors) {
+    f.spatial_bits = between(w.least_spatial, w.most_spatial);
+    f.temporal_bits = between(w.least_temporal, w.most_temporal);
+    for (std::size_t i = 0; i < num_values; ++i) {
+      f.spatial.push_back(random_signed(random, f.spatial_bits));
+    }
+    for (std::size_t i = 0; i < num_frames; ++i) {
+      f.temporal.push_back(random_signed(random, f.temporal_bits));
+    }
+  }
+  return factors;
+}
+
+TEST(FactorSet, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
+  const std::vector<Widths> cases{
+      {1, 16, 1, 16},    // all narrow
+      {13, 16, 14, 16},  // narrow, in groups of few
+      {17, 24, 1, 26},   // wide by their spatial factor
+      {1, 24, 17, 26},   // wide by their temporal factor
+      {1, 24, 1, 26},    // mixed
+  };
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const std::size_t num_values = 3 * (random() % 50);
+    const std::size_t num_frames = 1 + random() % 4;
+    const std::size_t count = random() % 12;
+    expect_sums_of_the_plain_twin(
+        random_factors(random, cases[seed % 5], count, num_values, num_frames), num_values,
+        num_frames);
+  }
+}
+
+TEST(FactorSet, SumsRowsOfATileAsOneByOne) {
+  std::mt19937 random(1);
+  constexpr std::size_t kRows = 30;
+  const std::vector<Factor> factors =
+      random_factors(random, {1, 24, 1, 26}, 20, kTileValues + 5, kRows);
+  FactorSet set(kTileValues + 5, kRows);
+  for (const Factor& f : factors) {
+    set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
+  }
+  std::vector<std::int64_t> sums((kRows - 1) * kTileValues, 12345);
+  set.sum_tile(1, 1, kRows - 1, sums);
+  std::vector<std::int64_t> of_row(kTileValues + 5);
+  for (std::size_t r = 0; r + 1 < kRows; ++r) {
+    set.sum(r + 1, of_row);
+    for (std::size_t i = 0; i < kTileValues; ++i) {
+      ASSERT_EQ(sums[r * kTileValues + i], i < 5 ? of_row[kTileValues + i] : 0)
+          << "row " << r << ", value " << i;
+    }
+  }
+}
+
+TEST(FactorSet, TakesSpatialValuesByTheirStride) {
+  FactorSet set(2, 1);
+  set.add(std::vector<std::int32_t>{3}, 3, std::vector<std::int32_t>{5, 99, -7}, 13, 2);
+  std::vector<std::int64_t> sums(2);
+  set.sum(0, sums);
+  EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
+}
+
+TEST(FactorSet, WithoutComponentsSumsToZero) { expect_sums_of_the_plain_twin({}, 9, 2); }
+
+// Extremes of the declared widths in all combinations of signs, as many as a level allows.
+void expect_saturating_sums(int spatial_bits, int temporal_bits, std::size_t count) {
+  SCOPED_TRACE(testing::Message() << spatial_bits << " x " << temporal_bits);
+  const std::int32_t s = 1 << (spatial_bits - 1);
+  const std::int32_t t = 1 << (temporal_bits - 1);
+  Factor f;
+  f.spatial_bits = spatial_bits;
+  f.temporal_bits = temporal_bits;
+  f.spatial = {-s, s - 1, 0};
+  f.temporal = {-t, t - 1};
+  expect_sums_of_the_plain_twin(std::vector<Factor>(count, f), 3, 2);
+}
+
+TEST(FactorSet, SumsOf1024SaturatingComponentsAreExact) {
+  for (const int spatial_bits : {1, 2, 12, 13, 14, 15, 16, 17, 24}) {
+    for (const int temporal_bits : {1, 2, 15, 16, 17, 26}) {
+      expect_saturating_sums(spatial_bits, temporal_bits, 1024);
+    }
+  }
+}
+
+TEST(FactorSet, GroupsOfNarrowComponentsNeverOverflow) {
+  for (int spatial_bits = 13; spatial_bits <= 16; ++spatial_bits) {
+    for (int temporal_bits = 1; temporal_bits <= 16; ++temporal_bits) {
+      for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 33U}) {
+        expect_saturating_sums(spatial_bits, temporal_bits, count);
+      }
+    }
+  }
+}
+
+TEST(FactorSet, SumOfTheLargestComponentsIsTwoToThe58) {
+  const std::int32_t s = 1 << 23;
+  const std::int32_t t = 1 << 25;
+  FactorSet set(3, 1);
+  for (int i = 0; i < 1024; ++i) {
+    set.add(std::vector<std::int32_t>{-t}, 26, std::vector<std::int32_t>{-s, 0, s - 1}, 24);
+  }
+  std::vector<std::int64_t> sums(3);
+  set.sum(0, sums);
+  EXPECT_EQ(sums[0], std::int64_t{1} << 58);
+  EXPECT_EQ(sums[1], 0);
+  EXPECT_EQ(sums[2], -(std::int64_t{1} << 35) * (s - 1));
+}
+
+TEST(ScaleTable, IsTheRoundedPowerOfTwo) {
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(kScaleMantissa[static_cast<std::size_t>(i)],
+              std::lround(std::exp2(i / 8.0) * 32768.0));
+  }
+}
+
+TEST(ScaleTemporal, IsThePowerOfTwoOfTheTextAndClips) {
+  EXPECT_EQ(scale_temporal(1000, 32, 26), 1000);  // scale 1
+  EXPECT_EQ(scale_temporal(-1000, 40, 26), -2000);
+  EXPECT_EQ(scale_temporal(1000, 0, 26), 63);    // 62.5, up
+  EXPECT_EQ(scale_temporal(-1000, 0, 26), -62);  // -62.5, up
+  EXPECT_EQ(scale_temporal(1000, 36, 26), 1414);
+  EXPECT_EQ(scale_temporal(1, 127, 26), 3756);  // 60097 / 16 = 3756.06
+  EXPECT_EQ(scale_temporal(1000, 32, 10), 511);
+  EXPECT_EQ(scale_temporal(-1000, 32, 10), -512);
+  EXPECT_EQ(scale_temporal(5, 32, 1), 0);
+  EXPECT_EQ(scale_temporal(-(1 << 23), 127, 26), -(1 << 25));
+  EXPECT_EQ(scale_temporal((1 << 23) - 1, 127, 26), (1 << 25) - 1);
+}
+
+TEST(ScaleTemporal, GrowsWithScaleIdxByTheEighthRootOfTwo) {
+  for (int idx = 32; idx < 120; ++idx) {
+    const double ratio = scale_temporal(1 << 14, idx + 1, 26) /
+                         static_cast<double>(scale_temporal(1 << 14, idx, 26));
+    if (scale_temporal(1 << 14, idx + 1, 26) == (1 << 25) - 1) break;
+    EXPECT_NEAR(ratio, 1.0905077, 1e-4) << idx;
+  }
+}
+
+}  // namespace
+}  // namespace rlpc

@@ -1,0 +1,45 @@
+// 8.10 Prediction along the mesh: in which order the vertices of a GOF of bones are coded, and
+// from which others each is predicted.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/topology.h"
+#include "common/mesh/vertex_layers.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+class CodedMesh {
+ public:
+  // Both must outlive it. `layers` is not looked at unless prediction is kLayers.
+  CodedMesh(Prediction prediction, const Topology& topology, const VertexLayers& layers);
+
+  Prediction prediction() const { return prediction_; }
+  std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(index_.size()); }
+  // CodedOrder
+  std::span<const std::uint32_t> order() const;
+  // CodedRing and CodedOuterRing: vertices before v in the order.
+  std::span<const std::uint32_t> ring(std::uint32_t v) const;
+  std::span<const std::uint32_t> outer_ring(std::uint32_t v) const;
+  std::span<const Parallelogram> parallelograms(std::uint32_t v) const {
+    return topology_.parallelograms[v];
+  }
+
+  std::uint32_t num_layers() const;
+  std::uint32_t layer_of(std::uint32_t v) const;
+  // 8.10.1 Vertices of a layer group: of the layers first to end - 1, in the order.
+  std::span<const std::uint32_t> vertices_of_layers(std::uint32_t first,
+                                                    std::uint32_t end) const;
+
+ private:
+  Prediction prediction_;
+  const Topology& topology_;
+  const VertexLayers& layers_;
+  std::vector<std::uint32_t> index_;        // 0, 1, 2, ...
+  std::vector<std::uint32_t> layer_first_;  // [num_layers + 1]: place in the order
+};
+
+}  // namespace rlpc

@@ -1,0 +1,54 @@
+// Order of the vertices from coarse to fine, from connectivity alone (clause 8.9).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kMaxRing = 7;        // vertices of a ring
+inline constexpr std::size_t kMaxOuterRing = 24;  // and of an outer ring
+inline constexpr std::uint32_t kMaxLayers = 212;  // of up to 2^23 vertices
+
+// A short list for each vertex, in one flat array, in the order in which they were set.
+class VertexLists {
+ public:
+  VertexLists() = default;
+  explicit VertexLists(std::uint32_t num_vertices)
+      : first_(num_vertices), size_(num_vertices) {}
+  std::span<const std::uint32_t> operator[](std::size_t v) const {
+    return std::span<const std::uint32_t>(items_).subspan(first_[v], size_[v]);
+  }
+  std::size_t size() const { return first_.size(); }
+  // Once for a vertex at most; the lists of the others are empty. At most 255 items.
+  void set(std::uint32_t v, std::span<const std::uint32_t> items);
+
+ private:
+  std::vector<std::uint32_t> first_;  // [size]
+  std::vector<std::uint8_t> size_;    // [size]
+  std::vector<std::uint32_t> items_;
+};
+
+struct VertexLayers {
+  std::uint32_t num_layers = 1;
+  std::vector<std::uint8_t> layer_of_vertex;  // [num_vertices]: 0 is the base, the coarsest
+  std::vector<std::uint32_t> layer_order;     // all vertices, by layer, then by index
+  VertexLists ring;        // in the order of the walk; of the base: ascending
+  VertexLists outer_ring;  // ascending; of the base: empty
+};
+
+// 8.9 Vertex layers
+//
+//   num_vertices  at most 2^23
+//   triangles     at most 2^24, of any kind; indices < num_vertices
+//
+// The vertices of ring[v] and outer_ring[v] come before v in layer_order, and are of lower
+// layers if v is not of the base. Takes time and memory in proportion to vertices and
+// triangles.
+VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+
+}  // namespace rlpc

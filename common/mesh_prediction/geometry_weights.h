@@ -1,0 +1,34 @@
+// 8.11 Geometry weights: from the place of a vertex among its rings in the rest shape, the
+// weights with which it is predicted from them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+inline constexpr int kWeightFractionBits = 14;
+
+class GeometryWeights {
+ public:
+  // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh is
+  // one with layers; damping_log2, outer_weight and outer_scale are those of the GOF.
+  GeometryWeights(const CodedMesh& mesh, const BoneGof& gof,
+                  const std::array<std::span<const std::int32_t>, 3>& rest);
+
+  // Of the vertices of the ring of v, then of its outer ring.
+  std::span<const std::int32_t> operator[](std::uint32_t v) const {
+    return std::span(weights_).subspan(first_[v], first_[v + 1] - first_[v]);
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;  // [num_vertices + 1]
+  std::vector<std::int32_t> weights_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,285 @@
+#include "common/skinned_gof/recon/skinned_recon.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/cluster_gof/recon/lcf.h"
+#include "common/components/series_predictor.h"
+#include "common/int_math.h"
+
+namespace rlpc {
+namespace {
+
+constexpr int kTemporalWeightFractionBits = 6;
+
+// 8.10.3: the parallelogram with the latest edge.
+const Parallelogram& latest_of(std::span<const Parallelogram> list) {
+  return *std::max_element(list.begin(), list.end(),
+                           [](const Parallelogram& p, const Parallelogram& q) {
+                             return std::pair(p.b, p.a) < std::pair(q.b, q.a);
+                           });
+}
+
+}  // namespace
+
+void ValuePrediction::by_parallelograms(std::span<const Parallelogram> list,
+                                        std::span<const std::int32_t> values,
+                                        std::span<std::int64_t> prediction) const {
+  const std::size_t n = prediction.size();
+  const bool one = mesh_.prediction() == Prediction::kParallelogram;
+  const auto used = one ? std::span(&latest_of(list), 1) : list;
+  for (const Parallelogram& p : used) {
+    for (std::size_t k = 0; k < n; ++k) {
+      prediction[k] +=
+          std::int64_t{values[p.a * n + k]} + values[p.b * n + k] - values[p.c * n + k];
+    }
+  }
+  const auto count = static_cast<std::int64_t>(used.size());
+  if (count == 1) return;
+  for (std::int64_t& x : prediction) x = div_round(x, count);
+}
+
+void ValuePrediction::predict(std::uint32_t v, std::span<const std::int32_t> values,
+                              std::span<std::int64_t> prediction) const {
+  const std::size_t n = prediction.size();
+  std::fill(prediction.begin(), prediction.end(), 0);
+  const auto ring = mesh_.ring(v);
+  if (weights_ != nullptr) {
+    const auto outer_ring = mesh_.outer_ring(v);
+    const auto weights = (*weights_)[v];
+    const auto add = [&](std::uint32_t u, std::int32_t w) {
+      loops_.add_weighted(&values[std::size_t{u} * n], w, n, prediction.data());
+    };
+    for (std::size_t i = 0; i < ring.size(); ++i) add(ring[i], weights[i]);
+    for (std::size_t i = 0; i < outer_ring.size(); ++i) {
+      add(outer_ring[i], weights[ring.size() + i]);
+    }
+    for (std::int64_t& x : prediction) x = round2(x, kWeightFractionBits);
+    return;
+  }
+  if (mesh_.prediction() == Prediction::kNone && !is_rest_) return;
+  if (mesh_.prediction() != Prediction::kLayers && !mesh_.parallelograms(v).empty()) {
+    by_parallelograms(mesh_.parallelograms(v), values, prediction);
+    return;
+  }
+  if (ring.empty()) return;
+  for (const std::uint32_t u : ring) {
+    for (std::size_t k = 0; k < n; ++k) prediction[k] += values[std::size_t{u} * n + k];
+  }
+  const auto count = static_cast<std::int64_t>(ring.size());
+  for (std::int64_t& x : prediction) x = div_round(x, count);
+}
+
+FactorGroup factor_group(const BoneGof& gof, std::size_t group) {
+  return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
+}
+
+// 8.10.2 Spatial values
+std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const BoneGof& gof,
+                                       std::size_t group, int position_bits,
+                                       const ValuePrediction& prediction) {
+  const FactorGroup factors = factor_group(gof, group);
+  const std::size_t n = factors.size();
+  const std::vector<std::int32_t>& residuals = gof.vertex_residual[group];
+  std::vector<int> bits(n, rest_bits(position_bits));
+  for (std::size_t k = 0; k < n && group > 0; ++k) {
+    bits[k] = gof.trajectories[factors.first + k - kRestFactors].spatial_bits;
+  }
+  std::vector<std::int32_t> values(residuals.size());
+  std::vector<std::int64_t> predicted(n);
+  for (const std::uint32_t v : mesh.order()) {
+    prediction.predict(v, values, predicted);
+    const int layer_step = gof.layer_step[mesh.layer_of(v)];
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t residual = residuals[v * n + k];
+      const std::int64_t difference = group == 0 ? rest_difference(gof, residual, layer_step)
+                                                 : factor_difference(residual, layer_step);
+      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
+    }
+  }
+  return values;
+}
+
+// 8.14.2 Trajectories
+Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values) {
+  Vec3l prediction{};
+  const auto f = static_cast<std::uint32_t>(values.size());
+  int order = trajectory.temporal_predictor;
+  if (order > kMaxPredictorOrder) {
+    const auto count = static_cast<std::size_t>(order - kMaxPredictorOrder);
+    if (f >= count) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::int64_t sum = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+          sum += std::int64_t{trajectory.temporal_weight[k]} * values[f - 1 - k][c];
+        }
+        prediction[c] = round2(sum, kTemporalWeightFractionBits);
+      }
+      return prediction;
+    }
+    order = 1;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    prediction[c] =
+        predict_series([&](std::uint32_t g) { return std::int64_t{values[g][c]}; }, f, order);
+  }
+  return prediction;
+}
+
+std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory) {
+  std::vector<Vec3i> values;
+  values.reserve(trajectory.residual.size());
+  for (const Vec3i& residual : trajectory.residual) {
+    const Vec3l prediction = predict_trajectory(trajectory, values);
+    Vec3i value{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      value[c] = clip_signed(kTemporalIndexBits, prediction[c] + residual[c]);
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+Vec3l skinned_point(const Influences& influences, int weight_bits,
+                    std::span<const BoneMotion> bones, std::uint32_t f, const Vec3l& point) {
+  Vec3l sum{};
+  for (const Influence& influence : influences) {
+    const BoneMotion& bone = bones[influence.bone];
+    const Vec3l moved = moved_point(bone.poses[f], bone.pivot, point);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += influence.weight * moved[c];
+  }
+  for (std::int64_t& x : sum) x = round2(x, weight_bits);
+  return sum;
+}
+
+// 8.14.3 Positions
+BoneRecon::BoneRecon(const CodedMesh& mesh, const BoneGof& gof, int position_bits,
+                     const TileLoops& loops)
+    : num_frames_(gof.num_frames),
+      num_vertices_(mesh.num_vertices()),
+      widths_{gof.weight_bits, gof.fraction_bits, position_bits},
+      loops_(loops),
+      bones_(recon_bones(gof.bones, gof.num_frames)),
+      factors_(mesh.num_vertices(), 3 * std::size_t{gof.num_frames}, loops) {
+  const auto rest = recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
+  add_influences(gof, rest);
+  add_factors(mesh, gof, rest);
+}
+
+void BoneRecon::add_influences(const BoneGof& gof, std::span<const std::int32_t> rest) {
+  struct Entry {
+    Influence influence;
+    std::size_t vertex;
+  };
+  std::vector<Entry> of_tile;
+  for (std::size_t first = 0; first < num_vertices_; first += kTileValues) {
+    of_tile.clear();
+    for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices_); ++v) {
+      for (const Influence& influence : gof.influences[v]) of_tile.push_back({influence, v});
+    }
+    std::stable_sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
+      return a.influence.bone < b.influence.bone;
+    });
+    first_run_.push_back(runs_.size());
+    for (const auto& [influence, v] : of_tile) {
+      const auto next = static_cast<std::uint32_t>(weight_.size());
+      if (first_run_.back() == runs_.size() || runs_.back().bone != influence.bone) {
+        runs_.push_back({influence.bone, next, next});
+      }
+      ++runs_.back().end;
+      const Vec3l& pivot = bones_[influence.bone].pivot;
+      for (std::size_t c = 0; c < 3; ++c) {
+        arm_[c].push_back(static_cast<std::int32_t>(rest[3 * v + c] - pivot[c]));
+      }
+      weight_.push_back(influence.weight);
+      place_.push_back(static_cast<std::uint8_t>(v - first));
+    }
+  }
+  first_run_.push_back(runs_.size());
+  // The loops may read a vector past the end.
+  for (auto& list : arm_) list.resize(list.size() + 3);
+  weight_.resize(weight_.size() + 3);
+}
+
+void BoneRecon::add_factors(const CodedMesh& mesh, const BoneGof& gof,
+                            std::span<const std::int32_t> rest) {
+  std::optional<GeometryWeights> weights;
+  if (gof.prediction == Prediction::kLayers && !gof.trajectories.empty()) {
+    std::array<std::vector<std::int32_t>, 3> plane;
+    for (std::size_t i = 0; i < rest.size(); ++i) plane[i % 3].push_back(rest[i]);
+    weights.emplace(mesh, gof,
+                    std::array<std::span<const std::int32_t>, 3>{plane[0], plane[1], plane[2]});
+  }
+  const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
+  std::vector<std::int32_t> temporal(3 * std::size_t{num_frames_});
+  for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
+    const FactorGroup factors = factor_group(gof, group);
+    const auto values = recon_values(mesh, gof, group, widths_.position_bits, prediction);
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const Trajectory& trajectory = gof.trajectories[factors.first + k - kRestFactors];
+      const std::vector<Vec3i> series = recon_trajectory(trajectory);
+      for (std::size_t f = 0; f < num_frames_; ++f) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          temporal[3 * f + c] =
+              scale_temporal(series[f][c], trajectory.scale_idx, trajectory.temporal_bits);
+        }
+      }
+      factors_.add(temporal, trajectory.temporal_bits, std::span(values).subspan(k),
+                   trajectory.spatial_bits, factors.size());
+    }
+  }
+}
+
+// Where their bones take the rest positions of a tile, times the sum of the weights.
+void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
+  const auto runs =
+      std::span(runs_).subspan(first_run_[tile], first_run_[tile + 1] - first_run_[tile]);
+  // All vertices follow one bone alone: their places are those of the run.
+  const std::size_t n = std::min(kTileValues, num_vertices_ - tile * kTileValues);
+  const bool alone = runs.size() == 1 && runs[0].end - runs[0].first == n;
+  if (!alone) {
+    for (auto& of_coordinate : sums) of_coordinate.fill(0);
+  }
+  std::array<std::int64_t, kTileValues> places{};
+  for (const Run& run : runs) {
+    const BonePose& pose = bones_[run.bone].poses[f];
+    const BoneArms arms{{&arm_[0][run.first], &arm_[1][run.first], &arm_[2][run.first]},
+                        &weight_[run.first],
+                        run.end - run.first};
+    for (std::size_t c = 0; c < 3; ++c) {
+      Vec3i axis{};
+      for (std::size_t k = 0; k < 3; ++k) axis[k] = static_cast<std::int32_t>(pose.axes[k][c]);
+      const auto origin = static_cast<std::int32_t>(pose.origin[c]);
+      loops_.weighted_places(arms, axis, origin, alone ? sums[c].data() : places.data());
+      if (alone) continue;
+      for (std::size_t i = 0; i < arms.size; ++i) sums[c][place_[run.first + i]] += places[i];
+    }
+  }
+}
+
+void BoneRecon::frames(std::uint32_t first, std::uint32_t count,
+                       std::span<std::int32_t> positions) const {
+  Sums places{};
+  std::array<std::array<std::int32_t, kTileValues>, 3> moved{};
+  std::vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);
+  for (std::size_t tile = 0; tile + 1 < first_run_.size(); ++tile) {
+    factors_.sum_tile(tile, 3 * std::size_t{first}, 3 * std::size_t{count}, displacements);
+    const std::size_t first_vertex = tile * kTileValues;
+    const std::size_t n = std::min(kTileValues, num_vertices_ - first_vertex);
+    for (std::uint32_t f = 0; f < count; ++f) {
+      skin_tile(tile, first + f, places);
+      for (std::size_t c = 0; c < 3; ++c) {
+        loops_.positions(places[c].data(),
+                         &displacements[(3 * std::size_t{f} + c) * kTileValues], widths_,
+                         moved[c].data());
+      }
+      std::int32_t* const out = &positions[3 * (std::size_t{f} * num_vertices_ + first_vertex)];
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = moved[c][i];
+      }
+    }
+  }
+}
+
+}  // namespace rlpc

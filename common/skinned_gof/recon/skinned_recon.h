@@ -1,0 +1,120 @@
+// 8.10 and 8.14: a GOF of bones, from residuals to integer positions, frame by frame. Used by
+// the decoder and, closing its loop, by the encoder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/kernels/component_sum.h"
+#include "common/kernels/kernels.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/mesh_prediction/geometry_weights.h"
+#include "common/skinned_gof/recon/bones.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+// 8.10.3 Prediction of a value: those of a vertex for some spatial factors, from those of the
+// vertices before it.
+class ValuePrediction {
+ public:
+  // weights: null for rest positions, and without layers.
+  ValuePrediction(const CodedMesh& mesh, bool is_rest, const GeometryWeights* weights)
+      : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(tile_loops().back()) {}
+
+  // values [num_vertices][n] and prediction [n], n factors.
+  void predict(std::uint32_t v, std::span<const std::int32_t> values,
+               std::span<std::int64_t> prediction) const;
+
+ private:
+  void by_parallelograms(std::span<const Parallelogram> list,
+                         std::span<const std::int32_t> values,
+                         std::span<std::int64_t> prediction) const;
+
+  const CodedMesh& mesh_;
+  bool is_rest_;
+  const GeometryWeights* weights_;
+  TileLoops loops_;
+};
+
+// Factors [first, end) of the spatial factors of a GOF, as declared.
+struct FactorGroup {
+  std::size_t first = 0;
+  std::size_t end = kRestFactors;
+  std::size_t size() const { return end - first; }
+};
+FactorGroup factor_group(const BoneGof& gof, std::size_t group);
+
+// 8.10.2 Spatial values: what a residual of the rest positions, or of trajectories, adds at a
+// vertex of a layer.
+inline std::int64_t rest_difference(const BoneGof& gof, std::int32_t residual, int layer_step) {
+  return round2(std::int64_t{residual} * layer_step * gof.rest_step, 4);
+}
+inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
+  return std::int64_t{residual} * layer_step;
+}
+constexpr int rest_bits(int position_bits) { return position_bits + 5; }
+
+// 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
+// of layers whose slices are absent.
+std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const BoneGof& gof,
+                                       std::size_t group, int position_bits,
+                                       const ValuePrediction& prediction);
+
+// 8.14.2 PredictTrajectory( series, f ), from the values of the frames so far.
+Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values);
+// 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
+std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory);
+
+// 8.14.3 Positions: where its bones take a point, by their weights; 4 fractional bits,
+// |point| < 2^31. The plain twin of what BoneRecon does for many vertices.
+Vec3l skinned_point(const Influences& influences, int weight_bits,
+                    std::span<const BoneMotion> bones, std::uint32_t f, const Vec3l& point);
+
+class BoneRecon {
+ public:
+  // Prepares the GOF; all arguments are only read, during the call. Cannot fail.
+  BoneRecon(const CodedMesh& mesh, const BoneGof& gof, int position_bits,
+            const TileLoops& loops = tile_loops().back());
+
+  // Positions of frames first to first + count - 1 of the GOF, grid units,
+  // [count][num_vertices][3]. Several frames at a time are faster than one.
+  void frames(std::uint32_t first, std::uint32_t count,
+              std::span<std::int32_t> positions) const;
+  void frame(std::uint32_t f, std::span<std::int32_t> positions) const {
+    frames(f, 1, positions);
+  }
+  std::uint32_t num_frames() const { return num_frames_; }
+
+ private:
+  // Influences of one bone on vertices of a tile: places first to end - 1 in the lists below.
+  struct Run {
+    std::uint32_t bone;
+    std::uint32_t first;
+    std::uint32_t end;
+  };
+  using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
+
+  void add_influences(const BoneGof& gof, std::span<const std::int32_t> rest);
+  void add_factors(const CodedMesh& mesh, const BoneGof& gof,
+                   std::span<const std::int32_t> rest);
+  void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
+
+  std::uint32_t num_frames_;
+  std::size_t num_vertices_;
+  PositionWidths widths_;
+  TileLoops loops_;
+  std::vector<BoneMotion> bones_;
+  std::vector<Run> runs_;
+  std::vector<std::size_t> first_run_;  // [tiles + 1]
+  // Influences, by tile, then by bone:
+  std::array<std::vector<std::int32_t>, 3> arm_;  // of the rest position from the pivot
+  std::vector<std::int32_t> weight_;
+  std::vector<std::uint8_t> place_;  // of the vertex in its tile
+  FactorSet factors_;                // row 3 * f + c: coordinate c of frame f
+};
+
+}  // namespace rlpc

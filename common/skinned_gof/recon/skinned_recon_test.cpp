@@ -1,0 +1,304 @@
+#include "common/skinned_gof/recon/skinned_recon.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/testing/random_skinned_gof.h"
+
+namespace rlpc {
+namespace {
+
+using Plane = std::vector<std::int64_t>;  // of one factor, by vertex
+
+// 8.10 and 8.14 as the text has them: factor by factor, and nothing arranged for speed.
+class TextRecon {
+ public:
+  explicit TextRecon(const RandomBoneGof& from)
+      : from_(from),
+        gof_(from.gof),
+        mesh_(from.coded_mesh()),
+        bones_(recon_bones(gof_.bones, gof_.num_frames)) {
+    for (std::size_t l = 0; l < kRestFactors + gof_.trajectories.size(); ++l) {
+      if (l == kRestFactors && gof_.prediction == Prediction::kLayers) make_weights();
+      factors.push_back(reconstruct(l));
+    }
+  }
+
+  std::vector<Plane> factors;
+
+  std::int64_t position(std::uint32_t f, std::uint32_t v, std::size_t c) const {
+    const Vec3l rest{factors[0][v], factors[1][v], factors[2][v]};
+    std::int64_t sum = 0;
+    for (const Influence& i : gof_.influences[v]) {
+      const BoneMotion& bone = bones_[i.bone];
+      sum += i.weight * moved_point(bone.poses[f], bone.pivot, rest)[c];
+    }
+    std::int64_t displacement = 0;
+    for (std::size_t l = 0; l < gof_.trajectories.size(); ++l) {
+      const Trajectory& t = gof_.trajectories[l];
+      const std::int64_t spatial = factors[kRestFactors + l][v]
+                                   << std::max(kSpatialNormBits - t.spatial_bits, 0);
+      displacement +=
+          spatial * scale_temporal(recon_trajectory(t)[f][c], t.scale_idx, t.temporal_bits);
+    }
+    const std::int64_t place = round2(sum, gof_.weight_bits) +
+                               clip_signed(31, round2(displacement, gof_.fraction_bits));
+    return clip_signed(from_.header.position_bits, round2(place, 4));
+  }
+
+ private:
+  void make_weights() {
+    std::array<std::vector<std::int32_t>, 3> rest;
+    for (std::size_t c = 0; c < 3; ++c) rest[c].assign(factors[c].begin(), factors[c].end());
+    weights_.emplace(mesh_, gof_,
+                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
+  }
+
+  std::int64_t residual_of(std::size_t l, std::uint32_t v) const {
+    std::size_t group = 0;
+    while (gof_.group_end[group] <= l) ++group;
+    const std::size_t first = group == 0 ? 0 : gof_.group_end[group - 1];
+    return gof_.vertex_residual[group][v * (gof_.group_end[group] - first) + l - first];
+  }
+
+  Plane reconstruct(std::size_t l) const {
+    Plane values(mesh_.num_vertices());
+    const int bits =
+        l < 3 ? from_.header.position_bits + 5 : gof_.trajectories[l - 3].spatial_bits;
+    for (const std::uint32_t v : mesh_.order()) {
+      std::int64_t difference = residual_of(l, v) * gof_.layer_step[mesh_.layer_of(v)];
+      if (l < 3) difference = round2(difference * gof_.rest_step, 4);
+      values[v] = clip_signed(bits, predicted(l, v, values) + difference);
+    }
+    return values;
+  }
+
+  std::int64_t predicted(std::size_t l, std::uint32_t v, const Plane& values) const {
+    const auto ring = mesh_.ring(v);
+    if (gof_.prediction == Prediction::kLayers && l > 2) {
+      std::int64_t sum = 0;
+      for (std::size_t k = 0; k < (*weights_)[v].size(); ++k) {
+        const std::uint32_t u =
+            k < ring.size() ? ring[k] : mesh_.outer_ring(v)[k - ring.size()];
+        sum += (*weights_)[v][k] * values[u];
+      }
+      return round2(sum, 14);
+    }
+    if (gof_.prediction == Prediction::kNone && l > 2) return 0;
+    const auto list = from_.topology.parallelograms[v];
+    std::int64_t sum = 0;
+    if (gof_.prediction != Prediction::kLayers && !list.empty()) {
+      Parallelogram latest = list[0];
+      for (const Parallelogram& p : list) {
+        sum += values[p.a] + values[p.b] - values[p.c];
+        if (p.b > latest.b || (p.b == latest.b && p.a > latest.a)) latest = p;
+      }
+      if (gof_.prediction == Prediction::kParallelogram) {
+        return values[latest.a] + values[latest.b] - values[latest.c];
+      }
+      return div_round(sum, static_cast<std::int64_t>(list.size()));
+    }
+    for (const std::uint32_t u : ring) sum += values[u];
+    return ring.empty() ? 0 : div_round(sum, static_cast<std::int64_t>(ring.size()));
+  }
+
+  const RandomBoneGof& from_;
+  const BoneGof& gof_;
+  CodedMesh mesh_;
+  std::vector<BoneMotion> bones_;
+  std::optional<GeometryWeights> weights_;
+};
+
+// Slices of all kinds are absent in some of them.
+TEST(RandomBoneGofs, ReconstructAsInTheText) {
+  std::array<int, 4> predictions{};
+  int absent = 0;
+  for (unsigned seed = 1; seed <= 600; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomBoneGof from(seed, {});
+    ++predictions[static_cast<std::size_t>(from.gof.prediction)];
+    if (from.gof.slice_layers.back() < from.gof.layer_group_size.size()) ++absent;
+    const TextRecon text(from);
+    const CodedMesh mesh = from.coded_mesh();
+    const BoneRecon recon(mesh, from.gof, from.header.position_bits);
+    ASSERT_EQ(recon.num_frames(), from.gof.num_frames);
+    std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
+    for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+      recon.frame(f, positions);
+      for (std::uint32_t v = 0; v < from.header.num_vertices; ++v) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_EQ(positions[3 * v + c], text.position(f, v, c)) << f << " " << v << " " << c;
+        }
+      }
+    }
+  }
+  for (const int count : predictions) EXPECT_GT(count, 50);
+  EXPECT_GT(absent, 100);
+}
+
+TEST(RecoveredValues, OfRestPositionsAreThoseOfTheText) {
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomBoneGof from(seed, {.max_vertices = 120, .max_frames = 1});
+    const TextRecon text(from);
+    const CodedMesh mesh = from.coded_mesh();
+    const auto values =
+        recon_values(mesh, from.gof, 0, from.header.position_bits, {mesh, true, nullptr});
+    for (std::uint32_t v = 0; v < from.header.num_vertices; ++v) {
+      for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(values[3 * v + c], text.factors[c][v]);
+    }
+  }
+}
+
+// 8.10.3: of the edges 1 9, 5 6 and 3 9, the latest is the last; with what lies across them.
+TEST(ValuePredictions, TakeTheLatestParallelogramOrTheMeanOfAll) {
+  const std::vector<Triangle> triangles{{10, 1, 9}, {1, 0, 9},  {10, 5, 6},
+                                        {5, 2, 6},  {3, 10, 9}, {3, 9, 4}};
+  const Topology topology = make_topology(11, triangles);
+  const VertexLayers layers = make_layers(11, triangles);
+  const std::vector<std::int32_t> values{1, 20, 300, -7, 5000, 11, 60, 0, 0, 900, 0};
+  const auto predicted = [&](Prediction p, bool is_rest) {
+    const CodedMesh mesh(p, topology, layers);
+    std::array<std::int64_t, 1> prediction{};
+    ValuePrediction(mesh, is_rest, nullptr).predict(10, values, prediction);
+    return prediction[0];
+  };
+  // 20 + 900 - 1, 11 + 60 - 300, -7 + 900 - 5000
+  const std::int64_t mean = -1139;  // (919 - 229 - 4107) / 3
+  EXPECT_EQ(predicted(Prediction::kParallelogram, true), -4107);
+  EXPECT_EQ(predicted(Prediction::kParallelogram, false), -4107);
+  EXPECT_EQ(predicted(Prediction::kParallelograms, false), mean);
+  EXPECT_EQ(predicted(Prediction::kNone, true), mean);
+  EXPECT_EQ(predicted(Prediction::kNone, false), 0);
+}
+
+// A mesh at rest under one bone that does nothing.
+RandomBoneGof still(unsigned seed) {
+  RandomBoneGof from(seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0});
+  from.header.position_bits = 16;
+  from.gof.bones[0] = Bone{};
+  return from;
+}
+
+TEST(BoneRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const RandomBoneGof from = still(seed);
+    const CodedMesh mesh = from.coded_mesh();
+    const auto rest = recon_values(mesh, from.gof, 0, 16, {mesh, true, nullptr});
+    const BoneRecon recon(mesh, from.gof, 16);
+    std::vector<std::int32_t> positions(rest.size());
+    for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+      recon.frame(f, positions);
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        ASSERT_EQ(positions[i], clip_signed(16, round2(rest[i], kPointFractionBits)));
+      }
+    }
+  }
+}
+
+// 8.14.1: vertices of absent layers lie in the middle of their rings.
+TEST(BoneRecon, PredictsVerticesOfAbsentLayers) {
+  int absent = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const RandomBoneGof from = still(seed);
+    if (from.gof.prediction != Prediction::kLayers) continue;
+    const CodedMesh mesh = from.coded_mesh();
+    std::uint32_t present = 0;
+    for (std::uint32_t j = 0; j < from.gof.slice_layers[0]; ++j)
+      present += from.gof.layer_group_size[j];
+    const auto rest = recon_values(mesh, from.gof, 0, 16, {mesh, true, nullptr});
+    for (const std::uint32_t v : mesh.vertices_of_layers(present, mesh.num_layers())) {
+      if (mesh.ring(v).empty()) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::int64_t sum = 0;
+        for (const std::uint32_t u : mesh.ring(v)) sum += rest[3 * u + c];
+        ASSERT_EQ(rest[3 * v + c],
+                  div_round(sum, static_cast<std::int64_t>(mesh.ring(v).size())));
+      }
+      ++absent;
+    }
+  }
+  EXPECT_GT(absent, 100);
+}
+
+TEST(Trajectories, FollowTheOrdersOfSeries) {
+  Trajectory t;
+  const std::vector<Vec3i> values{{1, 10, -5}, {4, 20, -7}, {9, 10, 0}, {16, 40, 3}};
+  t.temporal_predictor = 0;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{0, 0, 0}));
+  t.temporal_predictor = 1;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{16, 40, 3}));
+  t.temporal_predictor = 2;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{23, 70, 6}));
+  t.temporal_predictor = 3;  // 25 goes on with the squares
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 110, 2}));
+  t.temporal_predictor = 4;  // 4 * 40 - 6 * 10 + 4 * 20 - 10
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 170, -11}));
+}
+
+TEST(Trajectories, FollowTheirWeights) {
+  Trajectory t;
+  t.temporal_weight = {96, -40, 16};  // 3/2, -5/8, 1/4
+  const std::vector<Vec3i> values{{100, 0, 3}, {-7, 3, 1}, {11, -1, 2}};
+  t.temporal_predictor = 5;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{17, -1, 3}));  // 16.5, -1.5, 3
+  t.temporal_predictor = 6;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{21, -3, 2}));  // 20.875, -3.375, 2.375
+  t.temporal_predictor = 7;
+  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{46, -3, 3}));  // 45.875, -3.375, 3.125
+  // While there are too few values, the one before.
+  EXPECT_EQ(predict_trajectory(t, std::span(values).first(2)), (Vec3l{-7, 3, 1}));
+  EXPECT_EQ(predict_trajectory(t, {}), (Vec3l{0, 0, 0}));
+}
+
+TEST(Trajectories, AreClippedToTheirRange) {
+  constexpr std::int32_t kHalf = 1 << (kTemporalIndexBits - 1);
+  Trajectory t;
+  t.temporal_predictor = 7;
+  t.temporal_weight = {255, 255, -256};
+  t.residual.assign(12, {(1 << 28) - 1, -(1 << 28) + 1, 0});
+  for (const Vec3i& value : recon_trajectory(t))
+    EXPECT_EQ(value, (Vec3i{kHalf - 1, -kHalf, 0}));
+  t.temporal_predictor = 1;
+  t.residual = {{5, 0, -kHalf}, {-3, 7, -1}, {0, 0, 2}};
+  EXPECT_EQ(recon_trajectory(t),
+            (std::vector<Vec3i>{{5, 0, -kHalf}, {2, 7, -kHalf}, {2, 7, 2 - kHalf}}));
+}
+
+TEST(SkinnedPoint, IsTheWeightedMeanOfItsBones) {
+  std::vector<BoneMotion> bones(3);
+  for (std::size_t b = 0; b < 3; ++b) {
+    BonePose pose;
+    pose.axes = axes_of(kNoRotation);
+    pose.origin = {static_cast<std::int64_t>(b) * 100, 0, b == 1 ? -3 : 0};
+    bones[b].poses = {BonePose{}, pose};
+  }
+  Influences one;
+  one.size = 1;
+  one.list[0] = {2, 128};
+  EXPECT_EQ(skinned_point(one, 7, bones, 1, {7, 8, 9}), (Vec3l{207, 8, 9}));
+  Influences two;
+  two.size = 2;
+  two.list[0] = {0, 1};
+  two.list[1] = {1, 3};
+  // (7 + 3 * 107) / 4 = 82; (9 + 3 * 6) / 4 = 6.75
+  EXPECT_EQ(skinned_point(two, 2, bones, 1, {7, 8, 9}), (Vec3l{82, 8, 7}));
+}
+
+TEST(FactorGroups, FollowEachOther) {
+  BoneGof gof;
+  gof.group_end = {3, 5, 9};
+  EXPECT_EQ(factor_group(gof, 0).first, 0U);
+  EXPECT_EQ(factor_group(gof, 0).size(), 3U);
+  EXPECT_EQ(factor_group(gof, 2).first, 5U);
+  EXPECT_EQ(factor_group(gof, 2).size(), 4U);
+}
+
+}  // namespace
+}  // namespace rlpc

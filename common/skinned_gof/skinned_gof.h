@@ -1,0 +1,93 @@
+// 6.11 and 6.12: a GOF of the Main profile, bones and slices. What the parser hands to
+// reconstruction, and the analysis to the writer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
+inline constexpr std::uint32_t kMaxComponentGroups = 255;
+inline constexpr int kMaxWeightBits = 7;
+inline constexpr std::uint32_t kMaxStepIdx = 239;
+inline constexpr int kMaxLayerStep = 16;  // sixteenths of the step of a factor
+inline constexpr int kMaxInfluences = 8;
+inline constexpr int kMaxExtraBones = 4;        // of a vertex
+inline constexpr std::size_t kRestFactors = 3;  // the first spatial factors: rest positions
+inline constexpr int kMaxTemporalWeights = 3;
+inline constexpr int kTemporalWeightOffset = 256;
+// Values of temporal_predictor: the orders, then 1 to kMaxTemporalWeights weights.
+inline constexpr int kMaxTemporalPredictor = 7;
+
+enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, kLayers };
+
+// Residuals of a series of three coordinates, in steps; [num_gof_frames].
+using TrackResiduals = std::vector<Vec3i>;
+
+struct Bone {
+  std::int32_t parent = -1;  // a bone before
+  Vec3i pivot{};             // 1/16 grid units, a signed number of position_bits + 5 bits
+  bool rotation_flag = false;
+  std::uint32_t rotation_step_idx = 0;
+  int rotation_order = 1;  // 1 to kMaxPredictorOrder
+  TrackResiduals rotation_residual;
+  bool origin_flag = false;
+  std::uint32_t origin_step_idx = 0;
+  int origin_order = 0;  // 0 to kMaxPredictorOrder
+  TrackResiduals origin_residual;
+};
+
+struct Influence {
+  std::uint16_t bone = 0;
+  std::uint16_t weight = 0;  // greater than 0; those of a vertex sum to 2^weight_bits
+  bool operator==(const Influence&) const = default;
+};
+
+// At most kMaxInfluences, in the order in which they are coded.
+struct Influences {
+  std::array<Influence, kMaxInfluences> list{};
+  std::uint8_t size = 0;
+
+  const Influence* begin() const { return list.data(); }
+  const Influence* end() const { return list.data() + size; }
+};
+
+struct Trajectory {
+  int scale_idx = 0;
+  int spatial_bits = 1;
+  int temporal_bits = 1;
+  int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
+  std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
+  TrackResiduals residual;
+};
+
+// What absent slices would hold is zero, but for influences, which are then predicted.
+struct BoneGof {
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 1;
+  int fraction_bits = 0;
+  int weight_bits = 0;
+  std::uint32_t rest_step = 1;  // 1/16 grid units
+  Prediction prediction = Prediction::kLayers;
+  int damping_log2 = 0;
+  int outer_weight = 0;                         // 1/16
+  int outer_scale = 0;                          // 1/16
+  std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
+  std::vector<std::uint8_t> layer_step;         // of each layer, 1 to kMaxLayerStep
+  std::vector<Bone> bones;
+  std::uint32_t num_component_groups = 0;
+  // End of each group among the spatial factors; [0] is kRestFactors. Groups without any slice
+  // are missing.
+  std::vector<std::size_t> group_end{kRestFactors};
+  std::vector<std::uint32_t> slice_layers;  // [groups]: layer groups present of each
+  std::vector<Trajectory> trajectories;
+  std::vector<Influences> influences;  // [num_vertices]
+  // [groups][num_vertices * factors of the group]: residuals, in steps of the layer.
+  std::vector<std::vector<std::int32_t>> vertex_residual;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,92 @@
+// Models and contexts of a GOF of bones (clause 9.8). The parser and the writer drive them in
+// the same way.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/bitstream/bit_model.h"
+#include "common/bitstream/residual_models.h"
+#include "common/cluster_gof/cluster_models.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kActivityContexts = 5;
+using VertexModels = std::array<ResidualModels, kActivityContexts>;
+
+// 9.8.1: of the bone section.
+struct BoneModels {
+  BitModel rotation_flag;
+  BitModel origin_flag;
+  std::array<BitModel, kMaxPredictorOrder - 1> rotation_order;
+  std::array<BitModel, kMaxPredictorOrder> origin_order;
+  ResidualModels rotation;
+  ResidualModels origin;
+};
+
+// 9.8.1: of the slices of a GOF, but for those of spatial residuals.
+struct SliceModels {
+  std::array<BitModel, kMaxTemporalPredictor> temporal_predictor;
+  std::array<BitModel, kMaxExtraBones> extra_bone_flag;
+  ResidualModels header;
+  ResidualModels temporal;
+  ResidualModels weight;
+  std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
+};
+
+// 9.8.4 Expected magnitude of a spatial residual, for those of one component group.
+class VertexContexts {
+ public:
+  VertexContexts(const CodedMesh& mesh, std::size_t num_factors);
+
+  // Before the residuals of a vertex, which follow factor by factor.
+  void start(std::uint32_t v);
+  // Of the next residual.
+  std::uint32_t expected() const {
+    const std::uint64_t sum =
+        96 * std::uint64_t{mean_[next_]} + 48 * std::uint64_t{ring_mean_[next_]} +
+        40 * std::uint64_t{outer_mean_[next_]} + 72 * std::uint64_t{latest_mean_};
+    return static_cast<std::uint32_t>(sum >> 12);
+  }
+  std::size_t activity() const {
+    const std::uint64_t sum = 16 * (activity_sum_ + 5);
+    const std::uint64_t mean = activity_mean_ + 5;
+    return std::size_t{sum >= 8 * mean} + std::size_t{sum >= 13 * mean} +
+           std::size_t{sum >= 20 * mean} + std::size_t{sum >= 32 * mean};
+  }
+  void update(std::int32_t residual) {
+    const std::uint32_t magnitude = magnitude_of(residual);
+    activity_sum_ += clipped_magnitude(residual) - (activity_sum_ >> 4);
+    activity_mean_ += mean_[next_] - (activity_mean_ >> 4);
+    latest_mean_ = update_mean(latest_mean_, magnitude, 2);
+    mean_[next_] = update_mean(mean_[next_], magnitude, 5);
+    magnitudes_[std::size_t{vertex_} * mean_.size() + next_] =
+        static_cast<std::uint8_t>(std::min<std::uint32_t>(magnitude, 255));
+    ++next_;
+  }
+
+ private:
+  void mean_magnitudes(std::span<const std::uint32_t> ring,
+                       std::span<const std::uint32_t> otherwise,
+                       std::span<std::uint32_t> means);
+
+  const CodedMesh& mesh_;
+  std::vector<std::uint32_t> mean_;       // ComponentMean, [num_factors]
+  std::vector<std::uint8_t> magnitudes_;  // ResidualMagnitude, [num_vertices][num_factors]
+  std::vector<std::uint16_t> sums_;       // [num_factors]
+  // Of the vertex:
+  std::uint32_t vertex_ = 0;
+  std::size_t next_ = 0;                   // factor
+  std::vector<std::uint32_t> ring_mean_;   // [num_factors]
+  std::vector<std::uint32_t> outer_mean_;  // [num_factors]
+  std::uint32_t latest_mean_ = 0;
+  std::uint64_t activity_sum_ = 0;
+  std::uint64_t activity_mean_ = 0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,61 @@
+// 6.3 Sequence header, and what the levels of Annex B allow.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+// Each minor version adds a profile: they have the same numbers.
+inline constexpr std::uint32_t kProfileBaseline = 0;
+inline constexpr std::uint32_t kProfileMain = 1;
+
+inline constexpr int kMinPositionBits = 2;
+inline constexpr int kMaxPositionBits = 24;
+inline constexpr std::int32_t kMinGridLog2Step = -150;
+inline constexpr std::int32_t kMaxGridLog2Step = 120;
+inline constexpr std::int32_t kMaxGridOrigin = 1 << 26;
+inline constexpr std::uint32_t kMaxFrames = 1U << 24;  // of a sequence, at every level
+
+inline constexpr std::uint32_t kMaxMetadataBytes = 1U << 20;  // of metadata_json
+
+// Table B-1
+struct Level {
+  std::uint32_t max_vertices;
+  std::uint32_t max_triangles;
+  std::uint32_t max_gof_frames;
+  std::uint32_t max_clusters;
+  std::uint32_t max_components;   // of one cluster
+  std::uint64_t max_gof_values;   // vertices x frames of a GOF
+  std::uint64_t max_gof_factors;  // spatial and temporal values of a GOF
+  std::uint64_t max_unit_bytes;   // of the payload of a critical unit
+};
+
+consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
+
+inline constexpr std::array<Level, 4> kLevels{{
+    {1U << 14, 1U << 15, 512, 256, 512, pow2(22), pow2(23), pow2(25)},
+    {1U << 17, 1U << 18, 1024, 512, 1024, pow2(25), pow2(26), pow2(28)},
+    {1U << 20, 1U << 21, 4096, 1024, 1024, pow2(28), pow2(29), pow2(31)},
+    {1U << 23, 1U << 24, 16384, 1024, 1024, pow2(31), pow2(32), pow2(32)},
+}};
+inline constexpr std::uint32_t kMaxLevelIdc = static_cast<std::uint32_t>(kLevels.size());
+
+// One structure, members spelled as the syntax elements (values, where an element is minus 1).
+struct SequenceHeader {
+  std::uint32_t profile_idc = kProfileBaseline;
+  std::uint32_t level_idc = 1;
+  std::uint32_t num_vertices = 1;
+  std::uint32_t num_triangles = 0;
+  std::uint32_t num_frames = 1;
+  FrameRate frame_rate;
+  Grid grid;
+  int position_bits = 20;
+
+  const Level& level() const { return kLevels[level_idc - 1]; }
+  bool operator==(const SequenceHeader&) const = default;
+};
+
+}  // namespace rlpc

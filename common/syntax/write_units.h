@@ -1,0 +1,28 @@
+// 6.1, 6.2 and 6.7 to 6.9, writing side: what the encoder writes, and whoever cuts a stream.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/syntax/stream_format.h"
+
+namespace rlpc {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// Of the version that has the profile.
+Bytes write_stream_header(std::uint32_t profile_idc);
+// A payload with its header and CRC.
+Bytes write_unit(UnitType type, const Bytes& payload);
+// The rest are payloads.
+Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame);
+
+struct GofEntry {
+  std::uint32_t num_frames;
+  std::uint64_t bytes;  // from its unit to that of the next GOF
+};
+Bytes write_gof_index(std::uint64_t first_gof_offset, std::span<const GofEntry> gofs);
+Bytes write_end_of_sequence(std::uint32_t index_distance);
+
+}  // namespace rlpc

@@ -1,0 +1,221 @@
+// Random legal GOFs of bones, for tests. Fields take the ends of their ranges often.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/residual_models.h"
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/influences.h"
+#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+struct BoneGofSizes {
+  std::uint32_t max_vertices = 40;
+  std::uint32_t max_frames = 8;
+  std::uint32_t max_bones = 6;
+  std::uint32_t max_groups = 4;
+  std::uint32_t max_components = 4;  // of a group
+};
+
+class RandomBoneGof {
+ public:
+  RandomBoneGof(unsigned seed, const BoneGofSizes& sizes) : state_(seed) {
+    make_mesh(sizes);
+    make_header(sizes);
+    const CodedMesh mesh = coded_mesh();
+    make_layers_of_gof(mesh);
+    for (std::uint32_t b = 0; b < gof.bones.size(); ++b) make_bone(b);
+    make_slices(mesh, sizes);
+    make_influences(mesh);
+  }
+
+  SequenceHeader header;
+  std::vector<Triangle> triangles;
+  Topology topology;
+  VertexLayers layers;
+  BoneGof gof;
+
+  CodedMesh coded_mesh() const { return {gof.prediction, topology, layers}; }
+
+ private:
+  static constexpr int kResidualBits = 28;  // of a magnitude
+  static_assert(kMaxResidual == (1U << kResidualBits) - 1);
+
+  // Knuth's linear congruential generator, of which the high bits serve.
+  std::uint32_t random() {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::uint32_t>(state_ >> 33);
+  }
+  std::uint32_t below(std::uint32_t n) { return n == 0 ? 0 : random() % n; }
+  bool coin() { return random() % 2 == 0; }
+  int between(int least, int most) {
+    const auto kind = random() % 6;
+    if (kind == 0) return least;
+    if (kind == 1) return most;
+    return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
+  }
+  // Within so many bits, but now and then of any size.
+  std::int32_t residual(int bits) {
+    if (random() % 64 == 0) bits = kResidualBits;
+    const std::uint32_t range = std::uint32_t{1} << bits;
+    const auto magnitude =
+        static_cast<std::int32_t>(random() % 32 == 0 ? range - 1 : below(range));
+    return coin() ? magnitude : -magnitude;
+  }
+  TrackResiduals track() {
+    TrackResiduals residuals(gof.num_frames);
+    const int bits = between(0, kResidualBits);
+    for (Vec3i& r : residuals) {
+      for (std::int32_t& x : r) x = residual(bits);
+    }
+    return residuals;
+  }
+
+  // A sheet with holes and stray triangles.
+  void make_mesh(const BoneGofSizes& sizes) {
+    const std::uint32_t n = 1 + below(sizes.max_vertices);
+    const std::uint32_t width = 1 + below(8);
+    for (std::uint32_t v = 0; v + width + 1 < n; ++v) {
+      if (random() % 16 != 0) triangles.push_back({v, v + 1, v + width + 1});
+      if (random() % 16 != 0) triangles.push_back({v, v + width + 1, v + width});
+    }
+    for (std::uint32_t i = below(4); i > 0; --i)
+      triangles.push_back({below(n), below(n), below(n)});
+    topology = make_topology(n, triangles);
+    layers = rlpc::make_layers(n, triangles);
+    header.num_vertices = n;
+    header.num_triangles = static_cast<std::uint32_t>(triangles.size());
+  }
+
+  void make_header(const BoneGofSizes& sizes) {
+    header.profile_idc = kProfileMain;
+    header.num_frames = 1 + below(1000);
+    header.position_bits = between(kMinPositionBits, kMaxPositionBits);
+    gof.first_frame = below(header.num_frames);
+    gof.num_frames = 1 + below(std::min(sizes.max_frames, header.num_frames - gof.first_frame));
+    gof.fraction_bits = between(0, kMaxFractionBits);
+    gof.weight_bits = between(0, kMaxWeightBits);
+    gof.rest_step = static_cast<std::uint32_t>(between(1, static_cast<int>(kMaxRestStep)));
+    gof.prediction = static_cast<Prediction>(below(4));
+    gof.bones.resize(1 + below(sizes.max_bones));
+  }
+
+  void make_layers_of_gof(const CodedMesh& mesh) {
+    gof.layer_group_size = {mesh.num_layers()};
+    gof.layer_step.assign(mesh.num_layers(), kMaxLayerStep);
+    if (gof.prediction != Prediction::kLayers) return;
+    gof.damping_log2 = between(0, 15);
+    gof.outer_weight = between(0, 15);
+    gof.outer_scale = between(0, 15);
+    gof.layer_group_size.clear();
+    for (std::uint32_t left = mesh.num_layers(); left > 0;
+         left -= gof.layer_group_size.back()) {
+      gof.layer_group_size.push_back(1 + below(left));
+    }
+    for (std::uint8_t& step : gof.layer_step) {
+      step = static_cast<std::uint8_t>(between(1, kMaxLayerStep));
+    }
+  }
+
+  void make_bone(std::uint32_t b) {
+    Bone& bone = gof.bones[b];
+    bone.parent = static_cast<std::int32_t>(below(b + 1)) - 1;
+    const int most = 1 << (header.position_bits + 4);
+    for (std::int32_t& x : bone.pivot) x = between(-most, most - 1);
+    bone.rotation_flag = coin();
+    bone.origin_flag = coin();
+    if (bone.rotation_flag) {
+      bone.rotation_step_idx = static_cast<std::uint32_t>(between(0, kMaxStepIdx));
+      bone.rotation_order = between(1, kMaxPredictorOrder);
+      bone.rotation_residual = track();
+    }
+    if (bone.origin_flag) {
+      bone.origin_step_idx = static_cast<std::uint32_t>(between(0, kMaxStepIdx));
+      bone.origin_order = between(0, kMaxPredictorOrder);
+      bone.origin_residual = track();
+    }
+  }
+
+  Trajectory make_trajectory() {
+    Trajectory t;
+    t.scale_idx = between(0, kMaxScaleIdx);
+    t.spatial_bits = between(1, kMaxSpatialBits);
+    t.temporal_bits = between(1, kMaxTemporalBits);
+    t.temporal_predictor = between(0, kMaxTemporalPredictor);
+    for (int k = 0; k < t.temporal_predictor - kMaxPredictorOrder; ++k) {
+      t.temporal_weight[static_cast<std::size_t>(k)] =
+          static_cast<std::int16_t>(between(-kTemporalWeightOffset, kTemporalWeightOffset - 1));
+    }
+    t.residual = track();
+    return t;
+  }
+
+  // The slices that are there, none to all: each group has at most the layers of the one
+  // before.
+  void make_slices(const CodedMesh& mesh, const BoneGofSizes& sizes) {
+    gof.num_component_groups = below(sizes.max_groups + 1);
+    gof.slice_layers.clear();
+    auto present = static_cast<std::uint32_t>(gof.layer_group_size.size());
+    for (std::uint32_t group = 0; group <= gof.num_component_groups; ++group) {
+      if (random() % 4 == 0) present = below(present + 1);
+      gof.slice_layers.push_back(present);
+      if (group > 0 && present > 0) {
+        for (std::uint32_t l = 1 + below(sizes.max_components); l > 0; --l) {
+          gof.trajectories.push_back(make_trajectory());
+        }
+        gof.group_end.push_back(kRestFactors + gof.trajectories.size());
+      }
+      if (group == 0 || present > 0) add_residuals(mesh, group, present);
+    }
+  }
+
+  void add_residuals(const CodedMesh& mesh, std::uint32_t group, std::uint32_t present) {
+    const std::size_t size = gof.group_end[group] - (group > 0 ? gof.group_end[group - 1] : 0);
+    std::vector<std::int32_t> residuals(size * mesh.num_vertices());
+    const int bits = between(0, kResidualBits);
+    for (const std::uint32_t v : mesh.vertices_of_layers(0, layers_of(present))) {
+      for (std::size_t k = 0; k < size; ++k) residuals[v * size + k] = residual(bits);
+    }
+    gof.vertex_residual.push_back(std::move(residuals));
+  }
+
+  std::uint32_t layers_of(std::uint32_t groups) const {
+    std::uint32_t sum = 0;
+    for (std::uint32_t j = 0; j < groups; ++j) sum += gof.layer_group_size[j];
+    return sum;
+  }
+
+  // As a parser finds them; those of absent layers as they are predicted.
+  void make_influences(const CodedMesh& mesh) {
+    gof.influences.assign(mesh.num_vertices(), {});
+    const auto num_bones = static_cast<std::uint32_t>(gof.bones.size());
+    InfluencePrediction prediction(gof.influences, num_bones, gof.weight_bits);
+    const std::uint32_t present = layers_of(gof.slice_layers[0]);
+    for (const std::uint32_t v : mesh.order()) {
+      const bool is_coded = mesh.layer_of(v) < present;
+      prediction.start(mesh.ring(v));
+      while (is_coded && prediction.can_add_bone() && random() % 3 == 0) {
+        const std::uint32_t bone = below(num_bones);
+        const auto left = static_cast<std::uint32_t>(prediction.weight_left());
+        if (prediction.is_new_bone(bone)) {
+          prediction.add_extra_bone(bone, 1 + static_cast<int>(below(left)));
+        }
+      }
+      for (std::size_t k = 1; k < prediction.num_candidates(); ++k) {
+        const bool changes = is_coded && prediction.has_residual() && coin();
+        prediction.add_candidate(k, changes ? between(-128, 128) : 0);
+      }
+      gof.influences[v] = prediction.finish();
+    }
+  }
+
+  std::uint64_t state_;
+};
+
+}  // namespace rlpc

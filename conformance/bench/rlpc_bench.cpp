@@ -1,0 +1,297 @@
+// Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread.
+//
+// Also multiply-adds per second: of decoding, and of the sums of 8.5.3 by each of the loops
+// that the machine can run, of which the first is the plain one.
+//
+// Animations: the bundled ones and, where they are present beside the project, two of the
+// literature. Peak memory is that of the tools doing
+// the same.
+
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/kernels/component_sum.h"
+#include "decoder/rlpc_decoder.h"
+#include "encoder/input/frame_source.h"
+#include "encoder/rlpc_encoder.h"
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+struct Animation {
+  std::string name;
+  std::string mesh;
+  std::string points;
+};
+
+std::vector<Animation> animations() {
+  const std::filesystem::path source = RLPC_SOURCE_DIR;
+  std::vector<Animation> found;
+  const auto add = [&](const std::filesystem::path& folder, const char* name) {
+    const std::filesystem::path stem = folder / name;
+    const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
+    if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points))
+      found.push_back(a);
+  };
+  for (const char* name : {"elephant", "curtain", "robot_arm"}) {
+    add(source / "streams" / "inputs", name);
+  }
+  for (const char* name : {"cow", "samba"}) {
+    add(source.parent_path() / "shared" / "data" / "sequences", name);
+  }
+  return found;
+}
+
+[[noreturn]] void stop(const std::string& message) {
+  std::fprintf(stderr, "rlpc_bench: %s\n", message.c_str());
+  std::exit(1);
+}
+
+Bytes encode(const Animation& animation, const rlpc::EncoderSettings& settings) {
+  auto source = rlpc::open_frame_source({animation.mesh, animation.points, {}});
+  if (!source) stop(source.error().message);
+  Bytes stream;
+  const auto report =
+      rlpc::encode(**source, settings, [&](std::span<const std::uint8_t> bytes) {
+        stream.insert(stream.end(), bytes.begin(), bytes.end());
+        return true;
+      });
+  if (!report) stop(report.error().message);
+  return stream;
+}
+
+// Returns the number of vertex-frames.
+std::uint64_t decode(const Bytes& stream, bool verify_hashes) {
+  rlpc::DecoderOptions options;
+  options.verify_hashes = verify_hashes;
+  auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
+  if (!decoder) stop("a stream of our own does not open");
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+  for (;;) {
+    const auto more = decoder->next_frame(positions);
+    if (!more) stop("a stream of our own does not decode");
+    if (!*more) break;
+    benchmark::DoNotOptimize(positions.data());
+  }
+  return std::uint64_t{decoder->header().num_vertices} * decoder->header().num_frames;
+}
+
+// Multiply-adds that the sums of a vertex take, over all frames of a stream of the Main
+// profile.
+class MultiplyAddCounter final : public rlpc::Trace {
+ public:
+  void begin(const char*, std::uint64_t) override {}
+  void element(const char* name, std::int64_t value, std::uint64_t) override {
+    if (std::string_view(name) == "num_gof_frames_minus1") gof_frames_ = value + 1;
+    if (std::string_view(name) == "temporal_predictor") count_ += 3 * gof_frames_;
+  }
+  std::int64_t count() const { return count_; }
+
+ private:
+  std::int64_t gof_frames_ = 0;
+  std::int64_t count_ = 0;
+};
+
+double multiply_adds(const Bytes& stream) {
+  MultiplyAddCounter counter;
+  rlpc::DecoderOptions options;
+  options.trace = &counter;
+  auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
+  if (!decoder || !decoder->parse_rest()) stop("a stream of our own does not parse");
+  return static_cast<double>(counter.count()) * decoder->header().num_vertices;
+}
+
+// Runs the tools for their peak memory. A process counts the memory of the one that it was
+// forked from as its own, so a small process, forked before anything else, does it on request.
+class Launcher {
+ public:
+  Launcher() {
+    std::array<int, 2> requests{};
+    std::array<int, 2> answers{};
+    if (pipe(requests.data()) != 0 || pipe(answers.data()) != 0) stop("no pipe");
+    if (fork() == 0) {
+      close(requests[1]);
+      serve(requests[0], answers[1]);
+    }
+    close(requests[0]);
+    requests_ = requests[1];
+    answers_ = answers[0];
+  }
+
+  // MB; `command` is for the shell.
+  double peak_megabytes(const std::string& command) const {
+    const std::string line = std::string(RLPC_TOOL_DIR) + "/" + command;
+    std::array<char, kMaxCommand> request{};
+    if (line.size() >= request.size()) stop("command too long");
+    line.copy(request.data(), line.size());
+    long kilobytes = -1;
+    if (write(requests_, request.data(), request.size()) != kMaxCommand ||
+        read(answers_, &kilobytes, sizeof kilobytes) != sizeof kilobytes || kilobytes < 0) {
+      stop("failed: " + line);
+    }
+    return static_cast<double>(kilobytes) / 1024.0;
+  }
+
+ private:
+  static constexpr std::size_t kMaxCommand = 2048;  // a pipe takes that much at once
+
+  [[noreturn]] static void serve(int requests, int answers) {
+    std::array<char, kMaxCommand> request{};
+    while (read(requests, request.data(), request.size()) == kMaxCommand) {
+      const pid_t child = fork();
+      if (child == 0) {
+        const std::string line = "exec " + std::string(request.data());
+        execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+        _exit(127);
+      }
+      int status = 0;
+      rusage usage{};
+      wait4(child, &status, 0, &usage);
+      const long kilobytes = status == 0 ? usage.ru_maxrss : -1;
+      if (write(answers, &kilobytes, sizeof kilobytes) != sizeof kilobytes) break;
+    }
+    _exit(0);
+  }
+
+  int requests_ = -1;
+  int answers_ = -1;
+};
+
+const Launcher& launcher() {
+  static const Launcher kLauncher;
+  return kLauncher;
+}
+
+void add_counters(benchmark::State& state, std::uint64_t vertex_frames, std::size_t bytes,
+                  const std::string& command) {
+  state.counters["vertex_frames/s"] = benchmark::Counter(
+      static_cast<double>(vertex_frames), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["bpvf"] =
+      8.0 * static_cast<double>(bytes) / static_cast<double>(vertex_frames);
+  state.counters["peak_MB"] = launcher().peak_megabytes(command);
+}
+
+void bench_decode(benchmark::State& state, const Animation& animation, double kg, bool hashes) {
+  rlpc::EncoderSettings settings;
+  settings.target = {rlpc::Target::kKg, kg};
+  const Bytes stream = encode(animation, settings);
+  std::uint64_t vertex_frames = 0;
+  for (auto _ : state) vertex_frames = decode(stream, hashes);
+  state.counters["multiply_adds/s"] =
+      benchmark::Counter(multiply_adds(stream), benchmark::Counter::kIsIterationInvariantRate);
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("rlpc_bench_" + std::to_string(getpid()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(stream.data()),
+             static_cast<std::streamsize>(stream.size()));
+  add_counters(state, vertex_frames, stream.size(),
+               "rlpcdec '" + file.string() + "' --verify -q");
+  std::filesystem::remove(file);
+}
+
+// `options` are those of rlpcenc that mean `settings`.
+void bench_encode(benchmark::State& state, const Animation& animation,
+                  const rlpc::EncoderSettings& settings, const std::string& options) {
+  Bytes stream;
+  for (auto _ : state) stream = encode(animation, settings);
+  add_counters(state, decode(stream, false), stream.size(),
+               "rlpcenc '" + animation.mesh + "' --points '" + animation.points +
+                   "' -o /dev/null -q " + options);
+}
+
+// Sums of narrow or wide components, 16 frames of 4096 vertices at a time.
+void bench_sums(benchmark::State& state, const rlpc::TileLoops& loops, int temporal_bits) {
+  constexpr std::size_t kVertices = 4096;
+  constexpr std::size_t kRows = 48;
+  constexpr std::size_t kComponents = 100;
+  rlpc::FactorSet factors(kVertices, kRows, loops);
+  const std::vector<std::int32_t> temporal(kRows, (1 << (temporal_bits - 1)) - 1);
+  const std::vector<std::int32_t> spatial(kVertices, -77);
+  for (std::size_t k = 0; k < kComponents; ++k)
+    factors.add(temporal, temporal_bits, spatial, 8);
+  std::vector<std::int64_t> sums(kRows * rlpc::kTileValues);
+  for (auto _ : state) {
+    for (std::size_t tile = 0; tile < kVertices / rlpc::kTileValues; ++tile) {
+      factors.sum_tile(tile, 0, kRows, sums);
+      benchmark::DoNotOptimize(sums.data());
+    }
+  }
+  state.counters["multiply_adds/s"] =
+      benchmark::Counter(static_cast<double>(kVertices * kRows * kComponents),
+                         benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void register_sums() {
+  for (std::size_t i = 0; i < rlpc::tile_loops().size(); ++i) {
+    for (const int bits : {14, 18}) {
+      const std::string name =
+          "Sums/temporal_bits:" + std::to_string(bits) + "/loops:" + std::to_string(i);
+      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) {
+        bench_sums(s, rlpc::tile_loops()[i], bits);
+      })->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+void register_all(const Animation& a) {
+  const auto add = [&](const std::string& what, auto&& function) {
+    benchmark::RegisterBenchmark((what + "/" + a.name).c_str(), function)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  };
+  for (const double kg : {0.1, 0.3, 1.0}) {
+    char what[32];
+    std::snprintf(what, sizeof what, "Decode/kg:%.1f", kg);
+    add(what, [=](benchmark::State& s) { bench_decode(s, a, kg, false); });
+  }
+  add("DecodeAndHash/kg:0.3", [=](benchmark::State& s) { bench_decode(s, a, 0.3, true); });
+  rlpc::EncoderSettings given;
+  given.profile = rlpc::Profile::kBaseline;
+  given.target.kind = rlpc::Target::kNone;
+  given.baseline.clusters = 24;
+  given.components = 10;
+  given.baseline.qu = given.baseline.qc = given.baseline.qdelta = 12;
+  given.baseline.rdo = false;
+  given.baseline.frame_mode = rlpc::FrameMode::kLcf;
+  const std::string given_options =
+      "--profile baseline --clusters 24 --components 10 --qu 12 --qc 12 --qdelta 12 --no-rdo "
+      "--frame lcf";
+  add("EncodeGiven/N:24/L:10",
+      [=](benchmark::State& s) { bench_encode(s, a, given, given_options); });
+  for (const auto& [name, preset] :
+       {std::pair{"fast", rlpc::Preset::kFast}, {"medium", rlpc::Preset::kMedium}}) {
+    for (const char* kg : {"0.1", "0.3", "1.0"}) {
+      rlpc::EncoderSettings target;
+      target.target = {rlpc::Target::kKg, std::atof(kg)};
+      target.preset = preset;
+      const std::string options = std::string("--kg ") + kg + " --preset " + name;
+      add(std::string("EncodeTarget/kg:") + kg + "/" + name,
+          [=](benchmark::State& s) { bench_encode(s, a, target, options); });
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  launcher();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 64;
+  register_sums();
+  for (const Animation& animation : animations()) register_all(animation);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,442 @@
+#!/usr/bin/env python3
+"""The tools when something is wrong: with the input, with the output, with a stream.
+
+    tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
+"""
+
+import json
+import math
+import os
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+from tools_testing import INPUTS, ROOT, Tools, ToolsTest, limited, main, run, write_pc2
+
+sys.path.insert(0, str(ROOT / "conformance" / "specdec"))
+from specdec_testing import stream_of, units_of  # noqa: E402
+
+METADATA = 0x83
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+class BadInput(ToolsTest):
+    """An exit code and one line that names the file; nothing is left at the output."""
+
+    def refused(self, words, *arguments):
+        self.path("out.rlpc").unlink(missing_ok=True)
+        self.fails(1, words, "rlpcenc", *arguments, "-o", self.path("out.rlpc"))
+        self.assertFalse(self.path("out.rlpc").exists())
+        self.assertEqual([name for name in self.files() if "partial" in name], [])
+
+    def accepted(self, *arguments):
+        """Encodes, decodes, compares; the report."""
+        report = self.ok("rlpcenc", *arguments, "-o", self.path("out.rlpc"), "--keep-order",
+                         "--json").json()
+        self.ok("rlpcdec", self.path("out.rlpc"), "-o", self.path("decoded.rlpd"))
+        points = ["--points-a", arguments[2]] if len(arguments) > 2 else []
+        compared = self.ok("rlpccmp", arguments[0], *points, self.path("out.rlpc"), "--json").json()
+        self.assertEqual(compared["metrics"], report["metrics"])
+        self.assertTrue(report["target_met"])
+        return report
+
+    def obj(self, text, name="mesh.obj"):
+        path = self.path(name)
+        if isinstance(text, bytes):
+            path.write_bytes(text)
+        else:
+            path.write_text(text)
+        return path
+
+    def test_obj_that_is_none(self):
+        self.refused("none.obj", self.path("none.obj"))
+        self.refused("mesh.obj", self.obj(""))
+        self.refused("mesh.obj", self.obj("# nothing\n"))
+        self.refused("mesh.obj", self.obj(bytes(range(256)) * 40))
+        self.refused("mesh.obj", self.obj(b"v 0 0 0\nv \xff\xfe 0 0\n"))
+        self.refused("mesh.txt", self.obj("to be a mesh\n", "mesh.txt"))
+        self.path("empty").mkdir()
+        self.refused("empty", self.path("empty"))
+
+    def test_obj_with_bad_values(self):
+        self.refused(["mesh.obj", "4"], self.obj(TRIANGLE.replace("1 2 3", "1 2 4")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2 0")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2 -4")))
+        self.refused("mesh.obj", self.obj(TRIANGLE.replace("1 2 3", "1 2")))
+        for value in ("nan", "inf", "-inf", "1e39", "x", ""):
+            self.refused("mesh.obj", self.obj(TRIANGLE.replace("v 1 0 0", f"v 1 0 {value}")))
+
+    def test_point_cache_that_does_not_fit(self):
+        mesh = self.obj(TRIANGLE)
+        cache = self.path("c.pc2")
+        write_pc2(cache, [[0.0] * 12] * 2)
+        self.refused(["c.pc2", "4 points", "3 vertices"], mesh, "--points", cache)
+        write_pc2(cache, [[0.0] * 9] * 3)
+        whole = cache.read_bytes()
+        for size in (0, 5, 31, 32, 33, len(whole) - 1):
+            cache.write_bytes(whole[:size])
+            self.refused("c.pc2", mesh, "--points", cache)
+        cache.write_bytes(whole + b"\0")
+        self.refused("c.pc2", mesh, "--points", cache)
+        cache.write_bytes(whole[:28] + struct.pack("<i", 0))
+        self.refused("c.pc2", mesh, "--points", cache)
+        for value in (math.nan, math.inf, -math.inf):
+            write_pc2(cache, [[0.0] * 9, [1.0] * 5 + [value] + [1.0] * 3])
+            self.refused(["c.pc2", "frame 1"], mesh, "--points", cache)
+        self.refused("none.pc2", mesh, "--points", self.path("none.pc2"))
+        self.refused("c.pc2", cache)
+
+    def test_sequences_that_change(self):
+        self.obj(TRIANGLE, "f_1.obj")
+        self.obj(TRIANGLE.replace("1 2 3", "1 3 2"), "f_2.obj")
+        self.refused(["f_2.obj", "frame 1"], self.path("f_%d.obj"))
+        self.obj(TRIANGLE + "v 1 1 1\n", "f_2.obj")
+        self.refused(["f_2.obj", "frame 1"], self.path("f_*.obj"))
+        self.path("f_2.obj").unlink()
+        self.obj(TRIANGLE, "f_3.obj")
+        self.refused("f_2.obj", self.path("f_%d.obj"))
+        self.refused("g_%d.obj", self.path("g_%d.obj"))
+
+    def test_unusual_meshes_work(self):
+        quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4\nf 1/1/1 3//2 4/4 5\n"
+        self.assertEqual(self.accepted(self.obj(quad))["num_triangles"], 4)
+        self.assertEqual(self.accepted(self.obj("v 1 2 3\nv 3 2 1\nv 0 0 1\n"))["num_triangles"], 0)
+        self.assertEqual(self.accepted(self.obj("v 1 2 3\n"))["num_vertices"], 1)
+        self.assertEqual(self.accepted(self.obj(TRIANGLE))["num_frames"], 1)
+        self.accepted(self.obj(TRIANGLE.replace("1 0", "0 0").replace("0 1", "0 0")))
+        self.accepted(self.obj(TRIANGLE.replace("f 1 2 3", "f 1 1 1")))
+        self.accepted(self.obj(TRIANGLE.replace("v 1 0 0", "v 1e30 0 0")))
+        self.accepted(self.obj(TRIANGLE.replace("v 1 0 0", "v 1e-30 0 0").replace("1 0", "0 0")))
+        self.refused("scale", self.obj(TRIANGLE.replace("v 1 0 0", "v 3e38 0 0")))
+        mesh, cache = self.obj(TRIANGLE), self.path("c.pc2")
+        write_pc2(cache, [[1.0] * 9] * 5)
+        self.accepted(mesh, "--points", cache)
+        write_pc2(cache, [[0.0, 0, 0, 1, 0, 0, 0, 1, 0], [1e30, 0, 0, 1, 0, 0, 0, -1e30, 0]])
+        self.accepted(mesh, "--points", cache)
+
+    def test_more_than_a_level_allows(self):
+        mesh, cache = self.obj("v 0 0 0\n"), self.path("c.pc2")
+        write_pc2(cache, [[0.0, 1.0, 2.0]] * 16385)
+        self.refused("no level allows", mesh, "--points", cache, "--gof", "all", "-q")
+        self.refused("no level allows", mesh, "--points", cache, "--gof", 20000, "-q")
+
+    def test_usage(self):
+        mesh = self.obj(TRIANGLE)
+        self.fails(64, "", "rlpcenc", mesh)
+        self.fails(64, "", "rlpcenc", mesh, "-o")
+        for options in ("--kg 0", "--kg -1", "--kg a", "--kg nan", "--bpvf inf", "--kg 0,3",
+                        "--max-error 1mm", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x", "--gof -3",
+                        "--fps 0", "--fps a", "--preset best", "--clusters 0", "--qu 1",
+                        "--influences 0", "--influences 5", "--frame y", "--profile scalable",
+                        "--nonsense"):
+            self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
+        self.assertEqual(self.files(), ["mesh.obj"])
+        for words, options in (("found `0,3`", "--kg 0,3"), ("fast,medium,slow", "--preset best"),
+                               ("Put patterns in quotes", self.path("b.obj"))):
+            self.fails(64, words, "rlpcenc", mesh, "-o", self.path("x"), *str(options).split())
+        for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):
+            self.assertIn(b"Exit code", self.ok(tool, "--help").out)
+            self.assertRegex(self.ok(tool, "--version").out, rb"\d+\.\d+\.\d+")
+            self.fails(64, "", tool)
+
+    def test_settings_that_contradict(self):
+        mesh = self.obj(TRIANGLE)
+        paper = (mesh, "--profile", "baseline", "--qu", 12)
+        for words, options in (("both", [*paper, "--components", 2]),
+                               ("target", [*paper, "--qc", 12, "--components", 2, "--kg", 1]),
+                               ("--components", [*paper, "--qc", 12]),
+                               ("--components", [mesh, "--profile", "baseline", "--no-rdo"])):
+            self.fails(64, words, "rlpcenc", *options, "-o", self.path("out.rlpc"))
+        self.refused("m.json", mesh, "--metadata", self.obj("{", "m.json"))
+
+    def test_options_of_the_other_profile(self):
+        mesh = self.obj(TRIANGLE)
+        for profile, other, options in (
+                ("baseline", "main", ("--clusters 2", "--qu 12", "--qc 12", "--qdelta 12",
+                                      "--no-rdo", "--rdo-rate vectors", "--frame lcf",
+                                      "--seeds spread")),
+                ("main", "baseline", ("--bones 2", "--influences 2", "--prediction none",
+                                      "--basis-steps cobra", "--no-geometry-weights",
+                                      "--no-outer-ring", "--no-layer-steps",
+                                      "--no-temporal-weights", "--component-groups 2",
+                                      "--layer-groups 2"))):
+            for option in options:
+                self.fails(64, f"{option.split()[0]} needs --profile {profile}", "rlpcenc", mesh,
+                           "-o", self.path("out.rlpc"), "--profile", other, *option.split())
+        self.fails(64, "--frame needs --profile baseline", "rlpcenc", mesh, "-o",
+                   self.path("out.rlpc"), "--frame", "world")  # main is the default
+        for options in ("--profile baseline --frame world --no-rdo --components 1",
+                        "--no-outer-ring --bones 1"):
+            self.ok("rlpcenc", mesh, "-o", self.path("out.rlpc"), *options.split())
+
+    def test_help_shows_the_profile_of_an_option(self):
+        groups = self.ok("rlpcenc", "--help").out.decode().split("\n\n")
+        for heading, options in (("Parameters of both", ("--components", "--gof")),
+                                 ("Main profile", ("--bones", "--layer-groups")),
+                                 ("Baseline profile", ("--clusters", "--seeds"))):
+            group = [text for text in groups if text.strip().startswith(heading)]
+            self.assertEqual(len(group), 1, heading)
+            for option in options:
+                self.assertIn(option, group[0])
+
+
+class BadOutput(ToolsTest):
+    """What could not be written whole is not there at all, and what was there before stays."""
+
+    def encode_to(self, output, **options):
+        return run("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
+                   output, "--kg", 1,
+                   "--preset", "fast", **options)
+
+    def expect_untouched(self, result, code, *names):
+        self.assertEqual(result.code, code, result.err)
+        self.assertEqual(result.err.count("\n"), 1, result.err)
+        self.assertEqual(self.files(), sorted(names))
+
+    def test_places_that_cannot_be_written(self):
+        self.path("folder").mkdir()
+        for output in (self.path("none/a.rlpc"), self.path("folder"), "/dev/full"):
+            result = self.encode_to(output)
+            self.expect_untouched(result, 1, "folder")
+            self.assertIn(str(output), result.err)
+
+    def test_a_full_disk_while_encoding(self):
+        for before in (None, b"what was there"):
+            if before:
+                self.path("a.rlpc").write_bytes(before)
+            result = self.encode_to(self.path("a.rlpc"), **limited(2000))
+            self.expect_untouched(result, 1, *(["a.rlpc"] if before else []))
+            self.assertIn("a.rlpc", result.err)
+            if before:
+                self.assertEqual(self.path("a.rlpc").read_bytes(), before)
+
+    def test_a_full_disk_while_decoding(self):
+        self.assertEqual(self.encode_to(self.path("a.rlpc")).code, 0)
+        for output in ("b.rlpd", "b.pc2", "folder", "new/f_%d.obj"):
+            result = run("rlpcdec", self.path("a.rlpc"), "-o", self.path(output), **limited(9000))
+            self.expect_untouched(result, 4, "a.rlpc")
+        result = run("rlpcdec", self.path("a.rlpc"), "-o", "/dev/full")
+        self.assertEqual(result.code, 4, result.err)
+        result = run("rlpcdec", self.path("a.rlpc"), "-o", self.path("none/b.rlpd"))
+        self.expect_untouched(result, 4, "a.rlpc")
+
+    def test_other_files(self):
+        result = run("rlpcenc", INPUTS / "elephant.obj", "-o", self.path("b.rlpc"), "--order-map",
+                     self.path("none/x"))
+        self.assertEqual(result.code, 1, result.err)
+        self.assertIn("none/x", result.err)
+        self.assertEqual(self.files(), [])  # it was known before the work
+        result = run("rlpccmp", INPUTS / "elephant.pc2", INPUTS / "elephant.pc2", "--csv",
+                     self.path("none/x"))
+        self.assertEqual(result.code, 2, result.err)
+        self.assertIn("none/x", result.err)
+
+
+    def test_a_full_disk_on_standard_output(self):
+        self.assertEqual(self.encode_to(self.path("a.rlpc")).code, 0)
+        stream, mesh = self.path("a.rlpc"), INPUTS / "elephant.obj"
+        for code, command in (
+                (4, ["rlpcinfo", stream]), (4, ["rlpcinfo", stream, "--json"]),
+                (4, ["rlpcinfo", stream, "--trace"]), (4, ["rlpcdec", stream, "--verify", "--json"]),
+                (4, ["rlpcval", stream]), (4, ["rlpcval", "--explain", "R-UNT-03"]),
+                (2, ["rlpccmp", stream, stream]), (2, ["rlpccmp", stream, stream, "--json"]),
+                (1, ["rlpcenc", mesh, "--dry-run"]), (1, ["rlpcenc", mesh, "--dry-run", "--json"])):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([Tools.folder / command[0], *command[1:]], stdout=full,
+                                      stderr=subprocess.PIPE, text=True, check=False)
+            self.assertEqual(done.returncode, code, command)
+            self.assertIn("standard output: No space left", done.stderr, command)
+
+
+class Interrupts(ToolsTest):
+    """Nothing is left of what was not finished."""
+
+    def interrupted(self, by, code, started, tool, *arguments, **options):
+        with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
+                              stderr=subprocess.DEVNULL, **options) as running:
+            while not started.exists() and running.poll() is None:
+                time.sleep(0.001)
+            running.send_signal(by)
+            self.assertEqual(running.wait(100), code)
+
+    def test_while_encoding_and_decoding(self):
+        _, frames = self.clip(60)
+        write_pc2(self.path("clip.pc2"), frames * 20)
+        before = ["clip.obj", "clip.pc2"]
+        mesh = [self.path("clip.obj"), "--points", self.path("clip.pc2")]
+        term = [signal.SIGTERM, -signal.SIGTERM]
+        encode = [self.path("x.rlpc.partial"), "rlpcenc", *mesh, "-o", self.path("x.rlpc"),
+                  "--gof", 20]
+        self.interrupted(*term, *encode)
+        self.assertEqual(self.files(), before)
+        ignored = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
+        self.interrupted(signal.SIGHUP, 0, *encode, "--preset", "fast", **ignored)  # nohup
+        self.ok("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
+        self.interrupted(*term, self.path("out.partial"), "rlpcdec", self.path("x.rlpc"), "-o",
+                         self.path("out"))
+        self.assertEqual(self.files(), [*before, "x.rlpc"])
+
+
+class SamePlaces(ToolsTest):
+    """Nothing is written over what is read, or over another output."""
+
+    def setUp(self):
+        super().setUp()
+        self.clip(4)
+        self.encode(self.path("a.rlpc"))
+        self.before = {name: self.path(name).read_bytes() for name in self.files()}
+
+    def refused(self, words, tool, *arguments, code=64):
+        self.fails(code, words, tool, *arguments)
+        self.assertEqual({name: self.path(name).read_bytes() for name in self.files()},
+                         self.before)
+
+    def test_of_the_encoder(self):
+        obj, pc2, out = self.path("clip.obj"), self.path("clip.pc2"), self.path("x.rlpc")
+        (self.path("linked.obj")).symlink_to(obj)
+        self.before["linked.obj"] = self.before["clip.obj"]
+        for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
+            self.refused("is read, too", "rlpcenc", obj, "-o", output)
+        self.refused("is read, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
+        self.refused("is read, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
+        self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
+        for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
+                        ["-o", out, "--order-map", "-", "--json"]):
+            self.refused("cannot both", "rlpcenc", obj, *options)
+
+    def test_of_files_that_the_input_points_to(self):
+        self.path("frames").mkdir()
+        for f in range(3):
+            frame = self.path(f"frames/w_{f}.obj")
+            frame.write_bytes(self.path("clip.obj").read_bytes())
+        last, frames = frame.read_bytes(), self.path("frames")
+        out = self.path("x.rlpc")
+        for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", frame)
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", out, "--order-map", frame)
+            self.fails(64, "written over", "rlpccmp", source, source, "--csv", frame)
+        self.assertEqual(frame.read_bytes(), last)
+        self.assertFalse(out.exists())
+        # The mesh beside the cache, which nobody named.
+        self.fails(64, "written over", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
+                   "--csv", self.path("clip.obj"))
+        buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+        self.path("data.bin").write_bytes(buffer)
+        self.path("a.gltf").write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+            "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
+        self.fails(64, "is read, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
+        self.assertEqual(self.path("data.bin").read_bytes(), buffer)
+        self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
+
+    def test_of_the_decoder(self):
+        stream = self.path("a.rlpc")
+        self.refused("is read, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
+        self.refused("is read, too", "rlpcdec", stream, "--html", stream)
+        self.refused("is the input itself", "rlpcinfo", stream, "--html", stream)
+        # The mesh that nobody named.
+        self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
+                     code=4)
+        self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
+                     "pc2", code=4)
+        for _ in range(2):  # its own mesh is replaced
+            self.ok("rlpcdec", stream, "-o", self.path("b.mdd"))
+
+    def test_of_the_comparison(self):
+        obj, pc2, stream = self.path("clip.obj"), self.path("clip.pc2"), self.path("a.rlpc")
+        pair = [obj, "--points-a", pc2, obj, "--points-b", pc2]
+        for option in ("--csv", "--html"):
+            self.refused("written over", "rlpccmp", *pair, option, obj)
+            self.refused("written over", "rlpccmp", *pair, option, pc2)
+            self.refused("written over", "rlpccmp", *pair, "--stream", stream, option, stream)
+        self.refused("written over", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
+                     self.path("x"))
+        self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")
+
+
+class BadStreams(ToolsTest):
+    """conformance/roundtrip/robustness_test.cpp damages every byte; here, what the tools make of it."""
+
+    def setUp(self):
+        super().setUp()
+        self.encode(self.path("a.rlpc"), "--kg", 1, "--gof", 20)
+        self.stream = self.path("a.rlpc").read_bytes()
+
+    def expect(self, code, words, stream):
+        bad = self.path("bad.rlpc")
+        bad.write_bytes(stream)
+        for output in ("x.rlpd", "x.pc2", "folder"):
+            self.fails(code, ["bad.rlpc", words], "rlpcdec", bad, "-o", self.path(output))
+            self.assertFalse(self.path(output).exists())
+        self.fails(code, ["bad.rlpc", words], "rlpcdec", bad, "--verify")
+        self.fails(code, "bad.rlpc", "rlpcinfo", bad)
+        self.fails(2, "bad.rlpc", "rlpccmp", bad, bad)
+        self.assertEqual(self.files(), ["a.rlpc", "bad.rlpc"])
+
+    def test_damage_is_an_error_and_leaves_no_output(self):
+        middle, last = len(self.stream) // 2, len(self.stream) - 1
+        self.expect(1, "R-", b"")
+        self.expect(1, "R-", b"\x89PNG\r\n\x1a\n" + self.stream[8:])
+        for size in (4, 9, 20, middle, last):
+            self.expect(1, "cut off", self.stream[:size])
+        for at in (30, middle, last):
+            damaged = bytearray(self.stream)
+            damaged[at] ^= 4
+            self.expect(1, "R-UNT-03", bytes(damaged))
+        self.expect(1, "R-END-02", self.stream + b"\0")
+        self.expect(2, "R-STR-02", self.stream[:8] + b"\2" + self.stream[9:])
+
+    def test_pipes_and_what_is_no_file(self):
+        info = self.ok("rlpcinfo", self.path("a.rlpc")).out.split(b"\n", 1)[1]
+        self.assertEqual(self.ok("rlpcinfo", "-", input=self.stream).out.split(b"\n", 1)[1], info)
+        self.ok("rlpcval", "-", input=self.stream)
+        cut = self.ok("rlpcinfo", "-", "--extract", "components=0", "-o", "-",
+                      input=self.stream).out
+        self.ok("rlpcval", "-", input=cut)
+        pipe = self.path("pipe")
+        os.mkfifo(pipe)
+        with subprocess.Popen(["/bin/sh", "-c", f"cat '{self.path('a.rlpc')}' > '{pipe}'"]):
+            self.ok("rlpcdec", pipe, "--verify")
+        for tool in ("rlpcdec", "rlpcinfo", "rlpcval"):
+            verify = ["--verify"] if tool == "rlpcdec" else []
+            self.fails(4, "it is a folder", tool, self.folder, *verify)
+            self.fails(4, "no such file", tool, self.path("none.rlpc"), *verify)
+
+    def test_any_metadata_can_be_told(self):
+        for text in ('{"a": 1}', "no JSON \x1b[31m", "[" * 100000 + "]" * 100000, '"\\ud800"'):
+            self.path("meta.json").write_text('{"a": 1}')
+            self.encode(self.path("m.rlpc"), "--metadata", self.path("meta.json"))
+            stream = self.path("m.rlpc").read_bytes()
+            metadata = struct.pack(">I", len(text)) + zlib.compress(text.encode())
+            changed = [(code, metadata if code == METADATA else payload)
+                       for code, payload in units_of(stream)]
+            self.path("m.rlpc").write_bytes(stream_of(stream, changed))
+            told = self.ok("rlpcinfo", self.path("m.rlpc"), "--json").json()["metadata"]
+            self.assertEqual(told, {"a": 1} if text[0] == "{" else text)
+            self.assertNotIn(b"\x1b", self.ok("rlpcinfo", self.path("m.rlpc")).out)
+
+    def test_limits(self):
+        for option in (["--max-vertices", 500], ["--max-memory", "50KB"]):
+            self.fails(3, "limits", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
+                       *option)
+        self.assertEqual(self.files(), ["a.rlpc"])
+        self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--max-vertices", 538, "--max-memory",
+                "100MB")
+
+    def test_missing(self):
+        for tool, arguments in (("rlpcdec", ["--verify"]), ("rlpcinfo", [])):
+            self.fails(4, "none.rlpc", tool, self.path("none.rlpc"), *arguments)
+        self.fails(64, "-o OUT", "rlpcdec", self.path("a.rlpc"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,159 @@
+"""What the tests of the tools have in common: running them, and files to run them on."""
+
+import argparse
+import array
+import json
+import pathlib
+import resource
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+INPUTS = ROOT / "streams" / "inputs"
+NAMES = ("elephant", "curtain", "robot_arm")
+
+
+class Tools:
+    folder = ROOT / "build" / "release" / "bin"  # --bin
+
+
+class Result:
+    def __init__(self, done):
+        self.code = done.returncode
+        self.out = done.stdout
+        self.err = done.stderr.decode(errors="replace")
+
+    def json(self):
+        return json.loads(self.out)
+
+
+def run(tool, *args, **options):
+    result = _run(tool, args, options)
+    if tool == "rlpcenc" and result.code in (0, 2):  # 2: written, but the target was out of reach
+        check_encoded(args, result)
+    return result
+
+
+def _run(tool, args, options):
+    command = [str(Tools.folder / tool), *map(str, args)]
+    return Result(subprocess.run(command, capture_output=True, timeout=120, check=False, **options))
+
+
+def check_encoded(args, result):
+    """Whatever rlpcenc writes, rlpcval finds no error in it."""
+    places = [args[i + 1] for i, arg in enumerate(args[:-1]) if arg in ("-o", "--output")]
+    if not places or (places[0] != "-" and not pathlib.Path(places[0]).is_file()):
+        return  # --help, or a device
+    options = {"input": result.out} if places[0] == "-" else {}
+    found = _run("rlpcval", places[:1], options)
+    if found.code != 0:
+        raise AssertionError(f"rlpcenc {args} wrote a stream with errors:\n"
+                             + found.out.decode(errors="replace") + found.err)
+
+
+def write_pc2(path, frames):
+    """frames: lists of 3 V floats."""
+    header = struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(frames[0]) // 3, 0.0, 1.0,
+                         len(frames))
+    path.write_bytes(header + b"".join(array.array("f", frame).tobytes() for frame in frames))
+
+
+def read_pc2(path):
+    data = path.read_bytes()
+    points, _, _, samples = struct.unpack_from("<iffi", data, 16)
+    values = array.array("f", data[32:])
+    size = 3 * points
+    return [values[size * f:size * f + size] for f in range(samples)]
+
+
+def write_obj(path, xyz, triangles):
+    lines = ["v %.9g %.9g %.9g" % tuple(xyz[3 * v:3 * v + 3]) for v in range(len(xyz) // 3)]
+    lines += ["f " + " ".join(str(v + 1) for v in triangle) for triangle in triangles]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def read_obj(path):
+    xyz, triangles = array.array("f"), []
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words[:1] == ["v"]:
+            xyz.extend(map(float, words[1:4]))
+        elif words[:1] == ["f"]:
+            triangles.append(tuple(int(word.split("/")[0]) - 1 for word in words[1:]))
+    return xyz, triangles
+
+
+def triangle_set(triangles):
+    return sorted(min(t, t[1:] + t[:1], t[2:] + t[:2]) for t in triangles)
+
+
+def read_rlpd(path):
+    """(header fields, triangles, the bytes of each frame)"""
+    data = path.read_bytes()
+    magic, version, vertices, num_triangles, frames, *rest = struct.unpack_from("<4s6Ii3i", data)
+    assert magic == b"RLPD" and version == 1
+    corners = struct.unpack_from(f"<{3 * num_triangles}I", data, 44)
+    at = 44 + 12 * num_triangles
+    size = 12 * vertices
+    assert len(data) == at + size * frames
+    triangles = [corners[3 * t:3 * t + 3] for t in range(num_triangles)]
+    return rest, triangles, [data[at + size * f:at + size * f + size] for f in range(frames)]
+
+
+def limited(size):
+    """Before the tool starts: files may grow to `size` bytes; beyond, writing fails (EFBIG)."""
+    return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+            "restore_signals": False}
+
+
+class ToolsTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rlpc-tools-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name):
+        return self.folder / name
+
+    def ok(self, tool, *args, **options):
+        result = run(tool, *args, **options)
+        self.assertEqual(result.code, 0, f"{tool} {args}: {result.err}")
+        return result
+
+    def fails(self, code, words, tool, *args, **options):
+        """The exit code is `code`, and all of `words` are in what it says, on one line."""
+        result = run(tool, *args, **options)
+        self.assertEqual(result.code, code, f"{tool} {args}: {result.err}")
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, result.err)
+        if code != 64:
+            self.assertEqual(result.err.count("\n"), 1, result.err)
+        return result
+
+    def encode(self, output, *options, name="elephant"):
+        return self.ok("rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2", "-o",
+                       output,
+                       "--json", "--preset", "fast", *options).json()
+
+    def clip(self, frames):
+        """The first frames of the elephant as clip.obj and clip.pc2; (triangles, frames)."""
+        _, triangles = read_obj(INPUTS / "elephant.obj")
+        positions = read_pc2(INPUTS / "elephant.pc2")[:frames]
+        write_obj(self.path("clip.obj"), positions[0], triangles)
+        write_pc2(self.path("clip.pc2"), positions)
+        return triangles, positions
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+
+def main():
+    """--bin BUILD/bin, then the arguments of unittest, such as the name of a class."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--bin", type=pathlib.Path, default=Tools.folder)
+    options, rest = parser.parse_known_args()
+    Tools.folder = options.bin.resolve()
+    unittest.main(module="__main__", argv=[sys.argv[0], *rest])

@@ -1,0 +1,205 @@
+// Damaged streams: an error, and right frames before it; never a crash or a hang.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "conformance/roundtrip/small_animation.h"
+#include "decoder/rlpc_decoder.h"
+
+namespace rlpc {
+namespace {
+
+using Frame = std::vector<std::int32_t>;
+
+// What a decoder gave until it was done, or complained.
+struct Decoded {
+  std::vector<Frame> frames;
+  std::optional<Error> error;
+};
+
+DecoderOptions small_options(bool verify_hashes = true) {
+  DecoderOptions options;
+  options.limits = {1U << 12, 1U << 13, 1U << 12, std::uint64_t{16} << 20};
+  options.verify_hashes = verify_hashes;
+  return options;
+}
+
+// In an exact-size copy, so that the address sanitizer sees one byte over.
+Result<Decoder> open_copy(const StreamBytes& bytes, const DecoderOptions& options) {
+  return Decoder::open(memory_source(StreamBytes(bytes)), options);
+}
+
+Decoded decode(const StreamBytes& bytes, const DecoderOptions& options = small_options()) {
+  Decoded out;
+  auto decoder = open_copy(bytes, options);
+  if (!decoder) {
+    out.error = decoder.error();
+    return out;
+  }
+  Frame frame(3 * std::size_t{decoder->header().num_vertices});
+  for (;;) {
+    const auto more = decoder->next_frame(frame);
+    if (!more) out.error = more.error();
+    if (!more || !*more) break;
+    out.frames.push_back(frame);
+  }
+  if (out.error) {
+    // Nobody stops callers from going on: another error, or the end.
+    EXPECT_FALSE(decoder->next_frame(frame));
+    if (decoder->seek(decoder->header().num_frames - 1)) (void)decoder->next_frame(frame);
+    if (decoder->seek(0)) (void)decoder->next_frame(frame);
+  }
+  return out;
+}
+
+// One frame by seeking; nothing if there was an error.
+std::optional<Frame> decode_frame(const StreamBytes& bytes, std::uint32_t index) {
+  auto decoder = open_copy(bytes, small_options());
+  if (!decoder || index >= decoder->header().num_frames) return std::nullopt;
+  Frame frame(3 * std::size_t{decoder->header().num_vertices});
+  const auto found = decoder->seek(index);
+  const auto more = decoder->next_frame(frame);
+  if (!found || !more || !*more) return std::nullopt;
+  return frame;
+}
+
+class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
+ protected:
+  void SetUp() override {
+    stream_ = GetParam()();
+    ASSERT_FALSE(stream_.empty());
+    expected_ = decode(stream_);
+    ASSERT_FALSE(expected_.error) << expected_.error->rule << " " << expected_.error->element;
+  }
+
+  // The frames before the error are right.
+  void expect_error(const StreamBytes& bytes, Decoded& got) const {
+    got = decode(bytes);
+    ASSERT_TRUE(got.error);
+    ASSERT_LE(got.frames.size(), expected_.frames.size());
+    ASSERT_TRUE(std::equal(got.frames.begin(), got.frames.end(), expected_.frames.begin()));
+  }
+  void expect_error_or_right_by_seeking(const StreamBytes& bytes) const {
+    const auto last = static_cast<std::uint32_t>(expected_.frames.size()) - 1;
+    for (const std::uint32_t f : {last, last / 2}) {
+      const auto got = decode_frame(bytes, f);
+      if (got) {
+        ASSERT_EQ(*got, expected_.frames[f]) << "frame " << f;
+      }
+    }
+  }
+  // The CRCs fit, so anything may be decoded; with hashes, only what was hashed.
+  void expect_an_end(StreamBytes bytes) const {
+    repair_crcs(bytes);
+    const auto start = std::chrono::steady_clock::now();
+    (void)decode(bytes);
+    (void)decode(bytes, small_options(false));
+    (void)decode_frame(bytes, static_cast<std::uint32_t>(expected_.frames.size()) - 1);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    ASSERT_LT(taken.count(), 10.0);
+  }
+
+  StreamBytes stream_;
+  Decoded expected_;
+};
+
+TEST_P(Robustness, EveryProperPrefixFails) {
+  for (std::size_t n = 0; n < stream_.size(); ++n) {
+    const StreamBytes prefix(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(n));
+    SCOPED_TRACE(testing::Message() << n << " bytes");
+    Decoded got;
+    ASSERT_NO_FATAL_FAILURE(expect_error(prefix, got));
+    ASSERT_EQ(got.error->code, Errc::kTruncated) << got.error->rule;
+    ASSERT_NO_FATAL_FAILURE(expect_error_or_right_by_seeking(prefix));
+  }
+}
+
+TEST_P(Robustness, EveryFlippedBitIsNoticed) {
+  for (std::size_t bit = 0; bit < 8 * stream_.size(); ++bit) {
+    StreamBytes damaged = stream_;
+    damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (128U >> (bit % 8)));
+    SCOPED_TRACE(testing::Message() << "bit " << bit);
+    Decoded got;
+    ASSERT_NO_FATAL_FAILURE(expect_error(damaged, got));
+    ASSERT_NO_FATAL_FAILURE(expect_error_or_right_by_seeking(damaged));
+  }
+}
+
+TEST_P(Robustness, EveryFlippedBitUnderAFittingCrcEnds) {
+  for (std::size_t bit = 0; bit < 8 * stream_.size(); ++bit) {
+    StreamBytes damaged = stream_;
+    damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (128U >> (bit % 8)));
+    SCOPED_TRACE(testing::Message() << "bit " << bit);
+    ASSERT_NO_FATAL_FAILURE(expect_an_end(damaged));
+  }
+}
+
+TEST_P(Robustness, RandomBytesUnderAFittingCrcEnd) {
+  constexpr unsigned kSeeds = 3;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < stream_.size(); ++i) {
+      StreamBytes damaged = stream_;
+      damaged[i] = static_cast<std::uint8_t>(random());
+      // Now and then a burst.
+      for (std::size_t j = i + 1; j < damaged.size() && random() % 3 == 0; ++j) {
+        damaged[j] = static_cast<std::uint8_t>(random());
+      }
+      SCOPED_TRACE(testing::Message() << "byte " << i << ", seed " << seed);
+      ASSERT_NO_FATAL_FAILURE(expect_an_end(damaged));
+    }
+  }
+}
+
+TEST_P(Robustness, EveryShorterOrLongerPayloadFails) {
+  for (const UnitPlace& unit : units_of(stream_)) {
+    const std::span<const std::uint8_t> payload(stream_.data() + unit.payload(), unit.size);
+    // Reading from front to back does not need the index.
+    const bool must_fail = unit.type != UnitType::kGofIndex;
+    for (std::size_t n = 0; n < unit.size; ++n) {
+      const StreamBytes damaged = with_payload(stream_, unit, payload.first(n));
+      SCOPED_TRACE(testing::Message() << "unit at " << unit.offset << ", payload " << n);
+      ASSERT_NO_FATAL_FAILURE(expect_an_end(damaged));
+      ASSERT_EQ(decode(damaged).error.has_value(), must_fail);
+    }
+    StreamBytes longer(payload.begin(), payload.end());
+    longer.push_back(0);
+    EXPECT_EQ(decode(with_payload(stream_, unit, longer)).error.has_value(), must_fail)
+        << "unit at " << unit.offset;
+  }
+}
+
+TEST_P(Robustness, UnitsLeftOutOrRepeatedEnd) {
+  for (const UnitPlace& unit : units_of(stream_)) {
+    const auto first = stream_.begin() + static_cast<std::ptrdiff_t>(unit.offset);
+    const auto last = stream_.begin() + static_cast<std::ptrdiff_t>(unit.end());
+    StreamBytes without = stream_;
+    without.erase(without.begin() + (first - stream_.begin()),
+                  without.begin() + (last - stream_.begin()));
+    StreamBytes twice = stream_;
+    twice.insert(twice.begin() + (last - stream_.begin()), first, last);
+    SCOPED_TRACE(testing::Message() << "unit at " << unit.offset);
+    ASSERT_NO_FATAL_FAILURE(expect_an_end(without));
+    ASSERT_NO_FATAL_FAILURE(expect_an_end(twice));
+    // A stream may do without its vertex order, and without or with more of what is ancillary.
+    const bool ancillary = (stream_[unit.offset] & kAncillaryFlag) != 0;
+    const bool optional = ancillary || unit.type == UnitType::kVertexOrder;
+    EXPECT_TRUE(optional || decode(without).error);
+    EXPECT_TRUE(ancillary || decode(twice).error);
+  }
+}
+
+std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
+  return stream.index == 0 ? "Rich" : "Indexed";
+}
+INSTANTIATE_TEST_SUITE_P(Streams, Robustness, testing::Values(rich_stream, indexed_stream),
+                         stream_name);
+
+}  // namespace
+}  // namespace rlpc

@@ -1,0 +1,379 @@
+// Writer and parser of GOFs of bones against each other (clauses 6.11 and 6.12).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/testing/random_skinned_gof.h"
+#include "decoder/parse/parse_skinned_gof.h"
+#include "encoder/write/write_skinned_gof.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+
+using Payload = std::vector<std::uint8_t>;
+
+BoneGofPayloads payloads_of(const RandomBoneGof& from) {
+  const CodedMesh mesh = from.coded_mesh();
+  return write_bone_gof(from.gof, mesh, from.header.position_bits);
+}
+
+// A decoder's side of one stream.
+class Reading {
+ public:
+  explicit Reading(const RandomBoneGof& from, std::uint64_t max_memory = kMemory)
+      : from_(from),
+        meshes_(from.topology, from.triangles),
+        parser_(from.header, meshes_, max_memory) {}
+
+  std::optional<Error> gof(const Payload& payload) {
+    BitReader r(payload);
+    const GofStart start = parse_gof_start(r, from_.header, from_.gof.first_frame);
+    if (!r.error() && !start.bones_flag) return Error{Errc::kInvalid, "", "bones_flag", 0};
+    return error_of(parser_.bones(r, start));
+  }
+  std::optional<Error> slice(const Payload& payload) {
+    BitReader r(payload);
+    return error_of(parser_.slice(r, 0));
+  }
+  // A GOF and its slices, up to the first error.
+  std::optional<Error> all(const Payload& gof_payload, const std::vector<Payload>& slices) {
+    if (auto error = gof(gof_payload)) return error;
+    for (const Payload& payload : slices) {
+      if (auto error = slice(payload)) return error;
+    }
+    return std::nullopt;
+  }
+  const CodedMesh& mesh() const { return parser_.mesh(); }
+  BoneGof finish() { return parser_.finish(); }
+
+ private:
+  static std::optional<Error> error_of(const Result<bool>& result) {
+    if (result) return std::nullopt;
+    return result.error();
+  }
+
+  const RandomBoneGof& from_;
+  MeshPredictions meshes_;
+  BoneGofParser parser_;
+};
+
+std::string text_of(const std::optional<Error>& error) {
+  return error ? std::string(error->rule) + " " + error->element : "no error";
+}
+
+void expect_equal(const Bone& a, const Bone& b) {
+  EXPECT_EQ(a.parent, b.parent);
+  EXPECT_EQ(a.pivot, b.pivot);
+  EXPECT_EQ(a.rotation_flag, b.rotation_flag);
+  EXPECT_EQ(a.rotation_step_idx, b.rotation_step_idx);
+  EXPECT_EQ(a.rotation_order, b.rotation_order);
+  EXPECT_EQ(a.rotation_residual, b.rotation_residual);
+  EXPECT_EQ(a.origin_flag, b.origin_flag);
+  EXPECT_EQ(a.origin_step_idx, b.origin_step_idx);
+  EXPECT_EQ(a.origin_order, b.origin_order);
+  EXPECT_EQ(a.origin_residual, b.origin_residual);
+}
+
+void expect_equal(const Trajectory& a, const Trajectory& b) {
+  EXPECT_EQ(a.scale_idx, b.scale_idx);
+  EXPECT_EQ(a.spatial_bits, b.spatial_bits);
+  EXPECT_EQ(a.temporal_bits, b.temporal_bits);
+  EXPECT_EQ(a.temporal_predictor, b.temporal_predictor);
+  EXPECT_EQ(a.temporal_weight, b.temporal_weight);
+  EXPECT_EQ(a.residual, b.residual);
+}
+
+void expect_equal(const BoneGof& a, const BoneGof& b) {
+  EXPECT_EQ(a.first_frame, b.first_frame);
+  EXPECT_EQ(a.num_frames, b.num_frames);
+  EXPECT_EQ(a.fraction_bits, b.fraction_bits);
+  EXPECT_EQ(a.weight_bits, b.weight_bits);
+  EXPECT_EQ(a.rest_step, b.rest_step);
+  EXPECT_EQ(a.prediction, b.prediction);
+  EXPECT_EQ(a.damping_log2, b.damping_log2);
+  EXPECT_EQ(a.outer_weight, b.outer_weight);
+  EXPECT_EQ(a.outer_scale, b.outer_scale);
+  EXPECT_EQ(a.layer_group_size, b.layer_group_size);
+  EXPECT_EQ(a.layer_step, b.layer_step);
+  EXPECT_EQ(a.num_component_groups, b.num_component_groups);
+  EXPECT_EQ(a.group_end, b.group_end);
+  EXPECT_EQ(a.slice_layers, b.slice_layers);
+  EXPECT_EQ(a.vertex_residual, b.vertex_residual);
+  ASSERT_EQ(a.bones.size(), b.bones.size());
+  for (std::size_t i = 0; i < a.bones.size(); ++i) expect_equal(a.bones[i], b.bones[i]);
+  ASSERT_EQ(a.trajectories.size(), b.trajectories.size());
+  for (std::size_t l = 0; l < a.trajectories.size(); ++l) {
+    expect_equal(a.trajectories[l], b.trajectories[l]);
+  }
+  ASSERT_EQ(a.influences.size(), b.influences.size());
+  for (std::size_t v = 0; v < a.influences.size(); ++v) {
+    ASSERT_TRUE(std::equal(a.influences[v].begin(), a.influences[v].end(),
+                           b.influences[v].begin(), b.influences[v].end()))
+        << v;
+  }
+}
+
+void expect_round_trip(const RandomBoneGof& from) {
+  const BoneGofPayloads payloads = payloads_of(from);
+  Reading reading(from);
+  const auto error = reading.all(payloads.gof, payloads.slices);
+  ASSERT_FALSE(error) << text_of(error);
+  expect_equal(from.gof, reading.finish());
+}
+
+// Runs the reconstruction of what was parsed; positions are within their range.
+void expect_frames_in_range(Reading& reading, int position_bits) {
+  const CodedMesh& mesh = reading.mesh();
+  const BoneRecon recon(mesh, reading.finish(), position_bits);
+  std::vector<std::int32_t> positions(3 * std::size_t{mesh.num_vertices()});
+  for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+    recon.frame(f, positions);
+    for (const std::int32_t x : positions) {
+      ASSERT_GE(x, -(1 << (position_bits - 1)));
+      ASSERT_LT(x, 1 << (position_bits - 1));
+    }
+  }
+}
+
+TEST(BoneGofRoundTrip, RandomLegalGofsComeBack) {
+  for (unsigned seed = 1; seed <= 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_round_trip(RandomBoneGof(seed, {}));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(BoneGofRoundTrip, OneVertexOneFrameAndOneBoneAreEnough) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_round_trip(
+        RandomBoneGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
+  }
+}
+
+TEST(BoneGofRoundTrip, LargerGofsComeBack) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_round_trip(RandomBoneGof(seed, {.max_vertices = 2000, .max_groups = 2}));
+    expect_round_trip(RandomBoneGof(seed, {.max_bones = kLevels[0].max_clusters}));
+    expect_round_trip(
+        RandomBoneGof(seed, {.max_vertices = 8, .max_frames = kLevels[0].max_gof_frames}));
+    expect_round_trip(RandomBoneGof(
+        seed, {.max_vertices = 8, .max_groups = kMaxComponentGroups, .max_components = 2}));
+  }
+}
+
+// The largest and smallest residuals in a row drive every running mean to its ends.
+TEST(BoneGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
+  for (const int period : {1, 2, 7, 50}) {
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+      SCOPED_TRACE(seed);
+      RandomBoneGof from(seed, {});
+      int count = 0;
+      const auto jump = [&](std::int32_t& x) {
+        ++count;
+        x = count / period % 2 == 0 ? 0 : count % 2 == 0 ? kMost : -kMost;
+      };
+      const auto jump_track = [&](TrackResiduals& residuals) {
+        for (Vec3i& r : residuals) std::for_each(r.begin(), r.end(), jump);
+      };
+      for (Bone& bone : from.gof.bones) {
+        jump_track(bone.rotation_residual);
+        jump_track(bone.origin_residual);
+      }
+      for (Trajectory& t : from.gof.trajectories) jump_track(t.residual);
+      const CodedMesh mesh = from.coded_mesh();
+      for (std::size_t group = 0; group < from.gof.vertex_residual.size(); ++group) {
+        std::uint32_t end = 0;
+        for (std::uint32_t j = 0; j < from.gof.slice_layers[group]; ++j) {
+          end += from.gof.layer_group_size[j];
+        }
+        auto& residuals = from.gof.vertex_residual[group];
+        const std::size_t size = residuals.size() / mesh.num_vertices();
+        for (const std::uint32_t v : mesh.vertices_of_layers(0, end)) {
+          for (std::size_t k = 0; k < size; ++k) jump(residuals[v * size + k]);
+        }
+      }
+      expect_round_trip(from);
+    }
+  }
+}
+
+// The first n bytes, in an exact-size copy, so that a sanitizer sees one byte over.
+Payload prefix_of(const Payload& payload, std::size_t n) {
+  return {payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(n)};
+}
+
+// Of a payload cut off, few starts are another payload by chance; these decode.
+TEST(BoneGofParser, ProperPrefixesFailOrDecode) {
+  int refused = 0;
+  int decoded = 0;
+  for (unsigned seed = 1; seed <= 150; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomBoneGof from(seed, {.max_vertices = 12,
+                                    .max_frames = 3,
+                                    .max_bones = 3,
+                                    .max_groups = 2,
+                                    .max_components = 2});
+    const BoneGofPayloads payloads = payloads_of(from);
+    for (std::size_t i = 0; i <= payloads.slices.size(); ++i) {
+      const Payload& whole = i == 0 ? payloads.gof : payloads.slices[i - 1];
+      const std::vector<Payload> before(
+          payloads.slices.begin(),
+          payloads.slices.begin() +
+              static_cast<std::ptrdiff_t>(std::max<std::size_t>(i, 1) - 1));
+      for (std::size_t n = 0; n < whole.size(); ++n) {
+        Reading reading(from);
+        if (i > 0) {
+          ASSERT_FALSE(reading.all(payloads.gof, before));
+        }
+        const Payload prefix = prefix_of(whole, n);
+        if (i == 0 ? reading.gof(prefix) : reading.slice(prefix)) {
+          ++refused;
+          continue;
+        }
+        ++decoded;
+        expect_frames_in_range(reading, from.header.position_bits);
+        if (HasFailure()) return;
+      }
+    }
+  }
+  EXPECT_GT(refused, 20000);
+  EXPECT_LT(decoded, refused / 50) << refused;
+}
+
+TEST(BoneGofParser, ABytePastTheEndFails) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const RandomBoneGof from(seed, {});
+    BoneGofPayloads payloads = payloads_of(from);
+    Reading reading(from);
+    ASSERT_FALSE(reading.gof(payloads.gof));
+    payloads.gof.push_back(0);
+    ASSERT_TRUE(Reading(from).gof(payloads.gof)) << seed;
+    if (payloads.slices.empty()) continue;
+    payloads.slices[0].push_back(0);
+    ASSERT_TRUE(reading.slice(payloads.slices[0])) << seed;
+  }
+}
+
+// 8.14.1: slices may be left out as long as each one's coarser layers, and the same layers of
+// the group before, stay. Those that stay are read as before.
+TEST(BoneGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
+  int legal = 0;
+  int illegal = 0;
+  for (unsigned seed = 1; seed <= 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomBoneGof from(seed, {});
+    const BoneGofPayloads payloads = payloads_of(from);
+    std::mt19937 random(seed);
+    std::vector<std::uint32_t> kept(from.gof.slice_layers.size(), 0);
+    Reading reading(from);
+    ASSERT_FALSE(reading.gof(payloads.gof));
+    bool is_legal = true;
+    std::size_t next = 0;
+    for (std::uint32_t group = 0; group < kept.size() && is_legal; ++group) {
+      for (std::uint32_t j = 0; j < from.gof.slice_layers[group] && is_legal; ++j) {
+        const Payload& payload = payloads.slices[next++];
+        if (random() % 4 == 0) continue;
+        is_legal = kept[group] == j && (group == 0 || kept[group - 1] > j);
+        const auto error = reading.slice(payload);
+        ASSERT_EQ(is_legal, !error) << text_of(error);
+        if (error) {
+          EXPECT_EQ(std::string(error->rule), "R-SLI-02");
+        }
+        kept[group] = j + 1;
+      }
+    }
+    ++(is_legal ? legal : illegal);
+    if (!is_legal) continue;
+    const BoneGof cut = reading.finish();
+    EXPECT_EQ(cut.slice_layers, kept);
+    const CodedMesh mesh = from.coded_mesh();
+    for (std::size_t group = 0; group < cut.vertex_residual.size(); ++group) {
+      const std::size_t size = cut.vertex_residual[group].size() / mesh.num_vertices();
+      ASSERT_EQ(from.gof.vertex_residual[group].size(), cut.vertex_residual[group].size());
+      std::uint32_t end = 0;
+      for (std::uint32_t j = 0; j < kept[group]; ++j) end += from.gof.layer_group_size[j];
+      for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
+        const bool is_there = mesh.layer_of(v) < end;
+        for (std::size_t k = 0; k < size; ++k) {
+          ASSERT_EQ(cut.vertex_residual[group][v * size + k],
+                    is_there ? from.gof.vertex_residual[group][v * size + k] : 0);
+        }
+        if (group == 0 && is_there) {
+          EXPECT_TRUE(std::equal(cut.influences[v].begin(), cut.influences[v].end(),
+                                 from.gof.influences[v].begin(), from.gof.influences[v].end()));
+        }
+      }
+    }
+    for (std::size_t l = 0; l < cut.trajectories.size(); ++l) {
+      expect_equal(cut.trajectories[l], from.gof.trajectories[l]);
+    }
+  }
+  EXPECT_GT(legal, 200);
+  EXPECT_GT(illegal, 200);
+}
+
+TEST(BoneGofParser, RefusesSlicesInAnotherOrder) {
+  int swapped = 0;
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    const RandomBoneGof from(seed, {});
+    BoneGofPayloads payloads = payloads_of(from);
+    for (std::size_t i = 0; i + 1 < payloads.slices.size(); ++i) {
+      std::vector<Payload> slices = payloads.slices;
+      std::swap(slices[i], slices[i + 1]);
+      const auto error = Reading(from).all(payloads.gof, slices);
+      ASSERT_TRUE(error) << seed << " " << i;
+      EXPECT_EQ(std::string(error->rule), "R-SLI-02");
+      ++swapped;
+    }
+  }
+  EXPECT_GT(swapped, 300);
+}
+
+// Damaged payloads are refused, or decode to positions in their range.
+TEST(BoneGofParser, SurvivesDamage) {
+  int refused = 0;
+  int decoded = 0;
+  for (unsigned seed = 1; seed <= 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomBoneGof from(seed, {.max_vertices = 30, .max_frames = 4});
+    BoneGofPayloads payloads = payloads_of(from);
+    std::mt19937 random(seed);
+    const std::size_t which = random() % (payloads.slices.size() + 1);
+    Payload& payload = which == 0 ? payloads.gof : payloads.slices[which - 1];
+    payload[random() % payload.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    Reading reading(from);
+    if (reading.all(payloads.gof, payloads.slices)) {
+      ++refused;
+      continue;
+    }
+    ++decoded;
+    expect_frames_in_range(reading, from.header.position_bits);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(decoded, 10);
+}
+
+TEST(BoneGofParser, StopsAtTheCallersMemory) {
+  const RandomBoneGof from(1, {});
+  const BoneGofPayloads payloads = payloads_of(from);
+  const auto error = Reading(from, 100).gof(payloads.gof);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, Errc::kLimitExceeded);
+}
+
+}  // namespace
+}  // namespace rlpc

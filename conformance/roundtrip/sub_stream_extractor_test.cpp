@@ -1,0 +1,308 @@
+// Streams without some of their slices: as they are written, and as they are decoded without
+// being written.
+#include "decoder/extract/sub_stream_extractor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "conformance/roundtrip/sliced_animation.h"
+
+namespace rlpc {
+namespace {
+
+using Frame = std::vector<std::int32_t>;
+constexpr std::uint32_t kAll = SliceCut::kAll;
+
+std::vector<Frame> decode_all(const StreamBytes& stream, const DecoderOptions& options = {}) {
+  std::vector<Frame> frames;
+  auto decoder = Decoder::open(memory_source(stream), options);
+  EXPECT_TRUE(decoder);
+  if (!decoder) return frames;
+  Frame frame(3 * std::size_t{decoder->header().num_vertices});
+  for (;;) {
+    const auto more = decoder->next_frame(frame);
+    EXPECT_TRUE(more) << (more ? "" : more.error().rule);
+    if (!more || !*more) return frames;
+    frames.push_back(frame);
+  }
+}
+
+DecoderOptions cut_options(const SliceCut& cut) {
+  DecoderOptions options;
+  options.cut = cut;
+  return options;
+}
+
+// sliced_stream() with a vertex order, one hash for all of its second GOF, and an index.
+StreamBytes ordered_stream() {
+  const StreamBytes plain = sliced_stream();
+  const std::vector<Frame> frames = decode_all(plain);
+  const std::uint32_t num_vertices = static_cast<std::uint32_t>(frames[0].size() / 3);
+  std::vector<std::uint32_t> order(num_vertices);
+  for (std::uint32_t v = 0; v < num_vertices; ++v) order[v] = (7 * v + 3) % num_vertices;
+  StreamBytes out(plain.begin(), plain.begin() + kStreamHeaderBytes);
+  std::vector<std::size_t> gofs;
+  const auto append = [&](UnitType type, const Bytes& payload) {
+    if (type == UnitType::kGof) gofs.push_back(out.size());
+    const Bytes unit = write_unit(type, payload);
+    out.insert(out.end(), unit.begin(), unit.end());
+    return unit.size();
+  };
+  for (const UnitPlace& unit : units_of(plain)) {
+    if (unit.type == UnitType::kEndOfSequence) break;
+    Bytes payload(plain.begin() + static_cast<std::ptrdiff_t>(unit.payload()),
+                  plain.begin() + static_cast<std::ptrdiff_t>(unit.crc()));
+    if (unit.type == UnitType::kGofHash && gofs.size() == 2) {
+      const std::uint32_t crc = crc32_of_positions(frames[3], crc32_of_positions(frames[2]));
+      payload = write_gof_hash(std::vector{crc}, false);
+    }
+    append(unit.type, payload);
+    if (unit.type == UnitType::kConnectivity) {
+      append(UnitType::kVertexOrder, write_vertex_order(order));
+    }
+  }
+  const std::vector<GofEntry> entries{{2, gofs[1] - gofs[0]}, {2, out.size() - gofs[1]}};
+  const std::size_t index = append(UnitType::kGofIndex, write_gof_index(gofs[0], entries));
+  append(UnitType::kEndOfSequence, write_end_of_sequence(static_cast<std::uint32_t>(index)));
+  require_conforming(out);
+  return out;
+}
+
+StreamBytes cut_stream(const StreamBytes& stream, const SliceCut& cut) {
+  auto cutter = StreamCutter::open(memory_source(stream), cut);
+  EXPECT_TRUE(cutter);
+  StreamBytes out;
+  for (;;) {
+    const auto bytes = cutter->next();
+    EXPECT_TRUE(bytes);
+    if (!bytes || bytes->empty()) return out;
+    out.insert(out.end(), bytes->begin(), bytes->end());
+  }
+}
+
+std::vector<SliceCut> some_cuts() {
+  std::vector<SliceCut> cuts;
+  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, kAll}) {
+    for (const std::uint32_t layers : {0U, 1U, 2U, 100U, kAll}) {
+      cuts.push_back({components, layers});
+    }
+  }
+  return cuts;
+}
+
+// Group and layer group of each slice, for each GOF.
+using Places = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
+Places places_of(const StreamBytes& stream) {
+  const auto cutter = StreamCutter::open(memory_source(stream), {});
+  EXPECT_TRUE(cutter);
+  Places places;
+  for (const ListedGof& gof : cutter->gofs()) {
+    places.emplace_back();
+    for (const SliceEntry& s : gof.slices) {
+      places.back().emplace_back(s.component_group_idx, s.layer_group_idx);
+    }
+  }
+  return places;
+}
+
+TEST(LayerGroups, StayWhole) {
+  const std::vector<std::uint32_t> sizes{2, 1, 4};
+  const std::vector<std::uint32_t> expected{1, 1, 1, 2, 2, 2, 2, 3, 3};
+  for (std::uint32_t layers = 0; layers < expected.size(); ++layers) {
+    EXPECT_EQ(layer_groups_that_stay(sizes, layers), expected[layers]) << layers;
+  }
+  EXPECT_EQ(layer_groups_that_stay(sizes, kAll), 3U);
+}
+
+// The first GOF has groups of 1 and 2 trajectories, and two layer groups, the first of one
+// layer; the second has one trajectory and one layer group.
+TEST(StreamCutter, LeavesOutWholeGroups) {
+  const StreamBytes stream = sliced_stream();
+  EXPECT_EQ(places_of(cut_stream(stream, {0, kAll})), (Places{{{0, 0}, {0, 1}}, {{0, 0}}}));
+  EXPECT_EQ(places_of(cut_stream(stream, {2, kAll})),
+            (Places{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}, {{0, 0}, {1, 0}}}));
+  EXPECT_EQ(places_of(cut_stream(stream, {kAll, 1})),
+            (Places{{{0, 0}, {1, 0}, {2, 0}}, {{0, 0}, {1, 0}}}));
+  EXPECT_EQ(places_of(cut_stream(stream, {1, 1})),
+            (Places{{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}));
+  EXPECT_EQ(places_of(cut_stream(stream, {0, 0})), (Places{{{0, 0}}, {{0, 0}}}));
+}
+
+TEST(StreamCutter, LeavesGofsOfClustersWhole) {
+  const StreamBytes out = cut_stream(mixed_stream(), {1, 1});
+  const Places::value_type none;
+  const Places::value_type cut{{0, 0}, {1, 0}};
+  EXPECT_EQ(places_of(out), (Places{none, cut, none, cut, none, cut, none}));
+  const std::vector<Frame> before = decode_all(mixed_stream());
+  const std::vector<Frame> after = decode_all(out);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t f = 0; f < before.size(); ++f) {
+    const bool of_bones = f / 2 % 2 == 1;
+    EXPECT_EQ(before[f] != after[f], of_bones) << f;
+  }
+}
+
+TEST(StreamCutter, WritesConformingStreamsThatDecodeAsIfCut) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
+    for (const SliceCut& cut : some_cuts()) {
+      SCOPED_TRACE(testing::Message() << cut.max_components << ", " << cut.max_layers);
+      const StreamBytes out = cut_stream(stream, cut);
+      require_conforming(out);  // its hashes and its index too
+      EXPECT_EQ(decode_all(out), decode_all(stream, cut_options(cut)));
+      EXPECT_EQ(cut_stream(out, cut), out);
+    }
+  }
+  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {kAll, 1})), decode_all(sliced_stream()));
+  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {1, kAll})), decode_all(sliced_stream()));
+}
+
+TEST(StreamCutter, CopiesTheOtherUnits) {
+  const StreamBytes stream = ordered_stream();
+  const StreamBytes out = cut_stream(stream, {1, 1});
+  EXPECT_LT(out.size(), stream.size());
+  const auto units = [](const StreamBytes& bytes) {
+    std::vector<StreamBytes> list;
+    for (const UnitPlace& unit : units_of(bytes)) {
+      const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(unit.offset);
+      list.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(unit.end() - unit.offset));
+    }
+    return list;
+  };
+  const std::vector<StreamBytes> before = units(stream);
+  std::size_t changed = 0;
+  for (const StreamBytes& unit : units(out)) {
+    changed += std::find(before.begin(), before.end(), unit) == before.end() ? 1 : 0;
+  }
+  // The hash of the GOF that was cut, the index, the end of the sequence if the index is
+  // shorter.
+  EXPECT_GE(changed, 2U);
+  EXPECT_LE(changed, 3U);
+}
+
+TEST(StreamCutter, KeepsTheKindOfHashes) {
+  const StreamBytes stream = ordered_stream();
+  const auto hash_sizes = [](const StreamBytes& bytes) {
+    std::vector<std::size_t> sizes;
+    for (const UnitPlace& unit : units_of(bytes)) {
+      if (unit.type == UnitType::kGofHash) sizes.push_back(unit.size);
+    }
+    return sizes;
+  };
+  EXPECT_EQ(hash_sizes(stream), (std::vector<std::size_t>{9, 5}));
+  EXPECT_EQ(hash_sizes(cut_stream(stream, {0, 1})), hash_sizes(stream));
+}
+
+TEST(StreamCutter, CopiesAStreamThatHasNoMore) {
+  for (const StreamBytes& stream :
+       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream()}) {
+    EXPECT_EQ(cut_stream(stream, {3, 100}), stream);
+  }
+}
+
+TEST(StreamCutter, RefusesDamagedStreams) {
+  const StreamBytes stream = sliced_stream();
+  for (std::size_t size = 0; size < stream.size(); size += 7) {
+    const StreamBytes prefix(stream.begin(),
+                             stream.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_FALSE(StreamCutter::open(memory_source(prefix), {0, 1})) << size;
+  }
+  for (std::size_t at = 0; at < stream.size(); at += 7) {
+    StreamBytes damaged = stream;
+    damaged[at] ^= 16;
+    EXPECT_FALSE(StreamCutter::open(memory_source(damaged), {0, 1})) << at;
+  }
+}
+
+TEST(CutDecoding, SeeksToTheFramesOfDecodingInOrder) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
+    for (const SliceCut& cut : some_cuts()) {
+      const StreamBytes out = cut_stream(stream, cut);
+      const std::vector<Frame> expected = decode_all(out);
+      auto whole = Decoder::open(memory_source(stream), cut_options(cut));
+      auto written = Decoder::open(memory_source(out));
+      ASSERT_TRUE(whole && written);
+      std::mt19937 random(cut.max_components + 5);
+      for (int i = 0; i < 30; ++i) {
+        const auto f = static_cast<std::uint32_t>(random() % expected.size());
+        for (Decoder* const decoder : {&*whole, &*written}) {
+          Frame frame(expected[f].size());
+          ASSERT_TRUE(decoder->seek(f));
+          ASSERT_TRUE(decoder->next_frame(frame));
+          ASSERT_EQ(frame, expected[f]);
+        }
+      }
+    }
+  }
+}
+
+TEST(CutDecoding, TellsWhetherAnythingWasLeftOut) {
+  const auto was_cut = [](const StreamBytes& stream, const SliceCut& cut) {
+    auto decoder = Decoder::open(memory_source(stream), cut_options(cut));
+    EXPECT_FALSE(decoder->was_cut());
+    EXPECT_TRUE(decoder->parse_rest());
+    return decoder->was_cut();
+  };
+  EXPECT_TRUE(was_cut(sliced_stream(), {2, kAll}));
+  EXPECT_TRUE(was_cut(sliced_stream(), {kAll, 1}));
+  EXPECT_FALSE(was_cut(sliced_stream(), {3, 100}));
+  EXPECT_FALSE(was_cut(sliced_stream(), {}));
+  EXPECT_FALSE(was_cut(rich_stream(), {0, 1}));
+}
+
+// The first error of decoding the stream with the cut; "" if there is none.
+std::string rule_of(const StreamBytes& stream, const SliceCut& cut) {
+  auto decoder = Decoder::open(memory_source(stream), cut_options(cut));
+  EXPECT_TRUE(decoder);
+  Frame frame(3 * std::size_t{decoder->header().num_vertices});
+  for (;;) {
+    const auto more = decoder->next_frame(frame);
+    if (!more) return more.error().rule;
+    if (!*more) return "";
+  }
+}
+
+std::vector<UnitPlace> units_of_type(const StreamBytes& stream, UnitType type) {
+  std::vector<UnitPlace> units = units_of(stream);
+  std::erase_if(units, [type](const UnitPlace& unit) { return unit.type != type; });
+  return units;
+}
+
+TEST(CutDecoding, ComparesHashesOfGofsThatAreWhole) {
+  const StreamBytes stream = sliced_stream();
+  const auto hashes = units_of_type(stream, UnitType::kGofHash);
+  const SliceCut first_only{1, kAll};  // the second GOF has no more
+  for (std::size_t gof = 0; gof < 2; ++gof) {
+    StreamBytes wrong = stream;
+    wrong[hashes[gof].payload() + 3] ^= 1;
+    repair_crcs(wrong);
+    EXPECT_EQ(rule_of(wrong, {}), "R-HSH-02");
+    EXPECT_EQ(rule_of(wrong, first_only), gof == 0 ? "" : "R-HSH-02");
+  }
+}
+
+TEST(CutDecoding, ParsesNothingOfWhatIsLeftOut) {
+  const StreamBytes stream = sliced_stream();
+  const auto slices = units_of_type(stream, UnitType::kSlice);
+  // Of the first GOF: those of the finer layers, and of the second group.
+  for (const std::size_t s : {std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
+    const StreamBytes garbled =
+        with_payload(stream, slices[s],
+                     std::span(stream).subspan(slices[s].payload(),
+                                               std::min<std::size_t>(2, slices[s].size)));
+    EXPECT_NE(rule_of(garbled, {}), "");
+    EXPECT_EQ(rule_of(garbled, {1, 1}), "");
+    EXPECT_EQ(decode_all(garbled, cut_options({1, 1})), decode_all(cut_stream(stream, {1, 1})));
+    StreamBytes damaged = stream;
+    damaged[slices[s].crc()] ^= 1;
+    EXPECT_EQ(rule_of(damaged, {1, 1}), "R-UNT-03");
+  }
+}
+
+}  // namespace
+}  // namespace rlpc

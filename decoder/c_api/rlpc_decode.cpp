@@ -1,0 +1,276 @@
+#include "decoder/c_api/rlpc_decode.h"
+
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/c_api/c_handle.h"
+#include "decoder/describe_error.h"
+#include "decoder/rlpc_decoder.h"
+
+// NOLINTNEXTLINE(readability-identifier-naming): its name in C.
+struct rlpc_decoder {
+  std::optional<rlpc::Decoder> decoder;
+  std::vector<std::int32_t> positions;  // of a frame that goes out as floats
+  rlpc::HandleError error;
+  bool is_placed = false;
+};
+
+namespace rlpc {
+namespace {
+
+class CallersMemory final : public ByteSource {
+ public:
+  CallersMemory(const void* bytes, std::size_t size)
+      : bytes_(static_cast<const std::uint8_t*>(bytes)), size_(size) {}
+  std::uint64_t size() const override { return size_; }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    if (offset > size_ || out.size() > size_ - offset) return false;
+    if (!out.empty()) std::memcpy(out.data(), bytes_ + offset, out.size());
+    return true;
+  }
+
+ private:
+  const std::uint8_t* bytes_;
+  std::size_t size_;
+};
+
+class CallersSource final : public ByteSource {
+ public:
+  explicit CallersSource(const rlpc_source& source) : source_(source) {}
+  std::uint64_t size() const override { return source_.size; }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    if (offset > source_.size || out.size() > source_.size - offset) return false;
+    return out.empty() || source_.read(source_.user, offset, out.data(), out.size()) == 0;
+  }
+
+ private:
+  rlpc_source source_;
+};
+
+rlpc_status status_of(Errc code) {
+  switch (code) {
+    case Errc::kTruncated:
+    case Errc::kInvalid:
+      return RLPC_BAD_STREAM;
+    case Errc::kUnsupported:
+      return RLPC_UNSUPPORTED;
+    case Errc::kLimitExceeded:
+      return RLPC_LIMIT_EXCEEDED;
+    case Errc::kIo:
+      break;
+  }
+  return RLPC_IO_FAILED;
+}
+
+rlpc_status fail(rlpc_decoder& handle, const Error& error) {
+  return handle.error.set(status_of(error.code), describe_error(error));
+}
+
+rlpc_decode_options default_options() {
+  const DecoderOptions usual;
+  rlpc_decode_options options{};
+  options.struct_size = sizeof options;
+  options.max_vertices = usual.limits.max_vertices;
+  options.max_triangles = usual.limits.max_triangles;
+  options.max_frames = usual.limits.max_frames;
+  options.verify_hashes = usual.verify_hashes ? 1 : 0;
+  options.max_memory_bytes = usual.limits.max_memory_bytes;
+  options.threads = usual.threads;
+  options.max_components = SliceCut::kAll;
+  options.max_layers = SliceCut::kAll;
+  return options;
+}
+
+DecoderOptions decoder_options(const rlpc_decode_options& given) {
+  DecoderOptions options;
+  options.limits = {given.max_vertices, given.max_triangles, given.max_frames,
+                    given.max_memory_bytes};
+  options.verify_hashes = given.verify_hashes != 0;
+  options.threads = given.threads;
+  options.cut = {given.max_components, given.max_layers};
+  return options;
+}
+
+// make_source() gives a Result<std::unique_ptr<ByteSource>>.
+template <class MakeSource>
+rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
+                 const MakeSource& make_source) {
+  rlpc_decode_options options = default_options();
+  if (!take_struct(given, options)) return RLPC_BAD_ARGUMENT;
+  auto* handle = make_handle<rlpc_decoder>(options.place, options.place_bytes);
+  if (handle == nullptr) {
+    return options.place != nullptr ? RLPC_BAD_ARGUMENT : RLPC_OUT_OF_MEMORY;
+  }
+  *decoder = handle;
+  return guarded(handle, [&] {
+    Result<std::unique_ptr<ByteSource>> source = make_source();
+    if (!source) {
+      const rlpc_status status = status_of(source.error().code);
+      return handle->error.break_handle(status, describe_error(source.error()));
+    }
+    auto opened = Decoder::open(std::move(*source), decoder_options(options));
+    if (!opened) {
+      const rlpc_status status = status_of(opened.error().code);
+      return handle->error.break_handle(status, describe_error(opened.error()));
+    }
+    handle->decoder = std::move(*opened);
+    return RLPC_OK;
+  });
+}
+
+// Whether a buffer has room for what goes into it, no more and no less.
+bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_values,
+                  std::size_t wanted) {
+  if (buffer != nullptr && num_values == wanted) return true;
+  if (buffer == nullptr && num_values == 0 && wanted == 0) return true;
+  handle.error.set(RLPC_BAD_ARGUMENT, buffer == nullptr
+                                          ? "the buffer is null"
+                                          : "the buffer is said to have " +
+                                                std::to_string(num_values) + " values, not " +
+                                                std::to_string(wanted));
+  return false;
+}
+
+rlpc_status next(rlpc_decoder& handle, std::span<std::int32_t> positions) {
+  const auto more = handle.decoder->next_frame(positions);
+  if (!more) return fail(handle, more.error());
+  handle.error.clear();
+  return *more ? RLPC_OK : RLPC_END;
+}
+
+}  // namespace
+}  // namespace rlpc
+
+void rlpc_decode_options_init(rlpc_decode_options* options, size_t struct_size) {
+  rlpc::give_struct(rlpc::default_options(), options, struct_size);
+}
+
+size_t rlpc_decoder_bytes() { return sizeof(rlpc_decoder); }
+
+rlpc_status rlpc_decoder_open_memory(const void* bytes, size_t num_bytes,
+                                     const rlpc_decode_options* options,
+                                     rlpc_decoder** decoder) {
+  if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
+  *decoder = nullptr;
+  if (bytes == nullptr && num_bytes > 0) return RLPC_BAD_ARGUMENT;
+  return rlpc::open(options, decoder, [&]() -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
+    return {std::make_unique<rlpc::CallersMemory>(bytes, num_bytes)};
+  });
+}
+
+rlpc_status rlpc_decoder_open_file(const char* path, const rlpc_decode_options* options,
+                                   rlpc_decoder** decoder) {
+  if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
+  *decoder = nullptr;
+  if (path == nullptr) return RLPC_BAD_ARGUMENT;
+  return rlpc::open(options, decoder, [&] { return rlpc::file_source(path); });
+}
+
+rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
+                                     const rlpc_decode_options* options,
+                                     rlpc_decoder** decoder) {
+  if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
+  *decoder = nullptr;
+  if (source == nullptr || source->read == nullptr) return RLPC_BAD_ARGUMENT;
+  return rlpc::open(options, decoder, [&]() -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
+    return {std::make_unique<rlpc::CallersSource>(*source)};
+  });
+}
+
+void rlpc_decoder_close(rlpc_decoder* decoder) { rlpc::close_handle(decoder); }
+
+const char* rlpc_decoder_error_text(const rlpc_decoder* decoder) {
+  return decoder == nullptr ? "there is no decoder" : decoder->error.text();
+}
+
+rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
+                              size_t struct_size) {
+  return rlpc::guarded(decoder, [&] {
+    if (info == nullptr || struct_size < sizeof(std::size_t)) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT, "there is no room for the description");
+    }
+    const rlpc::SequenceHeader& h = decoder->decoder->header();
+    rlpc_stream_info ours{};
+    ours.profile = h.profile_idc;
+    ours.level = h.level_idc;
+    ours.num_vertices = h.num_vertices;
+    ours.num_triangles = h.num_triangles;
+    ours.num_frames = h.num_frames;
+    ours.frame_rate_numerator = h.frame_rate.numerator;
+    ours.frame_rate_denominator = h.frame_rate.denominator;
+    ours.grid_log2_step = h.grid.log2_step;
+    for (std::size_t c = 0; c < 3; ++c) ours.grid_origin[c] = h.grid.origin[c];
+    ours.position_bits = static_cast<std::uint32_t>(h.position_bits);
+    ours.has_vertex_order = decoder->decoder->has_vertex_order() ? 1 : 0;
+    rlpc::give_struct(ours, info, struct_size);
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
+                                   size_t num_values) {
+  return rlpc::guarded(decoder, [&] {
+    const auto triangles = decoder->decoder->triangles();
+    if (!rlpc::check_buffer(*decoder, indices, num_values, 3 * triangles.size())) {
+      return RLPC_BAD_ARGUMENT;
+    }
+    for (const rlpc::Triangle& t : triangles) {
+      for (const std::uint32_t v : t) *indices++ = v;
+    }
+    return RLPC_OK;
+  });
+}
+
+const char* rlpc_decoder_metadata(const rlpc_decoder* decoder) {
+  const bool open = decoder != nullptr && decoder->decoder;
+  return open ? decoder->decoder->metadata().c_str() : "";
+}
+
+rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* positions,
+                                        size_t num_values) {
+  return rlpc::guarded(decoder, [&] {
+    const std::size_t wanted = 3 * std::size_t{decoder->decoder->header().num_vertices};
+    if (!rlpc::check_buffer(*decoder, positions, num_values, wanted)) return RLPC_BAD_ARGUMENT;
+    return rlpc::next(*decoder, {positions, num_values});
+  });
+}
+
+rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t num_values) {
+  return rlpc::guarded(decoder, [&] {
+    const rlpc::SequenceHeader& header = decoder->decoder->header();
+    const std::size_t wanted = 3 * std::size_t{header.num_vertices};
+    if (!rlpc::check_buffer(*decoder, xyz, num_values, wanted)) return RLPC_BAD_ARGUMENT;
+    decoder->positions.resize(wanted);
+    const rlpc_status status = rlpc::next(*decoder, decoder->positions);
+    if (status != RLPC_OK) return status;
+    for (std::size_t i = 0; i < wanted; ++i) {
+      xyz[i] = rlpc::float_position(header.grid, i % 3, decoder->positions[i]);
+    }
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_decoder_seek(rlpc_decoder* decoder, uint32_t frame) {
+  return rlpc::guarded(decoder, [&] {
+    const std::uint32_t num_frames = decoder->decoder->header().num_frames;
+    if (frame >= num_frames) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT,
+                                "there is no frame " + std::to_string(frame) + " of " +
+                                    std::to_string(num_frames) + " (from 0)");
+    }
+    if (const auto ok = decoder->decoder->seek(frame); !ok) {
+      return rlpc::fail(*decoder, ok.error());
+    }
+    decoder->error.clear();
+    return RLPC_OK;
+  });
+}
+
+uint32_t rlpc_decoder_position(const rlpc_decoder* decoder) {
+  const bool open = decoder != nullptr && decoder->decoder;
+  return open ? decoder->decoder->position() : 0;
+}

@@ -1,0 +1,80 @@
+// Fuzzes the parser of a GOF of the Baseline profile, and its reconstruction, without a CRC in
+// front. Input: first frame, 4 bytes; sizes of the payloads of sequence header and
+// connectivity, 2 bytes each; both payloads; that of the GOF.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "common/cluster_gof/recon/cluster_recon.h"
+#include "common/testing/fuzz_input.h"
+#include "decoder/parse/parse_cluster_gof.h"
+#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_sequence_header.h"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
+                                        std::size_t max_size);
+
+namespace {
+
+constexpr std::size_t kPrefixBytes = 8;
+// One GOF of this size takes well below a second, even under the sanitizers.
+constexpr std::uint32_t kMaxVertices = 1000;
+constexpr std::uint32_t kMaxFrames = 100;
+constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
+
+void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topology,
+                std::uint32_t first_frame, std::span<const std::uint8_t> payload) {
+  rlpc::BitReader r(payload);
+  const rlpc::GofStart start = rlpc::parse_gof_start(r, header, first_frame);
+  const auto gof = rlpc::parse_clusters(r, header, topology, start, kMaxMemoryBytes);
+  if (!gof) return;
+  const rlpc::GofRecon recon(header, topology, *gof);
+  rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
+  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);
+  for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+    recon.frame(f, positions);
+    for (const std::int32_t p : positions) rlpc::fuzz_check(p >= -bound && p < bound);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rlpc::FuzzInput input(data, size);
+  const std::uint32_t first_frame = input.number(4);
+  const std::uint32_t header_bytes = input.number(2);
+  const std::uint32_t connectivity_bytes = input.number(2);
+  rlpc::BitReader header_bits(input.take(header_bytes));
+  const auto header = rlpc::parse_sequence_header(header_bits, rlpc::kProfileBaseline);
+  if (!header || header->num_vertices > kMaxVertices || header->num_frames > kMaxFrames ||
+      first_frame >= header->num_frames) {
+    return 0;
+  }
+  rlpc::BitReader connectivity_bits(input.take(connectivity_bytes));
+  const auto triangles =
+      rlpc::parse_connectivity(connectivity_bits, header->num_vertices, header->num_triangles);
+  if (!triangles) return 0;
+  decode_gof(*header, rlpc::make_topology(header->num_vertices, *triangles), first_frame,
+             input.rest());
+  return 0;
+}
+
+// Mutates the payload of the GOF, and now and then all: most changes of what stands before it
+// end in its own parsers, which have targets of their own.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned int seed) {
+  std::minstd_rand random(seed);
+  rlpc::FuzzInput input(data, size);
+  input.take(kPrefixBytes - 4);
+  const std::uint32_t header_bytes = input.number(2);
+  const std::size_t before_gof = kPrefixBytes + header_bytes + input.number(2);
+  if (before_gof >= std::min(size, max_size) || random() % 16 == 0) {
+    return LLVMFuzzerMutate(data, size, max_size);
+  }
+  return before_gof +
+         LLVMFuzzerMutate(data + before_gof, size - before_gof, max_size - before_gof);
+}

@@ -1,0 +1,83 @@
+// Fuzzes the whole decoder. stream_mutator_fuzz.cpp keeps the CRCs of the units right.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "common/testing/fuzz_input.h"
+#include "decoder/rlpc_decoder.h"
+
+namespace {
+
+using Positions = std::vector<std::int32_t>;
+
+constexpr rlpc::DecodeLimits kLimits{2000, 4000, 200, 8 << 20};
+
+rlpc::Result<rlpc::Decoder> open(std::span<const std::uint8_t> stream, bool verify_hashes) {
+  rlpc::DecoderOptions options;
+  options.limits = kLimits;
+  options.verify_hashes = verify_hashes;
+  return rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
+}
+
+// A stream that was decoded whole: the first frame is the same again, and it parses.
+void check_again(rlpc::Decoder& decoder, const Positions& first) {
+  Positions again(first.size());
+  rlpc::fuzz_check(static_cast<bool>(decoder.seek(0)));
+  const auto more = decoder.next_frame(again);
+  rlpc::fuzz_check(more && *more && again == first);
+  rlpc::fuzz_check(static_cast<bool>(decoder.parse_rest()));
+}
+
+// Decodes frame after frame; returns the rule of the first error.
+std::string_view decode(std::span<const std::uint8_t> stream, bool verify_hashes) {
+  auto decoder = open(stream, verify_hashes);
+  if (!decoder) return decoder.error().rule;
+  Positions positions(3 * std::size_t{decoder->header().num_vertices});
+  Positions first;
+  std::uint32_t frames = 0;
+  for (;;) {
+    const auto more = decoder->next_frame(positions);
+    if (!more) return more.error().rule;
+    if (!*more) break;
+    if (frames++ == 0) first = positions;
+  }
+  rlpc::fuzz_check(frames == decoder->header().num_frames);
+  check_again(*decoder, first);
+  return "";
+}
+
+// By the index, if there is one: what it says may be wrong.
+void decode_last(std::span<const std::uint8_t> stream) {
+  auto decoder = open(stream, true);
+  if (!decoder || !decoder->seek(decoder->header().num_frames - 1)) return;
+  Positions positions(3 * std::size_t{decoder->header().num_vertices});
+  (void)decoder->next_frame(positions);
+}
+
+// Without some of the slices, if there are any.
+void decode_cut(std::span<const std::uint8_t> stream) {
+  rlpc::DecoderOptions options;
+  options.limits = kLimits;
+  options.cut = {static_cast<std::uint32_t>(stream.size() % 4),
+                 static_cast<std::uint32_t>(1 + stream.size() % 3)};
+  auto decoder =
+      rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
+  if (!decoder) return;
+  Positions positions(3 * std::size_t{decoder->header().num_vertices});
+  for (auto more = decoder->next_frame(positions); more && *more;) {
+    more = decoder->next_frame(positions);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span<const std::uint8_t> stream(data, size);
+  const std::string_view rule = decode(stream, true);
+  if (rule == "R-HSH-02") decode(stream, false);  // a mutated GOF goes on past its hash
+  decode_last(stream);
+  decode_cut(stream);
+  return 0;
+}

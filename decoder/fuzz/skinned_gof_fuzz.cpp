@@ -1,0 +1,139 @@
+// Fuzzes the parser of a GOF of bones and its slices, and their reconstruction, without CRCs in
+// front. Input: first frame, 4 bytes; then pieces, each with its size in 2 bytes before it: the
+// payloads of sequence header, connectivity, GOF, and slices.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/testing/fuzz_input.h"
+#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_sequence_header.h"
+#include "decoder/parse/parse_skinned_gof.h"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
+                                        std::size_t max_size);
+
+namespace {
+
+using Piece = std::vector<std::uint8_t>;
+
+constexpr std::size_t kMaxPieceBytes = 0xFFFF;
+constexpr std::size_t kGofPiece = 2;
+// One GOF of this size takes well below a second, even under the sanitizers.
+constexpr std::uint32_t kMaxVertices = 1000;
+constexpr std::uint32_t kMaxFrames = 100;
+constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
+
+std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
+  std::vector<Piece> pieces;
+  while (!input.rest().empty()) {
+    const std::uint32_t size = input.number(2);
+    const auto bytes = input.take(size);
+    pieces.emplace_back(bytes.begin(), bytes.end());
+  }
+  return pieces;
+}
+
+void check_influences(const rlpc::BoneGof& gof) {
+  for (const rlpc::Influences& influences : gof.influences) {
+    int sum = 0;
+    for (const rlpc::Influence& influence : influences) {
+      rlpc::fuzz_check(influence.bone < gof.bones.size() && influence.weight > 0);
+      sum += influence.weight;
+    }
+    rlpc::fuzz_check(sum == 1 << gof.weight_bits);
+  }
+}
+
+void decode_gof(const rlpc::SequenceHeader& header, rlpc::MeshPredictions& meshes,
+                std::uint32_t first_frame, std::span<const Piece> pieces) {
+  rlpc::BoneGofParser parser(header, meshes, kMaxMemoryBytes);
+  rlpc::BitReader gof_bits(pieces[0]);
+  const rlpc::GofStart start = rlpc::parse_gof_start(gof_bits, header, first_frame);
+  if (!start.bones_flag || !parser.bones(gof_bits, start)) return;
+  for (const Piece& piece : pieces.subspan(1)) {
+    rlpc::BitReader slice_bits(piece);
+    if (!parser.slice(slice_bits, 0)) return;
+  }
+  const rlpc::CodedMesh& mesh = parser.mesh();
+  const rlpc::BoneGof gof = parser.finish();
+  check_influences(gof);
+  const rlpc::BoneRecon recon(mesh, gof, header.position_bits);
+  rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
+  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);
+  for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+    recon.frame(f, positions);
+    for (const std::int32_t p : positions) rlpc::fuzz_check(p >= -bound && p < bound);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rlpc::FuzzInput input(data, size);
+  const std::uint32_t first_frame = input.number(4);
+  const std::vector<Piece> pieces = pieces_of(input);
+  if (pieces.size() <= kGofPiece) return 0;
+  rlpc::BitReader header_bits(pieces[0]);
+  const auto header = rlpc::parse_sequence_header(header_bits, rlpc::kProfileMain);
+  if (!header || header->num_vertices > kMaxVertices || header->num_frames > kMaxFrames ||
+      first_frame >= header->num_frames) {
+    return 0;
+  }
+  rlpc::BitReader connectivity_bits(pieces[1]);
+  const auto triangles =
+      rlpc::parse_connectivity(connectivity_bits, header->num_vertices, header->num_triangles);
+  if (!triangles) return 0;
+  const rlpc::Topology topology = rlpc::make_topology(header->num_vertices, *triangles);
+  rlpc::MeshPredictions meshes(topology, *triangles);
+  decode_gof(*header, meshes, first_frame, std::span(pieces).subspan(kGofPiece));
+  return 0;
+}
+
+// Mutates one piece, mostly the GOF or a slice, or leaves one out, repeats or moves it: what
+// stands before the GOF has targets of its own.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned int seed) {
+  std::minstd_rand random(seed);
+  rlpc::FuzzInput input(data, size);
+  const auto prefix = input.take(4);
+  Piece bytes(prefix.begin(), prefix.end());
+  std::vector<Piece> pieces = pieces_of(input);
+  if (pieces.size() <= kGofPiece || random() % 16 == 0) {
+    return LLVMFuzzerMutate(data, size, max_size);
+  }
+  const auto any = [&] { return kGofPiece + random() % (pieces.size() - kGofPiece); };
+  const std::size_t i = any();
+  const auto place = pieces.begin() + static_cast<std::ptrdiff_t>(i);
+  switch (random() % 12) {
+    case 0:
+      pieces.erase(place);
+      break;
+    case 1:
+      pieces.insert(place, Piece(pieces[any()]));
+      break;
+    case 2:
+      std::swap(pieces[i], pieces[any()]);
+      break;
+    default: {
+      const std::size_t old = pieces[i].size();
+      pieces[i].resize(std::min(kMaxPieceBytes, old + 1 + random() % 64));
+      pieces[i].resize(LLVMFuzzerMutate(pieces[i].data(), old, pieces[i].size()));
+      break;
+    }
+  }
+  for (const Piece& piece : pieces) {
+    bytes.push_back(static_cast<std::uint8_t>(piece.size()));
+    bytes.push_back(static_cast<std::uint8_t>(piece.size() >> 8));
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+  }
+  if (bytes.size() > max_size) return size;
+  std::copy(bytes.begin(), bytes.end(), data);
+  return bytes.size();
+}

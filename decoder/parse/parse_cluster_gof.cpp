@@ -1,0 +1,282 @@
+#include "decoder/parse/parse_cluster_gof.h"
+
+#include <algorithm>
+
+#include "common/cluster_gof/cluster_models.h"
+#include "common/int_math.h"
+#include "common/kernels/kernels.h"
+#include "decoder/parse/parse_component_header.h"
+#include "decoder/parse/parse_track.h"
+#include "decoder/parse/section_reader.h"
+
+namespace rlpc {
+namespace {
+
+// Memory of a value of a seed track: as a residual, and as a position.
+constexpr std::uint64_t kBytesPerTrackValue = 14;
+
+// Memory of components of a cluster: the residuals, and the factors arranged for
+// reconstruction (FactorSet), in tiles and with both digits of both factors, each in a vector
+// that may have grown to twice what it holds.
+constexpr std::uint64_t kBytesPerComponent = 320;
+constexpr std::uint64_t kBytesPerResidual = 4;
+constexpr std::uint64_t kBytesPerFactor = 16;
+constexpr std::uint64_t kBytesPerTile = kTileValues * kBytesPerFactor + 48;
+
+std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_values,
+                               std::uint64_t num_frames) {
+  const std::uint64_t tiles = (num_values + kTileValues - 1) / kTileValues;
+  return num_components * (kBytesPerComponent + kBytesPerResidual * (num_values + num_frames) +
+                           kBytesPerFactor * num_frames + kBytesPerTile * tiles);
+}
+
+// The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
+class GofSectionParser {
+ public:
+  GofSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                   Gof& gof, std::uint64_t max_memory_bytes)
+      : section_(r, "gof_section"),
+        header_(header),
+        topology_(topology),
+        gof_(gof),
+        max_memory_bytes_(max_memory_bytes) {}
+
+  void parse();
+
+ private:
+  bool failed() const { return section_.failed(); }
+  void cluster_headers();
+  void cluster_seeds(std::size_t cluster_index);
+  void cluster_map();
+  std::uint16_t cluster_idx(const ClusterPrediction& prediction);
+  void count_factors(std::uint64_t more, const char* element);
+  // Whether what is known so far fits into the memory that the caller allows.
+  void take_memory(std::uint64_t bytes, const char* element);
+  void seed_tracks();
+  void component_counts();
+  void components();
+  void component(std::size_t coded_vertices, Component& component);
+
+  SectionReader section_;
+  const SequenceHeader& header_;
+  const Topology& topology_;
+  Gof& gof_;
+  std::uint64_t max_memory_bytes_;
+  GofModels models_;
+  std::vector<std::size_t> coded_vertices_;  // of each cluster
+  std::uint64_t num_factors_ = 0;
+  std::uint64_t memory_bytes_ = 0;
+  std::vector<std::uint32_t> frame_mean_;
+  Component previous_;  // header of the component before
+};
+
+// 6.5.2 cluster_headers( )
+void GofSectionParser::cluster_headers() {
+  gof_.cluster_of_vertex.assign(header_.num_vertices, 0);
+  for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
+    gof_.clusters[i].lcf_flag = section_.bin(models_.lcf_flag, "lcf_flag");
+    if (gof_.clusters[i].lcf_flag) cluster_seeds(i);
+    section_.check_overrun("lcf_flag");
+  }
+}
+
+void GofSectionParser::cluster_seeds(std::size_t cluster_index) {
+  Cluster& cluster = gof_.clusters[cluster_index];
+  for (std::uint32_t& v : cluster.seed_vertex) {
+    v = section_.bypass(ceil_log2(header_.num_vertices), "seed_vertex");
+    if (v >= header_.num_vertices) {
+      section_.fail("R-GOF-06", "seed_vertex");
+      return;
+    }
+  }
+  const auto& s = cluster.seed_vertex;
+  if (s[0] == s[1] || s[1] == s[2] || s[2] == s[0]) {
+    section_.fail("R-GOF-07", "seed_vertex");
+    return;
+  }
+  std::uint32_t anchor = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto known = std::find_if(gof_.seed_tracks.begin(), gof_.seed_tracks.end(),
+                                    [&](const SeedTrack& t) { return t.vertex == s[k]; });
+    const auto index = static_cast<std::uint32_t>(known - gof_.seed_tracks.begin());
+    if (k == 0) anchor = index;
+    if (known != gof_.seed_tracks.end()) continue;
+    gof_.seed_tracks.push_back({s[k], anchor, {}});
+    gof_.cluster_of_vertex[s[k]] = kSeedCluster;
+  }
+}
+
+// 6.5.3 cluster_map( )
+void GofSectionParser::cluster_map() {
+  const int depth = ceil_log2(gof_.clusters.size());
+  models_.cluster_idx.resize(std::size_t{1} << depth);
+  std::uint16_t previous = 0;
+  for (std::uint32_t v = 0; v < header_.num_vertices && !failed(); ++v) {
+    if (gof_.cluster_of_vertex[v] == kSeedCluster) continue;
+    if (gof_.clusters.size() > 1) {
+      previous = cluster_idx(
+          predict_cluster(topology_.earlier_neighbours[v], gof_.cluster_of_vertex, previous));
+    }
+    gof_.cluster_of_vertex[v] = previous;
+  }
+  section_.check_overrun("cluster_idx");
+}
+
+std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction) {
+  if (section_.bin(models_.cluster_predicted_flag[prediction.context],
+                   "cluster_predicted_flag")) {
+    return prediction.cluster;
+  }
+  const std::uint32_t index = section_.tree(models_.cluster_idx, "cluster_idx");
+  if (index < gof_.clusters.size()) return static_cast<std::uint16_t>(index);
+  section_.fail("R-GOF-08", "cluster_idx");
+  return 0;
+}
+
+// NumFactors of 6.5.4 and 6.5.5
+void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
+  num_factors_ += more;
+  if (num_factors_ > header_.level().max_gof_factors) section_.fail("R-LVL-05", element);
+}
+
+void GofSectionParser::take_memory(std::uint64_t bytes, const char* element) {
+  memory_bytes_ += bytes;
+  if (!failed() && memory_bytes_ > max_memory_bytes_) section_.fail_limit(element);
+}
+
+// 6.5.4 seed_tracks( )
+void GofSectionParser::seed_tracks() {
+  frame_mean_.assign(gof_.num_frames, 0);
+  const std::uint64_t values = 3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames;
+  count_factors(values, "seed_residual");
+  take_memory(kBytesPerTrackValue * values, "seed_residual");
+  for (SeedTrack& track : gof_.seed_tracks) {
+    if (failed()) return;
+    track.residual = parse_track(section_, models_.seed, frame_mean_, "seed_residual");
+    section_.check_overrun("seed_residual");
+  }
+}
+
+// 6.5.5 component_counts( )
+void GofSectionParser::component_counts() {
+  int previous = 0;
+  coded_vertices_.assign(gof_.clusters.size(), 0);
+  for (const std::uint16_t i : gof_.cluster_of_vertex) {
+    if (i != kSeedCluster) ++coded_vertices_[i];
+  }
+  std::vector<std::size_t> counts(gof_.clusters.size(), 0);
+  std::uint64_t memory = 0;
+  for (std::size_t i = 0; i < counts.size() && !failed(); ++i) {
+    const Range range{0, header_.level().max_components};
+    previous = parse_header_field(section_, models_.header, models_.header_mean,
+                                  HeaderField::kNumComponents, previous, range,
+                                  "num_components_delta", "R-GOF-09");
+    if (failed()) return;
+    counts[i] = static_cast<std::size_t>(previous);
+    const std::uint64_t num_values = 3 * std::uint64_t{coded_vertices_[i]};
+    count_factors(counts[i] * (num_values + gof_.num_frames), "num_components_delta");
+    memory += component_memory(counts[i], num_values, gof_.num_frames);
+  }
+  take_memory(memory, "num_components_delta");
+  if (failed()) return;
+  for (std::size_t i = 0; i < counts.size(); ++i) gof_.clusters[i].components.resize(counts[i]);
+}
+
+// 6.5.6 components( )
+void GofSectionParser::components() {
+  for (std::size_t i = 0; i < gof_.clusters.size(); ++i) {
+    frame_mean_.assign(gof_.num_frames, 0);
+    for (Component& c : gof_.clusters[i].components) {
+      component(coded_vertices_[i], c);
+      section_.check_overrun("spatial_residual");
+      if (failed()) return;
+    }
+  }
+}
+
+// 6.5.7 component( )
+void GofSectionParser::component(std::size_t coded_vertices, Component& component) {
+  parse_component_header(section_, models_.header, models_.header_mean, previous_, component);
+  if (failed()) return;
+  component.temporal_predictor =
+      section_.truncated_unary(models_.temporal_predictor, "temporal_predictor");
+  component.spatial_predictor = static_cast<SpatialPredictor>(
+      section_.truncated_unary(models_.spatial_predictor, "spatial_predictor"));
+  previous_ = component;
+
+  TemporalContext temporal(frame_mean_, component);
+  component.temporal_residual.resize(gof_.num_frames);
+  for (std::uint32_t f = 0; f < gof_.num_frames; ++f) {
+    const std::int32_t value =
+        section_.residual(models_.temporal, temporal.expected(f), "temporal_residual");
+    temporal.update(f, value);
+    component.temporal_residual[f] = value;
+  }
+  SpatialContext spatial(component);
+  component.spatial_residual.resize(3 * coded_vertices);
+  for (std::size_t i = 0; i < coded_vertices; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int32_t value =
+          section_.residual(models_.spatial, spatial.expected(c), "spatial_residual");
+      spatial.update(c, value);
+      component.spatial_residual[c * coded_vertices + i] = value;
+    }
+  }
+}
+
+// 6.5.1 gof_section( )
+void GofSectionParser::parse() {
+  cluster_headers();
+  if (!failed()) cluster_map();
+  if (!failed()) seed_tracks();
+  if (!failed()) component_counts();
+  if (!failed()) components();
+  section_.finish();
+}
+
+}  // namespace
+
+// 6.5 gof( )
+GofStart parse_gof_start(BitReader& r, const SequenceHeader& header,
+                         std::uint32_t first_frame) {
+  const Level& level = header.level();
+  GofStart start;
+  start.first_frame = first_frame;
+  r.ue("first_frame", {first_frame, first_frame}, "R-GOF-01");
+  const std::uint64_t at = r.bit_pos();
+  const std::uint32_t frames_left = header.num_frames - first_frame;
+  start.num_frames =
+      r.ue("num_gof_frames_minus1", {0, std::int64_t{frames_left} - 1}, "R-GOF-02") + 1;
+  const std::uint64_t num_values = std::uint64_t{start.num_frames} * header.num_vertices;
+  if (!r.error() &&
+      (start.num_frames > level.max_gof_frames || num_values > level.max_gof_values)) {
+    r.fail(Errc::kInvalid, "R-LVL-04", "num_gof_frames_minus1", at);
+  }
+  if (header.profile_idc == kProfileMain) start.bones_flag = r.flag("bones_flag");
+  return start;
+}
+
+// 6.5 clusters_of_gof( )
+Result<Gof> parse_clusters(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                           const GofStart& start, std::uint64_t max_memory_bytes) {
+  const Level& level = header.level();
+  Gof gof;
+  gof.first_frame = start.first_frame;
+  gof.num_frames = start.num_frames;
+  const std::uint32_t num_clusters =
+      r.ue("num_clusters_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
+  gof.fraction_bits =
+      static_cast<int>(r.u(5, "fraction_bits", {0, kMaxFractionBits}, "R-GOF-03"));
+  gof.seed_step = r.ue("seed_step_minus1", {0, kMaxSeedStep - 1}, "R-GOF-04") + 1;
+  gof.seed_predictor =
+      static_cast<int>(r.u(3, "seed_predictor", {0, kMaxPredictorOrder}, "R-GOF-05"));
+  gof.seed_coupling_flag = r.flag("seed_coupling_flag");
+  r.byte_alignment();
+  if (r.error()) return *r.error();
+  gof.clusters.resize(num_clusters);
+  GofSectionParser(r, header, topology, gof, max_memory_bytes).parse();
+  if (r.error()) return *r.error();
+  return gof;
+}
+
+}  // namespace rlpc

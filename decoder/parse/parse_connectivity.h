@@ -1,0 +1,21 @@
+// 6.4 Connectivity, parsing side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/mesh/mesh.h"
+#include "common/result.h"
+
+namespace rlpc {
+
+// 6.4.1 connectivity( ): the triangles in decoding order, every index below num_vertices.
+//
+// `r` covers exactly the unit's payload. The caller has checked num_vertices and num_triangles
+// against its limits; memory grows with what is decoded, not with what the header claims, and
+// time is linear in the payload plus the decoded triangles.
+Result<std::vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
+                                                 std::uint32_t num_triangles);
+
+}  // namespace rlpc

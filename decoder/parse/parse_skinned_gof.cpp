@@ -1,0 +1,376 @@
+#include "decoder/parse/parse_skinned_gof.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/int_math.h"
+#include "common/skinned_gof/influences.h"
+#include "decoder/parse/parse_component_header.h"
+#include "decoder/parse/parse_track.h"
+#include "decoder/parse/section_reader.h"
+
+namespace rlpc {
+namespace {
+
+// Memory of a factor: as a residual with its magnitude, as a value, and arranged for the sums.
+constexpr std::uint64_t kBytesPerFactor = 18;
+
+// 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
+static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level) {
+  return 6 * std::uint64_t{level.max_clusters} * level.max_gof_frames +
+             3 * std::uint64_t{level.max_vertices} <=
+         level.max_gof_factors;
+}));
+
+// 6.11.2 bone( b )
+class BoneParser {
+ public:
+  BoneParser(SectionReader& section, const SequenceHeader& header, std::uint32_t num_frames)
+      : section_(section),
+        header_(header),
+        rotation_mean_(num_frames, 0),
+        origin_mean_(num_frames, 0) {}
+
+  Bone parse(std::uint32_t b) {
+    Bone bone;
+    if (b > 0) {
+      const std::uint32_t parent_plus1 = section_.bypass(ceil_log2(b + 1), "bone_parent_plus1");
+      if (parent_plus1 > b) section_.fail("R-BON-04", "bone_parent_plus1");
+      bone.parent = static_cast<std::int32_t>(std::min(parent_plus1, b)) - 1;
+    }
+    for (std::int32_t& x : bone.pivot) {
+      const std::uint32_t value = section_.bypass(header_.position_bits + 5, "bone_pivot");
+      x = static_cast<std::int32_t>(value) - (1 << (header_.position_bits + 4));
+    }
+    bone.rotation_flag = section_.bin(models_.rotation_flag, "rotation_flag");
+    bone.origin_flag = section_.bin(models_.origin_flag, "origin_flag");
+    if (bone.rotation_flag) {
+      bone.rotation_step_idx = step_idx("rotation_step_idx");
+      bone.rotation_order =
+          section_.truncated_unary(models_.rotation_order, "rotation_order_minus1") + 1;
+      bone.rotation_residual =
+          parse_track(section_, models_.rotation, rotation_mean_, "rotation_residual");
+    }
+    if (bone.origin_flag) {
+      bone.origin_step_idx = step_idx("origin_step_idx");
+      bone.origin_order = section_.truncated_unary(models_.origin_order, "origin_order");
+      bone.origin_residual =
+          parse_track(section_, models_.origin, origin_mean_, "origin_residual");
+    }
+    return bone;
+  }
+
+ private:
+  std::uint32_t step_idx(const char* element) {
+    const std::uint32_t idx = section_.bypass(8, element);
+    if (idx > kMaxStepIdx) section_.fail("R-BON-05", element);
+    return std::min(idx, kMaxStepIdx);
+  }
+
+  SectionReader& section_;
+  const SequenceHeader& header_;
+  BoneModels models_;
+  std::vector<std::uint32_t> rotation_mean_;
+  std::vector<std::uint32_t> origin_mean_;
+};
+
+}  // namespace
+
+// 6.11 layers_of_gof( )
+void BoneGofParser::layers(BitReader& r) {
+  gof_.layer_group_size = {mesh_->num_layers()};
+  gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
+  if (gof_.prediction != Prediction::kLayers) return;
+  gof_.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
+  gof_.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
+  gof_.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
+  const std::int64_t num_layers = mesh_->num_layers();
+  const std::uint32_t num_groups =
+      r.ue("num_layer_groups_minus1", {0, num_layers - 1}, "R-BON-03") + 1;
+  if (r.error()) return;
+  gof_.layer_group_size.assign(num_groups, 1);
+  std::int64_t left = num_layers;
+  for (std::uint32_t j = 0; j + 1 < num_groups; ++j) {
+    const std::int64_t groups_after = num_groups - j - 1;
+    gof_.layer_group_size[j] =
+        r.ue("layer_group_layers_minus1", {0, left - groups_after - 1}, "R-BON-03") + 1;
+    left -= gof_.layer_group_size[j];
+  }
+  gof_.layer_group_size.back() = static_cast<std::uint32_t>(left);
+  for (std::uint8_t& step : gof_.layer_step) {
+    step = static_cast<std::uint8_t>(r.u(4, "layer_step_minus1") + 1);
+  }
+}
+
+// 6.11.1 bone_section( )
+void BoneGofParser::bone_section(BitReader& r) {
+  SectionReader section(r, "bone_section");
+  num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
+                 3 * std::uint64_t{header_.num_vertices};
+  if (section.failed()) return;
+  const std::uint64_t of_vertices = sizeof(Influences) * std::uint64_t{header_.num_vertices};
+  if (num_factors_ * kBytesPerFactor + of_vertices > max_memory_bytes_) {
+    section.fail_limit("bone_section");
+  }
+  if (section.failed()) return;
+  BoneParser parser(section, header_, gof_.num_frames);
+  for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
+    gof_.bones[b] = parser.parse(b);
+    section.check_overrun("origin_residual");
+  }
+  section.finish();
+}
+
+// 6.11 bones_of_gof( )
+Result<bool> BoneGofParser::bones(BitReader& r, const GofStart& start) {
+  gof_ = {};
+  gof_.first_frame = start.first_frame;
+  gof_.num_frames = start.num_frames;
+  const Level& level = header_.level();
+  const std::uint32_t num_bones =
+      r.ue("num_bones_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
+  gof_.fraction_bits =
+      static_cast<int>(r.u(5, "fraction_bits", {0, kMaxFractionBits}, "R-GOF-03"));
+  gof_.weight_bits = static_cast<int>(r.u(3, "weight_bits"));
+  gof_.rest_step = r.ue("rest_step_minus1", {0, kMaxRestStep - 1}, "R-BON-01") + 1;
+  gof_.num_component_groups =
+      r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
+  gof_.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
+  if (r.error()) return *r.error();
+  mesh_ = &meshes_.get(gof_.prediction);
+  layers(r);
+  r.byte_alignment();
+  if (r.error()) return *r.error();
+  gof_.bones.resize(num_bones);
+  bone_section(r);
+  if (r.error()) return *r.error();
+
+  models_ = {};
+  previous_ = {};
+  previous_.scale_idx = 0;
+  trajectory_mean_.assign(gof_.num_frames, 0);
+  contexts_.reset();
+  last_group_ = 0;
+  end_component_group_ = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
+  end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  is_cut_ = false;
+  gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
+  gof_.influences.assign(header_.num_vertices, {});
+  gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
+  return true;
+}
+
+// 8.14.1 MayFollow( group, layers )
+bool BoneGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
+  if (group < last_group_ || layers != gof_.slice_layers[group]) return false;
+  return group == 0 || gof_.slice_layers[group - 1] > layers;
+}
+
+// The section of a slice.
+class BoneGofParser::SliceParser {
+ public:
+  SliceParser(BoneGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
+      : parser_(parser),
+        gof_(parser.gof_),
+        section_(r, "slice_section"),
+        group_(group),
+        layers_(layers) {}
+
+  void parse();
+
+ private:
+  bool failed() const { return section_.failed(); }
+  void group_components();
+  void trajectory(Trajectory& trajectory);
+  void start();
+  void influences(std::uint32_t v, InfluencePrediction& prediction);
+  void spatial_residuals(std::uint32_t v);
+
+  BoneGofParser& parser_;
+  BoneGof& gof_;
+  SectionReader section_;
+  std::uint32_t group_;
+  std::uint32_t layers_;
+};
+
+// 6.12.1 group_components( )
+void BoneGofParser::SliceParser::group_components() {
+  const Level& level = parser_.header_.level();
+  const auto left = static_cast<std::int64_t>(level.max_components - gof_.trajectories.size());
+  SliceModels& models = parser_.models_;
+  const int count = parse_header_field(section_, models.header, models.header_mean,
+                                       HeaderField::kNumComponents, 1, {1, left},
+                                       "num_group_components_minus1", "R-SLI-03");
+  if (failed()) return;
+  const std::uint64_t num_components =
+      gof_.trajectories.size() + static_cast<std::size_t>(count);
+  if (num_components > parser_.cut_.max_components) {
+    parser_.end_component_group_ = group_;
+    return;
+  }
+  if (num_components == parser_.cut_.max_components) parser_.end_component_group_ = group_ + 1;
+  parser_.num_factors_ += static_cast<std::uint64_t>(count) *
+                          (parser_.header_.num_vertices + 3 * std::uint64_t{gof_.num_frames});
+  if (parser_.num_factors_ > level.max_gof_factors) {
+    section_.fail("R-LVL-05", "num_group_components_minus1");
+  } else if (parser_.num_factors_ * kBytesPerFactor > parser_.max_memory_bytes_) {
+    section_.fail_limit("num_group_components_minus1");
+  }
+  for (int l = 0; l < count && !failed(); ++l) {
+    gof_.trajectories.emplace_back();
+    trajectory(gof_.trajectories.back());
+    section_.check_overrun("trajectory_residual");
+  }
+}
+
+// 6.12.1 trajectory( )
+void BoneGofParser::SliceParser::trajectory(Trajectory& trajectory) {
+  Trajectory& before = parser_.previous_;
+  parse_component_header(section_, parser_.models_.header, parser_.models_.header_mean, before,
+                         trajectory);
+  if (failed()) return;
+  before.scale_idx = trajectory.scale_idx;
+  before.spatial_bits = trajectory.spatial_bits;
+  before.temporal_bits = trajectory.temporal_bits;
+  trajectory.temporal_predictor =
+      section_.truncated_unary(parser_.models_.temporal_predictor, "temporal_predictor");
+  for (int k = 0; k < trajectory.temporal_predictor - kMaxPredictorOrder; ++k) {
+    const std::uint32_t weight = section_.bypass(9, "temporal_weight");
+    trajectory.temporal_weight[static_cast<std::size_t>(k)] =
+        static_cast<std::int16_t>(static_cast<int>(weight) - kTemporalWeightOffset);
+  }
+  trajectory.residual = parse_track(section_, parser_.models_.temporal,
+                                    parser_.trajectory_mean_, "trajectory_residual");
+}
+
+// 9.8.1 StartSlice( )
+void BoneGofParser::SliceParser::start() {
+  if (layers_ > 0) return;
+  if (group_ > 1) {
+    parser_.vertex_models_ = std::make_unique<VertexModels>(*parser_.models_of_group_);
+  } else {
+    parser_.vertex_models_ = std::make_unique<VertexModels>();
+  }
+  if (group_ > 0) {
+    gof_.group_end.push_back(kRestFactors + gof_.trajectories.size());
+    const std::size_t size = gof_.group_end[group_] - gof_.group_end[group_ - 1];
+    gof_.vertex_residual.emplace_back(size * parser_.header_.num_vertices);
+  }
+  const std::size_t size =
+      gof_.group_end[group_] - (group_ > 0 ? gof_.group_end[group_ - 1] : 0);
+  parser_.contexts_.emplace(*parser_.mesh_, size);
+}
+
+// 6.12.2 influences( v )
+void BoneGofParser::SliceParser::influences(std::uint32_t v, InfluencePrediction& prediction) {
+  prediction.start(parser_.mesh_->ring(v));
+  SliceModels& models = parser_.models_;
+  while (prediction.can_add_bone()) {
+    const auto extra = static_cast<std::size_t>(prediction.num_extra_bones());
+    if (!section_.bin(models.extra_bone_flag[extra], "extra_bone_flag")) break;
+    const std::uint32_t bone = section_.bypass(ceil_log2(gof_.bones.size()), "extra_bone");
+    if (bone >= gof_.bones.size() || !prediction.is_new_bone(bone)) {
+      section_.fail("R-SLI-04", "extra_bone");
+      return;
+    }
+    const std::uint32_t weight =
+        section_.bypass(gof_.weight_bits, "extra_bone_weight_minus1") + 1;
+    if (weight > static_cast<std::uint32_t>(prediction.weight_left())) {
+      section_.fail("R-SLI-05", "extra_bone_weight_minus1");
+      return;
+    }
+    prediction.add_extra_bone(bone, static_cast<int>(weight));
+  }
+  for (std::size_t k = 1; k < prediction.num_candidates(); ++k) {
+    std::int32_t residual = 0;
+    if (prediction.has_residual()) {
+      residual = section_.residual(models.weight, prediction.expected(k), "weight_residual");
+    }
+    prediction.add_candidate(k, residual);
+  }
+  gof_.influences[v] = prediction.finish();
+}
+
+// 6.12.3 spatial_residuals( v )
+void BoneGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
+  std::vector<std::int32_t>& residuals = gof_.vertex_residual[group_];
+  const std::size_t size = residuals.size() / parser_.header_.num_vertices;
+  VertexContexts& contexts = *parser_.contexts_;
+  contexts.start(v);
+  struct Context {
+    VertexContexts& contexts;
+    VertexModels& of_activity;
+    ResidualModels& models() { return of_activity[contexts.activity()]; }
+    std::uint32_t expected() const { return contexts.expected(); }
+    void update(std::int32_t value) { contexts.update(value); }
+  };
+  section_.residuals(Context{contexts, *parser_.vertex_models_},
+                     std::span(residuals).subspan(v * size, size), "vertex_residual");
+}
+
+void BoneGofParser::SliceParser::parse() {
+  if (group_ > 0 && layers_ == 0 && !failed()) group_components();
+  if (failed() || group_ >= parser_.end_component_group_) return;
+  start();
+  InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
+                                 gof_.weight_bits);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < layers_; ++j) first += gof_.layer_group_size[j];
+  for (const std::uint32_t v :
+       parser_.mesh_->vertices_of_layers(first, first + gof_.layer_group_size[layers_])) {
+    if (group_ == 0) influences(v, prediction);
+    if (failed()) return;
+    spatial_residuals(v);
+    section_.check_overrun("vertex_residual");
+    if (failed()) return;
+  }
+  section_.finish();
+  if (failed()) return;
+  // 9.8.1 EndSlice( )
+  if (layers_ == 0) {
+    parser_.models_of_group_ = std::make_unique<VertexModels>(*parser_.vertex_models_);
+  }
+  gof_.slice_layers[group_] = layers_ + 1;
+  parser_.last_group_ = group_;
+}
+
+// 6.12 slice_unit( )
+Result<bool> BoneGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
+  const std::uint32_t group =
+      r.ue("component_group_idx", {0, gof_.num_component_groups}, "R-SLI-01");
+  const std::uint32_t layers =
+      r.ue("layer_group_idx", {0, static_cast<std::int64_t>(gof_.layer_group_size.size()) - 1},
+           "R-SLI-01");
+  if (r.error()) return *r.error();
+  if (group >= end_component_group_ || layers >= end_layer_group_) {
+    is_cut_ = true;
+    return true;
+  }
+  if (!may_follow(group, layers)) {
+    r.fail(Errc::kInvalid, "R-SLI-02", "slice_unit", unit_bit_pos);
+  }
+  r.byte_alignment();
+  if (r.error()) return *r.error();
+  SliceParser(*this, r, group, layers).parse();
+  if (r.error()) return *r.error();
+  // Only the slice tells how many trajectories its group has.
+  is_cut_ = is_cut_ || group >= end_component_group_;
+  return true;
+}
+
+// 8.14.1 AddAbsentInfluences( )
+BoneGof BoneGofParser::finish() {
+  InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
+                                 gof_.weight_bits);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < gof_.slice_layers[0]; ++j) first += gof_.layer_group_size[j];
+  for (const std::uint32_t v : mesh_->vertices_of_layers(first, mesh_->num_layers())) {
+    prediction.start(mesh_->ring(v));
+    for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
+      prediction.add_candidate(k, 0);
+    gof_.influences[v] = prediction.finish();
+  }
+  return std::move(gof_);
+}
+
+}  // namespace rlpc

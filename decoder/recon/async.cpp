@@ -1,0 +1,25 @@
+// Compiled with exceptions: what a thread throws would end the program.
+#include "decoder/recon/async.h"
+
+#include <utility>
+
+namespace rlpc {
+
+std::future<bool> run_apart(std::function<void()> work) {
+  try {
+    return std::async(std::launch::async, [work = std::move(work)] {
+      try {
+        work();
+        return true;
+      } catch (...) {
+        return false;
+      }
+    });
+  } catch (...) {
+    std::promise<bool> none;
+    none.set_value(false);
+    return none.get_future();
+  }
+}
+
+}  // namespace rlpc

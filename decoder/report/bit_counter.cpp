@@ -1,0 +1,130 @@
+#include "decoder/report/bit_counter.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "common/syntax/stream_format.h"
+
+namespace rlpc {
+namespace {
+
+struct Part {
+  std::string_view name;
+  std::vector<std::string_view> elements;
+};
+const std::array<Part, kNumStreamParts>& parts() {
+  static const std::array<Part, kNumStreamParts> kParts{{
+      {"unit headers and CRCs",
+       {"version_major", "version_minor", "ancillary_flag", "unit_type", "unit_size",
+        "unit_crc"}},
+      {"sequence header", {"sequence_header"}},
+      {"connectivity", {"connectivity"}},
+      {"vertex order", {"vertex_order"}},
+      {"GOF headers", {"gof"}},
+      {"bones",
+       {"bone_parent_plus1", "bone_pivot", "rotation_flag", "origin_flag", "rotation_step_idx",
+        "rotation_order_minus1", "rotation_residual", "origin_step_idx", "origin_order",
+        "origin_residual"}},
+      {"influences",
+       {"extra_bone_flag", "extra_bone", "extra_bone_weight_minus1", "weight_residual"}},
+      {"rest positions", {"vertex_residual"}},
+      {"clusters", {"lcf_flag", "seed_vertex", "cluster_predicted_flag", "cluster_idx"}},
+      {"seed tracks", {"seed_residual"}},
+      {"component headers",
+       {"num_components_delta", "num_group_components_minus1", "scale_idx_delta",
+        "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor", "temporal_weight",
+        "spatial_predictor"}},
+      {"temporal factors", {"temporal_residual", "trajectory_residual"}},
+      {"spatial factors", {"spatial_residual"}},
+      {"hashes, index, metadata", {"other"}},
+  }};
+  return kParts;
+}
+
+constexpr std::size_t kRestPart = 7;
+constexpr std::size_t kSpatialPart = 12;
+constexpr std::size_t kAncillaryPart = 13;
+
+// Of what stands in a unit outside the elements above.
+std::size_t part_of_unit(UnitType type) {
+  switch (type) {
+    case UnitType::kSequenceHeader:
+      return 1;
+    case UnitType::kConnectivity:
+      return 2;
+    case UnitType::kVertexOrder:
+      return 3;
+    case UnitType::kGof:
+    case UnitType::kSlice:
+      return 4;
+    default:
+      return kAncillaryPart;
+  }
+}
+
+}  // namespace
+
+const std::array<std::string_view, kNumStreamParts>& stream_part_names() {
+  static const std::array<std::string_view, kNumStreamParts> kNames = [] {
+    std::array<std::string_view, kNumStreamParts> names;
+    for (std::size_t p = 0; p < names.size(); ++p) names[p] = parts()[p].name;
+    return names;
+  }();
+  return kNames;
+}
+
+BitCounter::BitCounter(bool print) : print_(print) {
+  for (std::size_t p = 0; p < parts().size(); ++p) {
+    for (const std::string_view name : parts()[p].elements) part_of_[name] = p;
+  }
+}
+
+void BitCounter::begin(const char* structure, std::uint64_t bit_pos) {
+  close(bit_pos);
+  if (print_) std::printf("%10" PRIu64 "  %s( )\n", bit_pos, structure);
+  if (std::string_view(structure) != "unit") return;
+  close_unit();
+  ++num_units_;
+}
+
+void BitCounter::element(const char* name, std::int64_t value, std::uint64_t bit_pos) {
+  close(bit_pos);
+  if (print_) std::printf("%10" PRIu64 "    %s = %" PRId64 "\n", bit_pos, name, value);
+  const std::string_view word(name);
+  if (word == "ancillary_flag") ancillary_bit_ = value != 0 ? kAncillaryFlag : 0;
+  if (word == "unit_type") {
+    unit_type_ = static_cast<std::uint8_t>(ancillary_bit_ | value);
+    unit_part_ = part_of_unit(UnitType{unit_type_});
+  }
+  if (word == "component_group_idx") rest_positions_ = value == 0;
+  const auto part = part_of_.find(word);
+  open_part_ = part == part_of_.end() ? unit_part_ : part->second;
+  if (open_part_ == kRestPart && !rest_positions_) open_part_ = kSpatialPart;
+  listing_.element(name, value);
+}
+
+void BitCounter::finish(std::uint64_t bit_pos) {
+  close(bit_pos);
+  close_unit();
+}
+
+void BitCounter::close(std::uint64_t bit_pos) {
+  if (bit_pos <= last_) return;
+  bits_[open_part_] += bit_pos - last_;
+  unit_bits_[open_part_] += bit_pos - last_;
+  last_ = bit_pos;
+}
+
+void BitCounter::close_unit() {
+  const UnitType type{unit_type_};
+  if (type == UnitType::kGof) gof_bits_.emplace_back();
+  if (type == UnitType::kGof || type == UnitType::kSlice || type == UnitType::kGofHash) {
+    // The first unit of a GOF is a GOF unit.
+    for (std::size_t p = 0; p < kNumStreamParts && !gof_bits_.empty(); ++p) {
+      gof_bits_.back()[p] += unit_bits_[p];
+    }
+  }
+  unit_bits_ = {};
+}
+
+}  // namespace rlpc

@@ -1,0 +1,56 @@
+// What takes how many bits of a stream, and of each of its GOFs.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "common/bitstream/trace.h"
+#include "decoder/report/slice_listing.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kNumStreamParts = 14;
+using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
+// Of each part, in the order of all tables.
+const std::array<std::string_view, kNumStreamParts>& stream_part_names();
+
+// Adds up the bits from each element to the next.
+class BitCounter final : public Trace {
+ public:
+  explicit BitCounter(bool print = false);  // every element, on standard output
+
+  void begin(const char* structure, std::uint64_t bit_pos) override;
+  void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override;
+  // At the end of the stream.
+  void finish(std::uint64_t bit_pos);
+
+  const PartSizes& bits() const { return bits_; }
+  std::uint64_t num_units() const { return num_units_; }
+  const std::vector<ListedGof>& gofs() const { return listing_.gofs(); }
+  // Of each GOF, with its slices and hashes; once finished.
+  const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
+
+ private:
+  void close(std::uint64_t bit_pos);
+  void close_unit();
+
+  bool print_;
+  std::map<std::string_view, std::size_t> part_of_;
+  PartSizes bits_{};
+  std::size_t open_part_ = 0;
+  std::uint8_t ancillary_bit_ = 0;
+  std::uint8_t unit_type_ = 0;   // as in UnitType
+  bool rest_positions_ = false;  // in a slice of them
+  std::size_t unit_part_ = 0;
+  std::uint64_t last_ = 0;
+  std::uint64_t num_units_ = 0;
+  PartSizes unit_bits_{};  // of the unit that is open
+  std::vector<PartSizes> gof_bits_;
+  SliceListing listing_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,20 @@
+// 6.9: the GOF index of a stream, found from its end.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decoder/parse/parse_gof_index.h"
+#include "decoder/stream/unit_reader.h"
+
+namespace rlpc {
+
+// GOFs as the index before the end of the sequence tells them; empty if there is none. Whether
+// they are where it says shows when they are parsed (parse_gof_start).
+//
+//   first_unit  offset that the end of the sequence is not before, bytes
+//   num_frames  of the sequence
+Result<std::vector<GofLocation>> find_gof_index(UnitReader& units, std::uint64_t first_unit,
+                                                std::uint32_t num_frames);
+
+}  // namespace rlpc

@@ -1,0 +1,92 @@
+// 6.2: units; finds them, reads them, checks their CRC.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/bitstream/trace.h"
+#include "common/result.h"
+#include "common/syntax/stream_format.h"
+#include "decoder/stream/byte_source.h"
+
+namespace rlpc {
+
+struct UnitHeader {
+  std::uint8_t type_byte = 0;  // ancillary_flag and unit_type
+  std::uint32_t size = 0;      // of the payload, bytes
+  std::uint64_t offset = 0;    // of the unit, bytes from the start of the stream
+
+  UnitType type() const { return static_cast<UnitType>(type_byte); }
+  bool ancillary() const { return (type_byte & kAncillaryFlag) != 0; }
+  std::uint64_t payload_offset() const { return offset + kUnitHeaderBytes; }
+  std::uint64_t end() const { return payload_offset() + size + kUnitCrcBytes; }
+};
+
+// R-STR-03: a minor version that is not known, or not that of the stream's profile.
+Error unsupported_minor_version();
+
+class UnitReader {
+ public:
+  // max_payload_bytes: of a unit that payload() reads.
+  explicit UnitReader(std::unique_ptr<ByteSource> source, Trace* trace = nullptr,
+                      std::uint64_t max_payload_bytes = kMaxPayloadBytes)
+      : source_(std::move(source)),
+        trace_(trace),
+        max_payload_bytes_(std::min(max_payload_bytes, kMaxPayloadBytes)) {}
+
+  // 6.1: signature and version.
+  Result<bool> stream_header();
+  // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
+  void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
+  // Header of the unit at a byte offset; its end lies within the stream.
+  Result<UnitHeader> header_at(std::uint64_t offset);
+  // Payload of a unit whose CRC holds.
+  Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
+  // Goes past a unit whose payload nobody needs: its CRC holds. Takes no memory.
+  Result<bool> skip(const UnitHeader& unit);
+  // Up to max_bytes from the beginning of a payload, its CRC not checked.
+  Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
+                                                  std::uint32_t max_bytes);
+  // Reader over a payload, with positions from the start of the stream.
+  BitReader bits(const UnitHeader& unit, const std::vector<std::uint8_t>& payload) const {
+    return BitReader(payload, unit.payload_offset() * 8, trace_);
+  }
+
+  // Traces the unit_crc of the last payload, which follows the payload's elements.
+  void flush_trace();
+
+  std::uint32_t version_minor() const { return version_minor_; }
+  std::uint64_t size() const { return source_->size(); }
+
+ private:
+  // What a vector of bytes can hold beside the header and the CRC, on machines of 32 bits, too.
+  static constexpr std::uint64_t kMaxPayloadBytes =
+      std::uint64_t{std::numeric_limits<std::ptrdiff_t>::max()} - kUnitHeaderBytes -
+      kUnitCrcBytes;
+
+  void trace_header(const UnitHeader& unit);
+  // unit_crc: as in the stream.
+  Result<bool> check_crc(const UnitHeader& unit, std::uint32_t computed,
+                         std::uint32_t unit_crc);
+
+  struct PendingCrc {
+    std::uint32_t value;
+    std::uint64_t bit_pos;
+  };
+
+  std::unique_ptr<ByteSource> source_;
+  Trace* trace_;
+  std::uint64_t max_payload_bytes_;
+  std::uint32_t version_minor_ = 0;
+  std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
+  std::optional<PendingCrc> pending_crc_;
+};
+
+}  // namespace rlpc

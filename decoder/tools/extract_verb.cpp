@@ -1,0 +1,169 @@
+#include "decoder/tools/extract_verb.h"
+
+#include <charconv>
+#include <cinttypes>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "decoder/describe_error.h"
+#include "decoder/extract/sub_stream_extractor.h"
+#include "decoder/output/output_file.h"
+#include "decoder/tools/exit_code.h"
+
+namespace rlpc {
+namespace {
+
+std::optional<std::uint32_t> parse_count(std::string_view text) {
+  std::uint32_t count = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (count == SliceCut::kAll) return std::nullopt;
+  return count;
+}
+
+int complain(const std::string& message, int code) {
+  std::cerr << "rlpcinfo: " << message << "\n";
+  return code;
+}
+
+int complain(const ExtractOptions& o, const Error& error) {
+  return complain(name_of_input(o.input) + ": " + describe_error(error), exit_code(error.code));
+}
+
+double bpvf(const StreamCutter& cutter, std::uint64_t bytes) {
+  const SequenceHeader& h = cutter.header();
+  return 8.0 * static_cast<double>(bytes) /
+         (static_cast<double>(h.num_vertices) * h.num_frames);
+}
+
+// The first group of layers stays, even if it has more than the layers asked for.
+bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
+  return after.num_layers > o.cut.max_layers;
+}
+
+nlohmann::ordered_json json_of(const SliceTotals& totals) {
+  return {{"num_trajectories", totals.num_trajectories},
+          {"num_layers", totals.num_layers},
+          {"num_slices", totals.num_slices},
+          {"bytes", totals.bytes}};
+}
+
+nlohmann::ordered_json size_json(const StreamCutter& cutter, std::uint64_t bytes) {
+  return {{"bytes", bytes}, {"bpvf", bpvf(cutter, bytes)}};
+}
+
+void print_json(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
+  bool met = true;
+  nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
+  for (const ListedGof& gof : cutter.gofs()) {
+    const SliceTotals after = cutter.totals_that_stay(gof);
+    met = met && !too_many_layers(o, after);
+    gofs.push_back({{"first_frame", gof.first_frame},
+                    {"num_frames", gof.num_frames},
+                    {"before", json_of(gof.totals({}))},
+                    {"after", json_of(after)}});
+  }
+  const nlohmann::ordered_json json = {{"output", o.output},
+                                       {"cut", cutter.cuts_any()},
+                                       {"request_met", met},
+                                       {"before", size_json(cutter, cutter.size())},
+                                       {"after", size_json(cutter, bytes)},
+                                       {"gofs", std::move(gofs)}};
+  std::cout << json.dump(2) << "\n";
+}
+
+void print_text(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
+  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", name_of_input(o.input).c_str(),
+              cutter.size(), bpvf(cutter, cutter.size()));
+  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
+              bpvf(cutter, bytes));
+  for (const ListedGof& gof : cutter.gofs()) {
+    if (!gof.has_bones()) {
+      std::printf("  frames %u to %u: of clusters, %" PRIu64 " bytes, which stay\n",
+                  gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.bytes);
+      continue;
+    }
+    const SliceTotals before = gof.totals({});
+    const SliceTotals after = cutter.totals_that_stay(gof);
+    std::printf(
+        "  frames %u to %u: %u of %u trajectories, %u of %u layers, %zu of %zu slices, "
+        "%" PRIu64 " of %" PRIu64 " bytes\n",
+        gof.first_frame, gof.first_frame + gof.num_frames - 1, after.num_trajectories,
+        before.num_trajectories, after.num_layers, before.num_layers, after.num_slices,
+        before.num_slices, after.bytes, before.bytes);
+    if (after.num_trajectories == 0 && before.num_trajectories > 0 &&
+        o.cut.max_components > 0) {
+      std::printf("    no group has %u trajectories or less: bones and rest shape alone stay\n",
+                  o.cut.max_components);
+    }
+    if (too_many_layers(o, after)) {
+      std::printf("    more than %u layers: the first layer group always stays\n",
+                  o.cut.max_layers);
+    }
+  }
+  if (!cutter.cuts_any())
+    std::printf("  nothing was left out: no GOF has more than asked for\n");
+}
+
+}  // namespace
+
+std::optional<SliceCut> parse_slice_cut(const std::string& text) {
+  SliceCut cut;
+  std::string_view left = text;
+  for (;;) {
+    const std::string_view part = left.substr(0, left.find(','));
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) return std::nullopt;
+    const auto count = parse_count(part.substr(equals + 1));
+    if (!count) return std::nullopt;
+    const std::string_view name = part.substr(0, equals);
+    if (name == "components" && cut.max_components == SliceCut::kAll) {
+      cut.max_components = *count;
+    } else if (name == "layers" && cut.max_layers == SliceCut::kAll && *count > 0) {
+      cut.max_layers = *count;
+    } else {
+      return std::nullopt;
+    }
+    if (part.size() == left.size()) return cut;
+    left.remove_prefix(part.size() + 1);
+  }
+}
+
+int extract(const ExtractOptions& o) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
+  auto source = file_or_standard_input(o.input);
+  if (!source) return complain(o, source.error());
+  if (OutputFile::is_same_file(o.output, o.input)) {
+    return complain(o.output + ": is the input itself; give another name", kExitUsage);
+  }
+  auto cutter = StreamCutter::open(std::move(*source), o.cut, o.limits);
+  if (!cutter) return complain(o, cutter.error());
+  if (cutter->header().profile_idc != kProfileMain) {
+    return complain(name_of_input(o.input) + ": " + SliceCut::kNoSlices, kExitUnsupported);
+  }
+  auto file = OutputFile::create(o.output);
+  if (!file) return complain(file.error().message, kExitIo);
+  std::uint64_t written = 0;
+  for (;;) {
+    const auto bytes = cutter->next();
+    if (!bytes) return complain(o, bytes.error());
+    if (bytes->empty()) break;
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    if (const auto error = file->write(text)) return complain(error->message, kExitIo);
+    written += bytes->size();
+  }
+  if (const auto error = file->close()) return complain(error->message, kExitIo);
+  if (const auto error = file->commit()) return complain(error->message, kExitIo);
+  if (o.json) {
+    print_json(o, *cutter, written);
+  } else if (o.output != "-") {
+    print_text(o, *cutter, written);
+  }
+  return kExitDone;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,364 @@
+// rlpcdec: .rlpc streams to animations.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "decoder/describe_error.h"
+#include "decoder/output/frame_sink.h"
+#include "decoder/output/output_file.h"
+#include "decoder/player/html_verb.h"
+#include "decoder/rlpc_decoder.h"
+#include "decoder/tools/conformance_verbs.h"
+#include "decoder/tools/exit_code.h"
+#include "decoder/tools/standard_output.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(
+OUT is one of
+  clip.rlpd               integer positions and their grid: exact, what conformance compares
+  clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
+  clip.glb                glTF: the first frame, and the others as morph targets
+  out/frame_%04d.obj      one OBJ file for each frame; likewise .ply (binary, or --ascii)
+  out                     a folder of OBJ files (--format ply: of PLY files)
+  -                       standard output, with --format rlpd or glb; of one frame, obj or ply
+
+Examples
+  rlpcdec walk.rlpc -o walk.pc2
+  rlpcdec walk.rlpc -o walk.glb
+  rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
+  rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
+  rlpcdec walk.rlpc --html walk.html    a page that plays it in a browser, without a network
+                                        (scripts/player builds the player)
+  rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
+                                        less detail in less time (Main profile): what decoding
+                                        gives after rlpcinfo --extract components=12,layers=5.
+                                        GOFs of clusters have no slices, and stay whole
+
+For the conformance judge (conformance/VALIDATE.md)
+  rlpcdec --rlpc-conformance
+  rlpcdec decode IN.rlpc OUT.rlpd [--max-mem BYTES]
+
+Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the limits;
+4 input or output failed; 64 usage.)";
+
+struct Options {
+  std::string input;
+  std::string output;
+  std::string frames;
+  rlpc::SinkFormat format = rlpc::SinkFormat::kByName;
+  bool ascii = false;
+  bool verify_only = false;
+  bool no_hashes = false;
+  bool json = false;
+  bool quiet = false;
+  rlpc::HtmlRequest html;
+  rlpc::DecoderOptions decoder;
+};
+
+struct FrameSpan {
+  std::uint32_t first;
+  std::uint32_t last;
+};
+
+int complain(const std::string& message, int code) {
+  std::cerr << "rlpcdec: " << message << "\n";
+  return code;
+}
+
+int complain(const Options& o, const rlpc::Error& error) {
+  std::string text = rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error);
+  if (error.code == rlpc::Errc::kLimitExceeded) text += " (--max-memory, --max-vertices)";
+  return complain(text, rlpc::exit_code(error.code));
+}
+
+// "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
+std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num_frames) {
+  if (text.empty()) return FrameSpan{0, num_frames - 1};
+  const char* const end = text.data() + text.size();
+  FrameSpan span{};
+  auto [rest, error] = std::from_chars(text.data(), end, span.first);
+  if (error != std::errc()) return std::nullopt;
+  span.last = span.first;
+  if (rest != end) {
+    if (*rest++ != '-') return std::nullopt;
+    span.last = num_frames - 1;
+    if (rest != end) {
+      const auto [after, wrong] = std::from_chars(rest, end, span.last);
+      if (wrong != std::errc() || after != end) return std::nullopt;
+    }
+  }
+  if (span.first > span.last || span.last >= num_frames) return std::nullopt;
+  return span;
+}
+
+// Frames as they are decoded; for people who wait at a terminal.
+class FrameCounter {
+ public:
+  FrameCounter(std::uint32_t total, bool wanted)
+      : total_(total), shown_(wanted && isatty(fileno(stderr)) != 0) {}
+  FrameCounter(const FrameCounter&) = delete;
+  FrameCounter& operator=(const FrameCounter&) = delete;
+  ~FrameCounter() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+  }
+  void show(std::uint32_t done) const {
+    if (shown_ && done % 16 == 0) std::fprintf(stderr, "\rframe %u of %u", done, total_);
+  }
+
+ private:
+  std::uint32_t total_;
+  bool shown_;
+};
+
+// How many frames were decoded, and how many of them compared with a hash.
+struct FrameCounts {
+  std::uint32_t decoded = 0;
+  std::uint32_t compared = 0;
+};
+
+std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
+                        const FrameCounts& frames) {
+  if (decoder.was_cut()) return ", cut; hashes of GOFs that are cut were not compared";
+  if (!o.decoder.verify_hashes) return "";
+  if (frames.compared == frames.decoded) return ", hashes agree";
+  if (frames.compared > 0) {
+    return ", hashes of " + std::to_string(frames.compared) +
+           " of them agree; the others have "
+           "none of their own";
+  }
+  return o.frames.empty() ? ", which have no hashes"
+                          : ", not compared: no hash is of these frames alone";
+}
+
+void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames) {
+  const rlpc::SequenceHeader& h = decoder.header();
+  if (o.json) {
+    const nlohmann::ordered_json json = {{"num_vertices", h.num_vertices},
+                                         {"num_triangles", h.num_triangles},
+                                         {"frames", frames.decoded},
+                                         {"frames_compared", frames.compared},
+                                         {"hashes_verified", frames.compared == frames.decoded},
+                                         {"cut", decoder.was_cut()}};
+    std::cout << json.dump(2) << "\n";
+  } else if (!o.quiet) {
+    const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
+    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s\n",
+                 rlpc::name_of_input(o.input).c_str(), frames.decoded, plural(frames.decoded),
+                 h.num_vertices, h.num_vertices == 1 ? "ex" : "ices", h.num_triangles,
+                 plural(h.num_triangles), hashes_text(o, decoder, frames).c_str());
+  }
+}
+
+int write_html(const Options& o, rlpc::ByteSource& source) {
+  rlpc::HtmlRequest request = o.html;
+  request.input = o.input;
+  request.decoder = o.decoder;
+  request.quiet = o.quiet;
+  return rlpc::write_html(request, source);
+}
+
+// The signal that asks to end, if one did. A second one ends at once.
+volatile std::sig_atomic_t interrupt = 0;
+
+extern "C" void on_interrupt(int signal) {
+  interrupt = signal;
+  std::signal(signal, SIG_DFL);
+}
+
+// While files are unfinished. What is ignored, as under nohup, stays so.
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
+  }
+}
+
+int decode(const Options& o) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
+  auto source = rlpc::file_or_standard_input(o.input);
+  if (!source) return complain(o, source.error());
+  if (!o.html.output.empty()) return write_html(o, **source);
+  auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
+  if (!decoder) return complain(o, decoder.error());
+  const rlpc::SequenceHeader& header = decoder->header();
+  if (o.decoder.cut.cuts() && header.profile_idc != rlpc::kProfileMain) {
+    return complain(rlpc::name_of_input(o.input) + ": " + rlpc::SliceCut::kNoSlices,
+                    rlpc::kExitUnsupported);
+  }
+  const auto span = parse_frames(o.frames, header.num_frames);
+  if (!span) {
+    return complain("--frames: expected A-B within 0-" + std::to_string(header.num_frames - 1) +
+                        ", got `" + o.frames + "`",
+                    rlpc::kExitUsage);
+  }
+  const std::uint32_t count = span->last - span->first + 1;
+  std::unique_ptr<rlpc::FrameSink> sink;
+  if (!o.verify_only) {
+    rlpc::SinkOptions options{header.num_vertices,
+                              count,
+                              header.frame_rate,
+                              header.grid,
+                              {decoder->triangles().begin(), decoder->triangles().end()}};
+    options.first_number = span->first;
+    options.format = o.format;
+    options.ascii = o.ascii;
+    catch_interrupts();
+    auto opened = rlpc::open_frame_sink(o.output, std::move(options));
+    if (!opened) {
+      return complain(opened.error().message,
+                      opened.error().is_usage ? rlpc::kExitUsage : rlpc::kExitIo);
+    }
+    sink = std::move(*opened);
+  }
+  if (span->first > 0) {
+    if (const auto ok = decoder->seek(span->first); !ok) return complain(o, ok.error());
+  }
+  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  FrameCounts frames;
+  {
+    const FrameCounter counter(count, !o.quiet);
+    while (frames.decoded < count) {
+      if (interrupt != 0) return 128 + interrupt;
+      const auto more = decoder->next_frame(positions);
+      if (!more) return complain(o, more.error());
+      if (sink) {
+        if (auto error = sink->write_frame(positions)) {
+          return complain(error->message, rlpc::kExitIo);
+        }
+      }
+      frames.compared += decoder->compared_frames();
+      counter.show(++frames.decoded);
+    }
+  }
+  if (o.frames.empty()) {
+    if (const auto more = decoder->next_frame(positions); !more)
+      return complain(o, more.error());
+  }
+  if (sink) {
+    if (auto error = sink->finish()) return complain(error->message, rlpc::kExitIo);
+  }
+  report(o, *decoder, frames);
+  return rlpc::kExitDone;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("input", o.input, "Stream to decode; - for standard input")->required();
+  auto* output = app.add_option("-o,--output", o.output, "What to write, see below");
+  auto* verify =
+      app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
+          ->excludes(output);
+  auto* html = app.add_option("--html", o.html.output, "Page to write that plays the stream")
+                   ->excludes(output)
+                   ->excludes(verify);
+  app.add_option("--reference", o.html.reference,
+                 "With --html: a finer stream of the same animation, its vertices in the same "
+                 "order (with --keep-order both, or neither); the page colours the mesh by its "
+                 "distance from it")
+      ->needs(html);
+  app.add_option("--player", o.html.player,
+                 "With --html: page of the player (default: as installed, or as built)")
+      ->needs(html);
+  static const std::map<std::string, rlpc::SinkFormat> kFormats{
+      {"rlpd", rlpc::SinkFormat::kRlpd}, {"pc2", rlpc::SinkFormat::kPc2},
+      {"mdd", rlpc::SinkFormat::kMdd},   {"glb", rlpc::SinkFormat::kGlb},
+      {"obj", rlpc::SinkFormat::kObj},   {"ply", rlpc::SinkFormat::kPly}};
+  app.add_option_function<std::string>(
+         "--format", [&o](const std::string& word) { o.format = kFormats.at(word); },
+         "Format of OUT (default: by its name)")
+      ->check(CLI::IsMember(kFormats).description(""))
+      ->type_name("rlpd|pc2|mdd|glb|obj|ply")
+      ->excludes(verify)
+      ->excludes(html);
+  app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify)->excludes(html);
+  app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
+  app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream")
+      ->excludes(verify);
+  app.add_option("--max-components", o.decoder.cut.max_components,
+                 "Only the component groups with up to K trajectories of a GOF of bones")
+      ->check(CLI::Range(0U, rlpc::SliceCut::kAll - 1))
+      ->excludes(verify);
+  app.add_option("--max-layers", o.decoder.cut.max_layers,
+                 "Only the layer groups with up to L vertex layers, the coarsest")
+      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
+      ->excludes(verify);
+  app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
+                 "Give up on streams that need more, for example 500MB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--max-vertices", o.decoder.limits.max_vertices,
+                 "Give up on streams with more vertices");
+  app.add_option("--threads", o.decoder.threads,
+                 "Threads, each with memory for a GOF and four frames (default: one for each "
+                 "processor)")
+      ->check(CLI::Range(1, 256));
+  app.add_flag("--json", o.json, "Report as JSON on standard output");
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
+  for (const char* name : {"--frames", "--max-components", "--max-layers", "--json"}) {
+    html->excludes(app.get_option(name));  // a page has all of the stream, and no report
+  }
+  app.footer(kExamples);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (const auto code = rlpc::run_conformance_verb(argc, argv)) return *code;
+  CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
+  app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
+  Options options;
+  options.decoder.threads = std::max(1U, std::thread::hardware_concurrency());
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+  }
+  if (options.output.empty() && options.html.output.empty() && !options.verify_only) {
+    return complain("give -o OUT, --html OUT, or --verify to write nothing", rlpc::kExitUsage);
+  }
+  if (options.output == "-") {
+    if (options.format == rlpc::SinkFormat::kByName) {
+      return complain("-o -: give --format, as in --format glb", rlpc::kExitUsage);
+    }
+    if (options.json) {
+      return complain("--json and the output cannot both go to standard output",
+                      rlpc::kExitUsage);
+    }
+  }
+  for (const std::string& read : {options.input, options.html.reference, options.html.player}) {
+    for (const std::string& written : {options.output, options.html.output}) {
+      if (!rlpc::OutputFile::is_same_file(written, read)) continue;
+      return complain(written + ": is read, too, and would be written over; give another name",
+                      rlpc::kExitUsage);
+    }
+  }
+  if (options.ascii &&
+      rlpc::sink_format(options.output, options.format) != rlpc::SinkFormat::kPly) {
+    return complain("--ascii: is for PLY files, which " + options.output + " is not",
+                    rlpc::kExitUsage);
+  }
+  options.decoder.verify_hashes = !options.no_hashes;
+  const int code = decode(options);
+  if (interrupt != 0) return std::raise(interrupt);
+  return rlpc::after_standard_output("rlpcdec", code);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcdec: out of memory\n");
+  return rlpc::kExitLimit;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcdec: %s\n", error.what());
+  return rlpc::kExitLimit;
+}

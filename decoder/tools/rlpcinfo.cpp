@@ -1,0 +1,421 @@
+// rlpcinfo: what is in an .rlpc stream.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "decoder/describe_error.h"
+#include "decoder/output/output_file.h"
+#include "decoder/report/bit_counter.h"
+#include "decoder/report/html_page.h"
+#include "decoder/report/rate_report.h"
+#include "decoder/report/slice_listing.h"
+#include "decoder/rlpc_decoder.h"
+#include "decoder/tools/exit_code.h"
+#include "decoder/tools/extract_verb.h"
+#include "decoder/tools/standard_output.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples
+  rlpcinfo walk.rlpc              what is in it, and what takes how many bits
+  rlpcinfo walk.rlpc --json       the same for machines
+  rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices
+  rlpcinfo walk.rlpc --html walk.html
+                                  and as a page with charts, for a browser
+  rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
+  rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
+                                  the stream without slices of finer detail (Main profile): of
+                                  each GOF, as many component groups as have 12 trajectories or
+                                  fewer (0: bones and rest shape alone), and as many layer groups
+                                  as have 5 layers or fewer, the coarsest (but always the first).
+                                  GOFs of clusters have no slices, and stay whole. Nothing is
+                                  encoded anew; --gofs tells what there is to choose
+
+Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
+cannot be cut; 3 beyond the limits; 4 input or output failed; 64 usage.)";
+
+struct Options {
+  std::string input;
+  bool json = false;
+  bool gofs = false;
+  bool trace = false;
+  std::string html;
+  std::string extract;
+  std::string output;
+  std::uint64_t max_memory_bytes = rlpc::DecodeLimits().max_memory_bytes;
+};
+
+int complain(const Options& o, const rlpc::Error& error) {
+  std::cerr << "rlpcinfo: " << rlpc::name_of_input(o.input) << ": "
+            << rlpc::describe_error(error) << "\n";
+  return rlpc::exit_code(error.code);
+}
+
+int complain(const rlpc::OutputError& error) {
+  std::cerr << "rlpcinfo: " << error.message << "\n";
+  return rlpc::kExitIo;
+}
+
+struct Summary {
+  const rlpc::SequenceHeader& header;
+  const rlpc::BitCounter& counter;
+  std::uint64_t bytes;
+  std::uint32_t num_gofs;
+  const std::string& metadata;
+};
+
+double bpvf(const Summary& s, double bits) {
+  return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
+}
+
+// Component groups that have slices, with that of the rest positions.
+std::uint32_t num_groups(const rlpc::ListedGof& gof) {
+  return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
+}
+
+nlohmann::ordered_json json_of(const rlpc::ListedGof& gof) {
+  if (!gof.has_bones()) {
+    return {{"first_frame", gof.first_frame},
+            {"num_frames", gof.num_frames},
+            {"num_clusters", gof.num_clusters},
+            {"num_components", gof.num_components},
+            {"bytes", gof.bytes}};
+  }
+  nlohmann::ordered_json slices = nlohmann::ordered_json::array();
+  for (const rlpc::SliceEntry& slice : gof.slices) {
+    slices.push_back({{"component_group_idx", slice.component_group_idx},
+                      {"layer_group_idx", slice.layer_group_idx},
+                      {"num_trajectories", slice.num_trajectories},
+                      {"bytes", slice.bytes}});
+  }
+  nlohmann::ordered_json components = nlohmann::ordered_json::array();
+  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({group + 1, rlpc::SliceCut::kAll});
+    components.push_back({{"components", cut.num_trajectories}, {"bytes", cut.bytes}});
+  }
+  nlohmann::ordered_json layers = nlohmann::ordered_json::array();
+  for (std::uint32_t group = 0; group < gof.layer_group_size.size(); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({rlpc::SliceCut::kAll, group + 1});
+    layers.push_back({{"layers", cut.num_layers}, {"bytes", cut.bytes}});
+  }
+  return {{"first_frame", gof.first_frame},
+          {"num_frames", gof.num_frames},
+          {"num_bones", gof.num_bones},
+          {"num_trajectories", gof.num_trajectories()},
+          {"num_component_groups", gof.num_component_groups},
+          {"prediction_idc", gof.prediction_idc},
+          {"num_layers", gof.num_layers},
+          {"layer_group_size", gof.layer_group_size},
+          {"bytes", gof.bytes},
+          {"slices", std::move(slices)},
+          {"cut_to_components", std::move(components)},
+          {"cut_to_layers", std::move(layers)}};
+}
+
+// What a stream carries is not checked: what is no JSON, or is nested without measure, is told
+// as the text that it is.
+nlohmann::ordered_json metadata_json(const std::string& text) {
+  constexpr int kDeepest = 100;
+  bool too_deep = false;
+  const auto look = [&](int depth, nlohmann::ordered_json::parse_event_t,
+                        nlohmann::ordered_json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  auto json = nlohmann::ordered_json::parse(text, look, false);
+  if (too_deep || json.is_discarded()) return text;
+  return json;
+}
+
+// With "?" for what would do something to a terminal.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) c = '?';
+  }
+  return text;
+}
+
+void print_json(const Summary& s) {
+  const rlpc::SequenceHeader& h = s.header;
+  nlohmann::ordered_json bits = nlohmann::ordered_json::object();
+  const auto& names = rlpc::stream_part_names();
+  for (std::size_t p = 0; p < names.size(); ++p) bits[names[p]] = s.counter.bits()[p];
+  nlohmann::ordered_json json = {
+      {"profile_idc", h.profile_idc},
+      {"level_idc", h.level_idc},
+      {"num_vertices", h.num_vertices},
+      {"num_triangles", h.num_triangles},
+      {"num_frames", h.num_frames},
+      {"frame_rate", {h.frame_rate.numerator, h.frame_rate.denominator}},
+      {"grid_log2_step", h.grid.log2_step},
+      {"grid_origin", h.grid.origin},
+      {"position_bits", h.position_bits},
+      {"num_gofs", s.num_gofs},
+      {"num_units", s.counter.num_units()},
+      {"bytes", s.bytes},
+      {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
+      {"bits", bits}};
+  for (const rlpc::ListedGof& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
+  if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+}
+
+struct Noun {
+  const char* one;
+  const char* many;
+};
+
+// "1 cluster", "12 clusters"
+std::string counted(std::uint64_t count, const Noun& noun) {
+  return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
+}
+
+// "12 clusters", or "3 to 12 clusters"
+template <class Count>
+std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Noun& noun,
+                       const Count& count) {
+  const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
+  const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
+  const std::string most_counted = counted(count(*most), noun);
+  return count(*least) == count(*most) ? most_counted
+                                       : std::to_string(count(*least)) + " to " + most_counted;
+}
+
+std::vector<rlpc::ListedGof> of_kind(std::vector<rlpc::ListedGof> gofs, bool has_bones) {
+  std::erase_if(gofs, [&](const rlpc::ListedGof& gof) { return gof.has_bones() != has_bones; });
+  return gofs;
+}
+
+void print_clusters(const std::vector<rlpc::ListedGof>& gofs) {
+  using Entry = rlpc::ListedGof;
+  std::printf(
+      "  GOFs of clusters: %zu, with %s and %s each\n", gofs.size(),
+      range_over(gofs, {"cluster", "clusters"}, [](const Entry& g) { return g.num_clusters; })
+          .c_str(),
+      range_over(gofs, {"component", "components"}, [](const Entry& g) {
+        return g.num_components;
+      }).c_str());
+}
+
+void print_bones(const std::vector<rlpc::ListedGof>& gofs) {
+  using Entry = rlpc::ListedGof;
+  const auto over = [&](const Noun& noun, const auto& count) {
+    return range_over(gofs, noun, count);
+  };
+  std::printf(
+      "  GOFs of bones: %zu, with %s, %s in %s, %s in %s and %s each\n", gofs.size(),
+      over({"bone", "bones"}, [](const Entry& g) { return g.num_bones; }).c_str(),
+      over({"trajectory", "trajectories"}, [](const Entry& g) { return g.num_trajectories(); })
+          .c_str(),
+      over({"component group", "component groups"},
+           [](const Entry& g) { return g.num_component_groups; })
+          .c_str(),
+      over({"layer", "layers"}, [](const Entry& g) { return g.num_layers; }).c_str(),
+      over({"layer group", "layer groups"},
+           [](const Entry& g) { return g.layer_group_size.size(); })
+          .c_str(),
+      over({"slice", "slices"}, [](const Entry& g) { return g.slices.size(); }).c_str());
+}
+
+// Of a GOF of bones, a line for each component group, a column for each layer group; and what
+// stays of the GOF if it is cut behind one of them.
+void print_gof(const rlpc::ListedGof& gof) {
+  if (!gof.has_bones()) {
+    std::printf("\n  frames %u to %u: %s, %s in %" PRIu64 " bytes\n", gof.first_frame,
+                gof.first_frame + gof.num_frames - 1,
+                counted(gof.num_clusters, {"cluster", "clusters"}).c_str(),
+                counted(gof.num_components, {"component", "components"}).c_str(), gof.bytes);
+    return;
+  }
+  std::printf("\n  frames %u to %u: %s in %" PRIu64 " bytes; slices in bytes\n",
+              gof.first_frame, gof.first_frame + gof.num_frames - 1,
+              counted(gof.num_bones, {"bone", "bones"}).c_str(), gof.bytes);
+  std::printf("  %-40s", "layers");
+  for (const std::uint32_t size : gof.layer_group_size) std::printf(" %9u", size);
+  std::printf(" %12s\n", "GOF to here");
+  auto slice = gof.slices.begin();
+  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
+    const rlpc::SliceTotals cut = gof.totals({group + 1, rlpc::SliceCut::kAll});
+    const std::string name =
+        group == 0 ? "influences, rest positions"
+                   : "group " + std::to_string(group) +
+                         ", trajectories: " + std::to_string(slice->num_trajectories);
+    std::printf("  %-40s", name.c_str());
+    for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
+      const bool present = slice != gof.slices.end() && slice->component_group_idx == group;
+      std::printf(" %9s", present ? std::to_string(slice->bytes).c_str() : "");
+      if (present) ++slice;
+    }
+    std::printf(" %12" PRIu64 "\n", cut.bytes);
+  }
+  std::printf("  %-40s", "GOF to here");
+  for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
+    std::printf(" %9" PRIu64, gof.totals({rlpc::SliceCut::kAll, layers + 1}).bytes);
+  }
+  std::printf("\n");
+}
+
+void print_table(const Options& o, const Summary& s) {
+  const rlpc::SequenceHeader& h = s.header;
+  const double total = 8.0 * static_cast<double>(s.bytes);
+  std::printf("%s: %s profile, level %u\n", rlpc::name_of_input(o.input).c_str(),
+              h.profile_idc == rlpc::kProfileMain ? "Main" : "Baseline", h.level_idc);
+  std::printf("  %s, %s, %s at %u/%u per second, %s\n",
+              counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
+              counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
+              counted(h.num_frames, {"frame", "frames"}).c_str(), h.frame_rate.numerator,
+              h.frame_rate.denominator, counted(s.num_gofs, {"GOF", "GOFs"}).c_str());
+  const auto clusters = of_kind(s.counter.gofs(), false);
+  const auto bones = of_kind(s.counter.gofs(), true);
+  if (!clusters.empty()) print_clusters(clusters);
+  if (!bones.empty()) print_bones(bones);
+  std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
+  std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
+  const auto& names = rlpc::stream_part_names();
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const auto bits = static_cast<double>(s.counter.bits()[p]);
+    if (bits == 0.0) continue;
+    std::printf("  %-26s %12.0f %6.2f %% %10.4f\n", names[p].data(), bits, 100.0 * bits / total,
+                bpvf(s, bits));
+  }
+  std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
+  if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", printable(s.metadata).c_str());
+  if (o.gofs) {
+    for (const rlpc::ListedGof& gof : s.counter.gofs()) print_gof(gof);
+  }
+}
+
+std::string frame_rate_text(const rlpc::SequenceHeader& h) {
+  const rlpc::FrameRate& rate = h.frame_rate;
+  const std::string numerator = std::to_string(rate.numerator);
+  return rate.denominator == 1 ? numerator : numerator + "/" + std::to_string(rate.denominator);
+}
+
+std::string page_text(const Options& o, const Summary& s) {
+  const rlpc::SequenceHeader& h = s.header;
+  rlpc::HtmlPage page(std::filesystem::path(o.input).filename().string());
+  const bool main = h.profile_idc == rlpc::kProfileMain;
+  page.add_fact("profile",
+                (main ? "Main, level " : "Baseline, level ") + std::to_string(h.level_idc));
+  page.add_fact("mesh", rlpc::grouped_text(h.num_vertices) + " vertices, " +
+                            rlpc::grouped_text(h.num_triangles) + " triangles");
+  page.add_fact("frames",
+                rlpc::grouped_text(h.num_frames) + " at " + frame_rate_text(h) + " per second");
+  page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
+                            std::to_string(h.position_bits) + " bits");
+  if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
+  const rlpc::StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter};
+  const double total = 8.0 * static_cast<double>(s.bytes);
+  const double seconds =
+      static_cast<double>(h.num_frames) * h.frame_rate.denominator / h.frame_rate.numerator;
+  page.add_key_figures(
+      {{rlpc::number_text(bpvf(s, total)), "bits per vertex and frame"},
+       {rlpc::grouped_text(s.bytes), "bytes"},
+       {rlpc::number_text(total / seconds / 1000, 3), "kbit per second"},
+       {rlpc::number_text(96 / bpvf(s, total), 3) + " : 1", "against 32-bit floats"},
+       {std::to_string(s.num_gofs), s.num_gofs == 1 ? "group of frames" : "groups of frames"}});
+  rlpc::add_rate_section(page, rates);
+  rlpc::add_gof_section(page, rates);
+  return page.text();
+}
+
+int inform(const Options& o) {
+  std::optional<rlpc::OutputFile> page;
+  if (!o.html.empty()) {
+    auto file = rlpc::OutputFile::create(o.html);
+    if (!file) return complain(file.error());
+    page.emplace(std::move(*file));
+  }
+  rlpc::BitCounter counter(o.trace);
+  auto source = rlpc::file_or_standard_input(o.input);
+  if (!source) return complain(o, source.error());
+  const std::uint64_t bytes = (*source)->size();
+  rlpc::DecoderOptions options;
+  options.limits.max_memory_bytes = o.max_memory_bytes;
+  options.trace = &counter;
+  auto decoder = rlpc::Decoder::open(std::move(*source), options);
+  if (!decoder) return complain(o, decoder.error());
+  const auto num_gofs = decoder->parse_rest();
+  if (!num_gofs) return complain(o, num_gofs.error());
+  counter.finish(8 * bytes);
+  const Summary summary{decoder->header(), counter, bytes, *num_gofs, decoder->metadata()};
+  if (o.trace) return rlpc::kExitDone;
+  if (page) {
+    if (const auto error = rlpc::write_and_commit(*page, page_text(o, summary)))
+      return complain(*error);
+  }
+  if (o.json) {
+    print_json(summary);
+  } else if (o.html != "-") {
+    print_table(o, summary);
+  }
+  return rlpc::kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Tells what is in an .rlpc stream.", "rlpcinfo");
+  app.set_version_flag("--version", "rlpcinfo " RLPC_VERSION);
+  Options options;
+  app.add_option("input", options.input, "Stream to look at; - for standard input")->required();
+  auto* json = app.add_flag("--json", options.json, "JSON on standard output");
+  auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
+  auto* html = app.add_option("--html", options.html, "Write a page with charts, too");
+  auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
+  auto* extract = app.add_option("--extract", options.extract,
+                                 "components=K,layers=L: write the stream without some slices");
+  auto* output = app.add_option("-o,--output", options.output, "Where --extract writes to");
+  app.add_option("--max-memory", options.max_memory_bytes,
+                 "Give up on streams that need more to decode, for example 500MB")
+      ->transform(CLI::AsSizeValue(false));
+  trace->excludes(json)->excludes(html);
+  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
+  output->needs(extract);
+  app.footer(kExamples);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+  }
+  if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
+    std::cerr << "rlpcinfo: " << options.html << ": is the input itself; give another name\n";
+    return rlpc::kExitUsage;
+  }
+  if (options.json && (options.html == "-" || options.output == "-")) {
+    std::cerr << "rlpcinfo: --json and another output cannot both go to standard output\n";
+    return rlpc::kExitUsage;
+  }
+  if (extract->count() == 0) return rlpc::after_standard_output("rlpcinfo", inform(options));
+  const auto cut = rlpc::parse_slice_cut(options.extract);
+  if (!cut) {
+    std::cerr << "rlpcinfo: --extract: expected components=K, layers=L, or both; K is at "
+                 "least 0 and L at least 1, at most 4294967294; got `"
+              << options.extract << "`\n";
+    return rlpc::kExitUsage;
+  }
+  rlpc::DecodeLimits limits;
+  limits.max_memory_bytes = options.max_memory_bytes;
+  return rlpc::after_standard_output(
+      "rlpcinfo", rlpc::extract({options.input, options.output, *cut, limits, options.json}));
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcinfo: out of memory\n");
+  return rlpc::kExitLimit;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcinfo: %s\n", error.what());
+  return rlpc::kExitLimit;
+}

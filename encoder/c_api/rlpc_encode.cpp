@@ -1,0 +1,246 @@
+#include "encoder/c_api/rlpc_encode.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/c_api/c_handle.h"
+#include "encoder/frame_encoder.h"
+
+// NOLINTNEXTLINE(readability-identifier-naming): its name in C.
+struct rlpc_encoder {
+  std::optional<rlpc::FrameEncoder> encoder;
+  std::vector<std::uint32_t> input_vertex;  // once finished
+  std::size_t num_values = 0;               // of a frame
+  rlpc_write_function write = nullptr;
+  void* user = nullptr;
+  bool write_failed = false;
+  rlpc::HandleError error;
+  bool is_placed = false;
+};
+
+namespace rlpc {
+namespace {
+
+rlpc_encode_options default_options() {
+  const EncoderSettings usual;
+  rlpc_encode_options options{};
+  options.struct_size = sizeof options;
+  options.profile = RLPC_MAIN;
+  options.preset = RLPC_MEDIUM;
+  options.target = RLPC_TARGET_KG;
+  options.target_value = usual.target.value;
+  options.hash_mode = RLPC_HASH_GOF;
+  options.least_level = 1;
+  return options;
+}
+
+rlpc_frame_format default_format() {
+  rlpc_frame_format format{};
+  format.struct_size = sizeof format;
+  format.frame_rate_numerator = FrameRate{}.numerator;
+  format.frame_rate_denominator = FrameRate{}.denominator;
+  return format;
+}
+
+// None: one of the choices is none of those there are.
+std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
+  EncoderSettings settings;
+  switch (options.profile) {
+    case RLPC_BASELINE:
+      settings.profile = Profile::kBaseline;
+      break;
+    case RLPC_MAIN:
+      settings.profile = Profile::kMain;
+      break;
+    default:
+      return std::nullopt;
+  }
+  switch (options.preset) {
+    case RLPC_FAST:
+      settings.preset = Preset::kFast;
+      break;
+    case RLPC_MEDIUM:
+      settings.preset = Preset::kMedium;
+      break;
+    case RLPC_SLOW:
+      settings.preset = Preset::kSlow;
+      break;
+    default:
+      return std::nullopt;
+  }
+  switch (options.target) {
+    case RLPC_TARGET_KG:
+      settings.target.kind = Target::kKg;
+      break;
+    case RLPC_TARGET_BPVF:
+      settings.target.kind = Target::kBpvf;
+      break;
+    case RLPC_TARGET_MAX_ERROR:
+      settings.target.kind = Target::kMaxError;
+      break;
+    default:
+      return std::nullopt;
+  }
+  switch (options.hash_mode) {
+    case RLPC_HASH_NONE:
+      settings.hash_mode = HashMode::kNone;
+      break;
+    case RLPC_HASH_GOF:
+      settings.hash_mode = HashMode::kGof;
+      break;
+    case RLPC_HASH_FRAME:
+      settings.hash_mode = HashMode::kFrame;
+      break;
+    default:
+      return std::nullopt;
+  }
+  settings.target.value = options.target_value;
+  settings.gof_frames = options.gof_frames;
+  settings.components = options.components;
+  settings.keep_order = options.keep_order != 0;
+  if (options.metadata != nullptr) settings.metadata = options.metadata;
+  return settings;
+}
+
+FrameFormat format_of(const rlpc_frame_format& given, std::uint32_t least_level) {
+  FrameFormat format;
+  format.num_vertices = given.num_vertices;
+  format.num_frames = given.num_frames;
+  format.frame_rate = {given.frame_rate_numerator, given.frame_rate_denominator};
+  format.triangles.reserve(given.num_triangles);
+  for (std::size_t i = 0; i < given.num_triangles; ++i) {
+    const std::uint32_t* t = given.indices + 3 * i;
+    format.triangles.push_back({t[0], t[1], t[2]});
+  }
+  std::copy_n(given.box_min, 3, format.box_min.begin());
+  std::copy_n(given.box_max, 3, format.box_max.begin());
+  format.least_level = least_level;
+  return format;
+}
+
+ByteSink sink_of(rlpc_encoder& handle) {
+  return [&handle](std::span<const std::uint8_t> bytes) {
+    handle.write_failed = handle.write(handle.user, bytes.data(), bytes.size()) != 0;
+    return !handle.write_failed;
+  };
+}
+
+rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
+                   const rlpc_encode_options& options) {
+  const auto settings = settings_of(options);
+  if (!settings) {
+    return handle.error.break_handle(RLPC_BAD_ARGUMENT, "an option has an unknown value");
+  }
+  auto encoder =
+      FrameEncoder::create(format_of(format, options.least_level), *settings, sink_of(handle));
+  if (!encoder) return handle.error.break_handle(RLPC_BAD_INPUT, encoder.error().message);
+  handle.encoder = std::move(*encoder);
+  handle.num_values = 3 * std::size_t{format.num_vertices};
+  return RLPC_OK;
+}
+
+rlpc_status fail(rlpc_encoder& handle, const InputError& error) {
+  return handle.error.break_handle(handle.write_failed ? RLPC_IO_FAILED : RLPC_BAD_INPUT,
+                                   error.message);
+}
+
+void give_report(const EncodeReport& report, rlpc_encode_report* theirs,
+                 std::size_t struct_size) {
+  rlpc_encode_report ours{};
+  ours.num_bytes = report.bytes;
+  ours.bpvf = report.bpvf;
+  ours.kg_error_percent = report.metrics.kg_error_percent;
+  ours.rms_error = report.metrics.rms_error;
+  ours.max_error = report.metrics.max_error;
+  ours.num_gofs = report.num_gofs;
+  ours.level = report.header.level_idc;
+  ours.target_met = report.target_met ? 1 : 0;
+  give_struct(ours, theirs, struct_size);
+}
+
+}  // namespace
+}  // namespace rlpc
+
+void rlpc_frame_format_init(rlpc_frame_format* format, size_t struct_size) {
+  rlpc::give_struct(rlpc::default_format(), format, struct_size);
+}
+
+void rlpc_encode_options_init(rlpc_encode_options* options, size_t struct_size) {
+  rlpc::give_struct(rlpc::default_options(), options, struct_size);
+}
+
+size_t rlpc_encoder_bytes() { return sizeof(rlpc_encoder); }
+
+rlpc_status rlpc_encoder_create(const rlpc_frame_format* format,
+                                const rlpc_encode_options* options, rlpc_write_function write,
+                                void* user, rlpc_encoder** encoder) {
+  if (encoder == nullptr) return RLPC_BAD_ARGUMENT;
+  *encoder = nullptr;
+  rlpc_frame_format our_format = rlpc::default_format();
+  rlpc_encode_options our_options = rlpc::default_options();
+  if (format == nullptr || write == nullptr || !rlpc::take_struct(format, our_format) ||
+      !rlpc::take_struct(options, our_options) ||
+      (our_format.indices == nullptr && our_format.num_triangles > 0)) {
+    return RLPC_BAD_ARGUMENT;
+  }
+  auto* handle = rlpc::make_handle<rlpc_encoder>(our_options.place, our_options.place_bytes);
+  if (handle == nullptr) {
+    return our_options.place != nullptr ? RLPC_BAD_ARGUMENT : RLPC_OUT_OF_MEMORY;
+  }
+  handle->write = write;
+  handle->user = user;
+  *encoder = handle;
+  return rlpc::guarded(handle, [&] { return rlpc::create(*handle, our_format, our_options); });
+}
+
+void rlpc_encoder_close(rlpc_encoder* encoder) { rlpc::close_handle(encoder); }
+
+const char* rlpc_encoder_error_text(const rlpc_encoder* encoder) {
+  return encoder == nullptr ? "there is no encoder" : encoder->error.text();
+}
+
+rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz, size_t num_values) {
+  return rlpc::guarded(encoder, [&] {
+    if (xyz == nullptr || num_values != encoder->num_values) {
+      return encoder->error.set(
+          RLPC_BAD_ARGUMENT, xyz == nullptr
+                                 ? "the frame is null"
+                                 : "the frame is said to have " + std::to_string(num_values) +
+                                       " values, not " + std::to_string(encoder->num_values));
+    }
+    if (const auto error = encoder->encoder->add_frame({xyz, num_values})) {
+      return rlpc::fail(*encoder, *error);
+    }
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_encoder_finish(rlpc_encoder* encoder, rlpc_encode_report* report,
+                                size_t struct_size) {
+  return rlpc::guarded(encoder, [&] {
+    auto finished = encoder->encoder->finish();
+    if (!finished) return rlpc::fail(*encoder, finished.error());
+    rlpc::give_report(*finished, report, struct_size);
+    encoder->input_vertex = std::move(finished->input_vertex);
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_encoder_vertex_order(rlpc_encoder* encoder, uint32_t* input_vertex,
+                                      size_t num_values) {
+  return rlpc::guarded(encoder, [&] {
+    if (encoder->input_vertex.empty()) {
+      return encoder->error.set(RLPC_BAD_ARGUMENT, "the stream is not finished");
+    }
+    if (input_vertex == nullptr || num_values != encoder->input_vertex.size()) {
+      return encoder->error.set(RLPC_BAD_ARGUMENT,
+                                "the buffer must have room for each vertex once");
+    }
+    std::copy(encoder->input_vertex.begin(), encoder->input_vertex.end(), input_vertex);
+    return RLPC_OK;
+  });
+}

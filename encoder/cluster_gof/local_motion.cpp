@@ -1,0 +1,29 @@
+#include "encoder/cluster_gof/local_motion.h"
+
+#include "encoder/math/widest.h"
+
+namespace rlpc {
+
+LocalFrame::LocalFrame(const Lcf& lcf) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    origin[c] = 0.5 * static_cast<double>(lcf.doubled_origin[c]);
+    for (std::size_t k = 0; k < 3; ++k) axis[k][c] = static_cast<double>(lcf.axis[k][c]);
+  }
+}
+
+RLPC_WIDEST void add_local_motion(const LocalFrame& frame, std::size_t num_vertices,
+                                  const double* xyz, double* before, double* motion) noexcept {
+  const LocalFrame f = frame;  // which nothing here writes to
+  for (std::size_t v = 0; v < num_vertices; ++v) {
+    const std::array<double, 3> q = f.to_local(xyz + 3 * v);
+    const double dx = q[0] - before[3 * v];
+    const double dy = q[1] - before[3 * v + 1];
+    const double dz = q[2] - before[3 * v + 2];
+    motion[v] += dx * dx + dy * dy + dz * dz;
+    before[3 * v] = q[0];
+    before[3 * v + 1] = q[1];
+    before[3 * v + 2] = q[2];
+  }
+}
+
+}  // namespace rlpc

@@ -1,0 +1,53 @@
+// Quantisation of principal components to the integers of a stream (clause 8.5 backwards).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/cluster_gof/recon/cluster_recon.h"
+#include "common/kernels/component_sum.h"
+
+namespace rlpc {
+
+// Steps of the spatial and the temporal values of one component. Their product, in units of
+// local coordinates (1/16 grid step), is 2^(product_eighths / 8) as in Table 8-1: only that is
+// coded.
+struct StepPair {
+  double spatial = 1.0;
+  double temporal = 1.0;
+  int product_eighths = 0;
+};
+
+// The nearest legal pair: the temporal step stays, the spatial one changes by at most 2^(1/16).
+StepPair make_steps(double spatial_step, double temporal_step);
+
+// Quantised values of one component, and how they are best predicted.
+struct QuantisedComponent {
+  StepPair steps;
+  std::vector<std::int32_t> temporal;  // [num_frames]
+  std::vector<std::int32_t> spatial;   // [3][n]
+  int temporal_predictor = 0;
+  SpatialPredictor spatial_predictor = SpatialPredictor::kNone;
+  double bits = 0.0;  // estimate
+};
+
+// dead_zone 0 rounds to nearest; 0.5 truncates.
+std::vector<std::int32_t> quantise(const std::vector<double>& values, double step,
+                                   double dead_zone);
+
+// Chooses the predictors of quantised values and estimates their bits.
+void choose_predictors(QuantisedComponent& component, const SpatialPrediction& prediction);
+
+// Fractional bits that leave every temporal factor of the components enough precision.
+int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clusters);
+
+// The component as it is written. fraction_bits as chosen above.
+Component make_component(const QuantisedComponent& component,
+                         const SpatialPrediction& prediction, int fraction_bits);
+
+// Estimated bits of residuals coded with adaptive models: the entropy of a two-sided geometric
+// distribution of the same mean magnitude.
+double estimate_bits(const std::vector<std::int32_t>& residuals);
+
+}  // namespace rlpc

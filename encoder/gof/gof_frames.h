@@ -1,0 +1,54 @@
+// The frames of one GOF as the encoder analyses them: in grid units, not yet rounded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/int_math.h"
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+struct GofFrames {
+  std::uint32_t num_vertices = 0;
+  std::uint32_t num_frames = 0;
+  std::vector<double> xyz;  // [num_frames][num_vertices][3], decoded vertex order
+
+  const double* at(std::uint32_t frame, std::uint32_t vertex) const {
+    return &xyz[(std::size_t{frame} * num_vertices + vertex) * 3];
+  }
+};
+
+// Squared distance of decoded positions from the frames, over all. decode(f, positions) sets
+// those of frame f, [num_vertices][3].
+template <typename Decode>
+double squared_error(const GofFrames& frames, const Decode& decode) {
+  const std::size_t values = std::size_t{frames.num_vertices} * 3;
+  std::vector<std::int32_t> positions(values);
+  double sum = 0.0;
+  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+    decode(f, std::span<std::int32_t>(positions));
+    const double* original = frames.at(f, 0);
+    double of_frame = 0.0;
+    for (std::size_t i = 0; i < values; ++i) {
+      const double d = positions[i] - original[i];
+      of_frame += d * d;
+    }
+    sum += of_frame;
+  }
+  return sum;
+}
+
+// The grid position nearest to a vertex, clipped to position_bits.
+inline Vec3i nearest_position(const double* xyz, int position_bits) {
+  Vec3i p{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    p[c] = clip_signed(position_bits,
+                       static_cast<std::int64_t>(xyz[c] < 0 ? xyz[c] - 0.5 : xyz[c] + 0.5));
+  }
+  return p;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,63 @@
+#include "encoder/gof/residual_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "encoder/gof/gof_coder.h"
+
+namespace rlpc {
+namespace {
+
+// Models that have seen little but zeros, where anything else is expensive.
+ResidualModels quiet_models() {
+  ResidualModels models;
+  BitCost cost;
+  for (int i = 0; i < 200; ++i) write_residual(cost, models, 0, 0);
+  return models;
+}
+
+TEST(CheaperResidual, IsTheNearestIfBitsAreWorthNothing) {
+  ResidualModels models = quiet_models();
+  for (int i = -100; i < 100; ++i) {
+    const double wanted = 0.03 * i;
+    if (i % 50 == 0) continue;  // halves
+    EXPECT_EQ(cheaper_residual(models, 0, wanted, 0.0), std::lround(wanted)) << wanted;
+  }
+}
+
+TEST(CheaperResidual, IsNeverAStepOff) {
+  ResidualModels models = quiet_models();
+  for (int i = -300; i < 300; ++i) {
+    const double wanted = 0.171875 * i;
+    const std::int32_t residual = cheaper_residual(models, 0, wanted, kErrorPerBit);
+    EXPECT_LT(std::abs(wanted - residual), 1.0) << wanted;
+  }
+}
+
+TEST(CheaperResidual, StaysAtZeroWhereOthersAreExpensive) {
+  ResidualModels fresh;
+  ResidualModels quiet = quiet_models();
+  EXPECT_EQ(cheaper_residual(fresh, 0, 0.75, 0.06), 1);
+  EXPECT_EQ(cheaper_residual(quiet, 0, 0.65, 0.06), 0);
+  EXPECT_EQ(cheaper_residual(quiet, 0, -0.65, 0.06), 0);
+  EXPECT_EQ(cheaper_residual(quiet, 0, -0.97, 0.06), -1);
+}
+
+TEST(RoundedResidual, RoundsMagnitudes) {
+  EXPECT_EQ(rounded_residual(2.5, 0.5), 3);
+  EXPECT_EQ(rounded_residual(-2.5, 0.5), -3);
+  EXPECT_EQ(rounded_residual(2.55, 0.42), 2);
+  EXPECT_EQ(rounded_residual(-2.59, 0.42), -3);
+  EXPECT_LE(rounded_residual(1e300, 0.5), kMaxResidual);
+}
+
+TEST(CheaperResidual, HasALargestMagnitude) {
+  ResidualModels models;
+  EXPECT_LE(cheaper_residual(models, 1000, 1e300, 0.06), kMaxResidual);
+  EXPECT_GE(cheaper_residual(models, 1000, -1e300, 0.06), -std::int64_t{kMaxResidual});
+}
+
+}  // namespace
+}  // namespace rlpc

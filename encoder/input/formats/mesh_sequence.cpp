@@ -1,0 +1,287 @@
+#include "encoder/input/formats/mesh_sequence.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "encoder/input/mesh_reader.h"
+
+namespace rlpc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// The run of digits that starts at `pos`, without its leading zeros; moves `pos` past it.
+std::string_view take_number(std::string_view text, std::size_t& pos) {
+  while (pos < text.size() && text[pos] == '0') ++pos;
+  const std::size_t first = pos;
+  while (pos < text.size() && is_digit(text[pos])) ++pos;
+  return text.substr(first, pos - first);
+}
+
+// Names of the files in a folder.
+InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  fs::directory_iterator it(folder.empty() ? fs::path(".") : folder, ec);
+  while (!ec && it != fs::directory_iterator()) {
+    std::error_code unknown;  // a link that leads nowhere is told of when it is read
+    if (!it->is_directory(unknown)) names.push_back(it->path().filename().string());
+    it.increment(ec);
+  }
+  if (ec) return InputError{folder.string() + ": cannot list the folder: " + ec.message()};
+  std::sort(names.begin(), names.end(), natural_less);
+  return names;
+}
+
+template <class Predicate>
+InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Predicate matches,
+                                                    const std::string& if_none) {
+  const auto names = list_names(folder);
+  if (!names) return names.error();
+  std::vector<std::string> paths;
+  for (const std::string& name : *names) {
+    if (matches(name)) paths.push_back((folder / name).string());
+  }
+  if (paths.empty()) return InputError{if_none};
+  return paths;
+}
+
+// A file name with one "%d", "%4d" or "%04d" in it.
+struct NumberedName {
+  std::string prefix;
+  std::string suffix;
+  std::size_t width = 0;
+
+  std::string with(std::uint64_t number) const {
+    std::string digits = std::to_string(number);
+    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+    return prefix + digits + suffix;
+  }
+
+  // The number for which with() gives this name.
+  std::optional<std::uint64_t> number_of(const std::string& name) const {
+    if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
+    std::uint64_t number = 0;
+    const char* const first = name.data() + prefix.size();
+    const char* const last = name.data() + name.size() - suffix.size();
+    const auto [end, ec] = std::from_chars(first, last, number);
+    if (ec != std::errc() || end != last || with(number) != name) return std::nullopt;
+    return number;
+  }
+};
+
+std::optional<NumberedName> parse_pattern(const std::string& name) {
+  NumberedName result;
+  const std::size_t percent = name.find('%');
+  if (percent == name.npos) return std::nullopt;
+  std::size_t pos = percent + 1;
+  const bool zeros = pos < name.size() && name[pos] == '0';
+  while (pos < name.size() && is_digit(name[pos]) && result.width < 100) {
+    result.width = 10 * result.width + static_cast<std::size_t>(name[pos++] - '0');
+  }
+  if (pos == name.size() || name[pos] != 'd' || result.width > 19) return std::nullopt;
+  if (!zeros && result.width > 0) return std::nullopt;  // pads with blanks: nobody means that
+  result.prefix = name.substr(0, percent);
+  result.suffix = name.substr(pos + 1);
+  if (result.suffix.find('%') != name.npos) return std::nullopt;
+  return result;
+}
+
+// A file name about its last number.
+struct NameParts {
+  std::string_view before;
+  std::optional<std::uint64_t> number;
+  std::string_view after;
+};
+
+NameParts parts_of(std::string_view path) {
+  const std::string_view name = path.substr(path.find_last_of('/') + 1);
+  std::size_t end = name.size();
+  while (end > 0 && !is_digit(name[end - 1])) --end;
+  std::size_t first = end;
+  while (first > 0 && is_digit(name[first - 1])) --first;
+  std::uint64_t number = 0;
+  const auto [rest, error] = std::from_chars(name.data() + first, name.data() + end, number);
+  if (error != std::errc()) return {name, std::nullopt, ""};
+  return {name.substr(0, first), number, name.substr(end)};
+}
+
+// What looks as if it were not meant.
+std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
+  std::size_t gaps = 0;
+  std::string first_gap;
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    const NameParts a = parts_of(paths[i - 1]);
+    const NameParts b = parts_of(paths[i]);
+    if (a.before != b.before || a.after != b.after || !a.number || !b.number) {
+      return {paths[i - 1] + " and " + paths[i] + " are frames " + std::to_string(i - 1) +
+              " and " + std::to_string(i) + ", though their names are of different kinds"};
+    }
+    if (*b.number == *a.number + 1) continue;
+    if (gaps++ == 0) first_gap = paths[i - 1] + " and " + paths[i];
+  }
+  if (gaps == 0) return {};
+  if (gaps == 1) {
+    return {"there is no frame between " + first_gap + "; they follow each other"};
+  }
+  return {"the numbers of the frames have " + std::to_string(gaps) +
+          " gaps, the first between " + first_gap + "; frames follow each other without them"};
+}
+
+class MeshSequence : public FrameSource {
+ public:
+  MeshSequence(Shape shape, std::vector<std::string> paths)
+      : FrameSource(std::move(shape)), paths_(std::move(paths)) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    const auto mesh = read_mesh(paths_[frame]);
+    if (!mesh) return mesh.error();
+    if (auto error = compare_with_first(frame, *mesh)) return error;
+    std::copy(mesh->xyz.begin(), mesh->xyz.end(), xyz.begin());
+    return std::nullopt;
+  }
+
+  std::string file_of(std::uint32_t frame) const override { return paths_[frame]; }
+
+ private:
+  std::optional<InputError> compare_with_first(std::uint32_t frame,
+                                               const SingleMesh& mesh) const {
+    const auto differs = [&](const std::string& here, const std::string& there) {
+      return InputError{paths_[frame] + ": frame " + std::to_string(frame) + " (from 0) has " +
+                        here + ", but " + paths_[0] + " has " + there +
+                        "; every frame must have the vertices and faces of the first"};
+    };
+    if (mesh.xyz.size() / 3 != num_vertices()) {
+      return differs(std::to_string(mesh.xyz.size() / 3) + " vertices",
+                     std::to_string(num_vertices()));
+    }
+    if (mesh.triangles.size() != triangles().size()) {
+      return differs(std::to_string(mesh.triangles.size()) + " triangles",
+                     std::to_string(triangles().size()));
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (mesh.triangles[t] == triangles()[t]) continue;
+      return differs("triangle " + std::to_string(t) + " = " + corners(mesh.triangles[t]),
+                     corners(triangles()[t]));
+    }
+    return std::nullopt;
+  }
+
+  // Counted from 1, as in OBJ files.
+  static std::string corners(const Triangle& t) {
+    std::string text;
+    for (const std::uint32_t v : t) text += " " + std::to_string(std::uint64_t{v} + 1);
+    return "f" + text;
+  }
+
+  std::vector<std::string> paths_;
+};
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view m = take_number(a, i);
+      const std::string_view n = take_number(b, j);
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+    } else {
+      // As bytes: char has a sign on some machines.
+      if (a[i] != b[j])
+        return static_cast<std::uint8_t>(a[i]) < static_cast<std::uint8_t>(b[j]);
+      ++i;
+      ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return i == a.size();
+  return a < b;  // equal but for leading zeros
+}
+
+InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {
+  auto paths = list_matching(
+      folder,
+      [](const std::string& name) {
+        return name[0] != '.' && is_mesh_extension(lower_extension(name));
+      },
+      folder + ": no .obj, .ply or .off file in this folder; expected one per frame");
+  if (!paths) return paths;
+  const std::string extension = lower_extension(paths->front());
+  for (const std::string& path : *paths) {
+    if (lower_extension(path) == extension) continue;
+    return InputError{folder + ": has " + extension + " and " + lower_extension(path) +
+                      " files; choose with a pattern, as in " +
+                      (fs::path(folder) / ("*" + extension)).string()};
+  }
+  return paths;
+}
+
+InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob) {
+  const fs::path path(glob);
+  const std::string pattern = path.filename().string();
+  return list_matching(
+      path.parent_path(),
+      [&](const std::string& name) {
+        return fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0;
+      },
+      glob + ": no file matches; expected one file per frame");
+}
+
+InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern) {
+  const fs::path path(pattern);
+  const auto name = parse_pattern(path.filename().string());
+  if (!name) {
+    return InputError{pattern +
+                      ": expected one %d or %04d (any width) in the file name, as in "
+                      "walk_%04d.obj"};
+  }
+  const auto names = list_names(path.parent_path());
+  if (!names) return names.error();
+  std::vector<std::uint64_t> numbers;
+  for (const std::string& candidate : *names) {
+    if (const auto number = name->number_of(candidate)) numbers.push_back(*number);
+  }
+  if (numbers.empty()) {
+    return InputError{pattern + ": no such file, for example " + name->with(0) + " or " +
+                      name->with(1)};
+  }
+  std::sort(numbers.begin(), numbers.end());
+  std::vector<std::string> paths;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] != numbers[0] + i) {
+      return InputError{(path.parent_path() / name->with(numbers[0] + i)).string() +
+                        ": this frame is missing, though " + name->with(numbers[i]) +
+                        " exists; number the files without gaps"};
+    }
+    paths.push_back((path.parent_path() / name->with(numbers[i])).string());
+  }
+  return paths;
+}
+
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
+    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate) {
+  assert(!paths.empty());
+  auto first = read_mesh(paths[0]);
+  if (!first) return first.error();
+  auto shape =
+      shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
+  shape.notes = notes_on(paths);
+  shape.files = paths;
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<MeshSequence>(std::move(shape), std::move(paths)));
+}
+
+}  // namespace rlpc

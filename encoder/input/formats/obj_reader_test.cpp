@@ -1,0 +1,166 @@
+#include "encoder/input/formats/obj_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace rlpc {
+namespace {
+
+const std::string kThreeVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+std::string error_of(const std::string& text) {
+  const auto mesh = parse_obj(text, "a.obj");
+  return mesh ? "no error" : mesh.error().message;
+}
+
+void expect_error(const std::string& text, const std::string& part) {
+  EXPECT_NE(error_of(text).find(part), std::string::npos) << text << "\n" << error_of(text);
+}
+
+std::vector<Triangle> triangles_of(const std::string& text) {
+  const auto mesh = parse_obj(text, "a.obj");
+  EXPECT_TRUE(mesh) << mesh.error().message;
+  return mesh ? mesh->triangles : std::vector<Triangle>{};
+}
+
+TEST(ObjReader, ReadsOneTriangle) {
+  const auto mesh = parse_obj(kThreeVertices + "f 1 2 3\n", "a.obj");
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->xyz, (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(mesh->triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_FALSE(mesh->frame_rate);
+}
+
+TEST(ObjReader, AcceptsEveryFormOfCorner) {
+  EXPECT_EQ(triangles_of(kThreeVertices + "f 1/1 2//2 3/3/3\nf -3/-1/-1 -2//-1 -1\n"),
+            (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
+}
+
+TEST(ObjReader, SplitsPolygonsIntoAFan) {
+  EXPECT_EQ(triangles_of(kThreeVertices + "v 0 0 1\nv 2 2 2\nf 5 4 3 2 1\n"),
+            (std::vector<Triangle>{{4, 3, 2}, {4, 2, 1}, {4, 1, 0}}));
+}
+
+TEST(ObjReader, AcceptsZeroFaces) { EXPECT_TRUE(triangles_of(kThreeVertices).empty()); }
+
+TEST(ObjReader, AcceptsFacesBeforeTheirVertices) {
+  EXPECT_EQ(triangles_of("f 1 2 3\n" + kThreeVertices), (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+TEST(ObjReader, IgnoresWhatIsNotGeometry) {
+  const auto mesh = parse_obj(
+      "\xEF\xBB\xBFmtllib a.mtl\r\n\r\n# a comment\r\no thing\r\n"
+      "v 0 0 0 1 # with w\r\nv\t1 0 0 0.5 0.5 0.5\r\n  v +0 1e0 -.5\r\nvn 0 0 1\r\nvt 0 0\r\n"
+      "usemtl m\r\ns off\r\nf 1 2 3 # corners\r\n",
+      "a.obj");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->xyz, (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, -0.5F}));
+  EXPECT_EQ(mesh->triangles.size(), 1U);
+}
+
+TEST(ObjReader, JoinsContinuedLines) {
+  EXPECT_EQ(triangles_of("v 0 0 \\\n0\nv 1 0 0\r\nv 0 1 0\nf 1 \\\r\n 2\\\n 3"),
+            (std::vector<Triangle>{{0, 1, 2}}));
+  expect_error("v 0 0 \\\n0\nv 1 0 x\n", "a.obj:3: \"x\"");  // the joined line counts twice
+}
+
+TEST(ObjReader, AcceptsOldLineEnds) {
+  EXPECT_EQ(triangles_of("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").size(), 1U);
+  expect_error("v 0 0 0\rv 1 0\r", "a.obj:2: a vertex needs three coordinates");
+}
+
+TEST(ObjReader, RoundsNumbersCorrectly) {
+  // Just below and above the middle of two floats: rounding to double first would go wrong.
+  const auto mesh = parse_obj(
+      "v 1.00000017881393432617187499 1.00000017881393432617187501 1e30\n"
+      "v 1e-50 -1e-400 1.4e-45\n",
+      "a.obj");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->xyz[0], 0x1.000002p0F);
+  EXPECT_EQ(mesh->xyz[1], 0x1.000004p0F);
+  EXPECT_EQ(mesh->xyz[2], 1e30F);
+  EXPECT_EQ(mesh->xyz[3], 0.0F);
+  EXPECT_EQ(mesh->xyz[4], 0.0F);
+  EXPECT_EQ(mesh->xyz[5], std::numeric_limits<float>::denorm_min());
+}
+
+TEST(ObjReader, RefusesNumbersThatAreNotFinite) {
+  expect_error("v 0 0 0\nv 0 nan 0\n", "a.obj:2: \"nan\" is not finite");
+  expect_error("v inf 0 0\n", "a.obj:1: \"inf\" is not finite");
+  expect_error("v 0 -infinity 0\n", "a.obj:1: \"-infinity\" is not finite");
+  expect_error("v 0 0 1e39\n", "a.obj:1: \"1e39\" is too large");
+  expect_error("v 0 0 -1e400\n", "a.obj:1: \"-1e400\" is too large");
+}
+
+TEST(ObjReader, RefusesWhatIsNotANumber) {
+  expect_error("v 0 0 abc\n", "a.obj:1: \"abc\" is not a number");
+  expect_error("v 0 0 0x10\n", "\"0x10\" is not a number");
+  expect_error("v 0 0 1.5.2\n", "\"1.5.2\" is not a number");
+  expect_error("v 0 0 +\n", "\"+\" is not a number");
+  expect_error("v 0 0 1,5\n", "\"1,5\" is not a number");
+  expect_error("\n\nv 0 0\n", "a.obj:3: a vertex needs three coordinates");
+}
+
+TEST(ObjReader, RefusesIndicesOutOfRange) {
+  expect_error(kThreeVertices + "f 1 2 9\n", "a.obj:4: vertex index 9 is out of range 1 to 3");
+  expect_error(kThreeVertices + "f 1 2 9\nf 1 2 7\n", "a.obj:4: vertex index 9");
+  expect_error(kThreeVertices + "f 0 1 2\n", "a.obj:4: vertex index 0");
+  expect_error(kThreeVertices + "f 1 2 -4\n", "a.obj:4: vertex index -4, but only 3");
+  expect_error(kThreeVertices + "f 1 2 4294967296\n", "a.obj:4: vertex index 4294967296");
+  expect_error(kThreeVertices + "f 1 2 99999999999999999999\n", "is not a face corner");
+}
+
+TEST(ObjReader, RefusesBrokenFaces) {
+  expect_error(kThreeVertices + "f 1 2\n", "a.obj:4: a face of 2 corners");
+  expect_error(kThreeVertices + "f\n", "a.obj:4: a face of 0 corners");
+  for (const char* corner : {"3/", "3//", "3/1/", "3/x", "x", "3.0", "3/1/1/1", "/1"}) {
+    expect_error(kThreeVertices + "f 1 2 " + corner + "\n", "is not a face corner");
+  }
+}
+
+TEST(ObjReader, RefusesWhatIsNotText) {
+  expect_error(std::string("v 0 0 0\n\0\1", 10), "a zero byte at byte 8");
+  expect_error(
+      "\x7F"
+      "ELF\x02\x01 garbage",
+      "no vertex");
+  expect_error("# only a comment\n", "no vertex");
+}
+
+TEST(ObjReader, RefusesMissingAndEmptyFiles) {
+  const auto missing = read_mesh("no_such_file.obj");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("no_such_file.obj: no such file"), std::string::npos);
+  const auto folder = read_mesh(".");
+  ASSERT_FALSE(folder);
+  EXPECT_NE(folder.error().message.find("not a regular file"), std::string::npos);
+}
+
+TEST(ObjReader, FindsTheFrameRateOfOurWriters) {
+  const auto mesh =
+      parse_obj("# frame_rate 30000/1001\n# frame_rate 5/1\n" + kThreeVertices, "a");
+  ASSERT_TRUE(mesh);
+  ASSERT_TRUE(mesh->frame_rate);
+  EXPECT_EQ(*mesh->frame_rate, (FrameRate{30000, 1001}));
+  const auto other = parse_obj("# frame_rate fast\n" + kThreeVertices, "a");
+  ASSERT_TRUE(other);
+  EXPECT_FALSE(other->frame_rate);
+}
+
+// Any text gives a mesh or an error, never a crash: all prefixes of a file with everything in
+// it.
+TEST(ObjReader, SurvivesEveryPrefix) {
+  const std::string text = kThreeVertices + "f 1/1 2//2 \\\n3/3/3 -1\n# end \\\nv 1 2 3 \\\r\n";
+  for (std::size_t n = 0; n <= text.size(); ++n) {
+    const auto mesh = parse_obj(std::string(text, 0, n), "a.obj");
+    if (mesh) {
+      EXPECT_EQ(mesh->xyz.size() % 3, 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rlpc

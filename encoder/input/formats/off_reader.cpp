@@ -1,0 +1,133 @@
+#include "encoder/input/formats/off_reader.h"
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "encoder/input/formats/mesh_text.h"
+
+namespace rlpc {
+
+namespace {
+
+using std::to_string;
+
+class OffParser {
+ public:
+  OffParser(std::string_view text, const std::string& name)
+      : words_(text), bytes_(text.size()), name_(name) {}
+
+  InputResult<SingleMesh> parse() {
+    check_keyword(words_.next_of_any_line());
+    const std::uint32_t vertices = read_number("the number of vertices");
+    const std::uint32_t faces = read_number("the number of faces");
+    if (vertices == 0) fail("no vertices");
+    // The third number of the line counts edges; nobody relies on it.
+    // "0 0 0" and a line end; "3 0 0 0" of a face is longer.
+    if ((std::uint64_t{vertices} + faces) * 6 > std::uint64_t{bytes_} + 1) {
+      fail(to_string(vertices) + " vertices and " + to_string(faces) +
+           " faces do not fit the " + to_string(bytes_) +
+           " bytes of the file; is it complete?");
+    }
+    for (std::uint32_t v = 0; v < vertices && !error_; ++v) read_vertex();
+    for (std::uint32_t f = 0; f < faces && !error_; ++f) read_face(vertices);
+    if (!error_) {
+      words_.next_line();
+      if (!words_.next_of_any_line().empty()) fail("goes on after the last face");
+    }
+    if (error_) return *error_;
+    return std::move(mesh_);
+  }
+
+ private:
+  void fail(const std::string& what) {
+    if (!error_) error_ = InputError{name_ + ":" + to_string(words_.line()) + ": " + what};
+  }
+
+  void check_keyword(std::string_view keyword) {
+    if (!looks_like_off(keyword)) return fail("does not begin with OFF; not an OFF file");
+    if (keyword.find_first_of("4n") != keyword.npos) {
+      fail(quoted(keyword) + ": vertices in other than three dimensions are not read");
+    }
+  }
+
+  // Of the line of counts, or at the start of a face.
+  std::uint32_t read_number(const std::string& what) {
+    return parse_number(words_.next_of_any_line(), what);
+  }
+
+  std::uint32_t parse_number(std::string_view word, const std::string& what) {
+    std::uint32_t value = 0;
+    const char* const last = word.data() + word.size();
+    const auto [end, ec] = std::from_chars(word.data(), last, value);
+    if (ec == std::errc() && end == last) return value;
+    if (word == "BINARY") {
+      fail("binary OFF files are not read; save it as text, or as PLY");
+    } else if (words_.at_end()) {
+      fail("the file ends before " + what + "; is it complete?");
+    } else {
+      fail(quoted(word) + ": expected " + what + ", from 0 to 4294967295");
+    }
+    return 0;
+  }
+
+  // "x y z", whatever follows; blank lines and comments before it.
+  void read_vertex() {
+    words_.next_line();
+    std::string_view word = words_.next_of_any_line();
+    for (int axis = 0; axis < 3 && !error_; ++axis) {
+      std::optional<std::string> problem;
+      if (word.empty()) {
+        problem = words_.at_end() ? "the file ends before the last vertex; is it complete?"
+                                  : "a vertex needs three coordinates";
+      } else {
+        mesh_.xyz.push_back(parse_coordinate(word, problem));
+      }
+      if (problem) fail(*problem);
+      if (axis < 2) word = words_.next();
+    }
+  }
+
+  // "n a b c ...", whatever follows: a fan from the first corner.
+  void read_face(std::uint32_t vertices) {
+    words_.next_line();
+    const std::uint32_t corners = read_number("the number of corners of a face");
+    if (corners < 3) fail("a face of " + to_string(corners) + " corners; it needs 3 or more");
+    Triangle fan{};
+    for (std::uint32_t i = 0; i < corners && !error_; ++i) {
+      const std::uint32_t vertex = parse_number(words_.next(), "a vertex index");
+      if (vertex >= vertices) {
+        fail("vertex index " + to_string(vertex) + " is out of range 0 to " +
+             to_string(vertices - 1));
+      }
+      if (i >= 3) fan[1] = fan[2];
+      fan[i < 2 ? i : 2] = vertex;
+      if (i >= 2) mesh_.triangles.push_back(fan);
+    }
+  }
+
+  TextWords words_;
+  std::size_t bytes_;
+  const std::string& name_;
+  SingleMesh mesh_;
+  std::optional<InputError> error_;
+};
+
+}  // namespace
+
+bool looks_like_off(std::string_view text) {
+  if (text.starts_with("ST")) text.remove_prefix(2);
+  for (const char letter : {'C', 'N', '4', 'n'}) {
+    if (text.starts_with(letter)) text.remove_prefix(1);
+  }
+  if (!text.starts_with("OFF")) return false;
+  return text.size() == 3 || text.find_first_of(" \t\r\n#") == 3;
+}
+
+InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name) {
+  return OffParser(text, name).parse();
+}
+
+}  // namespace rlpc

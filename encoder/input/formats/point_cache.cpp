@@ -1,0 +1,187 @@
+#include "encoder/input/formats/point_cache.h"
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "encoder/input/input_file.h"
+#include "encoder/input/mesh_reader.h"
+
+namespace rlpc {
+
+namespace {
+
+using std::to_string;
+
+constexpr std::size_t kPc2HeaderBytes = 32;
+constexpr std::size_t kMddHeaderBytes = 8;
+constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
+
+// What a header says.
+struct Layout {
+  bool big_endian = false;
+  std::int32_t points = 0;
+  std::int32_t frames = 0;
+  std::uint64_t first_byte = 0;  // of the positions
+};
+
+InputError too_short(const InputFile& file, std::size_t header_bytes) {
+  return InputError{file.path() + ": " + to_string(file.size()) +
+                    " bytes; a point cache has at least a header of " +
+                    to_string(header_bytes)};
+}
+
+InputResult<Layout> read_pc2_header(InputFile& file) {
+  std::array<char, kPc2HeaderBytes> header{};
+  if (file.size() < header.size()) return too_short(file, header.size());
+  if (auto error = file.read(0, header)) return *error;
+  if (std::string_view(header.data(), kPc2Magic.size()) != kPc2Magic) {
+    return InputError{file.path() + ": does not begin with POINTCACHE2; not a PC2 point cache"};
+  }
+  const std::int32_t version = load_i32(header, 12);
+  if (version != 1) {
+    return InputError{file.path() + ": PC2 version " + to_string(version) +
+                      " at byte 12; expected 1"};
+  }
+  return Layout{false, load_i32(header, 16), load_i32(header, 28), kPc2HeaderBytes};
+}
+
+InputResult<Layout> read_mdd_header(InputFile& file) {
+  std::array<char, kMddHeaderBytes> header{};
+  if (file.size() < header.size()) return too_short(file, header.size());
+  if (auto error = file.read(0, header)) return *error;
+  Layout layout;
+  layout.big_endian = true;
+  layout.frames = static_cast<std::int32_t>(load_u32_be(header, 0));
+  layout.points = static_cast<std::int32_t>(load_u32_be(header, 4));
+  if (layout.frames > 0) {
+    layout.first_byte = kMddHeaderBytes + 4 * static_cast<std::uint64_t>(layout.frames);
+  }
+  return layout;
+}
+
+// Compares the header with the mesh and with the size of the file.
+std::optional<InputError> check_layout(const InputFile& file, const Layout& layout,
+                                       const std::string& mesh_path,
+                                       std::uint32_t num_vertices) {
+  const std::string& path = file.path();
+  if (layout.points < 0 || static_cast<std::uint32_t>(layout.points) != num_vertices) {
+    return InputError{path + ": " + to_string(layout.points) + " points per frame, but " +
+                      name_of_input(mesh_path) + " has " + to_string(num_vertices) +
+                      " vertices; use the mesh and the cache of the same export"};
+  }
+  if (layout.frames < 1) {
+    return InputError{path + ": " + to_string(layout.frames) +
+                      " samples; expected at least 1 frame"};
+  }
+  // points is the size of a mesh in memory, so this fits 64 bits.
+  const std::uint64_t expected =
+      layout.first_byte +
+      std::uint64_t{num_vertices} * 12 * static_cast<std::uint64_t>(layout.frames);
+  if (file.size() != expected) {
+    return InputError{path + ": " + to_string(file.size()) + " bytes; expected " +
+                      to_string(expected) + " for " + to_string(layout.frames) + " frames of " +
+                      to_string(layout.points) + " points; the file is " +
+                      (file.size() < expected ? "truncated" : "too long")};
+  }
+  return std::nullopt;
+}
+
+InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
+                                std::uint32_t num_vertices) {
+  std::array<char, kPc2Magic.size()> magic{};
+  if (file.size() >= magic.size()) {
+    if (auto error = file.read(0, magic)) return *error;
+  }
+  const bool is_pc2 = std::string_view(magic.data(), magic.size()) == kPc2Magic;
+  const std::string extension = lower_extension(file.path());
+  if (is_pc2 || extension == ".pc2") return read_pc2_header(file);
+  auto layout = read_mdd_header(file);
+  if (extension == ".mdd") return layout;
+  // Nothing tells MDD but that the numbers fit.
+  if (layout && !check_layout(file, *layout, mesh_path, num_vertices)) return layout;
+  return InputError{file.path() +
+                    ": does not begin with POINTCACHE2, so it is no PC2 point cache; nor does "
+                    "it fit " +
+                    name_of_input(mesh_path) + ", of " + to_string(num_vertices) +
+                    " vertices, as MDD"};
+}
+
+// Frames per second, where the times of an MDD file tell: seconds, evenly spaced. Others are
+// numbers of frames, or not meant.
+InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layout& layout) {
+  const auto count = static_cast<std::size_t>(layout.frames);
+  std::vector<char> bytes(4 * count);
+  if (auto error = file.read(kMddHeaderBytes, bytes)) return *error;
+  std::vector<double> times(count);
+  for (std::size_t f = 0; f < count; ++f) times[f] = load_f32_be(bytes, 4 * f);
+  if (count < 2) return std::optional<FrameRate>();
+  const double interval = (times.back() - times.front()) / static_cast<double>(count - 1);
+  constexpr double kUneven = 0.02;  // of an interval
+  for (std::size_t f = 0; f < count; ++f) {
+    const double expected = times.front() + interval * static_cast<double>(f);
+    if (!(std::abs(times[f] - expected) <= kUneven * interval)) {
+      return std::optional<FrameRate>();
+    }
+  }
+  return frame_rate_near(1.0 / interval);
+}
+
+class PointCache : public FrameSource {
+ public:
+  PointCache(Shape shape, InputFile file, const Layout& layout)
+      : FrameSource(std::move(shape)), file_(std::move(file)), layout_(layout) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    bytes_.resize(xyz.size() * 4);
+    const std::uint64_t offset = layout_.first_byte + frame * std::uint64_t{bytes_.size()};
+    if (auto error = file_.read(offset, bytes_)) return error;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = layout_.big_endian ? load_f32_be(bytes_, 4 * i) : load_f32(bytes_, 4 * i);
+    }
+    return check_finite(file_.path(), frame, xyz);
+  }
+
+  std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
+
+ private:
+  InputFile file_;
+  Layout layout_;
+  std::vector<char> bytes_;
+};
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameSource>> open_point_cache(
+    const std::string& mesh_path, const std::string& points_path,
+    const std::optional<FrameRate>& frame_rate) {
+  if (mesh_path == "-" && points_path == "-") {
+    return InputError{"standard input: cannot be both the mesh and its point cache"};
+  }
+  auto mesh = read_mesh(mesh_path);
+  if (!mesh) return mesh.error();
+  auto file = InputFile::open(points_path);
+  if (!file) return file.error();
+  const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
+  const auto layout = read_header(*file, mesh_path, num_vertices);
+  if (!layout) return layout.error();
+  if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
+  FrameRate usual;
+  if (layout->big_endian) {
+    const auto rate = rate_of_times(*file, *layout);
+    if (!rate) return rate.error();
+    usual = rate->value_or(usual);
+  }
+  auto shape =
+      shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
+  shape.files = {mesh_path, points_path};
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,156 @@
+#include "encoder/input/formats/rlpd_reader.h"
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "encoder/input/grid_value.h"
+#include "encoder/input/input_file.h"
+
+namespace rlpc {
+
+namespace {
+
+using std::to_string;
+
+constexpr std::size_t kHeaderBytes = 44;
+
+// Annex A, the fixed part.
+struct RlpdHeader {
+  std::uint32_t num_vertices = 0;
+  std::uint32_t num_triangles = 0;
+  std::uint32_t num_frames = 0;
+  FrameRate frame_rate;
+  Grid grid;
+
+  std::uint64_t bytes_before_frames() const {
+    return kHeaderBytes + std::uint64_t{num_triangles} * 12;
+  }
+  std::uint64_t frame_bytes() const { return std::uint64_t{num_vertices} * 12; }
+};
+
+InputResult<RlpdHeader> read_header(InputFile& file) {
+  const std::string& path = file.path();
+  std::array<char, kHeaderBytes> bytes{};
+  if (file.size() < kHeaderBytes) {
+    return InputError{path + ": " + to_string(file.size()) +
+                      " bytes; the header of a .rlpd file has " + to_string(kHeaderBytes)};
+  }
+  if (auto error = file.read(0, bytes)) return *error;
+  if (std::string_view(bytes.data(), 4) != "RLPD") {
+    return InputError{path + ": does not begin with RLPD; not a .rlpd file"};
+  }
+  if (load_u32(bytes, 4) != 1) {
+    return InputError{path + ": .rlpd version " + to_string(load_u32(bytes, 4)) +
+                      " at byte 4; expected 1"};
+  }
+  RlpdHeader header;
+  header.num_vertices = load_u32(bytes, 8);
+  header.num_triangles = load_u32(bytes, 12);
+  header.num_frames = load_u32(bytes, 16);
+  header.frame_rate = {load_u32(bytes, 20), load_u32(bytes, 24)};
+  header.grid.log2_step = load_i32(bytes, 28);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    header.grid.origin[axis] = load_i32(bytes, 32 + 4 * axis);
+  }
+  if (header.frame_rate.numerator == 0 || header.frame_rate.denominator == 0) {
+    return InputError{path + ": frame rate " + to_string(header.frame_rate.numerator) + "/" +
+                      to_string(header.frame_rate.denominator) +
+                      " at byte 20; both parts must be at least 1"};
+  }
+  if (header.grid.log2_step < -150 || header.grid.log2_step > 127) {
+    return InputError{path + ": grid_log2_step " + to_string(header.grid.log2_step) +
+                      " at byte 28; expected -150 to 127"};
+  }
+  return header;
+}
+
+// Frames present, from the size of the file.
+InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader& header) {
+  const std::string& path = file.path();
+  if (header.num_vertices == 0) return InputError{path + ": no vertices (byte 8)"};
+  if (file.size() < header.bytes_before_frames()) {
+    return InputError{path + ": " + to_string(file.size()) + " bytes; " +
+                      to_string(header.num_triangles) + " triangles alone need " +
+                      to_string(header.bytes_before_frames()) + "; the file is truncated"};
+  }
+  const std::uint64_t payload = file.size() - header.bytes_before_frames();
+  const std::uint64_t frames = payload / header.frame_bytes();
+  if (payload % header.frame_bytes() != 0) {
+    return InputError{path + ": " + to_string(file.size()) + " bytes end inside frame " +
+                      to_string(frames) + " (from 0); a frame has " +
+                      to_string(header.frame_bytes()) + " bytes"};
+  }
+  if (frames == 0) return InputError{path + ": the file holds no frame"};
+  if (frames > header.num_frames) {
+    return InputError{path + ": holds " + to_string(frames) + " frames, but announces " +
+                      to_string(header.num_frames) + " at byte 16"};
+  }
+  return static_cast<std::uint32_t>(frames);
+}
+
+InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHeader& header) {
+  std::vector<char> bytes(std::size_t{header.num_triangles} * 12);
+  if (auto error = file.read(kHeaderBytes, bytes)) return *error;
+  std::vector<Triangle> triangles(header.num_triangles);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t v = load_u32(bytes, 12 * t + 4 * corner);
+      if (v >= header.num_vertices) {
+        return InputError{file.path() + ": triangle " + to_string(t) + " (from 0): index " +
+                          to_string(v) + " is out of range 0 to " +
+                          to_string(header.num_vertices - 1)};
+      }
+      triangles[t][corner] = v;
+    }
+  }
+  return triangles;
+}
+
+class RlpdSource : public FrameSource {
+ public:
+  RlpdSource(Shape shape, InputFile file, const RlpdHeader& header)
+      : FrameSource(std::move(shape)), file_(std::move(file)), header_(header) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    bytes_.resize(xyz.size() * 4);
+    const std::uint64_t offset = header_.bytes_before_frames() + frame * header_.frame_bytes();
+    if (auto error = file_.read(offset, bytes_)) return error;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = grid_value(header_.grid, i % 3, load_i32(bytes_, 4 * i));
+    }
+    return check_finite(file_.path(), frame, xyz);
+  }
+
+  std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
+
+ private:
+  InputFile file_;
+  RlpdHeader header_;
+  std::vector<char> bytes_;
+};
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameSource>> open_rlpd(
+    const std::string& path, const std::optional<FrameRate>& frame_rate) {
+  auto file = InputFile::open(path);
+  if (!file) return file.error();
+  const auto header = read_header(*file);
+  if (!header) return header.error();
+  const auto frames = count_frames(*file, *header);
+  if (!frames) return frames.error();
+  auto triangles = read_triangles(*file, *header);
+  if (!triangles) return triangles.error();
+  FrameSource::Shape shape{header->num_vertices, *frames,
+                           frame_rate.value_or(header->frame_rate), std::move(*triangles)};
+  shape.files = {path};
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
+}
+
+}  // namespace rlpc

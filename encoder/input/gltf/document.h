@@ -1,0 +1,99 @@
+// What a glTF document says, as far as positions follow from it. Indices are in range, and
+// accessors lie in their buffers; whether a buffer is there, and what is in it, is another
+// matter.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "encoder/input/gltf/accessor.h"
+#include "encoder/input/gltf/affine.h"
+#include "encoder/input/gltf/buffers.h"
+#include "encoder/input/gltf/json.h"
+
+namespace rlpc {
+
+enum class GltfMode : std::uint8_t {
+  kPoints,
+  kLines,
+  kLineLoop,
+  kLineStrip,
+  kTriangles,
+  kTriangleStrip,
+  kTriangleFan
+};
+
+struct GltfPrimitive {
+  std::string path;  // "meshes[0].primitives[1]"
+  GltfMode mode = GltfMode::kTriangles;
+  std::optional<std::uint32_t> indices;  // accessors, here and below
+  std::uint32_t positions = 0;
+  bool is_compressed = false;  // by an extension, and perhaps for those alone who know it
+  std::vector<std::optional<std::uint32_t>> targets;  // without positions: nothing moves
+  std::vector<std::uint32_t> joints;                  // as many as weights
+  std::vector<std::uint32_t> weights;
+
+  bool has_triangles() const { return mode >= GltfMode::kTriangles; }
+};
+
+struct GltfMesh {
+  std::vector<GltfPrimitive> primitives;  // those with positions
+  std::size_t num_targets = 0;            // of each primitive
+  std::vector<double> weights;            // [num_targets]
+};
+
+struct GltfNode {
+  std::optional<std::uint32_t> mesh;
+  std::optional<std::uint32_t> skin;
+  std::vector<std::uint32_t> children;
+  std::optional<Affine> matrix;  // in place of the next three
+  GltfVec3 translation{0, 0, 0};
+  GltfQuaternion rotation{0, 0, 0, 1};  // of length 1
+  GltfVec3 scale{1, 1, 1};
+  std::optional<std::vector<double>> weights;  // in place of those of the mesh
+};
+
+struct GltfSkin {
+  std::vector<std::uint32_t> joints;  // nodes
+  std::optional<std::uint32_t> inverse_bind;
+};
+
+enum class GltfPath : std::uint8_t { kTranslation, kRotation, kScale, kWeights };
+enum class GltfInterpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
+
+struct GltfAnimation {
+  struct Sampler {
+    std::uint32_t input = 0;
+    std::uint32_t output = 0;
+    GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  };
+  struct Channel {
+    std::uint32_t sampler = 0;
+    std::uint32_t node = 0;
+    GltfPath path = GltfPath::kTranslation;
+  };
+
+  std::string name;
+  std::vector<Sampler> samplers;
+  std::vector<Channel> channels;
+  std::uint32_t num_unknown = 0;  // channels that move what is no node
+};
+
+struct GltfDocument {
+  std::vector<GltfBuffer> buffers;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<GltfNode> nodes;
+  std::vector<GltfSkin> skins;
+  std::vector<GltfAnimation> animations;
+  std::optional<std::vector<std::uint32_t>> scene;  // its nodes; none: all that have no parent
+  // Extensions that are not read, though they would change shapes or motions.
+  std::vector<std::string> extensions_left_out;
+};
+
+// Whole only if there are no errors.
+GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors);
+
+}  // namespace rlpc

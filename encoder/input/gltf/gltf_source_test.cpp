@@ -1,0 +1,251 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "encoder/input/gltf/files_test.h"
+#include "encoder/input/gltf/source.h"
+
+namespace rlpc {
+namespace {
+
+using Json = nlohmann::json;
+
+const float kHalf = 0.70710678F;  // sine and cosine of 45 degrees
+
+class GltfSourceTest : public GltfFilesTest {};
+
+TEST_F(GltfSourceTest, ReadsAMeshWithoutAnimationAsOneFrame) {
+  const auto source = open(one_triangle());
+  EXPECT_EQ(source->num_frames(), 1U);
+  EXPECT_EQ(source->frame_rate(), (FrameRate{30, 1}));
+  EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_TRUE(source->notes().empty());
+  EXPECT_EQ(frame_of(*source, 0), kCorners);
+}
+
+TEST_F(GltfSourceTest, TellsTheContainerByContent) {
+  const GltfBuilder builder = one_triangle();
+  for (const char* name : {"a.glb", "a.gltf", "a.GLB", "a.model", "a"}) {
+    const auto source = open_frame_source({put(name, builder.glb()), "", {}});
+    ASSERT_TRUE(source) << source.error().message;
+    EXPECT_EQ(frame_of(**source, 0), kCorners);
+  }
+  put("a.bin", builder.bytes);
+  for (const char* name : {"a.gltf", "a.glb", "a.json", "a"}) {
+    const auto source = open_frame_source({put(name, "\n " + builder.gltf("a.bin")), "", {}});
+    ASSERT_TRUE(source) << source.error().message;
+    EXPECT_EQ(frame_of(**source, 0), kCorners);
+  }
+}
+
+TEST_F(GltfSourceTest, ReadsBuffersWhereverTheyAre) {
+  GltfBuilder builder;
+  const std::size_t indices = builder.add("SCALAR", std::vector<std::uint16_t>{2, 1, 0});
+  const std::size_t positions = builder.add("VEC3", kCorners);
+  builder.add_root({{"mesh", builder.add_mesh({{"attributes", {{"POSITION", positions}}},
+                                               {"indices", indices}})}});
+  put("data/a b.bin", builder.bytes + "more");
+  // 2, 1, 0 in 16 bits each, a gap, and the corners.
+  const std::string base64 =
+      "data:application/gltf-buffer;base64,AgABAAAAAAAAAAAAAAAAAAAAAAAAAI"
+      "A/AAAAAAAAAAAAAAAAAACAPwAAAAA=";
+  for (const std::string& uri :
+       {std::string("data/a%20b.bin"), std::string("./data/a b.bin"), base64}) {
+    const auto source = open_gltf({put("a.gltf", builder.gltf(uri)), "", {}, "", false});
+    ASSERT_TRUE(source) << source.error().message;
+    EXPECT_EQ((*source)->triangles(), (std::vector<Triangle>{{2, 1, 0}}));
+    EXPECT_EQ(frame_of(**source, 0), kCorners) << uri;
+  }
+}
+
+TEST_F(GltfSourceTest, PutsVerticesInTheOrderOfTheScene) {
+  GltfBuilder builder;
+  const auto mesh_of = [&](float x) {
+    std::vector<Json> primitives;
+    for (const float more : {0.0F, 0.5F}) {
+      const std::vector<float> xyz{x + more, 0, 0, 0, 1, 0, 0, 0, 1};
+      primitives.push_back({{"attributes", {{"POSITION", builder.add("VEC3", xyz)}}}});
+    }
+    return builder.push("meshes", {{"primitives", primitives}});
+  };
+  const std::size_t first = mesh_of(1);
+  const std::size_t second = mesh_of(2);
+  builder.json["nodes"] = {{{"mesh", second}, {"translation", {10, 0, 0}}},
+                           {{"children", {3, 0}}, {"translation", {100, 0, 0}}},
+                           {{"mesh", first}},
+                           {{"mesh", first}, {"scale", {2, 2, 2}}},
+                           {{"mesh", first}}};
+  builder.json["scenes"][0]["nodes"] = {1, 4};  // node 2 is in no scene
+  const auto source = open(builder);
+  const std::vector<float> xyz = frame_of(*source, 0);
+  std::vector<float> x;
+  for (std::size_t i = 0; i < xyz.size(); i += 9) x.push_back(xyz[i]);
+  EXPECT_EQ(x, (std::vector<float>{102, 103, 112, 112.5, 1, 1.5}));
+  EXPECT_EQ(source->triangles()[5], (Triangle{15, 16, 17}));
+  builder.json.erase("scenes");
+  builder.json.erase("scene");
+  EXPECT_EQ(open(builder)->num_vertices(), 24U);  // all roots, node 2 among them
+}
+
+TEST_F(GltfSourceTest, TurnsTrianglesOfMirroringNodes) {
+  GltfBuilder builder = one_triangle();
+  builder.add_root({{"mesh", 0}, {"scale", {1, -1, 1}}});
+  EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 1, 2}, {3, 5, 4}}));
+}
+
+TEST_F(GltfSourceTest, TakesMatricesOfNodes) {
+  GltfBuilder builder = one_triangle();
+  builder.json["nodes"][0]["matrix"] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};
+  EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 6, 7, 5, 8, 7, 3, 6, 7}));
+}
+
+TEST_F(GltfSourceTest, CombinesScaleRotationTranslationAndParents) {
+  GltfBuilder builder = one_triangle();
+  builder.json["nodes"][0] = {{"mesh", 0}, {"scale", {2, 3, 4}}};
+  builder.push(
+      "nodes",
+      {{"children", {0}}, {"rotation", {0, 0, kHalf, kHalf}}, {"translation", {10, 0, 0}}});
+  builder.json["scenes"][0]["nodes"] = {1};
+  expect_near(frame_of(*open(builder), 0), {10, 0, 0, 10, 2, 0, 7, 0, 0});
+}
+
+TEST_F(GltfSourceTest, SamplesFromTheFirstTimeToTheLastWholeStep) {
+  GltfBuilder builder = moving_triangle();
+  EXPECT_EQ(open(builder)->num_frames(), 61U);
+  EXPECT_EQ(open(builder, "", false, {4, 1})->num_frames(), 9U);
+  EXPECT_EQ(open(builder, "", false, {30000, 1001})->num_frames(), 60U);
+  const auto source = open(builder, "", false, {4, 3});  // every 0.75 s
+  EXPECT_EQ(source->num_frames(), 3U);
+  for (const std::uint32_t f : {2U, 0U, 1U}) {
+    EXPECT_FLOAT_EQ(frame_of(*source, f)[0], 0.75F * static_cast<float>(f));
+  }
+  const auto later = builder.add("SCALAR", std::vector<float>{10, 11, 12.2F});
+  builder.json["animations"][0]["samplers"][0]["input"] = later;
+  const auto late = open(builder, "", false, {5, 1});
+  EXPECT_EQ(late->num_frames(), 12U);  // as 12.2 is to a float
+  EXPECT_FLOAT_EQ(frame_of(*late, 5)[0], 1);
+  EXPECT_NEAR(frame_of(*late, 11)[0], 2, 1e-5);
+  const auto end = builder.add("SCALAR", std::vector<float>{0, 1, 30725 / 30.0F});
+  builder.json["animations"][0]["samplers"][0]["input"] = end;
+  EXPECT_EQ(open(builder)->num_frames(), 30726U);  // 0.0015 of a frame short, as a float
+}
+
+TEST_F(GltfSourceTest, ChoosesAnimations) {
+  GltfBuilder builder = moving_triangle();
+  builder.push("animations", {{"name", "0"}});
+  const std::size_t input = builder.add("SCALAR", std::vector<float>{5, 6});
+  const std::size_t output = builder.add("VEC3", std::vector<float>{0, 7, 0, 0, 7, 0});
+  builder.add_channel(0, "translation", input, output, "STEP");
+  const FrameRate one{1, 1};
+  for (const char* first : {"", "Move"}) {
+    EXPECT_EQ(open(builder, first, false, one)->num_frames(), 3U);
+  }
+  for (const char* second : {"1", "0"}) {  // by name before by index
+    const auto source = open(builder, second, false, one);
+    EXPECT_EQ(source->num_frames(), 2U);
+    EXPECT_EQ(frame_of(*source, 0)[1], 7);
+  }
+  const auto all = open(builder, "all", false, one);
+  ASSERT_EQ(all->num_frames(), 5U);
+  std::vector<float> first_vertex;
+  for (const std::uint32_t f : {4U, 0U, 2U, 3U}) {
+    const std::vector<float> xyz = frame_of(*all, f);
+    first_vertex.insert(first_vertex.end(), xyz.begin(), xyz.begin() + 2);
+  }
+  EXPECT_EQ(first_vertex, (std::vector<float>{0, 7, 0, 0, 2, 0, 0, 7}));
+}
+
+TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
+  GltfBuilder builder = one_triangle();
+  builder.push("animations", Json::object());
+  const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 2});
+  const auto track = [&](const char* path, const char* type, const std::vector<float>& values,
+                         const char* how) {
+    builder.add_channel(0, path, input, builder.add(type, values), how);
+  };
+  track("rotation", "VEC4", {0, 0, 0, 1, 0, 0, 1, 0}, "LINEAR");
+  track("scale", "VEC3", {1, 1, 1, 3, 3, 3}, "LINEAR");
+  track("translation", "VEC3", {0, 0, 5, 9, 9, 9}, "STEP");
+  const auto source = open(builder, "", false, {1, 1});
+  // Half way: 90 degrees, twice the size, not yet elsewhere.
+  expect_near(frame_of(*source, 1), {0, 0, 5, 0, 2, 5, -2, 0, 5});
+  expect_near(frame_of(*source, 2), {9, 9, 9, 6, 9, 9, 9, 6, 9});
+}
+
+TEST_F(GltfSourceTest, TakesRotationsInNormalizedIntegers) {
+  GltfBuilder builder = one_triangle();
+  builder.push("animations", Json::object());
+  const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
+  const std::vector<std::int16_t> turns{0, 0, 0, 32767, 0, 0, 23170, 23170};
+  builder.add_channel(0, "rotation", input, builder.add_normalized("VEC4", turns), "LINEAR");
+  expect_near(frame_of(*open(builder, "", false, {1, 1}), 1), {0, 0, 0, 0, 1, 0, -1, 0, 0});
+}
+
+TEST_F(GltfSourceTest, LeavesOutWhatExtensionsMoveAndSaysSo) {
+  GltfBuilder builder = moving_triangle();
+  Json& channels = builder.json["animations"][0]["channels"];
+  channels.push_back({{"sampler", 0},
+                      {"target",
+                       {{"path", "pointer"},
+                        {"extensions", {{"KHR_animation_pointer", {{"pointer", "/x"}}}}}}}});
+  const auto source = open(builder);
+  EXPECT_EQ(source->num_frames(), 61U);
+  EXPECT_EQ(source->notes(),
+            (std::vector<std::string>{"1 animation channel is of extensions and left out"}));
+}
+
+TEST_F(GltfSourceTest, SaysWhatElseItLeavesOut) {
+  GltfBuilder builder = moving_triangle();
+  builder.json["animations"].push_back(builder.json["animations"][0]);
+  builder.json["animations"][1]["name"] = "Run";
+  builder.json["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"};
+  const auto source = open(builder);
+  ASSERT_EQ(source->notes().size(), 2U);
+  EXPECT_EQ(source->notes()[0],
+            "what EXT_mesh_gpu_instancing adds or hides is left out of account");
+  EXPECT_TRUE(source->notes()[1].starts_with("the first of 2 animations is taken: "));
+  EXPECT_NE(source->notes()[1].find("\"Run\""), std::string::npos);
+  EXPECT_EQ(open(builder, "all")->notes().size(), 1U);
+}
+
+TEST_F(GltfSourceTest, RefusesMeshesWithoutAnything) {
+  GltfBuilder builder = one_triangle();
+  builder.json["accessors"][0].erase("bufferView");
+  builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0}};
+  expect_text(error_of(builder), "found no bufferView, expected positions");
+  GltfBuilder flat;
+  const std::vector<float> xyz(9);
+  flat.add_root(
+      {{"mesh", flat.add_mesh({{"attributes", {{"POSITION", flat.add("VEC3", xyz)}}}})}});
+  expect_text(error_of(flat), "all of them are degenerate");
+  EXPECT_EQ(open(flat)->triangles().size(), 1U);  // without welding, its corners differ
+}
+
+TEST_F(GltfSourceTest, WeldsUnlessToldNotTo) {
+  GltfBuilder builder;
+  // Two triangles with an edge in common, as six vertices; and one that is none.
+  const std::vector<float> xyz{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1,
+                               0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0};
+  builder.add_root(
+      {{"mesh", builder.add_mesh({{"attributes", {{"POSITION", builder.add("VEC3", xyz)}}}})}});
+  const auto apart = open(builder);
+  EXPECT_EQ(apart->num_vertices(), 9U);
+  EXPECT_EQ(apart->triangles().size(), 3U);
+  EXPECT_TRUE(apart->notes().empty());
+  const auto joined = open(builder, "", true);
+  EXPECT_EQ(frame_of(*joined, 0), (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}));
+  EXPECT_EQ(joined->triangles(), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(
+      joined->notes(),
+      (std::vector<std::string>{
+          "4 of 9 vertices remain, as each other one coincides with one of them in every frame",
+          "1 degenerate triangle is left out"}));
+}
+
+}  // namespace
+}  // namespace rlpc

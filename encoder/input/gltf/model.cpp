@@ -1,0 +1,166 @@
+#include "encoder/input/gltf/model.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace rlpc {
+
+namespace {
+
+using std::to_string;
+
+class ModelReader {
+ public:
+  ModelReader(GltfDocument document, GltfFile& file, const GltfLimits& limits,
+              GltfErrors& errors)
+      : document_(std::move(document)),
+        limits_(limits),
+        errors_(errors),
+        buffers_(std::move(document_.buffers), file, errors),
+        values_(document_.accessors, buffers_, limits.spare_values, errors) {}
+
+  GltfModel read(const std::string& animation) {
+    model_.scene = read_gltf_scene(document_, errors_);
+    if (errors_) return {};
+    for (const std::string& extension : document_.extensions_left_out) {
+      model_.notes.push_back("what " + extension + " adds or hides is left out of account");
+    }
+    if (animation.empty() && document_.animations.size() > 1) {
+      model_.notes.push_back("the first of " + to_string(document_.animations.size()) +
+                             " animations is taken: " + gltf_animation_names(document_) +
+                             "; --animation chooses");
+    }
+    for (const std::uint32_t chosen : choose_animations(document_, animation, errors_)) {
+      if (errors_) return {};
+      model_.clips.push_back(read_gltf_clip(document_, chosen, values_, errors_));
+      note(document_.animations[chosen].num_unknown, "animation channel",
+           "of extensions and left out");
+    }
+    read_skins();
+    if (errors_) return {};
+    for (const std::uint32_t node : model_.scene.with_mesh) add_mesh(node);
+    if (model_.instances.empty()) errors_.add("scenes", "expected a mesh with triangles there");
+    note(num_without_triangles_, "primitive", "of points or lines and left out");
+    for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
+    model_.nodes = std::move(document_.nodes);
+    model_.files = buffers_.files();
+    return std::move(model_);
+  }
+
+ private:
+  void note(std::uint64_t count, const std::string& what, const std::string& why) {
+    if (count == 0) return;
+    model_.notes.push_back(to_string(count) + " " + what + (count == 1 ? " is " : "s are ") +
+                           why);
+  }
+
+  void read_skins() {
+    for (std::size_t s = 0; s < document_.skins.size() && !errors_; ++s) {
+      GltfSkin& skin = document_.skins[s];
+      GltfModel::Skin read;
+      read.joints = std::move(skin.joints);
+      if (skin.inverse_bind) {
+        read.inverse_bind = values_.matrices(*skin.inverse_bind);
+        if (!errors_ && read.inverse_bind.size() < read.joints.size()) {
+          errors_.expected(gltf_accessor_path(*skin.inverse_bind) + ".count",
+                           to_string(read.inverse_bind.size()),
+                           to_string(read.joints.size()) + ", one for each joint of skins[" +
+                               to_string(s) + "]");
+        }
+      }
+      read.inverse_bind.resize(read.joints.size());
+      model_.skins.push_back(std::move(read));
+    }
+  }
+
+  // Adds what a node of the scene shows.
+  void add_mesh(std::uint32_t node) {
+    const std::uint32_t mesh = *document_.nodes[node].mesh;
+    const std::optional<std::uint32_t> skin = document_.nodes[node].skin;
+    for (std::size_t p = 0; p < document_.meshes[mesh].primitives.size() && !errors_; ++p) {
+      const GltfPrimitive& primitive = document_.meshes[mesh].primitives[p];
+      if (!primitive.has_triangles()) {
+        ++num_without_triangles_;
+        continue;
+      }
+      const GltfAccessor& positions = values_.accessor(primitive.positions);
+      if (primitive.is_compressed && !positions.base && !positions.sparse) {
+        errors_.expected(gltf_accessor_path(primitive.positions), "no bufferView",
+                         "positions; export the file again without compression of meshes");
+        return;
+      }
+      const std::uint64_t count = positions.count;
+      if (count > limits_.max_vertices - model_.num_vertices) {
+        errors_.expected(primitive.path, to_string(count) + " vertices more",
+                         "at most " + to_string(limits_.max_vertices) + " in the whole scene");
+        return;
+      }
+      const std::size_t geometry = geometry_of(primitive, skin);
+      if (errors_) return;
+      num_triangles_ += model_.geometries[geometry].triangles.size();
+      if (num_triangles_ > limits_.max_triangles) {
+        errors_.expected(primitive.path, "more triangles",
+                         "at most " + to_string(limits_.max_triangles) + " in the whole scene");
+        return;
+      }
+      model_.instances.push_back({node, skin, geometry, model_.num_vertices});
+      model_.num_vertices += count;
+    }
+  }
+
+  // Nodes that show the same share it.
+  std::size_t geometry_of(const GltfPrimitive& primitive, std::optional<std::uint32_t> skin) {
+    const auto [known, is_new] =
+        geometries_.try_emplace({&primitive, skin}, model_.geometries.size());
+    if (is_new) {
+      const std::size_t num_joints = skin ? model_.skins[*skin].joints.size() : 0;
+      model_.geometries.push_back(read_gltf_geometry(primitive, num_joints, values_, errors_));
+    }
+    return known->second;
+  }
+
+  GltfDocument document_;
+  const GltfLimits& limits_;
+  GltfErrors& errors_;
+  GltfBuffers buffers_;
+  GltfValues values_;
+  GltfModel model_;
+  std::map<std::pair<const GltfPrimitive*, std::optional<std::uint32_t>>, std::size_t>
+      geometries_;
+  std::uint64_t num_triangles_ = 0;
+  std::uint64_t num_without_triangles_ = 0;
+};
+
+// Extras may be anything, so that nothing in them is an error.
+std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
+  const nlohmann::json* value = &root;
+  for (const char* const key : {"asset", "extras", "frame_rate"}) {
+    if (!value->is_object()) return std::nullopt;
+    const auto member = value->find(key);
+    if (member == value->end()) return std::nullopt;
+    value = &*member;
+  }
+  if (!value->is_string()) return std::nullopt;
+  const auto rate = parse_frame_rate(value->get_ref<const std::string&>());
+  return rate ? std::optional(*rate) : std::nullopt;
+}
+
+}  // namespace
+
+InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
+                                       const GltfLimits& limits) {
+  auto file = open_gltf_file(path);
+  if (!file) return file.error();
+  GltfErrors errors(file->file.path());
+  GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
+  if (errors) return errors.first();
+  const auto frame_rate = frame_rate_of(*file->json);
+  file->json.reset();
+  GltfModel model = ModelReader(std::move(document), *file, limits, errors).read(animation);
+  if (errors) return errors.first();
+  model.frame_rate = frame_rate;
+  return model;
+}
+
+}  // namespace rlpc

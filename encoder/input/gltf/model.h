@@ -1,0 +1,59 @@
+// A glTF document, read whole: what is needed to place its vertices at any time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/syntax/sequence_header.h"
+#include "encoder/input/gltf/clip.h"
+#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/primitive.h"
+#include "encoder/input/gltf/scene.h"
+
+namespace rlpc {
+
+// What a document may ask for. A few bytes of it can stand for any number of frames, zeros or
+// instances, so that its size bounds nothing.
+struct GltfLimits {
+  std::uint64_t max_vertices = 3 * std::uint64_t{kLevels.back().max_triangles};  // not welded
+  std::uint64_t max_triangles = 3 * std::uint64_t{kLevels.back().max_triangles};
+  std::uint64_t max_frames = kMaxFrames;
+  std::uint64_t max_positions = std::uint64_t{1} << 34;  // vertices x frames
+  std::uint64_t spare_values = std::uint64_t{1} << 22;   // see GltfValues
+};
+
+struct GltfModel {
+  struct Skin {
+    std::vector<std::uint32_t> joints;  // nodes
+    std::vector<Affine> inverse_bind;   // as many
+  };
+  // A primitive, where a node puts it.
+  struct Instance {
+    std::uint32_t node = 0;
+    std::optional<std::uint32_t> skin;
+    std::size_t geometry = 0;
+    std::uint64_t first_vertex = 0;  // in the order of the scene
+  };
+
+  std::vector<GltfNode> nodes;
+  // Of the targets of each mesh, where a node has none of its own.
+  std::vector<std::vector<double>> weights;
+  GltfScene scene;
+  std::vector<Skin> skins;
+  std::vector<GltfClip> clips;  // in the order in which they are played
+  std::vector<GltfGeometry> geometries;
+  std::vector<Instance> instances;
+  std::uint64_t num_vertices = 0;
+  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer does
+  std::vector<std::string> notes;       // as FrameSource has them
+  std::vector<std::string> files;       // likewise
+};
+
+// `animation` as in InputOptions.
+InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
+                                       const GltfLimits& limits);
+
+}  // namespace rlpc

@@ -1,0 +1,25 @@
+// Where the nodes of a glTF document are at a time of a clip.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "encoder/input/gltf/affine.h"
+#include "encoder/input/gltf/clip.h"
+#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/scene.h"
+
+namespace rlpc {
+
+struct GltfPose {
+  std::vector<Affine> to_scene;  // of each node
+  // Of the nodes whose weights the clip moves, [num_targets] of their meshes.
+  std::map<std::uint32_t, std::vector<double>> weights;
+};
+
+// The document as it is, moved by the clip; null: by none.
+GltfPose pose_of(const std::vector<GltfNode>& nodes, const GltfScene& scene,
+                 const GltfClip* clip, double time);
+
+}  // namespace rlpc

@@ -1,0 +1,149 @@
+#include "encoder/input/gltf/source.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "encoder/input/gltf/pose.h"
+#include "encoder/input/input_file.h"
+#include "encoder/input/weld.h"
+
+namespace rlpc {
+
+namespace {
+
+using std::to_string;
+
+// First frame of each clip in the sequence, and the number of all.
+InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
+                                                     const FrameRate& rate,
+                                                     const std::string& path,
+                                                     const GltfLimits& limits) {
+  const std::uint64_t most =
+      std::min(limits.max_frames, limits.max_positions / model.num_vertices);
+  std::vector<std::uint32_t> first{0};
+  for (const GltfClip& clip : model.clips) {
+    const double frames = first.back() + clip.num_frames(rate);
+    if (frames > static_cast<double>(most)) {
+      return InputError{path + ": animations: found more frames of " +
+                        to_string(model.num_vertices) + " vertices than the " +
+                        to_string(most) + " that are expected at most; the last time is " +
+                        to_string(clip.end) + " s: choose one animation, or a lower --fps"};
+    }
+    first.push_back(static_cast<std::uint32_t>(frames));
+  }
+  if (model.clips.empty()) first.push_back(1);
+  return first;
+}
+
+// Where nodes mirror, triangles turn, so that they still show the same side
+// (glTF 2.0, 3.7.2.1).
+std::vector<Triangle> triangles_of(const GltfModel& model, const GltfPose& pose) {
+  std::vector<Triangle> triangles;
+  for (const GltfModel::Instance& instance : model.instances) {
+    const bool mirrored = !instance.skin && determinant(pose.to_scene[instance.node]) < 0;
+    const auto first = static_cast<std::uint32_t>(instance.first_vertex);
+    for (Triangle t : model.geometries[instance.geometry].triangles) {
+      for (std::uint32_t& v : t) v += first;
+      if (mirrored) std::swap(t[1], t[2]);
+      triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+class GltfSource : public FrameSource {
+ public:
+  GltfSource(Shape shape, std::string path, GltfModel model,
+             std::vector<std::uint32_t> first_frame)
+      : FrameSource(std::move(shape)),
+        path_(std::move(path)),
+        model_(std::move(model)),
+        first_frame_(std::move(first_frame)) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
+    const auto next = std::upper_bound(first_frame_.begin(), first_frame_.end(), frame);
+    const auto number = static_cast<std::size_t>(next - first_frame_.begin()) - 1;
+    const GltfClip* const clip = model_.clips.empty() ? nullptr : &model_.clips[number];
+    const double time = clip ? clip->time_of(frame - first_frame_[number], frame_rate()) : 0.0;
+    const GltfPose pose = pose_of(model_.nodes, model_.scene, clip, time);
+    std::map<std::uint32_t, std::vector<Affine>> joints;  // by skin
+    for (const GltfModel::Instance& instance : model_.instances) {
+      const GltfGeometry& geometry = model_.geometries[instance.geometry];
+      const auto out = xyz.subspan(3 * static_cast<std::size_t>(instance.first_vertex),
+                                   geometry.base.size());
+      morph(geometry, weights_of(instance.node, pose), positions_);
+      if (instance.skin) {
+        const auto [maps, is_new] = joints.try_emplace(*instance.skin);
+        if (is_new) maps->second = joints_of(*instance.skin, pose);
+        place_by_joints(geometry, positions_, maps->second, out);
+      } else {
+        place(positions_, pose.to_scene[instance.node], out);
+      }
+    }
+    return check_finite(path_, frame, xyz);
+  }
+
+  std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
+
+ private:
+  const std::vector<double>& weights_of(std::uint32_t node, const GltfPose& pose) const {
+    const auto moved = pose.weights.find(node);
+    if (moved != pose.weights.end()) return moved->second;
+    const GltfNode& n = model_.nodes[node];
+    return n.weights ? *n.weights : model_.weights[*n.mesh];
+  }
+
+  std::vector<Affine> joints_of(std::uint32_t skin, const GltfPose& pose) const {
+    const GltfModel::Skin& s = model_.skins[skin];
+    std::vector<Affine> joints;
+    for (std::size_t j = 0; j < s.joints.size(); ++j) {
+      joints.push_back(pose.to_scene[s.joints[j]] * s.inverse_bind[j]);
+    }
+    return joints;
+  }
+
+  std::string path_;
+  GltfModel model_;
+  std::vector<std::uint32_t> first_frame_;  // of each clip, then the number of all
+  std::vector<double> positions_;
+};
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
+                                                    const GltfLimits& limits) {
+  auto model = read_gltf_model(options.path, options.animation, limits);
+  if (!model) return model.error();
+  FrameSource::Shape shape;
+  shape.frame_rate = options.frame_rate.value_or(model->frame_rate.value_or(FrameRate{}));
+  const std::string name = name_of_input(options.path);
+  auto first_frame = first_frames(*model, shape.frame_rate, name, limits);
+  if (!first_frame) return first_frame.error();
+  shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
+  shape.num_frames = first_frame->back();
+  const GltfClip* const clip = model->clips.empty() ? nullptr : &model->clips[0];
+  shape.triangles =
+      triangles_of(*model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
+  shape.notes = model->notes;
+  shape.files = model->files;
+  if (!options.weld) drop_degenerate(shape);
+  std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
+      std::move(shape), name, std::move(*model), std::move(*first_frame));
+  if (options.weld) {
+    auto welded = weld(std::move(source));
+    if (!welded) return welded;
+    source = std::move(*welded);
+  }
+  if (source->triangles().empty()) {
+    return InputError{name + ": expected a mesh with triangles; all of them are degenerate"};
+  }
+  return source;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,67 @@
+// What is in the accessors of a glTF document. Values are finite, and of the types that the
+// specification allows where they are used; the first that is not is an error.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "encoder/input/gltf/accessor.h"
+#include "encoder/input/gltf/affine.h"
+
+namespace rlpc {
+
+// How far a target moves a vertex.
+struct GltfDelta {
+  std::uint32_t vertex = 0;
+  std::array<float, 3> move{};
+};
+
+// Each function gives nothing after an error.
+class GltfValues {
+ public:
+  enum class Integers : std::uint8_t { kNo, kToo };
+
+  // Over all accessors that are read, values are at most `spare_values` and 16 for each byte
+  // that is there: a small document can neither claim much nor say the same over and over.
+  GltfValues(const std::vector<GltfAccessor>& accessors, GltfBuffers& buffers,
+             std::uint64_t spare_values, GltfErrors& errors);
+
+  const GltfAccessor& accessor(std::uint32_t i) const { return accessors_[i]; }
+
+  // [count][width]; integers become floats, exactly but for normalised ones.
+  std::vector<float> floats(std::uint32_t accessor, std::string_view type, Integers integers);
+  // [count][width], unsigned.
+  std::vector<std::uint32_t> integers(std::uint32_t accessor, std::string_view type);
+  // Of a VEC3, those that are not zero; vertices ascend.
+  std::vector<GltfDelta> deltas(std::uint32_t accessor);
+  // Of a MAT4, with the last row taken for 0, 0, 0, 1.
+  std::vector<Affine> matrices(std::uint32_t accessor);
+
+ private:
+  bool has_type(std::uint32_t accessor, std::string_view type) const;
+  bool has_float_type(std::uint32_t accessor, std::string_view type, Integers integers) const;
+  bool take(std::uint32_t accessor, std::uint64_t elements);
+  template <class Visit>
+  void each_element(const GltfRange& range, std::uint64_t count, std::size_t size,
+                    const Visit& visit);
+  template <class Visit>
+  void each_sparse(std::uint32_t accessor, const Visit& visit);
+  template <class Visit>
+  void each(std::uint32_t accessor, const Visit& visit);
+  void store_floats(std::uint32_t accessor, std::uint64_t element, const char* bytes,
+                    std::span<float> out);
+
+  const std::vector<GltfAccessor>& accessors_;
+  GltfBuffers& buffers_;
+  std::uint64_t spare_values_;
+  std::uint64_t values_ = 0;
+  GltfErrors& errors_;
+};
+
+// "accessors[3]"
+std::string gltf_accessor_path(std::uint32_t accessor);
+
+}  // namespace rlpc

@@ -1,0 +1,156 @@
+#include "encoder/metrics/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace rlpc {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double squared_distance(std::span<const float> a, std::span<const float> b,
+                        std::size_t vertex) {
+  double sum = 0;
+  for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
+// Sum of squared distances from the mean vertex. Taken relative to the first vertex, so that it
+// is exactly 0 when all vertices coincide.
+double spread_about_mean(std::span<const float> xyz) {
+  const std::size_t count = xyz.size() / 3;
+  double spread = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double first = xyz[axis];
+    double sum = 0;
+    for (std::size_t v = 0; v < count; ++v) sum += xyz[3 * v + axis] - first;
+    const double mean = sum / static_cast<double>(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      const double d = xyz[3 * v + axis] - first - mean;
+      spread += d * d;
+    }
+  }
+  return spread;
+}
+
+// 100 * part / whole; nothing of nothing is 0.
+double percent(double part, double whole) {
+  if (whole > 0) return 100 * part / whole;
+  return part > 0 ? kInfinity : 0;
+}
+
+}  // namespace
+
+MetricsAccumulator::MetricsAccumulator(std::uint32_t num_vertices, Keep keep)
+    : num_vertices_(num_vertices), keep_(keep) {
+  assert(num_vertices > 0);
+}
+
+void MetricsAccumulator::add_frame(std::span<const float> original,
+                                   std::span<const float> decoded) {
+  assert(original.size() == 3 * std::size_t{num_vertices_} &&
+         decoded.size() == original.size());
+  FrameMetrics frame;
+  double max_squared = 0;
+  for (std::uint32_t v = 0; v < num_vertices_; ++v) {
+    const double squared = squared_distance(original, decoded, v);
+    frame.squared_error += squared;
+    if (squared > max_squared) {
+      max_squared = squared;
+      frame.max_error_vertex = v;
+    }
+  }
+  frame.spread = spread_about_mean(original);
+  frame.rms_error = std::sqrt(frame.squared_error / num_vertices_);
+  frame.max_error = std::sqrt(max_squared);
+  for (std::size_t i = 0; i < original.size(); ++i) {
+    const bool first = num_frames_ == 0 && i < 3;
+    box_min_[i % 3] = first ? original[i] : std::min(box_min_[i % 3], original[i]);
+    box_max_[i % 3] = first ? original[i] : std::max(box_max_[i % 3], original[i]);
+  }
+  add_motion(original, frame);
+  add_to_totals(frame);
+  if (keep_ == kFrames) frames_.push_back(frame);
+}
+
+void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
+  squared_error_ += frame.squared_error;
+  spread_ += frame.spread;
+  if (frame.max_error > totals_.max_error) {
+    totals_.max_error = frame.max_error;
+    totals_.max_error_frame = num_frames_;
+    totals_.max_error_vertex = frame.max_error_vertex;
+  }
+  if (frame.squared_error > 0) {
+    log_sum_ += std::log10(mean_squared(frame));
+    ++num_inexact_;
+  }
+  ++num_frames_;
+}
+
+// PMSE of a peak of 1.
+double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
+  const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
+  return frame.squared_error / (3 * vertices);
+}
+
+void MetricsAccumulator::add_motion(std::span<const float> original, FrameMetrics& frame) {
+  frame.moved_vertices = 0;
+  for (std::uint32_t v = 0; num_frames_ > 0 && v < num_vertices_; ++v) {
+    const double squared = squared_distance(original, previous_, v);
+    max_squared_displacement_ = std::max(max_squared_displacement_, squared);
+    if (squared > 0) ++frame.moved_vertices;
+  }
+  if (num_frames_ == 0) frame.moved_vertices = num_vertices_;
+  previous_.assign(original.begin(), original.end());
+}
+
+Metrics MetricsAccumulator::result() const {
+  assert(num_frames_ > 0);
+  Metrics m = totals_;
+  m.num_vertices = num_vertices_;
+  m.frames = frames_;
+  double squared_diagonal = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double side =
+        static_cast<double>(box_max_[axis]) - static_cast<double>(box_min_[axis]);
+    squared_diagonal += side * side;
+  }
+  m.diagonal = std::sqrt(squared_diagonal);
+  m.kg_error_percent = percent(std::sqrt(squared_error_), std::sqrt(spread_));
+  m.rms_error = std::sqrt(squared_error_ / (static_cast<double>(num_frames_) * num_vertices_));
+  m.rms_error_percent = percent(m.rms_error, m.diagonal);
+  m.max_error_percent = percent(m.max_error, m.diagonal);
+  m.max_displacement = std::sqrt(max_squared_displacement_);
+  finish_psnr(m);
+  return m;
+}
+
+void MetricsAccumulator::finish_psnr(Metrics& metrics) const {
+  const double peak =
+      metrics.max_displacement > 0 ? metrics.max_displacement : metrics.diagonal;
+  for (FrameMetrics& frame : metrics.frames) {
+    // The quotient is infinite, and PSNR minus infinity, when the peak is 0.
+    frame.psnr_db = frame.squared_error > 0
+                        ? -10 * std::log10(mean_squared(frame) / (peak * peak))
+                        : kInfinity;
+  }
+  metrics.mean_psnr_db =
+      num_inexact_ > 0 ? 20 * std::log10(peak) - 10 * log_sum_ / num_inexact_ : kInfinity;
+}
+
+double bits_per_vertex_per_frame(std::uint64_t file_bytes, std::uint64_t num_vertices,
+                                 std::uint64_t num_frames) {
+  assert(num_vertices > 0 && num_frames > 0);
+  return 8 * static_cast<double>(file_bytes) /
+         (static_cast<double>(num_vertices) * static_cast<double>(num_frames));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,115 @@
+#include "encoder/metrics/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Metrics, OfAnExactCopyAreZero) {
+  MetricsAccumulator metrics(2);
+  const std::vector<float> frame{0, 0, 0, 3, 4, 0};
+  metrics.add_frame(frame, frame);
+  const Metrics m = metrics.result();
+  EXPECT_EQ(m.kg_error_percent, 0);
+  EXPECT_EQ(m.rms_error, 0);
+  EXPECT_EQ(m.max_error, 0);
+  EXPECT_EQ(m.diagonal, 5);
+  EXPECT_EQ(m.mean_psnr_db, kInfinity);
+}
+
+// Two frames of two vertices, worked out by hand.
+TEST(Metrics, AreThoseOfThePapers) {
+  MetricsAccumulator metrics(2);
+  // Mean (1, 0, 0), spread 2; errors 0 and 0.5.
+  metrics.add_frame(std::vector<float>{0, 0, 0, 2, 0, 0},
+                    std::vector<float>{0, 0, 0, 2, 0.5F, 0});
+  // Vertex 1 has moved by 4. Mean (1, 2, 0), spread 2 + 8; errors 1 and 1.25.
+  metrics.add_frame(std::vector<float>{0, 0, 0, 2, 4, 0},
+                    std::vector<float>{0, 0, -1, 2.75F, 5, 0});
+  const Metrics m = metrics.result();
+  const double squared_error = 0.25 + 1 + 1.5625;
+  EXPECT_EQ(m.num_vertices, 2U);
+  EXPECT_DOUBLE_EQ(m.kg_error_percent, 100 * std::sqrt(squared_error) / std::sqrt(12.0));
+  EXPECT_DOUBLE_EQ(m.rms_error, std::sqrt(squared_error / 4));
+  EXPECT_DOUBLE_EQ(m.diagonal, std::sqrt(20.0));
+  EXPECT_DOUBLE_EQ(m.rms_error_percent, 100 * m.rms_error / m.diagonal);
+  EXPECT_EQ(m.max_error, 1.25);
+  EXPECT_EQ(m.max_error_frame, 1U);
+  EXPECT_EQ(m.max_error_vertex, 1U);
+  EXPECT_DOUBLE_EQ(m.max_error_percent, 125 / m.diagonal);
+  EXPECT_EQ(m.max_displacement, 4);
+
+  ASSERT_EQ(m.frames.size(), 2U);
+  EXPECT_EQ(m.frames[0].spread, 2);
+  EXPECT_EQ(m.frames[1].spread, 10);
+  EXPECT_EQ(m.frames[0].squared_error, 0.25);
+  EXPECT_DOUBLE_EQ(m.frames[0].rms_error, std::sqrt(0.125));
+  EXPECT_EQ(m.frames[0].max_error_vertex, 1U);
+  EXPECT_EQ(m.frames[0].moved_vertices, 2U);  // the first frame: all
+  EXPECT_EQ(m.frames[1].moved_vertices, 1U);
+  // PMSE = 0.25 / (3 * 2 * 16) and 2.5625 / (3 * 1 * 16).
+  EXPECT_DOUBLE_EQ(m.frames[0].psnr_db, -10 * std::log10(0.25 / 96));
+  EXPECT_DOUBLE_EQ(m.frames[1].psnr_db, -10 * std::log10(2.5625 / 48));
+  EXPECT_DOUBLE_EQ(m.mean_psnr_db, (m.frames[0].psnr_db + m.frames[1].psnr_db) / 2);
+}
+
+TEST(Metrics, TakeTheFirstOfEqualErrors) {
+  MetricsAccumulator metrics(3);
+  const std::vector<float> zero(9);
+  metrics.add_frame(zero, zero);
+  metrics.add_frame(zero, std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  metrics.add_frame(zero, std::vector<float>{1, 0, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(metrics.result().max_error_frame, 1U);
+  EXPECT_EQ(metrics.result().max_error_vertex, 1U);
+}
+
+// 0.1 is no binary fraction: a mean by sum and division would leave a spread of rounding
+// errors.
+TEST(Metrics, OfCoincidentVerticesAreZeroOrInfinite) {
+  const std::vector<float> point(3 * 7, 0.1F);
+  MetricsAccumulator exact(7);
+  exact.add_frame(point, point);
+  EXPECT_EQ(exact.result().kg_error_percent, 0);
+  EXPECT_EQ(exact.result().max_error_percent, 0);
+
+  MetricsAccumulator inexact(7);
+  std::vector<float> moved = point;
+  moved[4] += 1;
+  inexact.add_frame(point, moved);
+  EXPECT_EQ(inexact.result().kg_error_percent, kInfinity);
+  EXPECT_EQ(inexact.result().rms_error_percent, kInfinity);
+  EXPECT_EQ(inexact.result().mean_psnr_db, -kInfinity);
+}
+
+TEST(Metrics, OfAStillAnimationUseTheDiagonalAsPeak) {
+  MetricsAccumulator metrics(2);
+  const std::vector<float> frame{0, 0, 0, 10, 0, 0};
+  for (int f = 0; f < 2; ++f) metrics.add_frame(frame, std::vector<float>{0, 0, 0, 10, 0, 3});
+  const Metrics m = metrics.result();
+  EXPECT_EQ(m.max_displacement, 0);
+  EXPECT_EQ(m.frames[1].moved_vertices, 0U);
+  EXPECT_DOUBLE_EQ(m.frames[1].psnr_db, -10 * std::log10(9.0 / (3 * 2 * 100)));
+}
+
+TEST(Metrics, StandHugeCoordinates) {
+  MetricsAccumulator metrics(2);
+  const float large = std::numeric_limits<float>::max();
+  metrics.add_frame(std::vector<float>{-large, -large, -large, large, large, large},
+                    std::vector<float>{large, -large, -large, large, large, large});
+  const Metrics m = metrics.result();
+  EXPECT_TRUE(std::isfinite(m.kg_error_percent));
+  EXPECT_DOUBLE_EQ(m.max_error, 2.0 * static_cast<double>(large));
+}
+
+TEST(Metrics, CountBitsPerVertexPerFrame) {
+  EXPECT_EQ(bits_per_vertex_per_frame(1000, 100, 20), 4);
+}
+
+}  // namespace
+}  // namespace rlpc

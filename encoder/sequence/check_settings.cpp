@@ -1,0 +1,143 @@
+#include "encoder/sequence/check_settings.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+namespace {
+
+struct Parameter {
+  const char* option;  // of rlpcenc
+  bool given;          // it is not as by default
+};
+
+// The names of all members keep the list complete: one more does not compile.
+std::vector<Parameter> parameters(const BaselineTools& tools) {
+  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode] = tools;
+  const BaselineTools usual;
+  return {{"--clusters", clusters != usual.clusters},
+          {"--no-rdo", rdo != usual.rdo},
+          {"--rdo-rate", rate_in_vectors != usual.rate_in_vectors},
+          {"--qu", qu != usual.qu},
+          {"--qc", qc != usual.qc},
+          {"--qdelta", qdelta != usual.qdelta},
+          {"--frame", frame_mode != usual.frame_mode},
+          {"--seeds", seed_mode != usual.seed_mode}};
+}
+
+std::vector<Parameter> parameters(const MainTools& tools) {
+  const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
+               temporal_weights, cobra_steps, clusters, component_groups, layer_groups] = tools;
+  const MainTools usual;
+  return {{"--bones", bones != usual.bones},
+          {"--prediction", prediction != usual.prediction},
+          {"--influences", influences != usual.influences},
+          {"--no-geometry-weights", geometry_weights != usual.geometry_weights},
+          {"--no-outer-ring", outer_ring != usual.outer_ring},
+          {"--no-layer-steps", layer_steps != usual.layer_steps},
+          {"--no-temporal-weights", temporal_weights != usual.temporal_weights},
+          {"--basis-steps", cobra_steps != usual.cobra_steps},
+          {"--no-clusters", clusters != usual.clusters},
+          {"--component-groups", component_groups != usual.component_groups},
+          {"--layer-groups", layer_groups != usual.layer_groups}};
+}
+
+// Parameters of a profile that is not that of the stream would do nothing.
+std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
+                                       const std::string& profile) {
+  for (const Parameter& p : parameters) {
+    if (p.given) {
+      return InputError{std::string(p.option) + " needs --profile " + profile +
+                        ": use that, or leave out " + p.option};
+    }
+  }
+  return std::nullopt;
+}
+
+// Parameters of layers would do nothing if there are none.
+std::optional<InputError> check_layers(const MainTools& tools) {
+  if (tools.prediction.value_or(Prediction::kLayers) == Prediction::kLayers)
+    return std::nullopt;
+  const MainTools usual;
+  for (const Parameter& p :
+       {Parameter{"--no-geometry-weights", tools.geometry_weights != usual.geometry_weights},
+        Parameter{"--no-outer-ring", tools.outer_ring != usual.outer_ring},
+        Parameter{"--no-layer-steps", tools.layer_steps != usual.layer_steps},
+        Parameter{"--layer-groups", tools.layer_groups > 1}}) {
+    if (p.given) {
+      return InputError{std::string(p.option) +
+                        " needs layers: leave it out, or use --prediction layers"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_baseline(const EncoderSettings& s) {
+  const BaselineTools& b = s.baseline;
+  if ((b.qu == 0) != (b.qc == 0)) {
+    return InputError{"qu and qc go together: give both, or neither"};
+  }
+  if (b.qu > 0 && s.target.kind != Target::kNone) {
+    return InputError{
+        "a target searches the quantisers: leave out either the target or qu and qc"};
+  }
+  if (b.qu > 0 && s.components == 0) {
+    return InputError{"qu and qc need a number of components per cluster (--components)"};
+  }
+  if ((!b.rdo || b.rate_in_vectors) && s.components == 0) {
+    return InputError{std::string(b.rdo ? "--rdo-rate" : "--no-rdo") +
+                      " needs a number of components per cluster (--components)"};
+  }
+  if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
+    return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
+  }
+  return std::nullopt;
+}
+
+// Annex B: what is beyond every level, whatever the animation.
+std::optional<InputError> check_counts(const EncoderSettings& s) {
+  const Level& most = kLevels.back();
+  const auto refuse = [](std::uint32_t limit, const std::string& what) {
+    return InputError{"no level allows more than " + std::to_string(limit) + " " + what};
+  };
+  if (s.components > most.max_components) {
+    return refuse(most.max_components, "components (--components)");
+  }
+  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones (--bones)");
+  if (s.baseline.clusters > most.max_clusters) {
+    return refuse(most.max_clusters, "clusters (--clusters)");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<InputError> check_settings(const EncoderSettings& s) {
+  const bool main = s.profile == Profile::kMain;
+  if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
+                        : check_unused(parameters(s.main), "main")) {
+    return error;
+  }
+  if (auto error = check_baseline(s)) return error;
+  if (auto error = check_layers(s.main)) return error;
+  if (auto error = check_counts(s)) return error;
+  // A vertex of which no bone is a candidate can have no more (6.12.2).
+  if (s.main.influences > kMaxExtraBones) {
+    return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
+                      " bones (--influences)"};
+  }
+  if (s.metadata.size() > kMaxMetadataBytes) {
+    return InputError{"metadata may have at most 1 MiB"};
+  }
+  if (s.target.kind != Target::kNone &&
+      !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
+    return InputError{"a target must be a number above zero"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rlpc

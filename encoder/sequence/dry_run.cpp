@@ -1,0 +1,74 @@
+#include "encoder/sequence/dry_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kStretches = 8;
+constexpr std::uint64_t kStretchFrames = 128;
+
+// Some stretches of a sequence, one after the other.
+class StretchSource final : public FrameSource {
+ public:
+  StretchSource(FrameSource& source, std::uint32_t stretch)
+      : FrameSource({source.num_vertices(), kStretches * stretch, source.frame_rate(),
+                     source.triangles()}),
+        source_(source),
+        stretch_(stretch) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    const std::uint64_t spare = source_.num_frames() - stretch_;
+    const std::uint64_t first = spare * (frame / stretch_) / (kStretches - 1);
+    return source_.read_frame(static_cast<std::uint32_t>(first) + frame % stretch_, xyz);
+  }
+
+ private:
+  FrameSource& source_;
+  std::uint32_t stretch_;
+};
+
+// GOFs of the sample are then those of the settings.
+std::uint64_t stretch_frames(std::uint64_t gof_frames) {
+  if (gof_frames == 0 || gof_frames >= kStretchFrames) {
+    return std::max(gof_frames, kStretchFrames);
+  }
+  return kStretchFrames / gof_frames * gof_frames;
+}
+
+}  // namespace
+
+InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
+                                         const Progress& progress) {
+  const ByteSink nowhere = [](std::span<const std::uint8_t>) { return true; };
+  const std::uint64_t stretch = stretch_frames(settings.gof_frames);
+  if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
+    auto report = encode(source, settings, nowhere, progress);
+    if (!report) return report.error();
+    return Expectation{std::move(*report), source.num_frames()};
+  }
+  StretchSource sample(source, static_cast<std::uint32_t>(stretch));
+  auto encoded = encode(sample, settings, nowhere, progress);
+  if (!encoded) return encoded.error();
+  EncodeReport& report = *encoded;
+  const double times = static_cast<double>(source.num_frames()) / sample.num_frames();
+  const std::uint64_t once =
+      8 * report.bytes - report.bits.gofs - report.bits.hashes;  // in every stream, as it is
+  for (std::uint64_t* bits : {&report.bits.gofs, &report.bits.hashes}) {
+    *bits =
+        8 * static_cast<std::uint64_t>(std::llround(static_cast<double>(*bits) / 8 * times));
+  }
+  report.bytes = (once + report.bits.gofs + report.bits.hashes) / 8;
+  report.header.num_frames = source.num_frames();
+  report.bpvf =
+      bits_per_vertex_per_frame(report.bytes, source.num_vertices(), source.num_frames());
+  for (std::uint32_t* of_gofs : {&report.num_gofs, &report.clusters, &report.components}) {
+    *of_gofs = static_cast<std::uint32_t>(std::llround(*of_gofs * times));
+  }
+  return Expectation{std::move(report), sample.num_frames()};
+}
+
+}  // namespace rlpc

@@ -1,0 +1,199 @@
+#include "encoder/sequence/gof_cuts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "encoder/gof/component_cost.h"
+#include "encoder/gof/gof_coder.h"
+#include "encoder/math/principal_components.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;
+constexpr std::uint32_t kSampleVertices = 160;
+constexpr std::uint32_t kLeastVertices = 8;  // that tell anything
+constexpr std::uint32_t kMostFrames = kMaxSampleValues / (std::uint64_t{3} * kLeastVertices);
+constexpr std::uint32_t kSampleFrames = 16;  // of a GOF
+// GOFs of equal lengths stay unless others are expected to cost less than this part.
+constexpr double kClearlyLess = 0.97;
+
+// What GOFs are expected to cost, from a sample of the vertices.
+class GofCosts {
+ public:
+  GofCosts(std::uint32_t num_vertices, std::uint32_t num_frames, double step)
+      : num_vertices_(num_vertices), step_(step) {
+    const auto most =
+        static_cast<std::uint32_t>(kMaxSampleValues / (3 * std::uint64_t{num_frames}));
+    const std::uint32_t count = std::min({num_vertices, kSampleVertices, most});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      vertices_.push_back(static_cast<std::uint32_t>(std::uint64_t{i} * num_vertices / count));
+    }
+  }
+
+  // Frame after frame. Positions are kept relative to the centre of the sample.
+  void add_frame(std::span<const float> xyz) {
+    std::array<double, 3> centre{};
+    for (const std::uint32_t v : vertices_) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        centre[c] += xyz[3 * std::size_t{v} + c] / static_cast<double>(vertices_.size());
+      }
+    }
+    for (const std::uint32_t v : vertices_) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        sample_.push_back(static_cast<float>(xyz[3 * std::size_t{v} + c] - centre[c]));
+      }
+    }
+  }
+
+  // Squared error, with bits at their worth (kErrorPerBit).
+  double of(const GofSpan& span) {
+    const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
+    if (is_new) place->second = expected(span);
+    return place->second;
+  }
+
+ private:
+  // What vertices leave of their mean positions, in some frames; the first and last, too, as
+  // these show a cut that comes late or early.
+  TrajectoryMatrix displacements(const GofSpan& span) const {
+    const std::uint32_t count = std::min(span.count, kSampleFrames);
+    TrajectoryMatrix matrix;
+    matrix.num_values = vertices_.size();
+    matrix.num_frames = 3 * std::size_t{count};
+    matrix.a.resize(matrix.num_values * matrix.num_frames);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto frame = static_cast<std::size_t>(
+          span.first + (count < 2 ? 0 : std::uint64_t{i} * (span.count - 1) / (count - 1)));
+      const float* from = &sample_[frame * 3 * vertices_.size()];
+      for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        for (std::size_t c = 0; c < 3; ++c) matrix.row(v)[c * count + i] = *from++;
+      }
+    }
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        double* row = matrix.row(v) + c * count;
+        double mean = 0.0;
+        for (std::uint32_t i = 0; i < count; ++i) mean += row[i] / count;
+        for (std::uint32_t i = 0; i < count; ++i) row[i] -= mean;
+      }
+    }
+    return matrix;
+  }
+
+  double expected(const GofSpan& span) const {
+    constexpr double kSpatialLeft = 0.1;  // of the energy, by spatial prediction
+    constexpr double kRestBits = 15.0;    // of a rest position
+    const TrajectoryMatrix matrix = displacements(span);
+    const double vertices = num_vertices_;
+    const double values = 3.0 * span.count;
+    const double of_all =
+        vertices * values / static_cast<double>(matrix.num_values * matrix.num_frames);
+    double cost = kErrorPerBit * step_ * step_ * kRestBits * vertices;
+    for (const double sampled : principal_components(matrix, 0, 0.0).energy) {
+      const double energy = of_all * sampled;
+      cost += expected_component_cost(energy, vertices, values,
+                                      kSpatialLeft * energy / vertices, step_);
+    }
+    return cost;
+  }
+
+  std::uint32_t num_vertices_;
+  double step_;
+  std::vector<std::uint32_t> vertices_;
+  std::vector<float> sample_;  // [frame][vertex][3]
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> known_;
+};
+
+double cost(GofCosts& costs, const std::vector<GofSpan>& spans) {
+  double sum = 0.0;
+  for (const GofSpan& span : spans) sum += costs.of(span);
+  return sum;
+}
+
+// The cheapest spans of all that begin at multiples of `unit`.
+std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames,
+                                       std::uint32_t longest, std::uint32_t unit) {
+  struct Best {
+    double cost = std::numeric_limits<double>::infinity();
+    std::uint32_t before = 0;  // frame that the last span begins at
+  };
+  const std::uint32_t num_units = (num_frames + unit - 1) / unit;
+  std::vector<Best> best(num_units + 1);  // of the frames before each multiple
+  best[0].cost = 0.0;
+  for (std::uint32_t end = 1; end <= num_units; ++end) {
+    const std::uint32_t end_frame = std::min(end * unit, num_frames);
+    for (std::uint32_t begin = end; begin-- > 0;) {
+      const GofSpan span{begin * unit, end_frame - begin * unit};
+      if (span.count > longest) break;
+      const double sum = best[begin].cost + costs.of(span);
+      if (sum < best[end].cost) best[end] = {sum, begin};
+    }
+  }
+  std::vector<GofSpan> spans;
+  for (std::uint32_t end = num_units; end > 0; end = best[end].before) {
+    const std::uint32_t first = best[end].before * unit;
+    spans.push_back({first, std::min(end * unit, num_frames) - first});
+  }
+  std::reverse(spans.begin(), spans.end());
+  return spans;
+}
+
+// Moves the cut between two spans while that helps, by ever smaller distances.
+void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, GofSpan& a,
+            GofSpan& b) {
+  for (std::uint32_t by = unit / 2; by > 0; by /= 2) {
+    for (const bool later : {false, true}) {
+      const GofSpan& from = later ? b : a;
+      const GofSpan& to = later ? a : b;
+      if (from.count <= by || to.count + by > longest) continue;
+      const std::uint32_t count = later ? a.count + by : a.count - by;
+      const GofSpan left{a.first, count};
+      const GofSpan right{a.first + count, a.count + b.count - count};
+      if (costs.of(left) + costs.of(right) >= costs.of(a) + costs.of(b)) continue;
+      a = left;
+      b = right;
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest) {
+  const std::uint64_t count = (std::uint64_t{num_frames} + longest - 1) / longest;
+  std::vector<GofSpan> spans;
+  for (std::uint64_t g = 0; g < count; ++g) {
+    const auto first = static_cast<std::uint32_t>(num_frames * g / count);
+    const auto next = static_cast<std::uint32_t>(num_frames * (g + 1) / count);
+    spans.push_back({first, next - first});
+  }
+  return spans;
+}
+
+InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
+                                                double step) {
+  constexpr std::uint32_t kUnitsOfLongest = 8;
+  const std::uint32_t num_frames = source.num_frames();
+  std::vector<GofSpan> equal = equal_gofs(num_frames, longest);
+  const std::uint32_t unit = longest / kUnitsOfLongest;
+  if (equal.size() < 2 || unit == 0 || num_frames > kMostFrames) return equal;
+  GofCosts costs(source.num_vertices(), num_frames, step);
+  std::vector<float> xyz(std::size_t{source.num_vertices()} * 3);
+  for (std::uint32_t f = 0; f < num_frames; ++f) {
+    if (auto error = source.read_frame(f, xyz)) return *error;
+    costs.add_frame(xyz);
+  }
+  std::vector<GofSpan> spans = cheapest_of_units(costs, num_frames, longest, unit);
+  for (std::size_t i = 1; i < spans.size(); ++i) {
+    refine(costs, longest, unit, spans[i - 1], spans[i]);
+  }
+  const bool better = cost(costs, spans) < kClearlyLess * cost(costs, equal);
+  return better ? std::move(spans) : std::move(equal);
+}
+
+}  // namespace rlpc

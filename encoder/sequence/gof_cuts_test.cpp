@@ -1,0 +1,125 @@
+#include "encoder/sequence/gof_cuts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kVertices = 600;
+
+// Vertex v, axis c of frame f is given by a function.
+class Motion final : public FrameSource {
+ public:
+  using At = std::function<double(std::uint32_t f, std::uint32_t v, std::uint32_t c)>;
+  Motion(std::uint32_t num_frames, At at)
+      : FrameSource({kVertices, num_frames, {25, 1}, {}}), at_(std::move(at)) {}
+  std::optional<InputError> read_frame(std::uint32_t f, std::span<float> xyz) override {
+    if (f == broken) return InputError{"no such frame"};
+    for (std::uint32_t v = 0; v < kVertices; ++v) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        xyz[3 * std::size_t{v} + c] = static_cast<float>(at_(f, v, c));
+      }
+    }
+    return std::nullopt;
+  }
+  std::uint32_t broken = 0xFFFFFFFF;
+
+ private:
+  At at_;
+};
+
+// Some waves, others in each act.
+double waves(std::uint32_t act, std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+  double x = v % 25 + 30.0 * c;
+  for (std::uint32_t k = 1; k <= 8; ++k) {
+    x += std::sin((0.7 * k + 0.31 * act) * v + c) * std::sin(0.4 * k * f + k);
+  }
+  return x;
+}
+
+void expect_whole(const std::vector<GofSpan>& spans, std::uint32_t num_frames,
+                  std::uint32_t longest) {
+  std::uint32_t next = 0;
+  for (const GofSpan& span : spans) {
+    EXPECT_EQ(span.first, next);
+    EXPECT_GE(span.count, 1U);
+    EXPECT_LE(span.count, longest);
+    next += span.count;
+  }
+  EXPECT_EQ(next, num_frames);
+}
+
+TEST(EqualGofs, DifferByAFrameAtMost) {
+  for (const std::uint32_t num_frames : {1U, 7U, 128U, 129U, 1000U}) {
+    for (const std::uint32_t longest : {1U, 3U, 128U, 1000U}) {
+      const auto spans = equal_gofs(num_frames, longest);
+      expect_whole(spans, num_frames, longest);
+      EXPECT_EQ(spans.size(), (num_frames + longest - 1) / longest);
+      for (const GofSpan& span : spans) {
+        EXPECT_LE(span.count, num_frames / spans.size() + 1);
+        EXPECT_GE(span.count, num_frames / spans.size());
+      }
+    }
+  }
+}
+
+TEST(CheapestGofs, AreCutWhereTheMotionChanges) {
+  constexpr std::uint32_t kFirstCut = 90;
+  constexpr std::uint32_t kSecondCut = 210;
+  constexpr std::uint32_t kFrames = 270;
+  Motion source(kFrames, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    return waves(f < kFirstCut ? 1 : f < kSecondCut ? 2 : 3, f, v, c);
+  });
+  const auto spans = cheapest_gofs(source, 128, 0.05);
+  ASSERT_TRUE(spans);
+  expect_whole(*spans, kFrames, 128);
+  ASSERT_EQ(spans->size(), 3U);
+  EXPECT_NEAR((*spans)[1].first, kFirstCut, 4.0);
+  EXPECT_NEAR((*spans)[2].first, kSecondCut, 4.0);
+}
+
+TEST(CheapestGofs, AreEqualWhereItMakesNoDifference) {
+  Motion source(300, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    return waves(1, 0, v, c) + 0.1 * f;  // all slides along
+  });
+  const auto spans = cheapest_gofs(source, 128, 0.05);
+  ASSERT_TRUE(spans);
+  ASSERT_EQ(spans->size(), 3U);
+  for (const GofSpan& span : *spans) EXPECT_EQ(span.count, 100U);
+}
+
+TEST(CheapestGofs, AreOneWhereOneWillDo) {
+  Motion source(100, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    return waves(f / 50, f, v, c);
+  });
+  const auto spans = cheapest_gofs(source, 100, 0.05);
+  ASSERT_TRUE(spans);
+  EXPECT_EQ(spans->size(), 1U);
+}
+
+TEST(CheapestGofs, OfFramesThatCannotBeReadAreAnError) {
+  Motion source(300, [](std::uint32_t, std::uint32_t, std::uint32_t) { return 1.0; });
+  source.broken = 200;
+  const auto spans = cheapest_gofs(source, 128, 0.05);
+  ASSERT_FALSE(spans);
+  EXPECT_EQ(spans.error().message, "no such frame");
+}
+
+TEST(CheapestGofs, OfVeryLongSequencesAreEqualAndNotReadFor) {
+  Motion source(100'000, [](std::uint32_t, std::uint32_t, std::uint32_t) { return 1.0; });
+  source.broken = 0;
+  const auto spans = cheapest_gofs(source, 128, 0.05);
+  ASSERT_TRUE(spans);
+  EXPECT_EQ(spans->size(), equal_gofs(100'000, 128).size());
+}
+
+}  // namespace
+}  // namespace rlpc

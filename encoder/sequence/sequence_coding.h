@@ -1,0 +1,81 @@
+// What the GOFs of a sequence have in common, and the steps that each of them goes through.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/mesh/topology.h"
+#include "common/mesh/vertex_layers.h"
+#include "common/syntax/sequence_header.h"
+#include "common/syntax/write_units.h"
+#include "encoder/cluster_gof/cluster_gof_search.h"
+#include "encoder/gof/gof_coder.h"
+#include "encoder/gof/gof_kind_search.h"
+#include "encoder/metrics/metrics.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/sequence/gof_cuts.h"
+#include "encoder/sequence/target_search.h"
+#include "encoder/write/write_connectivity.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kDefaultGofFrames = 128;
+
+// The longest GOF that the settings allow.
+std::uint32_t longest_gof(const EncoderSettings& settings);
+
+// rms_spread: of a coordinate about the mean of its frame, units, over the frames that the
+// target is for.
+TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
+                        double rms_spread);
+
+// KG error that coders of GOFs expect, if all of them do; squared_spread: sum of the squared
+// coordinates about the means of their frames, over all of these, grid units.
+TargetSearch::Expected expected_kg(std::vector<const GofCoder*> coders, double squared_spread);
+
+// The choices of a search that hold for later coders of the same GOF.
+struct GofMemory {
+  std::optional<GofChoice> clusters;  // of the Baseline profile
+  MainChoice main;                    // of the Main profile
+};
+
+class SequenceCoding {
+ public:
+  // Keeps references to header and settings. Every index of the triangles is below
+  // num_vertices.
+  SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
+                 std::span<const Triangle> triangles);
+  SequenceCoding(const SequenceCoding&) = delete;
+  SequenceCoding& operator=(const SequenceCoding&) = delete;
+
+  const ConnectivityCode& connectivity() const { return connectivity_; }
+  // After the grid of the header has changed. Frames and coders from before are of no use.
+  void follow_grid();
+
+  // The frames of a GOF, in decoded vertex order and grid units. Error: that of the source.
+  InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
+  // For the GOF that begins with first_frame of the sequence. Keeps references to frames and
+  // memory.
+  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, std::uint32_t first_frame,
+                                       GofMemory& memory) const;
+  // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
+  // unit of the GOF, empty if there is to be none. Error: that of the source.
+  InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
+                             const EncodedGof& encoded, MetricsAccumulator& metrics) const;
+
+ private:
+  const SequenceHeader& header_;
+  const EncoderSettings& settings_;
+  ConnectivityCode connectivity_;
+  Topology topology_;
+  EncodingContext context_;
+  VertexLayers layers_;  // of the Main profile
+  std::optional<BoneContext> bone_context_;
+};
+
+// The units of a coded GOF, as they stand in a stream.
+Bytes write_gof_units(const EncodedGof& encoded);
+
+}  // namespace rlpc

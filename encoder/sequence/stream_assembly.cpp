@@ -1,0 +1,90 @@
+#include "encoder/sequence/stream_assembly.h"
+
+#include "common/syntax/stream_format.h"
+#include "encoder/write/write_stream.h"
+
+namespace rlpc {
+namespace {
+
+// Below this number of GOFs, an index saves nothing.
+constexpr std::size_t kMinIndexedGofs = 16;
+constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // of index_gof_bytes
+
+Bytes header_unit(const SequenceHeader& header) {
+  return write_unit(UnitType::kSequenceHeader, write_sequence_header(header));
+}
+
+}  // namespace
+
+StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
+                               const ConnectivityCode& connectivity)
+    : connectivity_(write_unit(UnitType::kConnectivity, connectivity.payload)),
+      end_bytes_(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(0)).size()) {
+  if (!settings.metadata.empty()) {
+    metadata_ = write_unit(UnitType::kMetadata, write_metadata(settings.metadata));
+  }
+  if (settings.keep_order) {
+    vertex_order_ =
+        write_unit(UnitType::kVertexOrder, write_vertex_order(connectivity.input_vertex));
+  }
+  lead_bytes_ = write_stream_header(header.profile_idc).size() + header_unit(header).size() +
+                metadata_.size() + connectivity_.size() + vertex_order_.size();
+}
+
+bool StreamAssembly::has_index(const std::vector<GofEntry>& gofs) const {
+  std::uint64_t bytes = lead_bytes_;
+  for (const GofEntry& gof : gofs) bytes += gof.bytes;
+  return gofs.size() >= kMinIndexedGofs && bytes <= kMaxIndexedBytes;
+}
+
+std::uint64_t StreamAssembly::index_bytes(const std::vector<GofEntry>& gofs) const {
+  if (!has_index(gofs)) return 0;
+  return write_unit(UnitType::kGofIndex, write_gof_index(lead_bytes_, gofs)).size();
+}
+
+bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& sink) {
+  written_ += bytes.size();
+  return bytes.empty() || sink(bytes);
+}
+
+bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& sink) {
+  return put(write_stream_header(header.profile_idc), sink) && put(header_unit(header), sink) &&
+         put(metadata_, sink) && put(connectivity_, sink) && put(vertex_order_, sink);
+}
+
+bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
+  gof_bytes_ += gof.units.size();
+  hash_bytes_ += gof.hash_unit.size();
+  gofs_.push_back({gof.num_frames, gof.size()});
+  return put(gof.units, sink) && put(gof.hash_unit, sink);
+}
+
+bool StreamAssembly::write_end(const ByteSink& sink) {
+  std::uint32_t index_distance = 0;
+  if (has_index(gofs_)) {
+    const Bytes unit = write_unit(UnitType::kGofIndex, write_gof_index(lead_bytes_, gofs_));
+    index_distance = static_cast<std::uint32_t>(unit.size());
+    if (!put(unit, sink)) return false;
+  }
+  return put(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(index_distance)), sink);
+}
+
+void StreamAssembly::describe(const SequenceHeader& header,
+                              const ConnectivityCode& connectivity,
+                              EncodeReport& report) const {
+  report.header = header;
+  report.bytes = written_;
+  report.bpvf = bits_per_vertex_per_frame(written_, header.num_vertices, header.num_frames);
+  report.bits.connectivity = 8 * connectivity_.size();
+  report.bits.vertex_order = 8 * vertex_order_.size();
+  report.bits.metadata = 8 * metadata_.size();
+  report.bits.gofs = 8 * gof_bytes_;
+  report.bits.hashes = 8 * hash_bytes_;
+  report.bits.headers = 8 * written_ - report.bits.gofs - report.bits.hashes -
+                        report.bits.connectivity - report.bits.vertex_order -
+                        report.bits.metadata;
+  report.num_gofs = static_cast<std::uint32_t>(gofs_.size());
+  report.input_vertex = connectivity.input_vertex;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,59 @@
+// The units of a stream in their order: those before the GOFs, GOFs, index and end.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/syntax/sequence_header.h"
+#include "common/syntax/write_units.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/write/write_connectivity.h"
+
+namespace rlpc {
+
+// A GOF as it stands in a stream.
+struct GofBytes {
+  std::uint32_t num_frames = 0;
+  Bytes units;
+  Bytes hash_unit;  // empty: none
+
+  std::uint64_t size() const { return units.size() + hash_unit.size(); }
+};
+
+class StreamAssembly {
+ public:
+  StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
+                 const ConnectivityCode& connectivity);
+
+  // Of all that is no GOF, hash or index.
+  std::uint64_t frame_bytes() const { return lead_bytes_ + end_bytes_; }
+  // Of the index of a stream with such GOFs; 0 if it would have none.
+  std::uint64_t index_bytes(const std::vector<GofEntry>& gofs) const;
+
+  // To be called in this order. False if the sink failed. The header may differ from that of
+  // the constructor in its level.
+  bool write_lead(const SequenceHeader& header, const ByteSink& sink);
+  bool write_gof(const GofBytes& gof, const ByteSink& sink);
+  bool write_end(const ByteSink& sink);
+
+  // Bytes, bpvf, bits, input_vertex and number of GOFs, once all is written.
+  void describe(const SequenceHeader& header, const ConnectivityCode& connectivity,
+                EncodeReport& report) const;
+
+ private:
+  // Of few GOFs an index saves nothing; in large streams, its offsets would not fit.
+  bool has_index(const std::vector<GofEntry>& gofs) const;
+  bool put(std::span<const std::uint8_t> bytes, const ByteSink& sink);
+
+  Bytes metadata_;
+  Bytes connectivity_;
+  Bytes vertex_order_;
+  std::uint64_t lead_bytes_ = 0;
+  std::uint64_t end_bytes_ = 0;
+  std::uint64_t gof_bytes_ = 0;
+  std::uint64_t hash_bytes_ = 0;
+  std::uint64_t written_ = 0;
+  std::vector<GofEntry> gofs_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,154 @@
+#include "encoder/skinned_gof/fit/bone_poses.h"
+
+#include <algorithm>
+
+#include "encoder/math/matrix_products.h"
+#include "encoder/math/symmetric_solve.h"
+
+namespace rlpc {
+namespace {
+
+using Column4 = Eigen::Vector4d;
+
+Column4 homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
+
+}  // namespace
+
+SkinMoments::SkinMoments(std::size_t num_bones)
+    : num_bones_(num_bones), block_(num_bones * num_bones, Eigen::Matrix4d::Zero()) {}
+
+void SkinMoments::add(const Vec3d& rest, std::span<const RigWeight> weights) {
+  const Column4 p = homogeneous(rest);
+  const Eigen::Matrix4d products = p * p.transpose();
+  for (const RigWeight& a : weights) {
+    for (const RigWeight& b : weights) {
+      block_[a.bone * num_bones_ + b.bone] += a.weight * b.weight * products;
+    }
+  }
+}
+
+Vec3d SkinMoments::centre(std::size_t bone) const {
+  if (mass(bone) == 0.0) return Vec3d::Zero();
+  return block(bone, bone).block<3, 1>(0, 3) / mass(bone);
+}
+
+double SkinMoments::spread2(std::size_t bone) const {
+  if (mass(bone) == 0.0) return 0.0;
+  const Eigen::Matrix4d& m = block(bone, bone);
+  const double about_origin = (m(0, 0) + m(1, 1) + m(2, 2)) / mass(bone);
+  return std::max(about_origin - centre(bone).squaredNorm(), 0.0);
+}
+
+void PoseTargets::add(const Vec3d& rest, std::span<const RigWeight> weights,
+                      std::span<const Vec3d> trajectory) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  const Column4 p = homogeneous(rest);
+  const std::size_t size = Motion::ColsAtCompileTime * values_;
+  for (const RigWeight& w : weights) {
+    add_outer_product(w.weight, {p.data(), Motion::ColsAtCompileTime},
+                      {trajectory.data()->data(), values_},
+                      std::span(sum_).subspan(w.bone * size, size));
+  }
+}
+
+std::vector<Motion> PoseTargets::of_frame(std::size_t frame) const {
+  std::vector<Motion> result(num_bones_);
+  const double* sum = &sum_[3 * frame];
+  for (Motion& m : result) {
+    for (Eigen::Index k = 0; k < m.cols(); ++k, sum += values_) {
+      m.col(k) = Vec3d(sum[0], sum[1], sum[2]);
+    }
+  }
+  return result;
+}
+
+void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
+                  std::vector<Motion>& motions) {
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    const double mass = moments.mass(b);
+    if (!(mass > 0.0)) continue;
+    Motion left = targets[b];  // sum of w_b (what the others leave) (p, 1)^T
+    for (std::size_t c = 0; c < motions.size(); ++c) {
+      const Eigen::Matrix4d& m = moments.block(c, b);
+      if (c != b && m(3, 3) > 0.0) left -= motions[c] * m;
+    }
+    const Vec3d sum = moments.block(b, b).block<3, 1>(0, 3);
+    const Eigen::Matrix3d h = left.leftCols<3>() - left.col(3) * sum.transpose() / mass;
+    const Eigen::Matrix3d before = motions[b].leftCols<3>();
+    const Eigen::Matrix3d r = closest_rotation(h, before);
+    motions[b].leftCols<3>() = r;
+    motions[b].col(3) = (left.col(3) - r * sum) / mass;
+  }
+}
+
+namespace {
+
+// The sum of u x v over pairs of which k is the sum of v u^T.
+Vec3d curl(const Eigen::Matrix3d& k) {
+  return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
+}
+
+Eigen::Matrix3d cross_matrix(const Vec3d& a) {
+  Eigen::Matrix3d m;
+  m << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0;
+  return m;
+}
+
+// Sum of w_b w_c J_b^T J_c, where J = (-[R p]x, 1) is how a turn and a shift of a bone move the
+// point p that it takes to R p + t.
+Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen::Matrix3d& rb,
+                                     const Eigen::Matrix3d& rc) {
+  const Eigen::Matrix3d n = rb * moments.topLeftCorner<3, 3>() * rc.transpose();
+  Eigen::Matrix<double, 6, 6> a;
+  a.topLeftCorner<3, 3>() = -n.transpose();
+  a.topLeftCorner<3, 3>().diagonal().array() += n(0, 0) + n(1, 1) + n(2, 2);
+  a.topRightCorner<3, 3>() = cross_matrix(rb * moments.block<3, 1>(0, 3));
+  a.bottomLeftCorner<3, 3>() = -cross_matrix(rc * moments.block<3, 1>(0, 3));
+  a.bottomRightCorner<3, 3>().setIdentity();
+  a.bottomRightCorner<3, 3>() *= moments(3, 3);
+  return a;
+}
+
+}  // namespace
+
+void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
+                 std::vector<Motion>& motions) {
+  constexpr double kDamping = 1e-3;  // of the diagonal
+  const std::size_t n = motions.size();
+  std::vector<double> a(36 * n * n, 0.0);
+  std::vector<double> x(6 * n, 0.0);
+  for (std::size_t b = 0; b < n; ++b) {
+    Motion left = targets[b];  // sum of w_b r (p, 1)^T, where r is what all bones leave
+    const Eigen::Matrix3d rb = motions[b].leftCols<3>();
+    for (std::size_t c = 0; c < n; ++c) {
+      const Eigen::Matrix4d& m = moments.block(c, b);
+      if (!(m(3, 3) > 0.0)) continue;
+      left -= motions[c] * m;
+      if (c < b) continue;
+      const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
+      for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          a[(6 * b + i) * 6 * n + 6 * c + k] =
+              block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+        }
+      }
+    }
+    const Vec3d turn = curl(left.leftCols<3>() * rb.transpose());
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[6 * b + i] = turn(static_cast<Eigen::Index>(i));
+      x[6 * b + 3 + i] = left(static_cast<Eigen::Index>(i), 3);
+    }
+  }
+  for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;
+  solve_symmetric(a, x);
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!(moments.mass(b) > 0.0)) continue;
+    const Vec3d turn{x[6 * b], x[6 * b + 1], x[6 * b + 2]};
+    const Eigen::Matrix3d r =
+        rotation_matrix(normalised({1.0, 0.5 * turn(0), 0.5 * turn(1), 0.5 * turn(2)}));
+    motions[b].leftCols<3>() = r * motions[b].leftCols<3>();
+    motions[b].col(3) += Vec3d(x[6 * b + 3], x[6 * b + 4], x[6 * b + 5]);
+  }
+}
+
+}  // namespace rlpc

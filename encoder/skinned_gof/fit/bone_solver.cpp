@@ -1,0 +1,367 @@
+#include "encoder/skinned_gof/fit/bone_solver.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "encoder/skinned_gof/fit/bone_poses.h"
+
+namespace rlpc {
+namespace {
+
+constexpr int kRounds = 6;  // of improvement, after bones have come in
+
+}  // namespace
+
+BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
+    : sample_(sample),
+      max_influences_(max_influences),
+      weights_(sample.num_vertices()),
+      candidates_(sample.num_vertices()),
+      gram_(sample.num_vertices()) {
+  Vec3d mean = Vec3d::Zero();
+  const std::size_t n = sample.num_vertices();
+  for (std::size_t v = 0; v < n; ++v) {
+    rest_.push_back(sample.trajectory(v)[0]);
+    mean += rest_.back() / static_cast<double>(n);
+  }
+  double extent2 = 0.0;
+  for (const Vec3d& p : rest_) extent2 += (p - mean).squaredNorm() / static_cast<double>(n);
+  constexpr double kNegligible = 1e-10;
+  negligible_ = kNegligible * extent2 * static_cast<double>(sample.num_frames);
+  std::vector<std::uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0U);
+  motions_ = {motion_of(all)};
+  SkinSums sums(sample.positions, motions_);
+  improve(1, sums);
+}
+
+bool BoneSolver::grow(std::size_t num_bones) {
+  const std::size_t before = motions_.size();
+  if (before >= num_bones) return false;
+  SkinSums sums(sample_.positions, motions_);
+  while (motions_.size() < num_bones) {
+    const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
+    const std::size_t added = add_bones(count, sums);
+    if (added > 0) improve(kRounds, sums);
+    if (added < count) break;
+  }
+  return motions_.size() > before;
+}
+
+void BoneSolver::exchange_bones(int times) {
+  constexpr std::size_t kExchangedPart = 8;
+  std::size_t count = 1 + motions_.size() / kExchangedPart;
+  SkinSums sums(sample_.positions, motions_);
+  for (int i = 0; i < times && count > 0; ++i) {
+    if (!exchange(count, sums)) count /= 2;
+  }
+}
+
+std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertices) const {
+  std::vector<Motion> motion(sample_.num_frames);
+  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+    MotionFit fit;
+    for (const std::uint32_t v : vertices) fit.add(rest_[v], sample_.trajectory(v)[f]);
+    motion[f] = fit.motion();
+  }
+  return motion;
+}
+
+void BoneSolver::find_patch_errors() {
+  for (const auto& patch : sample_.patches) {
+    const std::vector<Motion> motion = motion_of(patch);
+    double error = 0.0;
+    for (const std::uint32_t v : patch) {
+      for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+        error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+      }
+    }
+    patch_error_.push_back(error);
+  }
+}
+
+// Returns how many there were.
+std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
+  if (patch_error_.empty()) find_patch_errors();
+  std::vector<double> error(weights_.size());
+  for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
+  std::size_t added = 0;
+  for (; added < count; ++added) {
+    auto [best, most] = best_new_bone(error);
+    constexpr double kLeastPart = 1e-9;
+    const double sum = std::accumulate(error.begin(), error.end(), 0.0);
+    const double negligible = negligible_ * static_cast<double>(error.size());
+    if (most <= std::max(kLeastPart * sum, negligible)) break;
+    motions_.push_back(std::move(best));
+    sums.add_bone(motions_.back());
+    fit_all_weights(true, sums);
+    for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
+  }
+  return added;
+}
+
+// Patches that do not touch, first those with a large error of which a rigid motion of their
+// own would leave little.
+std::vector<std::size_t> BoneSolver::ill_explained_patches(
+    std::span<const double> error) const {
+  constexpr std::size_t kTried = 12;
+  constexpr double kRigid = 1e-3;  // part of the error that may be left
+  std::vector<double> score(sample_.patches.size());
+  for (std::size_t i = 0; i < score.size(); ++i) {
+    const auto& patch = sample_.patches[i];
+    const double of_patch = error[patch[0]] * static_cast<double>(patch.size());
+    if (of_patch > 0.0) {
+      score[i] = of_patch * kRigid / (kRigid + patch_error_[i] / of_patch);
+    }
+  }
+  std::vector<std::size_t> order(score.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+  std::vector<char> touched(sample_.num_vertices(), 0);
+  std::vector<std::size_t> result;
+  for (const std::size_t i : order) {
+    const auto& patch = sample_.patches[i];
+    if (score[i] <= 0.0 || result.size() == kTried) break;
+    if (touched[patch[0]] != 0) continue;
+    for (const std::uint32_t v : patch) touched[v] = 1;
+    result.push_back(i);
+  }
+  return result;
+}
+
+// The motions of patches, each then taken from all vertices that follow it as well as the patch
+// does.
+std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
+    std::span<const std::size_t> patches) const {
+  constexpr int kFits = 3;
+  std::vector<PatchMotion> result;
+  if (patches.empty()) return result;
+  std::vector<std::vector<std::uint32_t>> cores;
+  BoneMotions motions(patches.size());
+  for (const std::size_t patch : patches) {
+    cores.push_back(sample_.patches[patch]);
+    result.push_back({patch, {}, std::vector<double>(sample_.num_vertices())});
+  }
+  std::optional<SkinSums> sums;
+  bool changed = true;
+  for (int i = 0; i < kFits && changed; ++i) {
+    for (std::size_t t = 0; t < cores.size(); ++t) motions[t] = motion_of(cores[t]);
+    if (sums) {
+      sums->set_motions(motions);
+    } else {
+      sums.emplace(sample_.positions, motions);
+    }
+    changed = false;
+    for (std::size_t t = 0; t < cores.size(); ++t) {
+      const auto& patch = sample_.patches[patches[t]];
+      const double tolerance = std::max(
+          4.0 * patch_error_[patches[t]] / static_cast<double>(patch.size()), negligible_);
+      std::vector<std::uint32_t> close;
+      for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
+        const double alone = sums->rigid_error(v, t, rest_[v]);
+        result[t].error[v] = alone;
+        if (alone < tolerance) close.push_back(v);
+      }
+      if (close.size() < cores[t].size() || close == cores[t]) continue;
+      cores[t] = std::move(close);
+      changed = true;
+    }
+  }
+  for (std::size_t t = 0; t < cores.size(); ++t) result[t].motion = std::move(motions[t]);
+  return result;
+}
+
+// Of the motions of some patches, that which saves most.
+BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
+  const std::vector<std::size_t> patches = ill_explained_patches(error);
+  const auto is_known = [&](std::size_t patch) {
+    return std::any_of(tried_.begin(), tried_.end(),
+                       [&](const PatchMotion& m) { return m.patch == patch; });
+  };
+  std::vector<std::size_t> others;
+  std::remove_copy_if(patches.begin(), patches.end(), std::back_inserter(others), is_known);
+  for (PatchMotion& m : patch_motions(others)) tried_.push_back(std::move(m));
+  std::vector<PatchMotion> now;
+  now.reserve(patches.size());
+  for (const std::size_t patch : patches) {
+    now.push_back(std::move(*std::find_if(
+        tried_.begin(), tried_.end(), [&](const PatchMotion& m) { return m.patch == patch; })));
+  }
+  tried_ = std::move(now);
+  NewBone best;
+  for (const PatchMotion& m : tried_) {
+    double saved = 0.0;
+    for (std::size_t v = 0; v < error.size(); ++v)
+      saved += std::max(error[v] - m.error[v], 0.0);
+    if (saved > best.saved) best = {m.motion, saved};
+  }
+  return best;
+}
+
+void BoneSolver::choose_candidates(const SkinSums& sums) {
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    std::vector<std::size_t>& list = candidates_[v];
+    list.clear();
+    for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
+    for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
+      if (list.size() == SkinSums::kMaxCandidates) break;
+      if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
+    }
+  }
+}
+
+void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
+  if (new_candidates) choose_candidates(sums);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    const auto fit = [&] {
+      gram_[v] = sums.gram(v, candidates_[v], rest_[v]);
+      weights_[v] = sparse_weights(gram_[v], SkinSums::kMaxCandidates, candidates_[v].size(),
+                                   max_influences_, 0.0);
+      for (RigWeight& w : weights_[v].weights) {
+        w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
+      }
+    };
+    fit();
+    if (!rests_move_) continue;
+    rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
+    fit();
+  }
+}
+
+void BoneSolver::improve(int rounds, SkinSums& sums) {
+  constexpr int kKeepCandidates = 3;
+  for (int i = 0; i < rounds; ++i) {
+    fit_all_weights(i % kKeepCandidates == 0, sums);
+    improve_motions();
+    sums.set_motions(motions_);
+  }
+  fit_all_weights(false, sums);
+}
+
+void BoneSolver::settle() {
+  constexpr int kSettlingRounds = 10;
+  rests_move_ = true;
+  SkinSums sums(sample_.positions, motions_);
+  improve(kSettlingRounds, sums);
+}
+
+void BoneSolver::improve_motions() {
+  constexpr int kSweeps = 2;
+  const std::size_t n = motions_.size();
+  SkinMoments moments(n);
+  for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
+  PoseTargets targets(n, sample_.num_frames);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v));
+  }
+  std::vector<Motion> frame(n);
+  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+    const std::vector<Motion> wanted = targets.of_frame(f);
+    for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
+    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, wanted, frame);
+    for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
+  }
+}
+
+// What each bone's vertices would lose without it.
+std::vector<double> BoneSolver::missed() const {
+  std::vector<double> loss(motions_.size(), 0.0);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    const std::size_t count = candidates_[v].size();
+    if (count < 2) continue;
+    for (const RigWeight& w : weights_[v].weights) {
+      // The others only: the bone's row and column take those of the last.
+      SkinSums::Gram gram = gram_[v];
+      const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
+      const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
+      constexpr std::size_t kStride = SkinSums::kMaxCandidates;
+      for (std::size_t i = 0; i < count; ++i) {
+        gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        gram[i * kStride + gone] = gram[i * kStride + count - 1];
+      }
+      const double without =
+          sparse_weights(gram, kStride, count - 1, max_influences_, 0.0).error;
+      loss[w.bone] += std::max(without - weights_[v].error, 0.0);
+    }
+  }
+  return loss;
+}
+
+void BoneSolver::remove_bone(std::size_t bone, SkinSums& sums) {
+  motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
+  sums.remove_bone(bone);
+  for (BoneWeights& w : weights_) w.weights.clear();
+  fit_all_weights(true, sums);
+}
+
+double BoneSolver::error() const {
+  double sum = 0.0;
+  for (const BoneWeights& w : weights_) sum += w.error;
+  return sum;
+}
+
+// Beyond the first.
+double BoneSolver::mean_influences() const {
+  std::size_t sum = 0;
+  for (const BoneWeights& w : weights_) sum += w.weights.size() - 1;
+  return static_cast<double>(sum) / static_cast<double>(weights_.size());
+}
+
+std::vector<double> BoneSolver::residuals() const {
+  std::vector<double> result;
+  result.reserve(3 * sample_.positions.size());
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+      Vec3d left = sample_.trajectory(v)[f];
+      for (const RigWeight& w : weights_[v].weights) {
+        left -= w.weight * moved(motions_[w.bone][f], rest_[v]);
+      }
+      result.insert(result.end(), {left(0), left(1), left(2)});
+    }
+  }
+  return result;
+}
+
+// Exchanges the bones that are missed least for new ones, if that is better.
+bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
+  const BoneSolver before = *this;
+  for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
+    const std::vector<double> loss = missed();
+    remove_bone(
+        static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()),
+        sums);
+  }
+  add_bones(before.motions_.size() - motions_.size(), sums);
+  improve(kRounds, sums);
+  if (error() < before.error()) return true;
+  take(before);
+  sums.set_motions(motions_);
+  return false;
+}
+
+void BoneSolver::take(const BoneSolver& other) {
+  motions_ = other.motions_;
+  rest_ = other.rest_;
+  weights_ = other.weights_;
+  candidates_ = other.candidates_;
+  gram_ = other.gram_;
+}
+
+void BoneSolver::remove_worthless_bones(double worth) {
+  std::optional<SkinSums> sums;  // once one is removed
+  while (motions_.size() > 1) {
+    const std::vector<double> loss = missed();
+    const auto least = std::min_element(loss.begin(), loss.end());
+    if (*least >= worth) break;
+    if (!sums) sums.emplace(sample_.positions, motions_);
+    remove_bone(static_cast<std::size_t>(least - loss.begin()), *sums);
+  }
+  if (sums) improve(kRounds, *sums);
+}
+
+}  // namespace rlpc

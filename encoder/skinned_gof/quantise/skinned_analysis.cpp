@@ -1,0 +1,305 @@
+#include "encoder/skinned_gof/quantise/skinned_analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "common/int_math.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/math/det_math.h"
+#include "encoder/math/elimination.h"
+#include "encoder/skinned_gof/quantise/track_coding.h"
+
+namespace rlpc {
+namespace {
+
+constexpr double kPointScale = 16.0;  // 1 << kPointFractionBits
+// Steps of the layers before the finest, in sixteenths: 0.9^n, not below 0.4.
+constexpr std::array<int, 10> kLayerSteps{16, 14, 13, 12, 10, 9, 9, 8, 7, 6};
+
+std::uint32_t step_idx(double step) {
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+      round_to_int(8.0 * det_log2(std::max(step, 1.0))), 0, kMaxStepIdx));
+}
+
+std::vector<std::uint8_t> layer_steps(std::size_t num_layers, bool finer) {
+  std::vector<std::uint8_t> steps(num_layers, kMaxLayerStep);
+  for (std::size_t i = 0; i < num_layers && finer; ++i) {
+    steps[i] = static_cast<std::uint8_t>(
+        kLayerSteps[std::min(num_layers - 1 - i, kLayerSteps.size() - 1)]);
+  }
+  return steps;
+}
+
+// Weights to integers that sum to `total`; what rounding leaves goes to the largest.
+Influences quantise_weights(const std::vector<RigWeight>& weights, int total) {
+  std::vector<std::pair<int, std::uint32_t>> rounded;
+  for (const RigWeight& w : weights) {
+    const auto units = static_cast<int>(round_to_int(w.weight * total));
+    if (units > 0) rounded.push_back({units, w.bone});
+  }
+  std::sort(rounded.begin(), rounded.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;
+  });
+  if (rounded.empty()) rounded.push_back({total, weights.front().bone});
+  if (rounded.size() > kMaxExtraBones) rounded.resize(kMaxExtraBones);
+  int sum = 0;
+  for (const auto& [units, bone] : rounded) sum += units;
+  rounded.front().first += total - sum;
+  Influences influences;
+  for (const auto& [units, bone] : rounded) {
+    if (units <= 0) continue;
+    influences.list[influences.size++] = {static_cast<std::uint16_t>(bone),
+                                          static_cast<std::uint16_t>(units)};
+  }
+  return influences;
+}
+
+// A motion, or the mean of some: world = turn * rest + shift, in grid units.
+struct MeanMotion {
+  std::array<Point, 3> turn{};  // columns: images of the axes
+  Point shift{};
+};
+
+// The motion of a decoded bone in each frame.
+std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
+  const double axis_unit = exact_exp2(-kQuaternionFractionBits);
+  std::vector<MeanMotion> motions(bone.poses.size());
+  for (std::size_t f = 0; f < motions.size(); ++f) {
+    const BonePose& pose = bone.poses[f];
+    for (std::size_t c = 0; c < 3; ++c) {
+      double moved = static_cast<double>(pose.origin[c]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double a = static_cast<double>(pose.axes[k][c]) * axis_unit;
+        motions[f].turn[k][c] = a;
+        moved -= a * static_cast<double>(bone.pivot[k]);
+      }
+      motions[f].shift[c] = moved / kPointScale;
+    }
+  }
+  return motions;
+}
+
+class BoneAnalyser {
+ public:
+  BoneAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
+               const Rig& rig, const BoneSettings& settings, double step)
+      : mesh_(mesh),
+        position_bits_(position_bits),
+        frames_(frames),
+        rig_(rig),
+        settings_(settings),
+        step_(step) {}
+
+  BoneAnalysis analyse(std::uint32_t first_frame) {
+    BoneGof& gof = found_.gof;
+    gof.first_frame = first_frame;
+    gof.num_frames = frames_.num_frames;
+    gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
+    gof.prediction = settings_.prediction;
+    gof.layer_group_size = {mesh_.num_layers()};
+    gof.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
+    gof.slice_layers = {1};
+    code_bones();
+    for (const auto& weights : rig_.weights) {
+      gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
+    }
+    code_rest();
+    // Steps that are tried later may be finer (AnalysisRange).
+    constexpr double kReserve = 0.69;
+    const double least = kReserve * least_energy(step_, gof, frames_.num_vertices);
+    found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
+    return std::move(found_);
+  }
+
+ private:
+  // Squared weights of a bone, and their mean squared distance from the pivot.
+  std::pair<double, double> reach(std::size_t b) const {
+    double mass = 0.0;
+    double moment = 0.0;
+    for (std::size_t v = 0; v < rig_.rest.size(); ++v) {
+      for (const RigWeight& w : rig_.weights[v]) {
+        if (w.bone != b) continue;
+        double square = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double d = rig_.rest[v][c] - rig_.bones[b].pivot[c];
+          square += d * d;
+        }
+        mass += w.weight * w.weight;
+        moment += w.weight * w.weight * square;
+      }
+    }
+    return {mass, moment};
+  }
+
+  void code_bones() {
+    TrackState rotations(frames_.num_frames);
+    TrackState origins(frames_.num_frames);
+    found_.bones.reserve(rig_.bones.size());
+    const int limit = 1 << (rest_bits(position_bits_) - 1);
+    for (std::size_t b = 0; b < rig_.bones.size(); ++b) {
+      const RigBone& from = rig_.bones[b];
+      Bone bone;
+      bone.parent = from.parent;
+      for (std::size_t c = 0; c < 3; ++c) {
+        bone.pivot[c] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
+            round_to_int(from.pivot[c] * kPointScale), -limit, limit - 1));
+      }
+      bone.rotation_flag = from.turns;
+      bone.origin_flag = !from.pinned;
+      const auto [mass, moment] = reach(b);
+      // A turn by a quaternion's vector part x moves a point at distance r by 2 x r, across.
+      const double turn_step = step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, 1e-3)));
+      bone.rotation_step_idx = step_idx(turn_step * exact_exp2(kQuaternionFractionBits));
+      bone.origin_step_idx = step_idx(step_ / std::sqrt(std::max(mass, 1e-3)) * kPointScale);
+      std::vector<WantedPose> wanted(frames_.num_frames);
+      for (std::size_t f = 0; f < wanted.size(); ++f) {
+        wanted[f].rotation = from.poses[f].rotation;
+        for (std::size_t c = 0; c < 3; ++c) {
+          wanted[f].origin[c] = from.poses[f].origin[c] * kPointScale;
+        }
+      }
+      const BoneMotion* parent =
+          bone.parent < 0 ? nullptr : &found_.bones[static_cast<std::size_t>(bone.parent)];
+      found_.bones.push_back(code_bone(wanted, parent, settings_.rounding == Rounding::kNearest,
+                                       rotations, origins, bone));
+      motions_.push_back(motions_of(found_.bones.back()));
+      found_.gof.bones.push_back(std::move(bone));
+    }
+  }
+
+  // The mean motion of a vertex in each frame.
+  void find_mean_motion(std::uint32_t v) {
+    const Influences& influences = found_.gof.influences[v];
+    if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
+    mean_of_ = influences;
+    const double unit = exact_exp2(-found_.gof.weight_bits);
+    mean_.assign(frames_.num_frames, {});
+    for (const Influence& influence : influences) {
+      const double weight = influence.weight * unit;
+      const std::vector<MeanMotion>& motions = motions_[influence.bone];
+      for (std::size_t f = 0; f < mean_.size(); ++f) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            mean_[f].turn[k][c] += weight * motions[f].turn[k][c];
+          }
+          mean_[f].shift[c] += weight * motions[f].shift[c];
+        }
+      }
+    }
+  }
+
+  // The rest position that suits the decoded bones best.
+  Point fit_rest(std::uint32_t v) {
+    find_mean_motion(v);
+    Equations3 m{};
+    for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
+      const MeanMotion& motion = mean_[f];
+      const double* x = frames_.at(f, v);
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          for (std::size_t k = 0; k < 3; ++k) m[i][k] += motion.turn[i][c] * motion.turn[k][c];
+          m[i][3] += motion.turn[i][c] * (x[c] - motion.shift[c]);
+        }
+      }
+    }
+    return solve3(m).value_or(rig_.rest[v]);
+  }
+
+  void code_rest() {
+    BoneGof& gof = found_.gof;
+    const double rest_step =
+        step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
+    gof.rest_step = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
+    const std::uint32_t n = frames_.num_vertices;
+    std::vector<std::int32_t> values(kRestFactors * std::size_t{n});
+    gof.vertex_residual.emplace_back(values.size());
+    const ValuePrediction prediction(mesh_, true, nullptr);
+    std::array<std::int64_t, kRestFactors> predicted{};
+    for (const std::uint32_t v : mesh_.order()) {
+      prediction.predict(v, values, predicted);
+      const int layer_step = gof.layer_step[mesh_.layer_of(v)];
+      const double unit = static_cast<double>(gof.rest_step) * layer_step / kMaxLayerStep;
+      const Point rest = fit_rest(v);
+      for (std::size_t c = 0; c < 3; ++c) {
+        constexpr auto kMost = static_cast<double>(kMaxResidual);
+        const double steps = (rest[c] * kPointScale - static_cast<double>(predicted[c])) / unit;
+        const auto residual =
+            static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
+        gof.vertex_residual[0][v * kRestFactors + c] = residual;
+        values[v * kRestFactors + c] =
+            clip_signed(rest_bits(position_bits_),
+                        predicted[c] + rest_difference(gof, residual, layer_step));
+      }
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      found_.rest[c].resize(n);
+      for (std::uint32_t v = 0; v < n; ++v) found_.rest[c][v] = values[v * kRestFactors + c];
+    }
+  }
+
+  // What bones and rest positions leave.
+  TrajectoryRows displacement() {
+    const std::size_t width = 3 * std::size_t{frames_.num_frames};
+    return {frames_.num_vertices, width,
+            [this, width](std::size_t first, std::span<double> rows) {
+              for (std::size_t i = 0; i * width < rows.size(); ++i) {
+                write_displacement(static_cast<std::uint32_t>(first + i), &rows[i * width]);
+              }
+            }};
+  }
+
+  // Of one vertex, all frames of each coordinate.
+  void write_displacement(std::uint32_t v, double* row) {
+    find_mean_motion(v);
+    const std::size_t num_frames = frames_.num_frames;
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      const MeanMotion& motion = mean_[f];
+      const double* x = frames_.at(f, v);
+      for (std::size_t c = 0; c < 3; ++c) {
+        double left = x[c] - motion.shift[c];
+        for (std::size_t k = 0; k < 3; ++k) {
+          left -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
+        }
+        row[c * num_frames + f] = left;
+      }
+    }
+  }
+
+  const CodedMesh& mesh_;
+  int position_bits_;
+  const GofFrames& frames_;
+  const Rig& rig_;
+  const BoneSettings& settings_;
+  double step_;
+  BoneAnalysis found_;
+  std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
+  std::vector<MeanMotion> mean_;                  // [frame], of the vertex at hand,
+  Influences mean_of_;                            // which has these
+};
+
+}  // namespace
+
+double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices) {
+  constexpr double kLeast = 0.4;  // squared errors of a coded value, per vertex
+  // One bone leaves trajectories of all vertices, of which many are worth their bits: those of
+  // long vectors need more.
+  constexpr double kOfSpatial = 0.25;
+  constexpr double kOfTemporal = 12.0;
+  constexpr double kMost = 1.2;
+  const double share = static_cast<double>(gof.num_frames) / num_vertices;
+  const double values = gof.bones.size() > 1
+                            ? kLeast
+                            : std::clamp(kOfSpatial + kOfTemporal * share, kLeast, kMost);
+  return values * step * step / 12.0 * num_vertices;
+}
+
+BoneAnalysis analyse_bones(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
+                           std::uint32_t first_frame, const Rig& rig,
+                           const BoneSettings& settings, double step) {
+  return BoneAnalyser(mesh, position_bits, frames, rig, settings, step).analyse(first_frame);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,93 @@
+#include "encoder/skinned_gof/search/bone_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "encoder/gof/component_cost.h"
+#include "encoder/math/det_math.h"
+#include "encoder/math/principal_components.h"
+
+namespace rlpc {
+namespace {
+
+// What spatial prediction leaves of each trajectory, a vertex at a time: mean squared
+// differences between the middle of a patch and the vertices around it.
+std::vector<double> differences(const BoneSample& sample, const PrincipalComponents& pc) {
+  const std::size_t count = pc.spatial.size();
+  std::vector<double> sum(count, 0.0);
+  for (const auto& patch : sample.patches) {
+    const auto around = static_cast<double>(patch.size() - 1);
+    for (std::size_t l = 0; l < count; ++l) {
+      double d = pc.spatial[l][patch[0]];
+      for (std::size_t i = 1; i < patch.size(); ++i) d -= pc.spatial[l][patch[i]] / around;
+      sum[l] += d * d;
+    }
+  }
+  for (double& s : sum) s /= static_cast<double>(sample.patches.size());
+  return sum;
+}
+
+}  // namespace
+
+double expected_cost(const BoneSample& sample, std::vector<double> residuals,
+                     std::uint32_t num_vertices, std::uint32_t num_frames, double step) {
+  TrajectoryMatrix matrix;
+  matrix.num_values = sample.num_vertices();
+  matrix.num_frames = 3 * sample.num_frames;
+  matrix.a = std::move(residuals);
+  const PrincipalComponents pc = principal_components(matrix, matrix.num_frames, 0.0);
+  const std::vector<double> difference = differences(sample, pc);
+  const double vertices = num_vertices;
+  const double values = 3.0 * num_frames;
+  const double of_frames = num_frames / static_cast<double>(sample.num_frames);
+  const double of_all = of_frames * vertices / static_cast<double>(sample.num_vertices());
+  double cost = 0.0;
+  for (std::size_t l = 0; l < pc.energy.size(); ++l) {
+    const double energy = of_all * pc.energy[l];
+    if (l >= difference.size()) {
+      cost += energy;
+      continue;
+    }
+    cost += expected_component_cost(energy, vertices, values, of_frames * difference[l], step);
+  }
+  return cost;
+}
+
+std::vector<double> unsteadiness(const GofFrames& frames) {
+  constexpr std::uint32_t kVertices = 40;
+  const std::uint32_t stride = (frames.num_vertices + kVertices - 1) / kVertices;
+  std::vector<double> result;
+  for (std::uint32_t f = 1; f < frames.num_frames; ++f) {
+    for (std::uint32_t v = 0; v < frames.num_vertices; v += stride) {
+      const double* now = frames.at(f, v);
+      const double* before = frames.at(f - 1, v);
+      const double* first = frames.at(f > 1 ? f - 2 : 0, v);
+      double square = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = now[c] - 2.0 * before[c] + first[c];
+        square += d * d;
+      }
+      result.push_back(std::sqrt(square));
+    }
+  }
+  return result;
+}
+
+// The more vertices follow a bone, the finer its steps are. Factors as measured.
+double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
+                          std::size_t num_bones, double step) {
+  constexpr double kPivotAndFirstPose = 60.0;
+  constexpr double kBits = 2.6;
+  constexpr double kFineness = 10.0;
+  if (unsteady.empty()) return kPivotAndFirstPose;
+  const double followers = frames.num_vertices / static_cast<double>(num_bones);
+  const double scale = kFineness * std::sqrt(followers) / step;
+  double sum = 0.0;
+  for (const double d : unsteady) sum += det_log2(1.0 + scale * d);
+  const double mean = sum / static_cast<double>(unsteady.size());
+  return kPivotAndFirstPose + kBits * mean * (frames.num_frames - 1);
+}
+
+}  // namespace rlpc

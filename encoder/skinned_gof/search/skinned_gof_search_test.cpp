@@ -1,0 +1,283 @@
+#include "encoder/skinned_gof/search/skinned_gof_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+constexpr int kPositionBits = 20;
+constexpr std::uint32_t kRings = 24;
+constexpr std::uint32_t kSides = 8;
+constexpr std::uint32_t kVertices = kRings * kSides;
+
+using Move = std::function<Point(const Point&, double)>;
+
+// A bumpy tube along x, in grid steps, whose points move as they are told.
+struct Animation {
+  explicit Animation(const Move& move, std::uint32_t num_frames = 20)
+      : triangles(tube()),
+        topology(make_topology(kVertices, triangles)),
+        layers(make_layers(kVertices, triangles)) {
+    for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
+                                        Prediction::kParallelograms, Prediction::kLayers}) {
+      meshes.emplace_back(prediction, topology, layers);
+    }
+    frames.num_vertices = kVertices;
+    frames.num_frames = num_frames;
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      for (std::uint32_t v = 0; v < kVertices; ++v) {
+        const std::uint32_t ring = v / kSides;
+        const double angle = 6.283185307 * (v % kSides) / kSides;
+        const double radius = 2500.0 + 300.0 * std::sin(1.7 * v);
+        const Point p =
+            move({1000.0 * ring, radius * std::cos(angle), radius * std::sin(angle)}, f);
+        frames.xyz.insert(frames.xyz.end(), p.begin(), p.end());
+      }
+    }
+  }
+
+  static std::vector<Triangle> tube() {
+    std::vector<Triangle> list;
+    for (std::uint32_t r = 0; r + 1 < kRings; ++r) {
+      for (std::uint32_t s = 0; s < kSides; ++s) {
+        const std::uint32_t a = r * kSides + s;
+        const std::uint32_t b = r * kSides + (s + 1) % kSides;
+        list.push_back({a, b, a + kSides});
+        list.push_back({b, b + kSides, a + kSides});
+      }
+    }
+    return list;
+  }
+
+  std::vector<Triangle> triangles;
+  Topology topology;
+  VertexLayers layers;
+  std::vector<CodedMesh> meshes;
+  GofFrames frames;
+};
+
+Point turned(const Point& p, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
+}
+Point still(const Point& p, double) { return p; }
+// Speeds change, so that no extrapolation holds.
+Point rigid(const Point& p, double f) {
+  const Point q = turned({p[0], p[2], p[1]}, 0.8 * std::sin(0.5 * f));
+  return {q[0] + 5000.0 * std::sin(0.37 * f), q[1], q[2] - 70.0 * f};
+}
+// The second half bends against the first, smoothly, and swells.
+Point bending(const Point& p, double f) {
+  const double bend = 0.5 * std::sin(0.4 * f) * std::tanh((p[0] - 12000.0) / 3000.0);
+  const Point q = turned({p[0] - 12000.0, p[1], p[2]}, bend);
+  return {q[0], q[1], q[2] * (1.0 + 0.05 * std::sin(0.9 * f + p[0] / 4000.0))};
+}
+
+struct Outcome {
+  EncodedGof gof;
+  std::size_t bytes = 0;
+  double rms_error = 0.0;  // of a coordinate, grid steps
+};
+
+Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  Outcome outcome;
+  outcome.gof = search.encode(step, step);
+  for (const auto& unit : outcome.gof.units) outcome.bytes += unit.payload.size();
+  std::vector<std::int32_t> positions(3 * kVertices);
+  double sum = 0.0;
+  for (std::uint32_t f = 0; f < a.frames.num_frames; ++f) {
+    outcome.gof.frame(f, positions);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double d = positions[i] - a.frames.at(f, 0)[i];
+      sum += d * d;
+    }
+  }
+  outcome.rms_error = std::sqrt(sum / static_cast<double>(a.frames.xyz.size()));
+  return outcome;
+}
+EncoderSettings fast() {
+  EncoderSettings settings;
+  settings.preset = Preset::kFast;
+  return settings;
+}
+
+// The cost of more frames of the same shape.
+TEST(BoneGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
+  const std::size_t one = encode(Animation(still, 2), 8.0, fast()).bytes;
+  const Outcome many = encode(Animation(still, 100), 8.0, fast());
+  EXPECT_EQ(many.gof.clusters, 1U);
+  EXPECT_EQ(many.gof.components, 0U);
+  // Rest positions are finer, as their errors are in every frame: 2.8 bits, of three each.
+  EXPECT_LT(many.bytes, one + kVertices * 3 * 4 / 8 + 40);
+  EXPECT_LT(many.rms_error, 8.0);
+}
+
+TEST(BoneGofSearch, ARigidMotionIsOneBone) {
+  const Outcome still_mesh = encode(Animation(still, 40), 8.0, fast());
+  const Outcome moving = encode(Animation(rigid, 40), 8.0, fast());
+  EXPECT_EQ(moving.gof.clusters, 1U);
+  EXPECT_EQ(moving.gof.components, 0U);
+  EXPECT_LT(moving.rms_error, 8.0);
+  // A few bytes a frame for six coordinates.
+  EXPECT_LT(moving.bytes, still_mesh.bytes + 40 * 16);
+}
+
+// Closed loop: the error follows the step, and does not grow on the way.
+TEST(BoneGofSearch, TheErrorFollowsTheStep) {
+  const Animation a(bending);
+  double last_error = 0.0;
+  std::size_t last_bytes = 1U << 30;
+  for (const double step : {4.0, 16.0, 64.0, 256.0}) {
+    const Outcome outcome = encode(a, step, fast());
+    EXPECT_LT(outcome.rms_error, step) << step;
+    EXPECT_GT(outcome.rms_error, last_error) << step;
+    EXPECT_LT(outcome.bytes, last_bytes) << step;
+    last_error = outcome.rms_error;
+    last_bytes = outcome.bytes;
+  }
+}
+
+// The real error is another, by about the same factor at all steps.
+TEST(BoneGofSearch, ExpectsTheErrorOfOneBone) {
+  const Animation a(bending);
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, fast(), choice);
+  EXPECT_FALSE(search.expected_error(10.0));
+  search.analyse(10.0);
+  double least = 1e9;
+  double most = 0.0;
+  for (const double step : {10.0, 13.0, 16.0, 20.0}) {
+    const double real = squared_error(a.frames, search.encode(step, 10.0).frame);
+    const double factor = std::sqrt(real / search.expected_error(step).value());
+    least = std::min(least, factor);
+    most = std::max(most, factor);
+  }
+  EXPECT_GT(least, 0.6);
+  EXPECT_LT(most, 1.6);
+  EXPECT_LT(most, 1.1 * least);
+}
+
+TEST(BoneGofSearch, ExpectsNothingOfManyBones) {
+  const Animation a(bending);
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  EncoderSettings settings = fast();
+  settings.main.bones = 2;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  search.analyse(10.0);
+  EXPECT_FALSE(search.expected_error(10.0));
+}
+
+TEST(BoneGofSearch, IsTheSameEachTime) {
+  const Animation a(bending);
+  const Outcome first = encode(a, 20.0, {});
+  const Outcome second = encode(a, 20.0, {});
+  ASSERT_EQ(first.gof.units.size(), second.gof.units.size());
+  for (std::size_t i = 0; i < first.gof.units.size(); ++i) {
+    EXPECT_EQ(first.gof.units[i].type, second.gof.units[i].type);
+    EXPECT_EQ(first.gof.units[i].payload, second.gof.units[i].payload);
+  }
+}
+
+// The encoder tries steps one after the other: what is kept from one to the next does not show.
+TEST(BoneGofSearch, DoesNotDependOnTheStepsTriedBefore) {
+  const Animation a(bending);
+  const EncoderSettings settings = fast();
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  search.encode(20.0, 20.0);
+  ASSERT_TRUE(choice);
+  for (const auto& [step, analysis_step] :
+       {std::pair{50.0, 20.0}, std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
+    std::optional<BoneChoice> same = choice;
+    BoneGofSearch fresh(context, a.frames, 0, settings, same);
+    const auto expected = fresh.encode(step, analysis_step).units;
+    const auto units = search.encode(step, analysis_step).units;
+    ASSERT_EQ(units.size(), expected.size());
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      EXPECT_EQ(units[i].payload, expected[i].payload) << step << " " << i;
+    }
+  }
+}
+
+TEST(BoneGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
+  const Animation a(bending);
+  EncoderSettings settings = fast();
+  settings.main.bones = 3;
+  settings.components = 2;
+  const Outcome outcome = encode(a, 4.0, settings);
+  EXPECT_LE(outcome.gof.clusters, 3U);
+  EXPECT_EQ(outcome.gof.components, 2U);
+}
+
+// As far as bones, tools and their prediction go, nothing that can be asked for is better.
+TEST(BoneGofSearch, ChoosesThePredictionThatCostsLeast) {
+  const double step = 20.0;
+  const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
+    const Outcome o = encode(a, step, settings);
+    return o.rms_error * o.rms_error * static_cast<double>(a.frames.xyz.size()) +
+           kErrorPerBit * step * step * 8.0 * static_cast<double>(o.bytes);
+  };
+  bool differs = false;
+  for (const Move& move : {Move(bending), Move(rigid)}) {
+    const Animation a(move);
+    const double chosen = cost(a, {});
+    for (const Prediction prediction :
+         {Prediction::kParallelogram, Prediction::kParallelograms, Prediction::kLayers}) {
+      EncoderSettings settings;
+      settings.main.prediction = prediction;
+      const double asked = cost(a, settings);
+      EXPECT_LE(chosen, asked * (1.0 + 1e-9)) << static_cast<int>(prediction);
+      differs = differs || asked > 1.01 * chosen;
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
+// Frames may go where they are not needed.
+TEST(BoneGofSearch, SaysWhenItNeedsTheFrames) {
+  Animation a(bending);
+  const EncoderSettings settings = fast();
+  const BoneContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<BoneChoice> choice;
+  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  EXPECT_TRUE(search.needs_frames(20.0, 20.0));
+  search.encode(20.0, 20.0);
+  EXPECT_FALSE(search.needs_frames(22.0, 20.0));
+  const auto expected = search.encode(22.0, 20.0).units;
+  EXPECT_TRUE(search.needs_frames(26.0, 26.0));
+  EXPECT_TRUE(search.needs_frames(1e6, 20.0));  // no trajectories: the analysis is made anew
+  a.frames.xyz = {};
+  const auto units = search.encode(22.0, 20.0).units;
+  ASSERT_EQ(units.size(), expected.size());
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    EXPECT_EQ(units[i].payload, expected[i].payload) << i;
+  }
+}
+
+TEST(BoneGofSearch, CountsItsFactors) {
+  const Outcome outcome = encode(Animation(bending), 4.0, fast());
+  const std::uint64_t bones = outcome.gof.clusters;
+  const std::uint64_t trajectories = outcome.gof.components;
+  EXPECT_GT(trajectories, 0U);
+  EXPECT_EQ(outcome.gof.num_factors,
+            6 * bones * 20 + 3 * kVertices + trajectories * (kVertices + 3 * 20));
+}
+
+}  // namespace
+}  // namespace rlpc

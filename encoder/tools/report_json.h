@@ -1,0 +1,73 @@
+// Figures as JSON for machines; the names are those of every tool.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "encoder/metrics/metrics.h"
+#include "encoder/metrics/surface_metrics.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/sequence/quality.h"
+
+namespace rlpc {
+
+// What both rlpcenc and rlpccmp report of a comparison. Infinite values become null.
+inline nlohmann::ordered_json metrics_json(const Metrics& m) {
+  return {{"kg_error_percent", m.kg_error_percent},
+          {"rms_error", m.rms_error},
+          {"rms_error_percent", m.rms_error_percent},
+          {"max_error", m.max_error},
+          {"max_error_percent", m.max_error_percent},
+          {"max_error_frame", m.max_error_frame},
+          {"max_error_vertex", m.max_error_vertex},
+          {"diagonal", m.diagonal},
+          {"mean_psnr_db", m.mean_psnr_db}};
+}
+
+inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
+  return {{"sted", m.sted},
+          {"sted_spatial", m.sted_spatial},
+          {"sted_temporal", m.sted_temporal},
+          {"sted_dt", SurfaceAccumulator::kDt},
+          {"sted_c", SurfaceAccumulator::kTemporalWeight},
+          {"mean_normal_angle_degrees", m.mean_normal_angle},
+          {"max_normal_angle_degrees", m.max_normal_angle},
+          {"max_normal_angle_frame", m.max_normal_frame},
+          {"max_normal_angle_triangle", m.max_normal_triangle}};
+}
+
+inline nlohmann::ordered_json visibility_json(const Visibility& v) {
+  return {{"median_edge_length", v.median_edge},
+          {"rms_error_percent_of_edge", v.error_percent},
+          {"visible", v.visible()}};
+}
+
+inline nlohmann::ordered_json report_json(const EncodeReport& r) {
+  nlohmann::ordered_json json = {
+      {"num_vertices", r.header.num_vertices},
+      {"num_triangles", r.header.num_triangles},
+      {"num_frames", r.header.num_frames},
+      {"frame_rate", {r.header.frame_rate.numerator, r.header.frame_rate.denominator}},
+      {"profile_idc", r.header.profile_idc},
+      {"level_idc", r.header.level_idc},
+      {"grid_log2_step", r.header.grid.log2_step},
+      {"position_bits", r.header.position_bits},
+      {"bytes", r.bytes},
+      {"bpvf", r.bpvf},
+      {"metrics", metrics_json(r.metrics)},
+      {"bits",
+       {{"headers", r.bits.headers},
+        {"connectivity", r.bits.connectivity},
+        {"vertex_order", r.bits.vertex_order},
+        {"gofs", r.bits.gofs},
+        {"hashes", r.bits.hashes},
+        {"metadata", r.bits.metadata}}},
+      {"num_gofs", r.num_gofs},
+      {"clusters", r.clusters},
+      {"components", r.components},
+      {"step", r.step},
+      {"trials", r.trials},
+      {"target_met", r.target_met}};
+  return json;
+}
+
+}  // namespace rlpc

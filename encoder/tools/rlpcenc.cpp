@@ -1,0 +1,279 @@
+// rlpcenc: animations to .rlpc streams.
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "encoder/input/frame_source.h"
+#include "encoder/input/input_file.h"
+#include "encoder/rlpc_encoder.h"
+#include "encoder/sequence/dry_run.h"
+#include "encoder/sequence/quality.h"
+#include "encoder/tools/encode_options.h"
+#include "encoder/tools/progress_bar.h"
+#include "encoder/tools/report_json.h"
+#include "encoder/tools/stream_file.h"
+
+namespace rlpc {
+namespace {
+
+void print_report(const EncodeOptions& o, const Expectation& e) {
+  const EncodeReport& r = e.report;
+  const Metrics& m = r.metrics;
+  const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
+  const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
+  std::printf("%s: %u vert%s, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
+              r.header.num_vertices, r.header.num_vertices == 1 ? "ex" : "ices",
+              r.header.num_triangles, s(r.header.num_triangles), r.header.num_frames,
+              s(r.header.num_frames), r.header.level_idc);
+  std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
+              static_cast<unsigned long long>(r.bytes), r.bpvf);
+  if (!e.exact()) {
+    std::printf("  as encoded in eight stretches of %u frames in all:\n", e.frames_encoded);
+  }
+  std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
+              m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
+  const char* const bones = o.settings.profile != Profile::kMain ? ""
+                            : r.clusters == 1                    ? "bone or "
+                                                                 : "bones or ";
+  std::printf("  %u GOF%s, %u %scluster%s, %u component%s, %u trial%s\n", r.num_gofs,
+              s(r.num_gofs), r.clusters, bones, s(r.clusters), r.components, s(r.components),
+              r.trials, s(r.trials));
+}
+
+// Whether floats so far from the origin are farther apart than the error.
+bool is_far_away(const EncodeReport& report) {
+  double farthest = 0.0;
+  for (const std::int32_t origin : report.header.grid.origin) {
+    farthest = std::max(farthest, std::abs(static_cast<double>(origin)));
+  }
+  constexpr double kFloatSteps = 0x1p23;
+  return std::ldexp(farthest, report.header.grid.log2_step) >
+         kFloatSteps * report.metrics.rms_error;
+}
+
+// Where the target is met, but an encoding that comes closer was not found.
+void tell_if_far_below(const Target& target, const EncodeReport& report) {
+  constexpr double kNear = 0.95;
+  constexpr double kNoError = 0.002;  // per cent: about what the finest grid leaves
+  const bool is_exact = report.metrics.kg_error_percent < kNoError;
+  if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
+    std::cerr << "rlpcenc: fewer bits than --bpvf allows: "
+              << (is_exact ? "this is as exact as it gets\n"
+                           : "no encoding was found that comes closer\n");
+  }
+  const double error = target.kind == Target::kMaxError ? report.metrics.max_error
+                                                        : report.metrics.kg_error_percent;
+  if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
+    std::cerr << "rlpcenc: a smaller error than asked for: no encoding was found that saves by "
+                 "coming closer\n";
+  }
+}
+
+std::string advice(const EncodeOptions& o, const EncodeReport& report) {
+  if (o.settings.target.kind == Target::kBpvf) {
+    return report.num_gofs > 1 ? "Try a higher --bpvf, or a longer --gof"
+                               : "Try a higher --bpvf";
+  }
+  if (is_far_away(report)) {
+    return "The animation lies so far from the origin that floats are coarser than that: move "
+           "it there, or try a larger error";
+  }
+  return o.settings.components > 0 ? "Try more --components, or a larger error"
+                                   : "Try a larger error";
+}
+
+int report_target(const EncodeOptions& o, const EncodeReport& report) {
+  if (report.target_met) {
+    if (!o.quiet && o.settings.target.kind != Target::kNone) {
+      tell_if_far_below(o.settings.target, report);
+    }
+    return kEncoded;
+  }
+  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. "
+            << advice(o, report) << ".\n";
+  return kTargetMissed;
+}
+
+// Who asks for a preview, or more than there is, knows.
+void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
+  if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
+  std::fprintf(stderr,
+               "rlpcenc: the error may be seen: RMS %.3g %% of the median length of edges "
+               "(above %.3g %%). Try %s.\n",
+               v.error_percent, Visibility::kVisiblePercent,
+               o.settings.target.kind == Target::kBpvf ? "a higher --bpvf" : "a smaller error");
+}
+
+int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
+  const auto visibility = measure_visibility(source, e.report.metrics);
+  if (!visibility) return complain(visibility.error().message);
+  if (o.json) {
+    auto json = report_json(e.report);
+    if (*visibility) json["visibility"] = visibility_json(**visibility);
+    if (o.dry_run) {
+      json["dry_run"] = {{"exact", e.exact()}, {"frames_encoded", e.frames_encoded}};
+    }
+    std::cout << json.dump(2) << "\n";
+  } else if (!o.quiet && o.output != "-" && o.order_map != "-") {
+    print_report(o, e);
+  }
+  if (*visibility) warn_if_visible(o, e.report, **visibility);
+  return report_target(o, e.report);
+}
+
+int run_dry(const EncodeOptions& o, FrameSource& source) {
+  InputResult<Expectation> expected = InputError{};
+  {
+    ProgressBar bar("encoding", !o.quiet);
+    expected =
+        expect_encoding(source, o.settings, [&](double fraction) { bar.show(fraction); });
+  }
+  if (!expected) return complain(expected.error().message);
+  return tell(o, source, *expected);
+}
+
+// The signal that asks to end, if one did. A second one ends at once.
+volatile std::sig_atomic_t interrupt = 0;
+
+extern "C" void on_interrupt(int signal) {
+  interrupt = signal;
+  std::signal(signal, SIG_DFL);
+}
+
+// While files are unfinished. What is ignored, as under nohup, stays so.
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
+  }
+}
+
+struct Interrupted {};  // thrown, so that unfinished files go
+
+// Encodes to the file, and writes the order of vertices where it is asked for.
+InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
+  catch_interrupts();
+  StreamFile stream(o.output);
+  if (!stream.good()) return *stream.commit();
+  std::optional<StreamFile> map;
+  if (!o.order_map.empty()) map.emplace(o.order_map);
+  if (map && !map->good()) return *map->commit();
+  InputResult<EncodeReport> report = InputError{};
+  {
+    ProgressBar bar("encoding", !o.quiet);
+    report = encode(
+        source, o.settings,
+        [&](std::span<const std::uint8_t> bytes) { return stream.write(bytes); },
+        [&](double fraction) {
+          if (interrupt != 0) throw Interrupted{};
+          bar.show(fraction);
+        });
+  }
+  if (!stream.good()) return *stream.commit();
+  if (!report) return report;
+  if (map) {
+    for (const std::uint32_t v : report->input_vertex) map->write(std::to_string(v) + "\n");
+    if (!map->good()) return *map->commit();
+  }
+  if (auto error = stream.commit()) return *error;
+  if (auto error = map ? map->commit() : std::nullopt) return *error;
+  return report;
+}
+
+// What INPUT may not be meant to be.
+std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
+  std::vector<std::string> notes;
+  if (source.triangles().empty())
+    notes.emplace_back("has no triangles; points alone are coded");
+  if (source.num_frames() > 1 || input.path == "-") return notes;
+  for (const char* const extension : {".pc2", ".mdd"}) {
+    const std::string cache =
+        std::filesystem::path(input.path).replace_extension(extension).string();
+    std::error_code ignored;
+    if (cache == input.path || !std::filesystem::exists(cache, ignored)) continue;
+    notes.push_back("is one frame; with --points " + cache + " it has those of that file");
+  }
+  return notes;
+}
+
+// A file of the input, also one that it only points to, that would be written over.
+std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
+  for (const std::string& written : {o.output, o.order_map}) {
+    for (const std::string& read : source.files()) {
+      if (StreamFile::is_same_file(written, read)) return written;
+    }
+  }
+  return std::nullopt;
+}
+
+int run(const EncodeOptions& o) {
+  auto source = open_frame_source(o.input);
+  if (!source) return complain(source.error().message);
+  if (const auto written = written_over(o, **source)) {
+    return complain(*written + ": is read, too, and would be written over; give another name",
+                    kUsage);
+  }
+  const std::string name = name_of_input(o.input.path);
+  std::vector<std::string> notes = (*source)->notes();
+  for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
+  for (const std::string& note : notes) {
+    if (!o.quiet) std::cerr << "rlpcenc: " << name << ": " << note << "\n";
+  }
+  if (o.dry_run) return run_dry(o, **source);
+  auto report = encode_to_files(o, **source);
+  if (!report) return complain(report.error().message);
+  const std::uint32_t frames = report->header.num_frames;
+  return tell(o, **source, {std::move(*report), frames});
+}
+
+// `code`, or that of failure if not all of standard output could be written.
+int after_standard_output(int code) {
+  errno = 0;
+  const bool good = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (good || code != kEncoded) return code;
+  return complain("cannot write to standard output: " +
+                  std::generic_category().message(errno == 0 ? EIO : errno));
+}
+
+// Blocks as large as a GOF's go back to the system when they are freed. glibc would keep them,
+// and a second one grow beside the first.
+void return_large_blocks() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
+}  // namespace
+}  // namespace rlpc
+
+int main(int argc, char** argv) try {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
+  rlpc::return_large_blocks();
+  rlpc::EncodeOptions options;
+  if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
+  return rlpc::after_standard_output(rlpc::run(options));
+} catch (const rlpc::Interrupted&) {
+  return std::raise(rlpc::interrupt);
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "rlpcenc: out of memory; a shorter --gof needs less\n");
+  return rlpc::kFailed;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "rlpcenc: %s\n", error.what());
+  return rlpc::kFailed;
+}

@@ -1,0 +1,41 @@
+// Cuts triangles into an oriented pseudo-manifold: which edges are glued, and which corners
+// are the same vertex instance (see 8.7.1).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+// Half-edge 3 * t + k runs from corner k of triangle t to corner (k + 1) % 3; corner 3 * t + k
+// and the half-edge that starts there share a number.
+struct HalfEdges {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  std::vector<std::uint32_t> opposite;  // kNone: mesh boundary
+  std::vector<std::uint32_t> instance;  // per corner; numbered without gaps
+  std::uint32_t num_instances = 0;
+};
+
+constexpr std::uint32_t next_corner(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+constexpr std::uint32_t previous_corner(std::uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
+
+// The half-edge that starts at the same vertex, one triangle further around it; kNone at a
+// mesh boundary. The two functions turn in opposite directions.
+inline std::uint32_t turn_left(const HalfEdges& mesh, std::uint32_t h) {
+  return mesh.opposite[previous_corner(h)];
+}
+inline std::uint32_t turn_right(const HalfEdges& mesh, std::uint32_t h) {
+  const std::uint32_t opposite = mesh.opposite[h];
+  return opposite == HalfEdges::kNone ? HalfEdges::kNone : next_corner(opposite);
+}
+
+// Half-edges a->b and b->a are glued in pairs, in the order of their triangles; what is left
+// over is boundary. Triangles must not be degenerate; indices are below num_vertices and there
+// are fewer than 2^32 / 3 triangles.
+HalfEdges build_half_edges(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+
+}  // namespace rlpc

@@ -1,0 +1,51 @@
+// A section of a unit (9.3), writing side: what decoder/parse/section_reader.h reads.
+#pragma once
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/bitstream/bit_model.h"
+#include "common/bitstream/range_encoder.h"
+#include "common/bitstream/residual_models.h"
+#include "encoder/write/write_residual.h"
+#include "encoder/write/write_track.h"
+
+namespace rlpc {
+
+class SectionWriter {
+ public:
+  void bin(BitModel& model, bool value) { re_.bin(model, value); }
+  void bypass(int n, std::uint32_t value) { re_.bypass(n, value); }
+  void residual(ResidualModels& models, std::uint32_t expected, std::int32_t value) {
+    write_residual(re_, models, expected, value);
+  }
+  void track(ResidualModels& models, std::span<std::uint32_t> frame_mean,
+             std::span<const Vec3i> residuals) {
+    write_track(re_, models, frame_mean, residuals);
+  }
+  // 9.5.4 ae_header( field )
+  void header_value(ResidualModels& models, std::uint32_t& mean, int value, int previous) {
+    write_residual(re_, models, mean >> 4, value - previous);
+    mean = update_mean(mean, magnitude_of(value - previous), 2);
+  }
+  // 9.5.5 ae_unary( models )
+  template <std::size_t N>
+  void truncated_unary(std::array<BitModel, N>& models, int value) {
+    assert(value >= 0 && value <= static_cast<int>(N));
+    for (std::size_t i = 0; i < N; ++i) {
+      const bool more = static_cast<int>(i) < value;
+      re_.bin(models[i], more);
+      if (!more) break;
+    }
+  }
+  // The section is spent.
+  std::vector<std::uint8_t> finish() { return re_.finish(); }
+
+ private:
+  RangeEncoder re_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,18 @@
+// 6.5 Group of frames, writing side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/mesh/topology.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+// Payload of the unit of a GOF of clusters, in a stream of either profile. All values must be
+// legal (asserted): an encoder that emits an illegal value has a bug.
+std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header,
+                                    const Topology& topology);
+
+}  // namespace rlpc

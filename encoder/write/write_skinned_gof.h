@@ -1,0 +1,20 @@
+// 6.11 and 6.12: bones of a GOF, and slices, writing side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+// Payloads of the unit of a GOF of bones and of its slice units. All values must be legal
+// (asserted). gof.slice_layers says which slices are written.
+struct BoneGofPayloads {
+  std::vector<std::uint8_t> gof;
+  std::vector<std::vector<std::uint8_t>> slices;
+};
+BoneGofPayloads write_bone_gof(const BoneGof& gof, const CodedMesh& mesh, int position_bits);
+
+}  // namespace rlpc
