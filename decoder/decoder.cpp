@@ -81,7 +81,7 @@ class Decoder::Impl {
   Result<bool> find_gof(const UnitHeader& unit);
   // Parses a GOF; goes past its unit and the slice units behind it.
   Result<FrameRecon> read_gof(const UnitHeader& unit);
-  Result<FrameRecon> read_slices(BoneGofParser& parser);
+  Result<FrameRecon> read_slices(SkinnedGofParser& parser);
   Result<bool> load_hashes();
   Result<bool> decode_frame(std::span<std::int32_t> positions);
   Result<bool> seek_gof(std::uint32_t frame);
@@ -116,7 +116,7 @@ class Decoder::Impl {
   std::uint32_t position_ = 0;
   HashCheck hash_check_;
   FrameBand band_;
-  std::optional<GofsAhead> ahead_;  // with several threads
+  std::optional<Prefetch> ahead_;  // with several threads
 };
 
 Result<bool> Decoder::Impl::open() {
@@ -320,7 +320,7 @@ Result<FrameRecon> Decoder::Impl::read_gof(const UnitHeader& unit) {
   const GofStart start = parse_gof_start(r, header_, frames_parsed_);
   if (r.error()) return *r.error();
   if (start.bones_flag) {
-    BoneGofParser parser(header_, *mesh_predictions_, max_memory_bytes, options_.cut);
+    SkinnedGofParser parser(header_, *mesh_predictions_, max_memory_bytes, options_.cut);
     if (const auto ok = parser.bones(r, start); !ok) return ok.error();
     offset_ = unit.end();
     return read_slices(parser);
@@ -328,10 +328,10 @@ Result<FrameRecon> Decoder::Impl::read_gof(const UnitHeader& unit) {
   const auto gof = parse_clusters(r, header_, topology_, start, max_memory_bytes);
   if (!gof) return gof.error();
   offset_ = unit.end();
-  return FrameRecon(GofRecon(header_, topology_, *gof));
+  return FrameRecon(ClusterRecon(header_, topology_, *gof));
 }
 
-Result<FrameRecon> Decoder::Impl::read_slices(BoneGofParser& parser) {
+Result<FrameRecon> Decoder::Impl::read_slices(SkinnedGofParser& parser) {
   while (offset_ < units_.size()) {
     const auto slice = units_.header_at(offset_);
     if (!slice) return slice.error();
@@ -343,7 +343,8 @@ Result<FrameRecon> Decoder::Impl::read_slices(BoneGofParser& parser) {
     offset_ = slice->end();
   }
   const CodedMesh& mesh = parser.mesh();
-  return FrameRecon(BoneRecon(mesh, parser.finish(), header_.position_bits), parser.is_cut());
+  return FrameRecon(SkinnedRecon(mesh, parser.finish(), header_.position_bits),
+                    parser.is_cut());
 }
 
 // 6.7: a hash unit belongs to the GOF before it.

@@ -46,7 +46,7 @@ struct SeedTrack {
   std::vector<Vec3i> residual;  // [num_gof_frames]
 };
 
-struct Gof {
+struct ClusterGof {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;
   int fraction_bits = 0;

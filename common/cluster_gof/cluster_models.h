@@ -42,7 +42,7 @@ enum class HeaderField : std::uint8_t {
   kTemporalBits
 };
 
-struct GofModels {
+struct ClusterModels {
   BitModel lcf_flag;
   std::array<BitModel, 3> cluster_predicted_flag;
   std::vector<BitModel> cluster_idx;  // binary tree, node n at index n

@@ -9,24 +9,24 @@ namespace rlpc {
 namespace {
 
 constexpr int kNarrowBits = 16;
-constexpr int kLowDigitBits = 13;
+constexpr int kLowLimbBits = 13;
 constexpr std::int64_t kMaxGroupSum = (std::int64_t{1} << 31) - 1;
 constexpr std::size_t kMaxRows = 24;  // of the sums that are found at a time
 
 }  // namespace
 
-std::int32_t FactorSet::Digit::of(std::int32_t value) const {
+std::int32_t ComponentSum::Limb::of(std::int32_t value) const {
   if (shift == 0 && !is_low) return value;
-  const auto high = static_cast<std::int32_t>(round2(value, kLowDigitBits));
-  return is_low ? value - high * (1 << kLowDigitBits) : high;
+  const auto high = static_cast<std::int32_t>(round2(value, kLowLimbBits));
+  return is_low ? value - high * (1 << kLowLimbBits) : high;
 }
 
-std::vector<FactorSet::Digit> FactorSet::digits_of(int bits) {
+std::vector<ComponentSum::Limb> ComponentSum::limbs_of(int bits) {
   if (bits <= kNarrowBits) return {{0, bits - 1, false}};
-  return {{0, kLowDigitBits - 1, true}, {kLowDigitBits, bits - 1 - kLowDigitBits, false}};
+  return {{0, kLowLimbBits - 1, true}, {kLowLimbBits, bits - 1 - kLowLimbBits, false}};
 }
 
-FactorSet::Group& FactorSet::group_for(int shift, std::int64_t bound) {
+ComponentSum::Group& ComponentSum::group_for(int shift, std::int64_t bound) {
   for (Group& group : groups_) {
     if (group.shift == shift && group.bound + bound <= kMaxGroupSum) return group;
   }
@@ -37,14 +37,14 @@ FactorSet::Group& FactorSet::group_for(int shift, std::int64_t bound) {
   return groups_.back();
 }
 
-void FactorSet::add(std::span<const std::int32_t> temporal, int temporal_bits,
-                    std::span<const std::int32_t> spatial, int spatial_bits,
-                    std::size_t stride) {
+void ComponentSum::add(std::span<const std::int32_t> temporal, int temporal_bits,
+                       std::span<const std::int32_t> spatial, int spatial_bits,
+                       std::size_t stride) {
   assert(temporal.size() == num_rows_ && spatial.size() + stride > num_values_ * stride);
   const int factor_bits = spatial_factor_bits(spatial_bits);
   const std::int32_t scale = 1 << (factor_bits - spatial_bits);
-  for (const Digit& t : digits_of(temporal_bits)) {
-    for (const Digit& s : digits_of(factor_bits)) {
+  for (const Limb& t : limbs_of(temporal_bits)) {
+    for (const Limb& s : limbs_of(factor_bits)) {
       const std::int64_t bound = std::int64_t{1} << (t.size_log2 + s.size_log2);
       Group& group = group_for(t.shift + s.shift, bound);
       const std::size_t side = group.size % 2;
@@ -68,8 +68,8 @@ void FactorSet::add(std::span<const std::int32_t> temporal, int temporal_bits,
   }
 }
 
-void FactorSet::sum_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
-                         std::span<std::int64_t> sums) const {
+void ComponentSum::sum_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
+                            std::span<std::int64_t> sums) const {
   assert(tile < num_tiles() && first_row + num_rows <= num_rows_);
   assert(sums.size() == num_rows * kTileValues);
   std::fill(sums.begin(), sums.end(), 0);
@@ -87,7 +87,7 @@ void FactorSet::sum_tile(std::size_t tile, std::size_t first_row, std::size_t nu
   }
 }
 
-void FactorSet::sum(std::size_t row, std::span<std::int64_t> sums) const {
+void ComponentSum::sum(std::size_t row, std::span<std::int64_t> sums) const {
   assert(sums.size() == num_values_ && row < num_rows_);
   std::array<std::int64_t, kTileValues> of_tile{};
   for (std::size_t tile = 0; tile < num_tiles(); ++tile) {

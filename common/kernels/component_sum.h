@@ -34,13 +34,13 @@ constexpr int spatial_factor_bits(int spatial_bits) {
 }
 
 // Factors arranged for the sum over their components. Those of more than 16 bits are taken
-// apart into two digits of at most 14, so that all products are of 16 x 16 bits.
-class FactorSet {
+// apart into two limbs of at most 14, so that all products are of 16 x 16 bits.
+class ComponentSum {
  public:
   // num_values: spatial values of a component. num_rows: its temporal values, of frames or of
   // coordinates of frames.
-  FactorSet(std::size_t num_values, std::size_t num_rows,
-            const TileLoops& loops = tile_loops().back())
+  ComponentSum(std::size_t num_values, std::size_t num_rows,
+               const Kernels& loops = kernels().back())
       : num_values_(num_values), num_rows_(num_rows), loops_(loops) {}
 
   // temporal [num_rows] scaled; spatial before normalisation: value i is spatial[i * stride].
@@ -65,21 +65,21 @@ class FactorSet {
     std::vector<std::int16_t> temporal;              // [pairs][num_rows][2]
     std::vector<std::vector<std::int16_t>> spatial;  // [tiles][pairs][kTileValues][2]
   };
-  // One 16-bit digit of a factor: floor(value / 2^shift), or what that leaves.
-  struct Digit {
+  // One 16-bit limb of a factor: floor(value / 2^shift), or what that leaves.
+  struct Limb {
     int shift;
-    int size_log2;  // |digit| <= 2^size_log2
+    int size_log2;  // |limb| <= 2^size_log2
     bool is_low;
     std::int32_t of(std::int32_t value) const;
   };
 
-  static std::vector<Digit> digits_of(int bits);
+  static std::vector<Limb> limbs_of(int bits);
   Group& group_for(int shift, std::int64_t bound);
   std::size_t num_tiles() const { return (num_values_ + kTileValues - 1) / kTileValues; }
 
   std::size_t num_values_;
   std::size_t num_rows_;
-  TileLoops loops_;
+  Kernels loops_;
   std::vector<Group> groups_;
 };
 

@@ -19,7 +19,7 @@ struct Factor {
   int spatial_bits = 1;
 };
 
-// The plain twin of FactorSet: 8.5.3 as it stands, in 128 bits.
+// The plain twin of ComponentSum: 8.5.3 as it stands, in 128 bits.
 std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t num_values,
                               std::size_t frame) {
   std::vector<Int128> sums(num_values, 0);
@@ -34,8 +34,8 @@ std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t nu
 
 void expect_sums_of_the_plain_twin(const std::vector<Factor>& factors, std::size_t num_values,
                                    std::size_t num_frames) {
-  for (const TileLoops& loops : tile_loops()) {
-    FactorSet set(num_values, num_frames, loops);
+  for (const Kernels& loops : kernels()) {
+    ComponentSum set(num_values, num_frames, loops);
     for (const Factor& f : factors) {
       set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
     }
@@ -79,7 +79,7 @@ std::vector<Factor> random_factors(std::mt19937& random, const Widths& w, std::s
   return factors;
 }
 
-TEST(FactorSet, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
+TEST(ComponentSum, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   const std::vector<Widths> cases{
       {1, 16, 1, 16},    // all narrow
       {13, 16, 14, 16},  // narrow, in groups of few
@@ -99,12 +99,12 @@ TEST(FactorSet, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   }
 }
 
-TEST(FactorSet, SumsRowsOfATileAsOneByOne) {
+TEST(ComponentSum, SumsRowsOfATileAsOneByOne) {
   std::mt19937 random(1);
   constexpr std::size_t kRows = 30;
   const std::vector<Factor> factors =
       random_factors(random, {1, 24, 1, 26}, 20, kTileValues + 5, kRows);
-  FactorSet set(kTileValues + 5, kRows);
+  ComponentSum set(kTileValues + 5, kRows);
   for (const Factor& f : factors) {
     set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
   }
@@ -120,15 +120,15 @@ TEST(FactorSet, SumsRowsOfATileAsOneByOne) {
   }
 }
 
-TEST(FactorSet, TakesSpatialValuesByTheirStride) {
-  FactorSet set(2, 1);
+TEST(ComponentSum, TakesSpatialValuesByTheirStride) {
+  ComponentSum set(2, 1);
   set.add(std::vector<std::int32_t>{3}, 3, std::vector<std::int32_t>{5, 99, -7}, 13, 2);
   std::vector<std::int64_t> sums(2);
   set.sum(0, sums);
   EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
 }
 
-TEST(FactorSet, WithoutComponentsSumsToZero) { expect_sums_of_the_plain_twin({}, 9, 2); }
+TEST(ComponentSum, WithoutComponentsSumsToZero) { expect_sums_of_the_plain_twin({}, 9, 2); }
 
 // Extremes of the declared widths in all combinations of signs, as many as a level allows.
 void expect_saturating_sums(int spatial_bits, int temporal_bits, std::size_t count) {
@@ -143,7 +143,7 @@ void expect_saturating_sums(int spatial_bits, int temporal_bits, std::size_t cou
   expect_sums_of_the_plain_twin(std::vector<Factor>(count, f), 3, 2);
 }
 
-TEST(FactorSet, SumsOf1024SaturatingComponentsAreExact) {
+TEST(ComponentSum, SumsOf1024SaturatingComponentsAreExact) {
   for (const int spatial_bits : {1, 2, 12, 13, 14, 15, 16, 17, 24}) {
     for (const int temporal_bits : {1, 2, 15, 16, 17, 26}) {
       expect_saturating_sums(spatial_bits, temporal_bits, 1024);
@@ -151,7 +151,7 @@ TEST(FactorSet, SumsOf1024SaturatingComponentsAreExact) {
   }
 }
 
-TEST(FactorSet, GroupsOfNarrowComponentsNeverOverflow) {
+TEST(ComponentSum, GroupsOfNarrowComponentsNeverOverflow) {
   for (int spatial_bits = 13; spatial_bits <= 16; ++spatial_bits) {
     for (int temporal_bits = 1; temporal_bits <= 16; ++temporal_bits) {
       for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 33U}) {
@@ -161,10 +161,10 @@ TEST(FactorSet, GroupsOfNarrowComponentsNeverOverflow) {
   }
 }
 
-TEST(FactorSet, SumOfTheLargestComponentsIsTwoToThe58) {
+TEST(ComponentSum, SumOfTheLargestComponentsIsTwoToThe58) {
   const std::int32_t s = 1 << 23;
   const std::int32_t t = 1 << 25;
-  FactorSet set(3, 1);
+  ComponentSum set(3, 1);
   for (int i = 0; i < 1024; ++i) {
     set.add(std::vector<std::int32_t>{-t}, 26, std::vector<std::int32_t>{-s, 0, s - 1}, 24);
   }

@@ -50,21 +50,21 @@ void positions(const std::int64_t* places, const std::int64_t* displacements,
   }
 }
 
-constexpr TileLoops kPlain{sum_products, add_weighted, weighted_places, positions};
+constexpr Kernels kPlain{sum_products, add_weighted, weighted_places, positions};
 
 }  // namespace
 
-std::span<const TileLoops> tile_loops() {
-#ifdef RLPC_HAVE_AVX2_LOOPS
-  static const std::array<TileLoops, 2> kLoops{kPlain, kTileLoopsAvx2};
+std::span<const Kernels> kernels() {
+#ifdef RLPC_HAVE_AVX2_KERNELS
+  static const std::array<Kernels, 2> kLoops{kPlain, kKernelsAvx2};
   static const std::size_t kCount = __builtin_cpu_supports("avx2") != 0 ? 2 : 1;
   return std::span(kLoops).first(kCount);
-#elif defined(RLPC_HAVE_WASM_LOOPS)
-  static constexpr std::array<TileLoops, 2> kLoops{
+#elif defined(RLPC_HAVE_WASM_KERNELS)
+  static constexpr std::array<Kernels, 2> kLoops{
       kPlain, {sum_products_wasm, add_weighted, weighted_places, positions}};
   return kLoops;
 #else
-  static constexpr std::array<TileLoops, 1> kLoops{kPlain};
+  static constexpr std::array<Kernels, 1> kLoops{kPlain};
   return kLoops;
 #endif
 }

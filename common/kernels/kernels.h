@@ -37,7 +37,7 @@ struct PositionWidths {
   int position_bits;
 };
 
-struct TileLoops {
+struct Kernels {
   // 8.5.3: sums[r][i] = sum over the components of temporal[first_row + r] * spatial[i];
   // sums [num_rows][kTileValues]. The caller has made sure that they fit.
   void (*sum_products)(const FactorPairs& factors, std::size_t first_row, std::size_t num_rows,
@@ -57,6 +57,6 @@ struct TileLoops {
 };
 
 // The loops that this machine can run; the first are the plain ones, the last the fastest.
-std::span<const TileLoops> tile_loops();
+std::span<const Kernels> kernels();
 
 }  // namespace rlpc

@@ -1,6 +1,6 @@
 #include "common/kernels/kernels_avx2.h"
 
-#ifdef RLPC_HAVE_AVX2_LOOPS
+#ifdef RLPC_HAVE_AVX2_KERNELS
 
 #include <immintrin.h>
 
@@ -142,7 +142,7 @@ RLPC_AVX2 void positions(const std::int64_t* places, const std::int64_t* displac
 
 }  // namespace
 
-const TileLoops kTileLoopsAvx2{sum_products, add_weighted, weighted_places, positions};
+const Kernels kKernelsAvx2{sum_products, add_weighted, weighted_places, positions};
 
 }  // namespace rlpc
 

@@ -1,15 +1,15 @@
-// Twins of the plain loops of tile_loops.cpp.
+// Twins of the plain loops of kernels.cpp.
 #pragma once
 
 #include "common/kernels/kernels.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
-#define RLPC_HAVE_AVX2_LOOPS
+#define RLPC_HAVE_AVX2_KERNELS
 
 namespace rlpc {
 
 // For machines that have AVX2.
-extern const TileLoops kTileLoopsAvx2;
+extern const Kernels kKernelsAvx2;
 
 }  // namespace rlpc
 

@@ -39,7 +39,7 @@ std::vector<std::int32_t> random_list(std::mt19937_64& random, std::size_t n,
 
 class EachTileLoop : public testing::TestWithParam<std::size_t> {
  protected:
-  const TileLoops& loops() const { return tile_loops()[GetParam()]; }
+  const Kernels& loops() const { return kernels()[GetParam()]; }
 };
 
 TEST_P(EachTileLoop, SumsProductsOfAnyRowsAndPairs) {
@@ -155,7 +155,7 @@ TEST_P(EachTileLoop, RoundsAndClipsPositions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheMachine, EachTileLoop,
-                         testing::Range<std::size_t>(0, tile_loops().size()));
+                         testing::Range<std::size_t>(0, kernels().size()));
 
 }  // namespace
 }  // namespace rlpc

@@ -1,6 +1,6 @@
 #include "common/kernels/kernels_wasm.h"
 
-#ifdef RLPC_HAVE_WASM_LOOPS
+#ifdef RLPC_HAVE_WASM_KERNELS
 
 #include <wasm_simd128.h>
 

@@ -41,7 +41,7 @@ std::optional<Vec3l> solve_moment(const Moment& m, const Vec3l& gap) {
 // The weights of one vertex.
 class VertexWeights {
  public:
-  VertexWeights(const BoneGof& gof, const std::array<std::span<const std::int32_t>, 3>& rest)
+  VertexWeights(const SkinnedGof& gof, const std::array<std::span<const std::int32_t>, 3>& rest)
       : gof_(gof), rest_(rest) {}
 
   std::span<const std::int64_t> find(std::uint32_t v, std::span<const std::uint32_t> ring,
@@ -139,7 +139,7 @@ class VertexWeights {
     weights_[0] -= total - n * share;
   }
 
-  const BoneGof& gof_;
+  const SkinnedGof& gof_;
   const std::array<std::span<const std::int32_t>, 3>& rest_;
   std::size_t ring_size_ = 0;
   std::vector<std::uint32_t> vertices_;  // ring, then outer ring
@@ -150,7 +150,7 @@ class VertexWeights {
 
 }  // namespace
 
-GeometryWeights::GeometryWeights(const CodedMesh& mesh, const BoneGof& gof,
+GeometryWeights::GeometryWeights(const CodedMesh& mesh, const SkinnedGof& gof,
                                  const std::array<std::span<const std::int32_t>, 3>& rest)
     : first_(std::size_t{mesh.num_vertices()} + 1, 0) {
   VertexWeights vertex(gof, rest);

@@ -18,7 +18,7 @@ class GeometryWeights {
  public:
   // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh is
   // one with layers; damping_log2, outer_weight and outer_scale are those of the GOF.
-  GeometryWeights(const CodedMesh& mesh, const BoneGof& gof,
+  GeometryWeights(const CodedMesh& mesh, const SkinnedGof& gof,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 
   // Of the vertices of the ring of v, then of its outer ring.

@@ -24,7 +24,7 @@ using Real3 = std::array<double, 3>;
 struct Patch {
   std::size_t ring_size = 0;
   Rest rest;  // ring, outer ring, then the vertex
-  BoneGof gof;
+  SkinnedGof gof;
 
   std::size_t outer_size() const { return rest.size() - 1 - ring_size; }
 };

@@ -66,7 +66,7 @@ struct Trajectory {
 };
 
 // What absent slices would hold is zero, but for influences, which are then predicted.
-struct BoneGof {
+struct SkinnedGof {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;
   int fraction_bits = 0;

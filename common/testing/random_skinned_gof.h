@@ -15,7 +15,7 @@
 
 namespace rlpc {
 
-struct BoneGofSizes {
+struct SkinnedGofSizes {
   std::uint32_t max_vertices = 40;
   std::uint32_t max_frames = 8;
   std::uint32_t max_bones = 6;
@@ -23,9 +23,9 @@ struct BoneGofSizes {
   std::uint32_t max_components = 4;  // of a group
 };
 
-class RandomBoneGof {
+class RandomSkinnedGof {
  public:
-  RandomBoneGof(unsigned seed, const BoneGofSizes& sizes) : state_(seed) {
+  RandomSkinnedGof(unsigned seed, const SkinnedGofSizes& sizes) : state_(seed) {
     make_mesh(sizes);
     make_header(sizes);
     const CodedMesh mesh = coded_mesh();
@@ -39,7 +39,7 @@ class RandomBoneGof {
   std::vector<Triangle> triangles;
   Topology topology;
   VertexLayers layers;
-  BoneGof gof;
+  SkinnedGof gof;
 
   CodedMesh coded_mesh() const { return {gof.prediction, topology, layers}; }
 
@@ -78,7 +78,7 @@ class RandomBoneGof {
   }
 
   // A sheet with holes and stray triangles.
-  void make_mesh(const BoneGofSizes& sizes) {
+  void make_mesh(const SkinnedGofSizes& sizes) {
     const std::uint32_t n = 1 + below(sizes.max_vertices);
     const std::uint32_t width = 1 + below(8);
     for (std::uint32_t v = 0; v + width + 1 < n; ++v) {
@@ -93,7 +93,7 @@ class RandomBoneGof {
     header.num_triangles = static_cast<std::uint32_t>(triangles.size());
   }
 
-  void make_header(const BoneGofSizes& sizes) {
+  void make_header(const SkinnedGofSizes& sizes) {
     header.profile_idc = kProfileMain;
     header.num_frames = 1 + below(1000);
     header.position_bits = between(kMinPositionBits, kMaxPositionBits);
@@ -158,7 +158,7 @@ class RandomBoneGof {
 
   // The slices that are there, none to all: each group has at most the layers of the one
   // before.
-  void make_slices(const CodedMesh& mesh, const BoneGofSizes& sizes) {
+  void make_slices(const CodedMesh& mesh, const SkinnedGofSizes& sizes) {
     gof.num_component_groups = below(sizes.max_groups + 1);
     gof.slice_layers.clear();
     auto present = static_cast<std::uint32_t>(gof.layer_group_size.size());

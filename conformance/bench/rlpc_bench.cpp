@@ -213,11 +213,11 @@ void bench_encode(benchmark::State& state, const Animation& animation,
 }
 
 // Sums of narrow or wide components, 16 frames of 4096 vertices at a time.
-void bench_sums(benchmark::State& state, const rlpc::TileLoops& loops, int temporal_bits) {
+void bench_sums(benchmark::State& state, const rlpc::Kernels& loops, int temporal_bits) {
   constexpr std::size_t kVertices = 4096;
   constexpr std::size_t kRows = 48;
   constexpr std::size_t kComponents = 100;
-  rlpc::FactorSet factors(kVertices, kRows, loops);
+  rlpc::ComponentSum factors(kVertices, kRows, loops);
   const std::vector<std::int32_t> temporal(kRows, (1 << (temporal_bits - 1)) - 1);
   const std::vector<std::int32_t> spatial(kVertices, -77);
   for (std::size_t k = 0; k < kComponents; ++k)
@@ -235,12 +235,12 @@ void bench_sums(benchmark::State& state, const rlpc::TileLoops& loops, int tempo
 }
 
 void register_sums() {
-  for (std::size_t i = 0; i < rlpc::tile_loops().size(); ++i) {
+  for (std::size_t i = 0; i < rlpc::kernels().size(); ++i) {
     for (const int bits : {14, 18}) {
       const std::string name =
           "Sums/temporal_bits:" + std::to_string(bits) + "/loops:" + std::to_string(i);
       benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) {
-        bench_sums(s, rlpc::tile_loops()[i], bits);
+        bench_sums(s, rlpc::kernels()[i], bits);
       })->Unit(benchmark::kMillisecond);
     }
   }

@@ -275,10 +275,10 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   if (!hash) {
     findings_.error(hash.error());
   } else if (previous_gof_ && header_->positions) {
-    compare_hashes(unit, *hash, GofRecon(h, topology_, *previous_gof_));
+    compare_hashes(unit, *hash, ClusterRecon(h, topology_, *previous_gof_));
   } else if (previous_bones_) {
     const CodedMesh& mesh = mesh_predictions_->get(previous_bones_->prediction);
-    compare_hashes(unit, *hash, BoneRecon(mesh, *previous_bones_, h.position_bits));
+    compare_hashes(unit, *hash, SkinnedRecon(mesh, *previous_bones_, h.position_bits));
   } else {
     report_.complete = false;
   }

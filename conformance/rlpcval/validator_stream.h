@@ -67,8 +67,8 @@ class StreamValidator {
 
   // validator_summary.cpp: what shows only with the whole stream.
   void compare_index(const GofIndexCheck& index);
-  void warn_of_gof(const UnitHeader& unit, const Gof& gof);
-  void warn_of_bones(const UnitHeader& unit, const BoneGof& gof);
+  void warn_of_gof(const UnitHeader& unit, const ClusterGof& gof);
+  void warn_of_bones(const UnitHeader& unit, const SkinnedGof& gof);
   void warn_of_stream();
   void warn_of_level();
 
@@ -102,14 +102,14 @@ class StreamValidator {
   std::vector<GofLocation> gofs_;  // all GOF units; first_frame only if known
   std::size_t known_first_frames_ = 0;
   bool previous_gof_suspect_ = false;
-  std::uint32_t previous_gof_frames_ = 0;  // 0: not known
-  std::optional<Gof> previous_gof_;        // if its section could be read
-  std::optional<BoneGof> previous_bones_;  // if its slices could be read as well
-  std::optional<UnitHeader> gof_unit_;     // if it, or a slice of it, is directly before
+  std::uint32_t previous_gof_frames_ = 0;     // 0: not known
+  std::optional<ClusterGof> previous_gof_;    // if its section could be read
+  std::optional<SkinnedGof> previous_bones_;  // if its slices could be read as well
+  std::optional<UnitHeader> gof_unit_;        // if it, or a slice of it, is directly before
   FindingUnit gof_place_;
   bool may_have_slices_ = false;  // that GOF: it is one of bones, or that is not known
   std::optional<SliceCounts> slice_counts_;
-  std::optional<BoneGofParser> bone_parser_;  // if the sections so far could be read
+  std::optional<SkinnedGofParser> bone_parser_;  // if the sections so far could be read
   std::vector<GofIndexCheck> indexes_;
   std::uint64_t index_units_found_ = 0;  // those that index_distance leads to
   Level needed_{};                       // the most that any GOF takes

@@ -70,7 +70,7 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
   }
 }
 
-void StreamValidator::warn_of_gof(const UnitHeader& unit, const Gof& gof) {
+void StreamValidator::warn_of_gof(const UnitHeader& unit, const ClusterGof& gof) {
   std::vector<std::uint64_t> coded(gof.clusters.size(), 0);
   for (const std::uint16_t i : gof.cluster_of_vertex) {
     if (i != kSeedCluster) ++coded[i];
@@ -107,7 +107,7 @@ void StreamValidator::warn_of_gof(const UnitHeader& unit, const Gof& gof) {
   }
 }
 
-void StreamValidator::warn_of_bones(const UnitHeader& unit, const BoneGof& gof) {
+void StreamValidator::warn_of_bones(const UnitHeader& unit, const SkinnedGof& gof) {
   std::vector<bool> in_use(gof.bones.size(), false);
   for (const Influences& influences : gof.influences) {
     for (const Influence& influence : influences) in_use[influence.bone] = true;

@@ -406,7 +406,7 @@ TEST(Validator, WarnsOfWhatIsSurelyNotMeant) {
   header.num_vertices = 4;
   header.num_frames = 16;
   header.frame_rate = {1, 1000};
-  Gof gof;
+  ClusterGof gof;
   gof.clusters.resize(2);
   gof.cluster_of_vertex.assign(4, 0);
   gof.clusters[0].components.resize(1);

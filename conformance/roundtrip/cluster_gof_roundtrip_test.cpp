@@ -27,7 +27,8 @@ class Generator {
   SequenceHeader header;
   Topology topology;
 
-  Gof gof(std::uint32_t max_vertices, std::uint32_t max_frames, std::uint32_t max_clusters) {
+  ClusterGof gof(std::uint32_t max_vertices, std::uint32_t max_frames,
+                 std::uint32_t max_clusters) {
     header.num_vertices = 1 + below(max_vertices);
     header.num_frames = 1 + below(1000);
     header.position_bits = between(kMinPositionBits, kMaxPositionBits);
@@ -39,7 +40,7 @@ class Generator {
     header.num_triangles = static_cast<std::uint32_t>(triangles.size());
     topology = make_topology(header.num_vertices, triangles);
 
-    Gof gof;
+    ClusterGof gof;
     gof.first_frame = below(header.num_frames);
     gof.num_frames = 1 + below(std::min(max_frames, header.num_frames - gof.first_frame));
     gof.fraction_bits = between(0, kMaxFractionBits);
@@ -88,7 +89,7 @@ class Generator {
     return coin() ? magnitude : -magnitude;
   }
 
-  void add_seeds(Gof& gof, Cluster& cluster) {
+  void add_seeds(ClusterGof& gof, Cluster& cluster) {
     cluster.lcf_flag = true;
     auto& s = cluster.seed_vertex;
     // Out of few vertices, so that clusters share them.
@@ -107,7 +108,7 @@ class Generator {
   }
 
   // Runs of one cluster, so that predictions both hold and fail.
-  void add_map(Gof& gof) {
+  void add_map(ClusterGof& gof) {
     std::uint16_t cluster = 0;
     for (std::uint16_t& c : gof.cluster_of_vertex) {
       if (random_() % 4 == 0) {
@@ -145,7 +146,7 @@ void expect_equal(const Component& a, const Component& b) {
   EXPECT_EQ(a.spatial_residual, b.spatial_residual);
 }
 
-void expect_equal(const Gof& a, const Gof& b) {
+void expect_equal(const ClusterGof& a, const ClusterGof& b) {
   EXPECT_EQ(a.first_frame, b.first_frame);
   EXPECT_EQ(a.num_frames, b.num_frames);
   EXPECT_EQ(a.fraction_bits, b.fraction_bits);
@@ -170,7 +171,7 @@ void expect_equal(const Gof& a, const Gof& b) {
   }
 }
 
-void expect_round_trip(const Generator& from, const Gof& gof) {
+void expect_round_trip(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_gof(gof, from.header, from.topology);
   BitReader r(payload);
   const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
@@ -179,8 +180,8 @@ void expect_round_trip(const Generator& from, const Gof& gof) {
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
   expect_equal(gof, *parsed);
 
-  const GofRecon written(from.header, from.topology, gof);
-  const GofRecon read(from.header, from.topology, *parsed);
+  const ClusterRecon written(from.header, from.topology, gof);
+  const ClusterRecon read(from.header, from.topology, *parsed);
   const std::int32_t half = 1 << (from.header.position_bits - 1);
   std::vector<std::int32_t> a(3 * std::size_t{from.header.num_vertices}, 1 << 30);
   std::vector<std::int32_t> b = a;
@@ -195,28 +196,28 @@ void expect_round_trip(const Generator& from, const Gof& gof) {
   }
 }
 
-TEST(GofRoundTrip, RandomLegalGofsComeBackAndReconstructAlike) {
+TEST(ClusterGofRoundTrip, RandomLegalGofsComeBackAndReconstructAlike) {
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
-    const Gof gof = generator.gof(40, 8, 8);
+    const ClusterGof gof = generator.gof(40, 8, 8);
     generator.header.profile_idc = seed % 2 == 0 ? kProfileMain : kProfileBaseline;
     expect_round_trip(generator, gof);
     if (testing::Test::HasFailure()) return;
   }
 }
 
-TEST(GofRoundTrip, OneFrameAndOneVertexAreEnough) {
+TEST(ClusterGofRoundTrip, OneFrameAndOneVertexAreEnough) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
-    const Gof gof = generator.gof(1, 1, 3);
+    const ClusterGof gof = generator.gof(1, 1, 3);
     ASSERT_EQ(gof.num_frames, 1U);
     expect_round_trip(generator, gof);
   }
 }
 
-TEST(GofRoundTrip, AsManyClustersAsTheLevelAllowsComeBack) {
+TEST(ClusterGofRoundTrip, AsManyClustersAsTheLevelAllowsComeBack) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
@@ -224,7 +225,7 @@ TEST(GofRoundTrip, AsManyClustersAsTheLevelAllowsComeBack) {
   }
 }
 
-TEST(GofRoundTrip, LongGofsOfFewVerticesComeBack) {
+TEST(ClusterGofRoundTrip, LongGofsOfFewVerticesComeBack) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
@@ -233,9 +234,9 @@ TEST(GofRoundTrip, LongGofsOfFewVerticesComeBack) {
 }
 
 // The largest and smallest residuals in a row drive every running mean to its ends.
-TEST(GofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
+TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   Generator generator(1);
-  Gof gof = generator.gof(40, 8, 1);
+  ClusterGof gof = generator.gof(40, 8, 1);
   while (gof.seed_tracks.empty() || gof.num_frames < 4) gof = generator.gof(40, 8, 1);
   const auto most = static_cast<std::int32_t>(kMaxResidual);
   for (const int period : {1, 2, 7, 50}) {
@@ -257,7 +258,7 @@ TEST(GofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
 }
 
 // The least max_memory_bytes that the parser takes a GOF with, its estimate, or up to 2 % more.
-std::uint64_t estimated_memory(const Generator& from, const Gof& gof,
+std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
                                const std::vector<std::uint8_t>& payload) {
   std::uint64_t too_few = 0;
   std::uint64_t enough = kAmple;
@@ -271,7 +272,7 @@ std::uint64_t estimated_memory(const Generator& from, const Gof& gof,
 }
 
 // What parsing and reconstruction have at a time, beside what they need for any GOF.
-void expect_memory_within_estimate(const Generator& from, const Gof& gof) {
+void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_gof(gof, from.header, from.topology);
   const std::uint64_t estimate = estimated_memory(from, gof, payload);
   memory_count.peak = memory_count.now;
@@ -281,7 +282,7 @@ void expect_memory_within_estimate(const Generator& from, const Gof& gof) {
     const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
     const auto parsed = parse_clusters(r, from.header, from.topology, start, kAmple);
     ASSERT_TRUE(parsed);
-    const GofRecon recon(from.header, from.topology, *parsed);
+    const ClusterRecon recon(from.header, from.topology, *parsed);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
     recon.frame(0, positions);
   }
@@ -310,7 +311,7 @@ TEST(GofMemory, OfManyComponentsOfSmallClustersIsCounted) {
         generator.header.num_vertices = kClusters * vertices;
         generator.header.num_frames = 2;
         generator.topology = make_topology(kClusters * vertices, {});
-        Gof gof;
+        ClusterGof gof;
         gof.num_frames = 2;
         gof.clusters.resize(kClusters);
         for (std::uint32_t v = 0; v < kClusters * vertices; ++v) {

@@ -23,15 +23,15 @@ constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
 
 using Payload = std::vector<std::uint8_t>;
 
-BoneGofPayloads payloads_of(const RandomBoneGof& from) {
+SkinnedGofPayloads payloads_of(const RandomSkinnedGof& from) {
   const CodedMesh mesh = from.coded_mesh();
-  return write_bone_gof(from.gof, mesh, from.header.position_bits);
+  return write_skinned_gof(from.gof, mesh, from.header.position_bits);
 }
 
 // A decoder's side of one stream.
 class Reading {
  public:
-  explicit Reading(const RandomBoneGof& from, std::uint64_t max_memory = kMemory)
+  explicit Reading(const RandomSkinnedGof& from, std::uint64_t max_memory = kMemory)
       : from_(from),
         meshes_(from.topology, from.triangles),
         parser_(from.header, meshes_, max_memory) {}
@@ -55,7 +55,7 @@ class Reading {
     return std::nullopt;
   }
   const CodedMesh& mesh() const { return parser_.mesh(); }
-  BoneGof finish() { return parser_.finish(); }
+  SkinnedGof finish() { return parser_.finish(); }
 
  private:
   static std::optional<Error> error_of(const Result<bool>& result) {
@@ -63,9 +63,9 @@ class Reading {
     return result.error();
   }
 
-  const RandomBoneGof& from_;
+  const RandomSkinnedGof& from_;
   MeshPredictions meshes_;
-  BoneGofParser parser_;
+  SkinnedGofParser parser_;
 };
 
 std::string text_of(const std::optional<Error>& error) {
@@ -94,7 +94,7 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
   EXPECT_EQ(a.residual, b.residual);
 }
 
-void expect_equal(const BoneGof& a, const BoneGof& b) {
+void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   EXPECT_EQ(a.first_frame, b.first_frame);
   EXPECT_EQ(a.num_frames, b.num_frames);
   EXPECT_EQ(a.fraction_bits, b.fraction_bits);
@@ -124,8 +124,8 @@ void expect_equal(const BoneGof& a, const BoneGof& b) {
   }
 }
 
-void expect_round_trip(const RandomBoneGof& from) {
-  const BoneGofPayloads payloads = payloads_of(from);
+void expect_round_trip(const RandomSkinnedGof& from) {
+  const SkinnedGofPayloads payloads = payloads_of(from);
   Reading reading(from);
   const auto error = reading.all(payloads.gof, payloads.slices);
   ASSERT_FALSE(error) << text_of(error);
@@ -135,7 +135,7 @@ void expect_round_trip(const RandomBoneGof& from) {
 // Runs the reconstruction of what was parsed; positions are within their range.
 void expect_frames_in_range(Reading& reading, int position_bits) {
   const CodedMesh& mesh = reading.mesh();
-  const BoneRecon recon(mesh, reading.finish(), position_bits);
+  const SkinnedRecon recon(mesh, reading.finish(), position_bits);
   std::vector<std::int32_t> positions(3 * std::size_t{mesh.num_vertices()});
   for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
     recon.frame(f, positions);
@@ -146,40 +146,40 @@ void expect_frames_in_range(Reading& reading, int position_bits) {
   }
 }
 
-TEST(BoneGofRoundTrip, RandomLegalGofsComeBack) {
+TEST(SkinnedGofRoundTrip, RandomLegalGofsComeBack) {
   for (unsigned seed = 1; seed <= 2000; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(RandomBoneGof(seed, {}));
+    expect_round_trip(RandomSkinnedGof(seed, {}));
     if (HasFailure()) return;
   }
 }
 
-TEST(BoneGofRoundTrip, OneVertexOneFrameAndOneBoneAreEnough) {
+TEST(SkinnedGofRoundTrip, OneVertexOneFrameAndOneBoneAreEnough) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     expect_round_trip(
-        RandomBoneGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
+        RandomSkinnedGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
   }
 }
 
-TEST(BoneGofRoundTrip, LargerGofsComeBack) {
+TEST(SkinnedGofRoundTrip, LargerGofsComeBack) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(RandomBoneGof(seed, {.max_vertices = 2000, .max_groups = 2}));
-    expect_round_trip(RandomBoneGof(seed, {.max_bones = kLevels[0].max_clusters}));
+    expect_round_trip(RandomSkinnedGof(seed, {.max_vertices = 2000, .max_groups = 2}));
+    expect_round_trip(RandomSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
     expect_round_trip(
-        RandomBoneGof(seed, {.max_vertices = 8, .max_frames = kLevels[0].max_gof_frames}));
-    expect_round_trip(RandomBoneGof(
+        RandomSkinnedGof(seed, {.max_vertices = 8, .max_frames = kLevels[0].max_gof_frames}));
+    expect_round_trip(RandomSkinnedGof(
         seed, {.max_vertices = 8, .max_groups = kMaxComponentGroups, .max_components = 2}));
   }
 }
 
 // The largest and smallest residuals in a row drive every running mean to its ends.
-TEST(BoneGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
+TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   for (const int period : {1, 2, 7, 50}) {
     for (unsigned seed = 1; seed <= 40; ++seed) {
       SCOPED_TRACE(seed);
-      RandomBoneGof from(seed, {});
+      RandomSkinnedGof from(seed, {});
       int count = 0;
       const auto jump = [&](std::int32_t& x) {
         ++count;
@@ -216,17 +216,17 @@ Payload prefix_of(const Payload& payload, std::size_t n) {
 }
 
 // Of a payload cut off, few starts are another payload by chance; these decode.
-TEST(BoneGofParser, ProperPrefixesFailOrDecode) {
+TEST(SkinnedGofParser, ProperPrefixesFailOrDecode) {
   int refused = 0;
   int decoded = 0;
   for (unsigned seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomBoneGof from(seed, {.max_vertices = 12,
-                                    .max_frames = 3,
-                                    .max_bones = 3,
-                                    .max_groups = 2,
-                                    .max_components = 2});
-    const BoneGofPayloads payloads = payloads_of(from);
+    const RandomSkinnedGof from(seed, {.max_vertices = 12,
+                                       .max_frames = 3,
+                                       .max_bones = 3,
+                                       .max_groups = 2,
+                                       .max_components = 2});
+    const SkinnedGofPayloads payloads = payloads_of(from);
     for (std::size_t i = 0; i <= payloads.slices.size(); ++i) {
       const Payload& whole = i == 0 ? payloads.gof : payloads.slices[i - 1];
       const std::vector<Payload> before(
@@ -253,10 +253,10 @@ TEST(BoneGofParser, ProperPrefixesFailOrDecode) {
   EXPECT_LT(decoded, refused / 50) << refused;
 }
 
-TEST(BoneGofParser, ABytePastTheEndFails) {
+TEST(SkinnedGofParser, ABytePastTheEndFails) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
-    const RandomBoneGof from(seed, {});
-    BoneGofPayloads payloads = payloads_of(from);
+    const RandomSkinnedGof from(seed, {});
+    SkinnedGofPayloads payloads = payloads_of(from);
     Reading reading(from);
     ASSERT_FALSE(reading.gof(payloads.gof));
     payloads.gof.push_back(0);
@@ -269,13 +269,13 @@ TEST(BoneGofParser, ABytePastTheEndFails) {
 
 // 8.14.1: slices may be left out as long as each one's coarser layers, and the same layers of
 // the group before, stay. Those that stay are read as before.
-TEST(BoneGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
+TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
   int legal = 0;
   int illegal = 0;
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomBoneGof from(seed, {});
-    const BoneGofPayloads payloads = payloads_of(from);
+    const RandomSkinnedGof from(seed, {});
+    const SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
     std::vector<std::uint32_t> kept(from.gof.slice_layers.size(), 0);
     Reading reading(from);
@@ -297,7 +297,7 @@ TEST(BoneGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
     }
     ++(is_legal ? legal : illegal);
     if (!is_legal) continue;
-    const BoneGof cut = reading.finish();
+    const SkinnedGof cut = reading.finish();
     EXPECT_EQ(cut.slice_layers, kept);
     const CodedMesh mesh = from.coded_mesh();
     for (std::size_t group = 0; group < cut.vertex_residual.size(); ++group) {
@@ -325,11 +325,11 @@ TEST(BoneGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
   EXPECT_GT(illegal, 200);
 }
 
-TEST(BoneGofParser, RefusesSlicesInAnotherOrder) {
+TEST(SkinnedGofParser, RefusesSlicesInAnotherOrder) {
   int swapped = 0;
   for (unsigned seed = 1; seed <= 300; ++seed) {
-    const RandomBoneGof from(seed, {});
-    BoneGofPayloads payloads = payloads_of(from);
+    const RandomSkinnedGof from(seed, {});
+    SkinnedGofPayloads payloads = payloads_of(from);
     for (std::size_t i = 0; i + 1 < payloads.slices.size(); ++i) {
       std::vector<Payload> slices = payloads.slices;
       std::swap(slices[i], slices[i + 1]);
@@ -343,13 +343,13 @@ TEST(BoneGofParser, RefusesSlicesInAnotherOrder) {
 }
 
 // Damaged payloads are refused, or decode to positions in their range.
-TEST(BoneGofParser, SurvivesDamage) {
+TEST(SkinnedGofParser, SurvivesDamage) {
   int refused = 0;
   int decoded = 0;
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomBoneGof from(seed, {.max_vertices = 30, .max_frames = 4});
-    BoneGofPayloads payloads = payloads_of(from);
+    const RandomSkinnedGof from(seed, {.max_vertices = 30, .max_frames = 4});
+    SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
     const std::size_t which = random() % (payloads.slices.size() + 1);
     Payload& payload = which == 0 ? payloads.gof : payloads.slices[which - 1];
@@ -367,9 +367,9 @@ TEST(BoneGofParser, SurvivesDamage) {
   EXPECT_GT(decoded, 10);
 }
 
-TEST(BoneGofParser, StopsAtTheCallersMemory) {
-  const RandomBoneGof from(1, {});
-  const BoneGofPayloads payloads = payloads_of(from);
+TEST(SkinnedGofParser, StopsAtTheCallersMemory) {
+  const RandomSkinnedGof from(1, {});
+  const SkinnedGofPayloads payloads = payloads_of(from);
   const auto error = Reading(from, 100).gof(payloads.gof);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code, Errc::kLimitExceeded);

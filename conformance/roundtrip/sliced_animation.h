@@ -34,13 +34,13 @@ class SlicedAnimation {
   // Two GOFs: with vertex layers, two layer groups and two component groups; and with
   // parallelograms, and a slice that is absent.
   StreamBytes stream() {
-    BoneGof cut = gof(kGofFrames, Prediction::kParallelogram);
+    SkinnedGof cut = gof(kGofFrames, Prediction::kParallelogram);
     cut.slice_layers = {1, 1, 0};
     return stream_of({gof(0, Prediction::kLayers), cut});
   }
   // With a bone that moves no vertex, and a trajectory that is zero.
   StreamBytes idle_stream() {
-    BoneGof idle = gof(kGofFrames, Prediction::kNone);
+    SkinnedGof idle = gof(kGofFrames, Prediction::kNone);
     idle.bones.push_back(bone(3));
     for (Vec3i& residual : idle.trajectories.back().residual) residual = {};
     return stream_of({gof(0, Prediction::kParallelograms), idle});
@@ -59,7 +59,7 @@ class SlicedAnimation {
   }
 
  private:
-  using AnyGof = std::variant<Gof, BoneGof>;
+  using AnyGof = std::variant<ClusterGof, SkinnedGof>;
   static constexpr std::uint32_t kRings = 4;
   static constexpr std::uint32_t kVertices = 5 * kRings;
   static constexpr std::uint32_t kGofFrames = 2;
@@ -93,8 +93,8 @@ class SlicedAnimation {
   }
 
   // A cluster with a local frame, and one without.
-  Gof clusters(std::uint32_t first_frame) {
-    Gof gof;
+  ClusterGof clusters(std::uint32_t first_frame) {
+    ClusterGof gof;
     gof.first_frame = first_frame;
     gof.num_frames = kGofFrames;
     gof.fraction_bits = 4;
@@ -123,8 +123,8 @@ class SlicedAnimation {
     }
     return gof;
   }
-  BoneGof gof(std::uint32_t first_frame, Prediction prediction) {
-    BoneGof gof;
+  SkinnedGof gof(std::uint32_t first_frame, Prediction prediction) {
+    SkinnedGof gof;
     gof.first_frame = first_frame;
     gof.num_frames = kGofFrames;
     gof.fraction_bits = 3;
@@ -190,26 +190,26 @@ class SlicedAnimation {
   }
 
   // GOF unit, slices, and the hash of each frame.
-  void append_gof(StreamBytes& bytes, const BoneGof& gof) const {
+  void append_gof(StreamBytes& bytes, const SkinnedGof& gof) const {
     const CodedMesh mesh(gof.prediction, topology_, layers_);
-    const BoneGofPayloads payloads = write_bone_gof(gof, mesh, header_.position_bits);
+    const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_.position_bits);
     append(bytes, UnitType::kGof, payloads.gof);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
   }
-  void append_gof(StreamBytes& bytes, const Gof& gof) const {
+  void append_gof(StreamBytes& bytes, const ClusterGof& gof) const {
     append(bytes, UnitType::kGof, write_gof(gof, header_, topology_));
-    const GofRecon recon(header_, topology_, gof);
+    const ClusterRecon recon(header_, topology_, gof);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }
   // Of the GOF as a decoder has it: without trajectories of groups whose slices are absent.
-  std::vector<std::uint32_t> hashes(const CodedMesh& mesh, BoneGof gof) const {
+  std::vector<std::uint32_t> hashes(const CodedMesh& mesh, SkinnedGof gof) const {
     while (gof.slice_layers[gof.group_end.size() - 1] == 0) {
       gof.group_end.pop_back();
       gof.vertex_residual.pop_back();
     }
     gof.trajectories.resize(gof.group_end.back() - kRestFactors);
-    return hashes(BoneRecon(mesh, gof, header_.position_bits));
+    return hashes(SkinnedRecon(mesh, gof, header_.position_bits));
   }
   template <class Recon>
   static std::vector<std::uint32_t> hashes(const Recon& recon) {

@@ -75,7 +75,7 @@ StreamBytes ordered_stream() {
 }
 
 StreamBytes cut_stream(const StreamBytes& stream, const SliceCut& cut) {
-  auto cutter = StreamCutter::open(memory_source(stream), cut);
+  auto cutter = SubStreamExtractor::open(memory_source(stream), cut);
   EXPECT_TRUE(cutter);
   StreamBytes out;
   for (;;) {
@@ -99,7 +99,7 @@ std::vector<SliceCut> some_cuts() {
 // Group and layer group of each slice, for each GOF.
 using Places = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 Places places_of(const StreamBytes& stream) {
-  const auto cutter = StreamCutter::open(memory_source(stream), {});
+  const auto cutter = SubStreamExtractor::open(memory_source(stream), {});
   EXPECT_TRUE(cutter);
   Places places;
   for (const ListedGof& gof : cutter->gofs()) {
@@ -122,7 +122,7 @@ TEST(LayerGroups, StayWhole) {
 
 // The first GOF has groups of 1 and 2 trajectories, and two layer groups, the first of one
 // layer; the second has one trajectory and one layer group.
-TEST(StreamCutter, LeavesOutWholeGroups) {
+TEST(SubStreamExtractor, LeavesOutWholeGroups) {
   const StreamBytes stream = sliced_stream();
   EXPECT_EQ(places_of(cut_stream(stream, {0, kAll})), (Places{{{0, 0}, {0, 1}}, {{0, 0}}}));
   EXPECT_EQ(places_of(cut_stream(stream, {2, kAll})),
@@ -134,7 +134,7 @@ TEST(StreamCutter, LeavesOutWholeGroups) {
   EXPECT_EQ(places_of(cut_stream(stream, {0, 0})), (Places{{{0, 0}}, {{0, 0}}}));
 }
 
-TEST(StreamCutter, LeavesGofsOfClustersWhole) {
+TEST(SubStreamExtractor, LeavesGofsOfClustersWhole) {
   const StreamBytes out = cut_stream(mixed_stream(), {1, 1});
   const Places::value_type none;
   const Places::value_type cut{{0, 0}, {1, 0}};
@@ -148,7 +148,7 @@ TEST(StreamCutter, LeavesGofsOfClustersWhole) {
   }
 }
 
-TEST(StreamCutter, WritesConformingStreamsThatDecodeAsIfCut) {
+TEST(SubStreamExtractor, WritesConformingStreamsThatDecodeAsIfCut) {
   for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       SCOPED_TRACE(testing::Message() << cut.max_components << ", " << cut.max_layers);
@@ -162,7 +162,7 @@ TEST(StreamCutter, WritesConformingStreamsThatDecodeAsIfCut) {
   EXPECT_NE(decode_all(cut_stream(sliced_stream(), {1, kAll})), decode_all(sliced_stream()));
 }
 
-TEST(StreamCutter, CopiesTheOtherUnits) {
+TEST(SubStreamExtractor, CopiesTheOtherUnits) {
   const StreamBytes stream = ordered_stream();
   const StreamBytes out = cut_stream(stream, {1, 1});
   EXPECT_LT(out.size(), stream.size());
@@ -185,7 +185,7 @@ TEST(StreamCutter, CopiesTheOtherUnits) {
   EXPECT_LE(changed, 3U);
 }
 
-TEST(StreamCutter, KeepsTheKindOfHashes) {
+TEST(SubStreamExtractor, KeepsTheKindOfHashes) {
   const StreamBytes stream = ordered_stream();
   const auto hash_sizes = [](const StreamBytes& bytes) {
     std::vector<std::size_t> sizes;
@@ -198,24 +198,24 @@ TEST(StreamCutter, KeepsTheKindOfHashes) {
   EXPECT_EQ(hash_sizes(cut_stream(stream, {0, 1})), hash_sizes(stream));
 }
 
-TEST(StreamCutter, CopiesAStreamThatHasNoMore) {
+TEST(SubStreamExtractor, CopiesAStreamThatHasNoMore) {
   for (const StreamBytes& stream :
        {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream()}) {
     EXPECT_EQ(cut_stream(stream, {3, 100}), stream);
   }
 }
 
-TEST(StreamCutter, RefusesDamagedStreams) {
+TEST(SubStreamExtractor, RefusesDamagedStreams) {
   const StreamBytes stream = sliced_stream();
   for (std::size_t size = 0; size < stream.size(); size += 7) {
     const StreamBytes prefix(stream.begin(),
                              stream.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_FALSE(StreamCutter::open(memory_source(prefix), {0, 1})) << size;
+    EXPECT_FALSE(SubStreamExtractor::open(memory_source(prefix), {0, 1})) << size;
   }
   for (std::size_t at = 0; at < stream.size(); at += 7) {
     StreamBytes damaged = stream;
     damaged[at] ^= 16;
-    EXPECT_FALSE(StreamCutter::open(memory_source(damaged), {0, 1})) << at;
+    EXPECT_FALSE(SubStreamExtractor::open(memory_source(damaged), {0, 1})) << at;
   }
 }
 

@@ -25,8 +25,8 @@ class SharedSource final : public ByteSource {
 
 }  // namespace
 
-StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,
-                           const SliceCut& cut, std::vector<ListedGof> gofs)
+SubStreamExtractor::SubStreamExtractor(std::unique_ptr<ByteSource> units, Decoder decoder,
+                                       const SliceCut& cut, std::vector<ListedGof> gofs)
     : units_(std::move(units), nullptr),
       decoder_(std::move(decoder)),
       cut_(cut),
@@ -34,8 +34,9 @@ StreamCutter::StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder,
       cuts_any_(std::any_of(gofs_.begin(), gofs_.end(),
                             [this](const ListedGof& gof) { return cuts(gof); })) {}
 
-Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source, const SliceCut& cut,
-                                        const DecodeLimits& limits) {
+Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> source,
+                                                    const SliceCut& cut,
+                                                    const DecodeLimits& limits) {
   const std::shared_ptr<ByteSource> shared = std::move(source);
   ListingTrace trace;
   DecoderOptions options;
@@ -49,11 +50,11 @@ Result<StreamCutter> StreamCutter::open(std::unique_ptr<ByteSource> source, cons
   options.cut = cut;
   auto decoder = Decoder::open(std::make_unique<SharedSource>(shared), options);
   if (!decoder) return decoder.error();
-  return StreamCutter(std::make_unique<SharedSource>(shared), std::move(*decoder), cut,
-                      trace.gofs());
+  return SubStreamExtractor(std::make_unique<SharedSource>(shared), std::move(*decoder), cut,
+                            trace.gofs());
 }
 
-Result<Bytes> StreamCutter::next() {
+Result<Bytes> SubStreamExtractor::next() {
   if (offset_ == 0) {
     offset_ = written_ = kStreamHeaderBytes;
     if (const auto ok = units_.stream_header(); !ok) return ok.error();
@@ -75,7 +76,7 @@ Result<Bytes> StreamCutter::next() {
 }
 
 // What is in the place of a unit; nothing if it is left out.
-Result<Bytes> StreamCutter::cut_unit(const UnitHeader& unit, const Bytes& payload) {
+Result<Bytes> SubStreamExtractor::cut_unit(const UnitHeader& unit, const Bytes& payload) {
   const ListedGof* const before = std::exchange(gof_, nullptr);
   switch (unit.type()) {
     case UnitType::kVertexOrder: {
@@ -106,7 +107,7 @@ Result<Bytes> StreamCutter::cut_unit(const UnitHeader& unit, const Bytes& payloa
   return write_unit(unit.type(), payload);
 }
 
-void StreamCutter::start_gof() {
+void SubStreamExtractor::start_gof() {
   if (index_.empty()) {
     first_gof_offset_ = written_;
   } else {
@@ -120,8 +121,8 @@ void StreamCutter::start_gof() {
 }
 
 // 8.6.2 Hash check, of the same kind as before
-Result<Bytes> StreamCutter::new_hash(const ListedGof& gof, const UnitHeader& unit,
-                                     const Bytes& payload) {
+Result<Bytes> SubStreamExtractor::new_hash(const ListedGof& gof, const UnitHeader& unit,
+                                           const Bytes& payload) {
   BitReader r = units_.bits(unit, payload);
   const auto old = parse_gof_hash(r, gof.num_frames);
   if (!old) return old.error();
@@ -145,7 +146,7 @@ Result<Bytes> StreamCutter::new_hash(const ListedGof& gof, const UnitHeader& uni
 }
 
 // With the GOF index, if there was one.
-Bytes StreamCutter::end_of_sequence() {
+Bytes SubStreamExtractor::end_of_sequence() {
   Bytes bytes;
   if (has_index_) {
     index_.back().bytes = written_ - gof_offset_;

@@ -20,11 +20,11 @@ namespace rlpc {
 // are those of the positions that are decoded now. The GOF index, which has to be the unit
 // before the end of the sequence, has the places that GOF units have now. Where nothing is left
 // out, the stream is a copy.
-class StreamCutter {
+class SubStreamExtractor {
  public:
   // Parses all of the stream, so that no cut stream comes of one that does not conform.
-  static Result<StreamCutter> open(std::unique_ptr<ByteSource> source, const SliceCut& cut,
-                                   const DecodeLimits& limits = {});
+  static Result<SubStreamExtractor> open(std::unique_ptr<ByteSource> source,
+                                         const SliceCut& cut, const DecodeLimits& limits = {});
 
   const SequenceHeader& header() const { return decoder_.header(); }
   std::uint64_t size() const { return units_.size(); }  // of the stream before
@@ -43,8 +43,8 @@ class StreamCutter {
   Result<Bytes> next();
 
  private:
-  StreamCutter(std::unique_ptr<ByteSource> units, Decoder decoder, const SliceCut& cut,
-               std::vector<ListedGof> gofs);
+  SubStreamExtractor(std::unique_ptr<ByteSource> units, Decoder decoder, const SliceCut& cut,
+                     std::vector<ListedGof> gofs);
 
   Result<Bytes> cut_unit(const UnitHeader& unit, const Bytes& payload);
   void start_gof();

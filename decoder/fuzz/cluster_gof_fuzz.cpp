@@ -31,7 +31,7 @@ void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topolo
   const rlpc::GofStart start = rlpc::parse_gof_start(r, header, first_frame);
   const auto gof = rlpc::parse_clusters(r, header, topology, start, kMaxMemoryBytes);
   if (!gof) return;
-  const rlpc::GofRecon recon(header, topology, *gof);
+  const rlpc::ClusterRecon recon(header, topology, *gof);
   rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
   std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
   const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);

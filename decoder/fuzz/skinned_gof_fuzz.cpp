@@ -39,7 +39,7 @@ std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
   return pieces;
 }
 
-void check_influences(const rlpc::BoneGof& gof) {
+void check_influences(const rlpc::SkinnedGof& gof) {
   for (const rlpc::Influences& influences : gof.influences) {
     int sum = 0;
     for (const rlpc::Influence& influence : influences) {
@@ -52,7 +52,7 @@ void check_influences(const rlpc::BoneGof& gof) {
 
 void decode_gof(const rlpc::SequenceHeader& header, rlpc::MeshPredictions& meshes,
                 std::uint32_t first_frame, std::span<const Piece> pieces) {
-  rlpc::BoneGofParser parser(header, meshes, kMaxMemoryBytes);
+  rlpc::SkinnedGofParser parser(header, meshes, kMaxMemoryBytes);
   rlpc::BitReader gof_bits(pieces[0]);
   const rlpc::GofStart start = rlpc::parse_gof_start(gof_bits, header, first_frame);
   if (!start.bones_flag || !parser.bones(gof_bits, start)) return;
@@ -61,9 +61,9 @@ void decode_gof(const rlpc::SequenceHeader& header, rlpc::MeshPredictions& meshe
     if (!parser.slice(slice_bits, 0)) return;
   }
   const rlpc::CodedMesh& mesh = parser.mesh();
-  const rlpc::BoneGof gof = parser.finish();
+  const rlpc::SkinnedGof gof = parser.finish();
   check_influences(gof);
-  const rlpc::BoneRecon recon(mesh, gof, header.position_bits);
+  const rlpc::SkinnedRecon recon(mesh, gof, header.position_bits);
   rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
   std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
   const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kBytesPerTrackValue = 14;
 
 // Memory of components of a cluster: the residuals, and the factors arranged for
-// reconstruction (FactorSet), in tiles and with both digits of both factors, each in a vector
+// reconstruction (ComponentSum), in tiles and with both limbs of both factors, each in a vector
 // that may have grown to twice what it holds.
 constexpr std::uint64_t kBytesPerComponent = 320;
 constexpr std::uint64_t kBytesPerResidual = 4;
@@ -31,10 +31,10 @@ std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_v
 }
 
 // The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
-class GofSectionParser {
+class ClusterSectionParser {
  public:
-  GofSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
-                   Gof& gof, std::uint64_t max_memory_bytes)
+  ClusterSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
+                       ClusterGof& gof, std::uint64_t max_memory_bytes)
       : section_(r, "gof_section"),
         header_(header),
         topology_(topology),
@@ -60,9 +60,9 @@ class GofSectionParser {
   SectionReader section_;
   const SequenceHeader& header_;
   const Topology& topology_;
-  Gof& gof_;
+  ClusterGof& gof_;
   std::uint64_t max_memory_bytes_;
-  GofModels models_;
+  ClusterModels models_;
   std::vector<std::size_t> coded_vertices_;  // of each cluster
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
@@ -71,7 +71,7 @@ class GofSectionParser {
 };
 
 // 6.5.2 cluster_headers( )
-void GofSectionParser::cluster_headers() {
+void ClusterSectionParser::cluster_headers() {
   gof_.cluster_of_vertex.assign(header_.num_vertices, 0);
   for (std::size_t i = 0; i < gof_.clusters.size() && !failed(); ++i) {
     gof_.clusters[i].lcf_flag = section_.bin(models_.lcf_flag, "lcf_flag");
@@ -80,7 +80,7 @@ void GofSectionParser::cluster_headers() {
   }
 }
 
-void GofSectionParser::cluster_seeds(std::size_t cluster_index) {
+void ClusterSectionParser::cluster_seeds(std::size_t cluster_index) {
   Cluster& cluster = gof_.clusters[cluster_index];
   for (std::uint32_t& v : cluster.seed_vertex) {
     v = section_.bypass(ceil_log2(header_.num_vertices), "seed_vertex");
@@ -107,7 +107,7 @@ void GofSectionParser::cluster_seeds(std::size_t cluster_index) {
 }
 
 // 6.5.3 cluster_map( )
-void GofSectionParser::cluster_map() {
+void ClusterSectionParser::cluster_map() {
   const int depth = ceil_log2(gof_.clusters.size());
   models_.cluster_idx.resize(std::size_t{1} << depth);
   std::uint16_t previous = 0;
@@ -122,7 +122,7 @@ void GofSectionParser::cluster_map() {
   section_.check_overrun("cluster_idx");
 }
 
-std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction) {
+std::uint16_t ClusterSectionParser::cluster_idx(const ClusterPrediction& prediction) {
   if (section_.bin(models_.cluster_predicted_flag[prediction.context],
                    "cluster_predicted_flag")) {
     return prediction.cluster;
@@ -134,18 +134,18 @@ std::uint16_t GofSectionParser::cluster_idx(const ClusterPrediction& prediction)
 }
 
 // NumFactors of 6.5.4 and 6.5.5
-void GofSectionParser::count_factors(std::uint64_t more, const char* element) {
+void ClusterSectionParser::count_factors(std::uint64_t more, const char* element) {
   num_factors_ += more;
   if (num_factors_ > header_.level().max_gof_factors) section_.fail("R-LVL-05", element);
 }
 
-void GofSectionParser::take_memory(std::uint64_t bytes, const char* element) {
+void ClusterSectionParser::take_memory(std::uint64_t bytes, const char* element) {
   memory_bytes_ += bytes;
   if (!failed() && memory_bytes_ > max_memory_bytes_) section_.fail_limit(element);
 }
 
 // 6.5.4 seed_tracks( )
-void GofSectionParser::seed_tracks() {
+void ClusterSectionParser::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
   const std::uint64_t values = 3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames;
   count_factors(values, "seed_residual");
@@ -158,7 +158,7 @@ void GofSectionParser::seed_tracks() {
 }
 
 // 6.5.5 component_counts( )
-void GofSectionParser::component_counts() {
+void ClusterSectionParser::component_counts() {
   int previous = 0;
   coded_vertices_.assign(gof_.clusters.size(), 0);
   for (const std::uint16_t i : gof_.cluster_of_vertex) {
@@ -183,7 +183,7 @@ void GofSectionParser::component_counts() {
 }
 
 // 6.5.6 components( )
-void GofSectionParser::components() {
+void ClusterSectionParser::components() {
   for (std::size_t i = 0; i < gof_.clusters.size(); ++i) {
     frame_mean_.assign(gof_.num_frames, 0);
     for (Component& c : gof_.clusters[i].components) {
@@ -195,7 +195,7 @@ void GofSectionParser::components() {
 }
 
 // 6.5.7 component( )
-void GofSectionParser::component(std::size_t coded_vertices, Component& component) {
+void ClusterSectionParser::component(std::size_t coded_vertices, Component& component) {
   parse_component_header(section_, models_.header, models_.header_mean, previous_, component);
   if (failed()) return;
   component.temporal_predictor =
@@ -225,7 +225,7 @@ void GofSectionParser::component(std::size_t coded_vertices, Component& componen
 }
 
 // 6.5.1 gof_section( )
-void GofSectionParser::parse() {
+void ClusterSectionParser::parse() {
   cluster_headers();
   if (!failed()) cluster_map();
   if (!failed()) seed_tracks();
@@ -257,10 +257,11 @@ GofStart parse_gof_start(BitReader& r, const SequenceHeader& header,
 }
 
 // 6.5 clusters_of_gof( )
-Result<Gof> parse_clusters(BitReader& r, const SequenceHeader& header, const Topology& topology,
-                           const GofStart& start, std::uint64_t max_memory_bytes) {
+Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
+                                  const Topology& topology, const GofStart& start,
+                                  std::uint64_t max_memory_bytes) {
   const Level& level = header.level();
-  Gof gof;
+  ClusterGof gof;
   gof.first_frame = start.first_frame;
   gof.num_frames = start.num_frames;
   const std::uint32_t num_clusters =
@@ -274,7 +275,7 @@ Result<Gof> parse_clusters(BitReader& r, const SequenceHeader& header, const Top
   r.byte_alignment();
   if (r.error()) return *r.error();
   gof.clusters.resize(num_clusters);
-  GofSectionParser(r, header, topology, gof, max_memory_bytes).parse();
+  ClusterSectionParser(r, header, topology, gof, max_memory_bytes).parse();
   if (r.error()) return *r.error();
   return gof;
 }

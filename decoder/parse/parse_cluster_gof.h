@@ -24,7 +24,8 @@ GofStart parse_gof_start(BitReader& r, const SequenceHeader& header, std::uint32
 // 6.5 clusters_of_gof( ): the rest of the payload, to which `r` ends. Every size is checked
 // against the level, and what its factors need against max_memory_bytes, before memory is taken
 // for it.
-Result<Gof> parse_clusters(BitReader& r, const SequenceHeader& header, const Topology& topology,
-                           const GofStart& start, std::uint64_t max_memory_bytes);
+Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
+                                  const Topology& topology, const GofStart& start,
+                                  std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

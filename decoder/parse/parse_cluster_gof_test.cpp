@@ -35,8 +35,8 @@ SequenceHeader header_of(std::uint32_t num_vertices, std::uint32_t num_frames) {
   return header;
 }
 
-Result<Gof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
-                        std::uint64_t max_memory_bytes = kAmple) {
+Result<ClusterGof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
+                               std::uint64_t max_memory_bytes = kAmple) {
   const Topology topology =
       make_topology(5, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {3, 1, 4}});
   BitReader r(payload, 0, trace);
@@ -44,7 +44,7 @@ Result<Gof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
   return parse_clusters(r, header, topology, parse_gof_start(r, header, 2), max_memory_bytes);
 }
 
-void expect_invalid(const Result<Gof>& gof, const std::string& rule,
+void expect_invalid(const Result<ClusterGof>& gof, const std::string& rule,
                     const std::string& element) {
   ASSERT_FALSE(gof) << rule;
   EXPECT_EQ(gof.error().code, Errc::kInvalid);
@@ -158,7 +158,7 @@ class Recipe {
   std::uint32_t seed_step_minus1 = 0;
   std::uint32_t seed_predictor = 1;
   int vertex_bits = 3;  // for 5 to 8 vertices
-  GofModels models;
+  ClusterModels models;
   RangeEncoder section;
 
   void lcf_flag(bool value) { section.bin(models.lcf_flag, value); }
@@ -208,8 +208,8 @@ class Recipe {
   }
 };
 
-Result<Gof> parse(const Bytes& payload, const SequenceHeader& header,
-                  std::uint32_t first_frame = 0) {
+Result<ClusterGof> parse(const Bytes& payload, const SequenceHeader& header,
+                         std::uint32_t first_frame = 0) {
   const Topology topology = make_topology(header.num_vertices, {});
   BitReader r(payload);
   return parse_clusters(r, header, topology, parse_gof_start(r, header, first_frame), kAmple);
@@ -385,8 +385,8 @@ TEST(ParseGof, FactorsAreBoundedByTheLevel) {
 }
 
 // Two components; the deltas of the second one are given.
-Result<Gof> parse_deltas(std::int32_t scale_idx, std::int32_t spatial_bits,
-                         std::int32_t temporal_bits) {
+Result<ClusterGof> parse_deltas(std::int32_t scale_idx, std::int32_t spatial_bits,
+                                std::int32_t temporal_bits) {
   Recipe recipe;
   recipe.vertex_bits = 2;
   recipe.seeds({0, 1, 2});

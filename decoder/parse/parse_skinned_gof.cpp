@@ -77,7 +77,7 @@ class BoneParser {
 }  // namespace
 
 // 6.11 layers_of_gof( )
-void BoneGofParser::layers(BitReader& r) {
+void SkinnedGofParser::layers(BitReader& r) {
   gof_.layer_group_size = {mesh_->num_layers()};
   gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
   if (gof_.prediction != Prediction::kLayers) return;
@@ -103,7 +103,7 @@ void BoneGofParser::layers(BitReader& r) {
 }
 
 // 6.11.1 bone_section( )
-void BoneGofParser::bone_section(BitReader& r) {
+void SkinnedGofParser::bone_section(BitReader& r) {
   SectionReader section(r, "bone_section");
   num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
                  3 * std::uint64_t{header_.num_vertices};
@@ -122,7 +122,7 @@ void BoneGofParser::bone_section(BitReader& r) {
 }
 
 // 6.11 bones_of_gof( )
-Result<bool> BoneGofParser::bones(BitReader& r, const GofStart& start) {
+Result<bool> SkinnedGofParser::bones(BitReader& r, const GofStart& start) {
   gof_ = {};
   gof_.first_frame = start.first_frame;
   gof_.num_frames = start.num_frames;
@@ -161,15 +161,15 @@ Result<bool> BoneGofParser::bones(BitReader& r, const GofStart& start) {
 }
 
 // 8.14.1 MayFollow( group, layers )
-bool BoneGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
+bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
   if (group < last_group_ || layers != gof_.slice_layers[group]) return false;
   return group == 0 || gof_.slice_layers[group - 1] > layers;
 }
 
 // The section of a slice.
-class BoneGofParser::SliceParser {
+class SkinnedGofParser::SliceParser {
  public:
-  SliceParser(BoneGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
+  SliceParser(SkinnedGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
       : parser_(parser),
         gof_(parser.gof_),
         section_(r, "slice_section"),
@@ -186,15 +186,15 @@ class BoneGofParser::SliceParser {
   void influences(std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(std::uint32_t v);
 
-  BoneGofParser& parser_;
-  BoneGof& gof_;
+  SkinnedGofParser& parser_;
+  SkinnedGof& gof_;
   SectionReader section_;
   std::uint32_t group_;
   std::uint32_t layers_;
 };
 
 // 6.12.1 group_components( )
-void BoneGofParser::SliceParser::group_components() {
+void SkinnedGofParser::SliceParser::group_components() {
   const Level& level = parser_.header_.level();
   const auto left = static_cast<std::int64_t>(level.max_components - gof_.trajectories.size());
   SliceModels& models = parser_.models_;
@@ -224,7 +224,7 @@ void BoneGofParser::SliceParser::group_components() {
 }
 
 // 6.12.1 trajectory( )
-void BoneGofParser::SliceParser::trajectory(Trajectory& trajectory) {
+void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
   Trajectory& before = parser_.previous_;
   parse_component_header(section_, parser_.models_.header, parser_.models_.header_mean, before,
                          trajectory);
@@ -244,7 +244,7 @@ void BoneGofParser::SliceParser::trajectory(Trajectory& trajectory) {
 }
 
 // 9.8.1 StartSlice( )
-void BoneGofParser::SliceParser::start() {
+void SkinnedGofParser::SliceParser::start() {
   if (layers_ > 0) return;
   if (group_ > 1) {
     parser_.vertex_models_ = std::make_unique<VertexModels>(*parser_.models_of_group_);
@@ -262,7 +262,8 @@ void BoneGofParser::SliceParser::start() {
 }
 
 // 6.12.2 influences( v )
-void BoneGofParser::SliceParser::influences(std::uint32_t v, InfluencePrediction& prediction) {
+void SkinnedGofParser::SliceParser::influences(std::uint32_t v,
+                                               InfluencePrediction& prediction) {
   prediction.start(parser_.mesh_->ring(v));
   SliceModels& models = parser_.models_;
   while (prediction.can_add_bone()) {
@@ -292,7 +293,7 @@ void BoneGofParser::SliceParser::influences(std::uint32_t v, InfluencePrediction
 }
 
 // 6.12.3 spatial_residuals( v )
-void BoneGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
+void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
   std::vector<std::int32_t>& residuals = gof_.vertex_residual[group_];
   const std::size_t size = residuals.size() / parser_.header_.num_vertices;
   VertexContexts& contexts = *parser_.contexts_;
@@ -308,7 +309,7 @@ void BoneGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
                      std::span(residuals).subspan(v * size, size), "vertex_residual");
 }
 
-void BoneGofParser::SliceParser::parse() {
+void SkinnedGofParser::SliceParser::parse() {
   if (group_ > 0 && layers_ == 0 && !failed()) group_components();
   if (failed() || group_ >= parser_.end_component_group_) return;
   start();
@@ -335,7 +336,7 @@ void BoneGofParser::SliceParser::parse() {
 }
 
 // 6.12 slice_unit( )
-Result<bool> BoneGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
+Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   const std::uint32_t group =
       r.ue("component_group_idx", {0, gof_.num_component_groups}, "R-SLI-01");
   const std::uint32_t layers =
@@ -359,7 +360,7 @@ Result<bool> BoneGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
 }
 
 // 8.14.1 AddAbsentInfluences( )
-BoneGof BoneGofParser::finish() {
+SkinnedGof SkinnedGofParser::finish() {
   InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
                                  gof_.weight_bits);
   std::uint32_t first = 0;

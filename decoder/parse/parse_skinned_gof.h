@@ -45,11 +45,11 @@ class MeshPredictions {
 // The unit of a GOF of bones and the slice units behind it, one after the other. Every size
 // is checked against the level, and what it needs against max_memory_bytes, before memory is
 // taken for it. Slices that the cut leaves out are as if they were absent.
-class BoneGofParser {
+class SkinnedGofParser {
  public:
   // All must outlive it.
-  BoneGofParser(const SequenceHeader& header, const MeshPredictions& meshes,
-                std::uint64_t max_memory_bytes, const SliceCut& cut = {})
+  SkinnedGofParser(const SequenceHeader& header, const MeshPredictions& meshes,
+                   std::uint64_t max_memory_bytes, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
 
   // 6.11 bones_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
@@ -57,7 +57,7 @@ class BoneGofParser {
   // 6.12 slice_unit( ), after bones( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
   // After the last slice: the GOF, with what absent slices are predicted to hold.
-  BoneGof finish();
+  SkinnedGof finish();
 
   const CodedMesh& mesh() const { return *mesh_; }
   // Whether a slice was left out so far.
@@ -75,7 +75,7 @@ class BoneGofParser {
   std::uint64_t max_memory_bytes_;
   SliceCut cut_;
   const CodedMesh* mesh_ = nullptr;
-  BoneGof gof_;
+  SkinnedGof gof_;
   std::uint64_t num_factors_ = 0;
   // Models that go on from slice to slice (9.8.1).
   SliceModels models_;

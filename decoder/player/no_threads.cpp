@@ -5,7 +5,7 @@
 
 namespace rlpc {
 
-std::future<bool> run_apart(std::function<void()> /*work*/) {
+std::future<bool> run_async(std::function<void()> /*work*/) {
   std::promise<bool> none;
   none.set_value(false);
   return none.get_future();

@@ -5,7 +5,7 @@
 
 namespace rlpc {
 
-std::future<bool> run_apart(std::function<void()> work) {
+std::future<bool> run_async(std::function<void()> work) {
   try {
     return std::async(std::launch::async, [work = std::move(work)] {
       try {

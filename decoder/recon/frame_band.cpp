@@ -26,7 +26,7 @@ void FrameBand::fill(const FrameRecon& recon, std::uint32_t first, std::size_t f
   };
   std::vector<std::future<bool>> others;
   for (std::uint32_t begin = kBandFrames; begin < count_; begin += kBandFrames) {
-    others.push_back(run_apart([&reconstruct, begin] { reconstruct(begin); }));
+    others.push_back(run_async([&reconstruct, begin] { reconstruct(begin); }));
   }
   reconstruct(0);
   for (std::size_t i = 0; i < others.size(); ++i) {

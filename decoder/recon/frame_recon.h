@@ -29,7 +29,7 @@ class FrameRecon {
   }
 
  private:
-  std::variant<GofRecon, BoneRecon> recon_;
+  std::variant<ClusterRecon, SkinnedRecon> recon_;
   bool is_cut_;
 };
 

@@ -7,9 +7,9 @@
 
 namespace rlpc {
 
-GofsAhead::GofsAhead(UnitReader& units, const SequenceHeader& header, const Topology& topology,
-                     const MeshPredictions* meshes, std::uint64_t max_memory_bytes,
-                     const SliceCut& cut)
+Prefetch::Prefetch(UnitReader& units, const SequenceHeader& header, const Topology& topology,
+                   const MeshPredictions* meshes, std::uint64_t max_memory_bytes,
+                   const SliceCut& cut)
     : units_(units),
       header_(header),
       topology_(topology),
@@ -17,8 +17,8 @@ GofsAhead::GofsAhead(UnitReader& units, const SequenceHeader& header, const Topo
       max_memory_bytes_(max_memory_bytes),
       cut_(cut) {}
 
-std::optional<GofsAhead::Parsed> GofsAhead::take(std::uint64_t offset,
-                                                 std::uint32_t first_frame) {
+std::optional<Prefetch::Parsed> Prefetch::take(std::uint64_t offset,
+                                               std::uint32_t first_frame) {
   std::optional<Parsed> parsed;
   if (!gofs_.empty()) {
     Ahead& ahead = gofs_.front();
@@ -33,7 +33,7 @@ std::optional<GofsAhead::Parsed> GofsAhead::take(std::uint64_t offset,
   return parsed;
 }
 
-void GofsAhead::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count) {
+void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count) {
   while (!gofs_.empty() && gofs_.front().units.start.first_frame != first_frame)
     gofs_.pop_front();
   if (!gofs_.empty()) {
@@ -47,13 +47,13 @@ void GofsAhead::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_
     first_frame = units->end_frame();
     gofs_.push_back({std::move(*units), std::nullopt, {}});
     Ahead& ahead = gofs_.back();
-    ahead.done = run_apart([this, &ahead] { ahead.recon = parse(ahead.units); });
+    ahead.done = run_async([this, &ahead] { ahead.recon = parse(ahead.units); });
   }
 }
 
 // The next GOF, past ancillary units, if its units fit into max_memory_bytes. Nothing is read
 // behind the end of the sequence.
-std::optional<GofUnits> GofsAhead::read(std::uint64_t offset, std::uint32_t first_frame) {
+std::optional<GofUnits> Prefetch::read(std::uint64_t offset, std::uint32_t first_frame) {
   GofUnits units;
   std::uint64_t num_bytes = 0;
   for (bool have_gof = false; offset < units_.size();) {
@@ -86,22 +86,23 @@ std::optional<GofUnits> GofsAhead::read(std::uint64_t offset, std::uint32_t firs
   return std::nullopt;
 }
 
-std::optional<FrameRecon> GofsAhead::parse(const GofUnits& units) const {
+std::optional<FrameRecon> Prefetch::parse(const GofUnits& units) const {
   BitReader r = units_.bits(units.gof.unit, units.gof.payload);
   const GofStart start = parse_gof_start(r, header_, units.start.first_frame);
   if (!start.bones_flag) {
     const auto gof = parse_clusters(r, header_, topology_, start, max_memory_bytes_);
     if (!gof) return std::nullopt;
-    return FrameRecon(GofRecon(header_, topology_, *gof));
+    return FrameRecon(ClusterRecon(header_, topology_, *gof));
   }
-  BoneGofParser parser(header_, *meshes_, max_memory_bytes_, cut_);
+  SkinnedGofParser parser(header_, *meshes_, max_memory_bytes_, cut_);
   if (!parser.bones(r, start)) return std::nullopt;
   for (const auto& [unit, payload] : units.slices) {
     BitReader slice = units_.bits(unit, payload);
     if (!parser.slice(slice, unit.offset * 8)) return std::nullopt;
   }
   const CodedMesh& mesh = parser.mesh();
-  return FrameRecon(BoneRecon(mesh, parser.finish(), header_.position_bits), parser.is_cut());
+  return FrameRecon(SkinnedRecon(mesh, parser.finish(), header_.position_bits),
+                    parser.is_cut());
 }
 
 }  // namespace rlpc

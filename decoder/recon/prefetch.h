@@ -32,7 +32,7 @@ struct GofUnits {
   std::uint32_t end_frame() const { return start.first_frame + start.num_frames; }
 };
 
-class GofsAhead {
+class Prefetch {
  public:
   struct Parsed {
     FrameRecon recon;
@@ -40,8 +40,8 @@ class GofsAhead {
   };
 
   // All must outlive it. max_memory_bytes: of each GOF.
-  GofsAhead(UnitReader& units, const SequenceHeader& header, const Topology& topology,
-            const MeshPredictions* meshes, std::uint64_t max_memory_bytes, const SliceCut& cut);
+  Prefetch(UnitReader& units, const SequenceHeader& header, const Topology& topology,
+           const MeshPredictions* meshes, std::uint64_t max_memory_bytes, const SliceCut& cut);
 
   // Sees to it that up to `count` GOFs are here or on their way: those behind a byte offset, of
   // which the first one begins with first_frame. Forgets any before it.

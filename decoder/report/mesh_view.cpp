@@ -35,10 +35,10 @@ MeshView::MeshView(std::uint32_t num_vertices, std::uint32_t num_frames,
       num_frames_(num_frames),
       triangles_(triangles.begin(), triangles.end()),
       frame_rate_(frame_rate) {
-  const std::size_t frame_bytes = kBytesPerVertex * num_vertices;
+  const std::size_t overhead_bytes = kBytesPerVertex * num_vertices;
   const std::size_t mesh_bytes = 12 * triangles.size();
-  if (mesh_bytes + frame_bytes > max_bytes) return;
-  const std::size_t most = (max_bytes - mesh_bytes) / frame_bytes;
+  if (mesh_bytes + overhead_bytes > max_bytes) return;
+  const std::size_t most = (max_bytes - mesh_bytes) / overhead_bytes;
   stride_ = static_cast<std::uint32_t>((num_frames + most - 1) / most);
 }
 

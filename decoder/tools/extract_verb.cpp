@@ -34,7 +34,7 @@ int complain(const ExtractOptions& o, const Error& error) {
   return complain(name_of_input(o.input) + ": " + describe_error(error), exit_code(error.code));
 }
 
-double bpvf(const StreamCutter& cutter, std::uint64_t bytes) {
+double bpvf(const SubStreamExtractor& cutter, std::uint64_t bytes) {
   const SequenceHeader& h = cutter.header();
   return 8.0 * static_cast<double>(bytes) /
          (static_cast<double>(h.num_vertices) * h.num_frames);
@@ -52,11 +52,12 @@ nlohmann::ordered_json json_of(const SliceTotals& totals) {
           {"bytes", totals.bytes}};
 }
 
-nlohmann::ordered_json size_json(const StreamCutter& cutter, std::uint64_t bytes) {
+nlohmann::ordered_json size_json(const SubStreamExtractor& cutter, std::uint64_t bytes) {
   return {{"bytes", bytes}, {"bpvf", bpvf(cutter, bytes)}};
 }
 
-void print_json(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
+void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
+                std::uint64_t bytes) {
   bool met = true;
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
   for (const ListedGof& gof : cutter.gofs()) {
@@ -76,7 +77,8 @@ void print_json(const ExtractOptions& o, const StreamCutter& cutter, std::uint64
   std::cout << json.dump(2) << "\n";
 }
 
-void print_text(const ExtractOptions& o, const StreamCutter& cutter, std::uint64_t bytes) {
+void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
+                std::uint64_t bytes) {
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", name_of_input(o.input).c_str(),
               cutter.size(), bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
@@ -140,7 +142,7 @@ int extract(const ExtractOptions& o) {
   if (OutputFile::is_same_file(o.output, o.input)) {
     return complain(o.output + ": is the input itself; give another name", kExitUsage);
   }
-  auto cutter = StreamCutter::open(std::move(*source), o.cut, o.limits);
+  auto cutter = SubStreamExtractor::open(std::move(*source), o.cut, o.limits);
   if (!cutter) return complain(o, cutter.error());
   if (cutter->header().profile_idc != kProfileMain) {
     return complain(name_of_input(o.input) + ": " + SliceCut::kNoSlices, kExitUnsupported);

@@ -16,7 +16,7 @@ namespace rlpc {
 namespace {
 
 // Closed loop: residuals against recovered positions (3.3, delta coding), for one predictor.
-void code_seed_tracks(Gof& gof, const GofFrames& frames, int position_bits) {
+void code_seed_tracks(ClusterGof& gof, const GofFrames& frames, int position_bits) {
   std::vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     SeedTrack& track = gof.seed_tracks[i];
@@ -33,7 +33,7 @@ void code_seed_tracks(Gof& gof, const GofFrames& frames, int position_bits) {
   }
 }
 
-double seed_bits(const Gof& gof) {
+double seed_bits(const ClusterGof& gof) {
   std::vector<std::int32_t> all;
   for (const SeedTrack& track : gof.seed_tracks) {
     for (const Vec3i& r : track.residual) all.insert(all.end(), r.begin(), r.end());
@@ -41,8 +41,8 @@ double seed_bits(const Gof& gof) {
   return estimate_bits(all);
 }
 
-void choose_seed_predictor(Gof& gof, const GofFrames& frames, int position_bits) {
-  Gof best = gof;
+void choose_seed_predictor(ClusterGof& gof, const GofFrames& frames, int position_bits) {
+  ClusterGof best = gof;
   double least = std::numeric_limits<double>::infinity();
   for (int order = 1; order <= kMaxPredictorOrder; ++order) {
     for (const bool coupling : {false, true}) {
@@ -59,7 +59,7 @@ void choose_seed_predictor(Gof& gof, const GofFrames& frames, int position_bits)
 }
 
 // Clusters and seed tracks, in the order of clause 6.5.2.
-void set_clusters(Gof& gof, const Clustering& clustering) {
+void set_clusters(ClusterGof& gof, const Clustering& clustering) {
   gof.cluster_of_vertex = clustering.cluster_of_vertex;
   gof.clusters.resize(std::max<std::size_t>(clustering.seeds.size(), 1));
   for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
@@ -94,7 +94,7 @@ TrajectoryMatrix local_trajectories(const GofFrames& frames, const ClusterAnalys
   return m;
 }
 
-std::vector<Lcf> recovered_frames(const Gof& gof, const Cluster& cluster,
+std::vector<Lcf> recovered_frames(const ClusterGof& gof, const Cluster& cluster,
                                   const std::vector<Track>& tracks) {
   std::vector<Lcf> lcf;
   if (!cluster.lcf_flag) return lcf;
@@ -113,9 +113,10 @@ std::vector<Lcf> recovered_frames(const Gof& gof, const Cluster& cluster,
 // Steps of every component of a cluster.
 class StepRule {
  public:
-  StepRule(const CodingSettings& settings, const PrincipalComponents& pc, std::size_t count)
+  StepRule(const ClusterCodingSettings& settings, const PrincipalComponents& pc,
+           std::size_t count)
       : settings_(settings) {
-    if (settings.steps != CodingSettings::Steps::kRanges) return;
+    if (settings.steps != ClusterCodingSettings::Steps::kRanges) return;
     double u_min = 0.0;
     double u_max = 0.0;
     double c_min = 0.0;
@@ -140,7 +141,7 @@ class StepRule {
     const double sigma = std::sqrt(energy);
     double s = settings_.step;
     double t = settings_.step / sigma;
-    if (settings_.steps == CodingSettings::Steps::kRanges) {
+    if (settings_.steps == ClusterCodingSettings::Steps::kRanges) {
       s = u_step_ * sigma;
       t = c_step_ / sigma;
     }
@@ -157,7 +158,7 @@ class StepRule {
     return m;
   }
 
-  const CodingSettings& settings_;
+  const ClusterCodingSettings& settings_;
   double u_step_ = 0.0;
   double c_step_ = 0.0;
 };
@@ -248,12 +249,12 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
 
 }  // namespace
 
-GofAnalysis analyse_gof(const EncodingContext& context, const GofFrames& frames,
-                        std::uint32_t first_frame, const Clustering& clustering,
-                        const AnalysisSettings& settings) {
+ClusterGofAnalysis analyse_cluster_gof(const ClusterContext& context, const GofFrames& frames,
+                                       std::uint32_t first_frame, const Clustering& clustering,
+                                       const ClusterAnalysisSettings& settings) {
   const int position_bits = context.header.position_bits;
-  GofAnalysis analysis;
-  Gof& gof = analysis.gof;
+  ClusterGofAnalysis analysis;
+  ClusterGof& gof = analysis.gof;
   gof.first_frame = first_frame;
   gof.num_frames = frames.num_frames;
   gof.seed_step = settings.seed_step;
@@ -279,9 +280,9 @@ GofAnalysis analyse_gof(const EncodingContext& context, const GofFrames& frames,
   return analysis;
 }
 
-Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
-             const CodingSettings& settings) {
-  using Allocation = CodingSettings::Allocation;
+ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& analysis,
+                            const ClusterCodingSettings& settings) {
+  using Allocation = ClusterCodingSettings::Allocation;
   const std::size_t count = analysis.clusters.size();
   std::vector<std::vector<QuantisedComponent>> components(count);
   std::vector<RdCurve> curves(count);
@@ -314,7 +315,7 @@ Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
     components[i].resize(chosen[i]);
     refit_temporal(frames, analysis.clusters[i], components[i], settings.dead_zone);
   }
-  Gof gof = analysis.gof;
+  ClusterGof gof = analysis.gof;
   gof.fraction_bits = choose_fraction_bits(components);
   for (std::size_t i = 0; i < count; ++i) {
     for (const QuantisedComponent& c : components[i]) {

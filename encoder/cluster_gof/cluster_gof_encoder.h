@@ -19,7 +19,7 @@
 namespace rlpc {
 
 // What the analysis of a GOF depends on.
-struct AnalysisSettings {
+struct ClusterAnalysisSettings {
   bool world = false;               // analyse in world coordinates, not in frames of seeds
   std::uint32_t seed_step = 1;      // grid steps
   std::size_t max_components = 64;  // of one cluster
@@ -27,7 +27,7 @@ struct AnalysisSettings {
 };
 
 // How the components of a GOF are chosen and quantised.
-struct CodingSettings {
+struct ClusterCodingSettings {
   enum class Steps : std::uint8_t {
     kEqualDistortion,  // every coded value adds the same error: one step for all
     kRanges,           // the paper's: 2^-qu and 2^-qc of each cluster's range of values
@@ -51,24 +51,24 @@ struct ClusterAnalysis {
   std::optional<SpatialPrediction> prediction;
 };
 
-struct GofAnalysis {
-  Gof gof;  // all but the components
+struct ClusterGofAnalysis {
+  ClusterGof gof;  // all but the components
   std::vector<ClusterAnalysis> clusters;
 };
 
-struct EncodingContext {
+struct ClusterContext {
   const SequenceHeader& header;
   const Topology& topology;
   std::span<const Triangle> triangles;  // decoded order
 };
 
 // Seed tracks in closed loop, and principal components in the recovered frames.
-GofAnalysis analyse_gof(const EncodingContext& context, const GofFrames& frames,
-                        std::uint32_t first_frame, const Clustering& clustering,
-                        const AnalysisSettings& settings);
+ClusterGofAnalysis analyse_cluster_gof(const ClusterContext& context, const GofFrames& frames,
+                                       std::uint32_t first_frame, const Clustering& clustering,
+                                       const ClusterAnalysisSettings& settings);
 
 // The GOF ready to be written, from the frames that were analysed.
-Gof code_gof(const GofFrames& frames, const GofAnalysis& analysis,
-             const CodingSettings& settings);
+ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& analysis,
+                            const ClusterCodingSettings& settings);
 
 }  // namespace rlpc

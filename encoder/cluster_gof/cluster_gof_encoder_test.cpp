@@ -42,7 +42,7 @@ struct Strip {
       }
     }
   }
-  EncodingContext context() const { return {header, topology, triangles}; }
+  ClusterContext context() const { return {header, topology, triangles}; }
   Clustering halves() const {
     Clustering clustering{{{0, 2, 1}, {38, 36, 39}}, {}};
     for (std::uint32_t v = 0; v < header.num_vertices; ++v) {
@@ -51,8 +51,8 @@ struct Strip {
     return clustering;
   }
   // Root mean square over all coordinates and frames.
-  double error_of(const Gof& gof) const {
-    const GofRecon recon(header, topology, gof);
+  double error_of(const ClusterGof& gof) const {
+    const ClusterRecon recon(header, topology, gof);
     std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
     double sum = 0.0;
     for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
@@ -69,10 +69,10 @@ struct Strip {
 TEST(AnalyseGof, SeedsAreRecoveredToHalfASeedStep) {
   const Strip strip(30);
   for (const std::uint32_t seed_step : {1U, 2U, 7U, 100U}) {
-    AnalysisSettings settings;
+    ClusterAnalysisSettings settings;
     settings.seed_step = seed_step;
-    const GofAnalysis analysis =
-        analyse_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
+    const ClusterGofAnalysis analysis =
+        analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
     const std::vector<Track> tracks = recon_seed_tracks(analysis.gof, 20);
     ASSERT_EQ(tracks.size(), 6U);
     for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -90,7 +90,8 @@ TEST(AnalyseGof, SharedSeedsHaveOneTrackAndSeedsAreInNoCluster) {
   const Strip strip(3);
   Clustering clustering = strip.halves();
   clustering.seeds = {{0, 2, 1}, {2, 4, 1}};
-  const Gof gof = analyse_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
+  const ClusterGof gof =
+      analyse_cluster_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
   ASSERT_EQ(gof.seed_tracks.size(), 4U);
   const std::vector<std::uint32_t> vertices{0, 2, 1, 4};
   const std::vector<std::uint32_t> anchors{0, 0, 0, 1};
@@ -125,7 +126,8 @@ TEST(AnalyseGof, SeedResidualsStayWithinTheirBounds) {
     }
   }
   const Clustering clustering{{{0, 1, 2}}, {0, 0, 0}};
-  const Gof gof = analyse_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
+  const ClusterGof gof =
+      analyse_cluster_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
   for (const SeedTrack& track : gof.seed_tracks) {
     for (const Vec3i& r : track.residual) {
       for (const std::int32_t x : r) ASSERT_LE(magnitude_of(x), kMaxResidual);
@@ -136,14 +138,14 @@ TEST(AnalyseGof, SeedResidualsStayWithinTheirBounds) {
 TEST(CodeGof, ErrorFollowsTheStep) {
   const Strip strip(40);
   for (const bool world : {false, true}) {
-    AnalysisSettings settings;
+    ClusterAnalysisSettings settings;
     settings.world = world;
-    const GofAnalysis analysis =
-        analyse_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
+    const ClusterGofAnalysis analysis =
+        analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
     for (const double step : {4.0, 16.0, 64.0}) {
-      CodingSettings coding;
+      ClusterCodingSettings coding;
       coding.step = step;
-      const double error = strip.error_of(code_gof(strip.frames, analysis, coding));
+      const double error = strip.error_of(code_cluster_gof(strip.frames, analysis, coding));
       EXPECT_LT(error, 0.75 * step) << world;
       EXPECT_GT(error, 0.02 * step) << world;
     }
@@ -152,13 +154,13 @@ TEST(CodeGof, ErrorFollowsTheStep) {
 
 TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
   const Strip strip(10);
-  const GofAnalysis analysis =
-      analyse_gof(strip.context(), strip.frames, 0, strip.halves(), {});
+  const ClusterGofAnalysis analysis =
+      analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), {});
   for (const std::uint32_t count : {0U, 1U, 3U, 500U}) {
-    CodingSettings coding;
-    coding.allocation = CodingSettings::Allocation::kFixed;
+    ClusterCodingSettings coding;
+    coding.allocation = ClusterCodingSettings::Allocation::kFixed;
     coding.components = count;
-    const Gof gof = code_gof(strip.frames, analysis, coding);
+    const ClusterGof gof = code_cluster_gof(strip.frames, analysis, coding);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_EQ(gof.clusters[i].components.size(),
                 std::min<std::size_t>(count, analysis.clusters[i].pc.spatial.size()));
@@ -168,13 +170,13 @@ TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
 
 TEST(CodeGof, AVectorBudgetIsSharedByTheClusters) {
   const Strip strip(30);
-  const GofAnalysis analysis =
-      analyse_gof(strip.context(), strip.frames, 0, strip.halves(), {});
-  CodingSettings coding;
-  coding.allocation = CodingSettings::Allocation::kVectorBudget;
+  const ClusterGofAnalysis analysis =
+      analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), {});
+  ClusterCodingSettings coding;
+  coding.allocation = ClusterCodingSettings::Allocation::kVectorBudget;
   coding.components = 2;
   std::size_t sum = 0;
-  for (const Cluster& cluster : code_gof(strip.frames, analysis, coding).clusters) {
+  for (const Cluster& cluster : code_cluster_gof(strip.frames, analysis, coding).clusters) {
     sum += cluster.components.size();
   }
   EXPECT_LE(sum, 4U);

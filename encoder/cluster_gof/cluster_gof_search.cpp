@@ -23,10 +23,10 @@ constexpr double kSeedStepFactor = 0.18;
 // A component with less energy than this many squared steps costs more than it brings.
 constexpr double kMinEnergySteps = 1.2;
 
-EncodedGof encoded_gof(const EncodingContext& context, const Gof& gof) {
+EncodedGof encoded_gof(const ClusterContext& context, const ClusterGof& gof) {
   EncodedGof encoded;
   encoded.units.push_back({UnitType::kGof, write_gof(gof, context.header, context.topology)});
-  const auto recon = std::make_shared<GofRecon>(context.header, context.topology, gof);
+  const auto recon = std::make_shared<ClusterRecon>(context.header, context.topology, gof);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);
   };
@@ -45,9 +45,9 @@ EncodedGof encoded_gof(const EncodingContext& context, const Gof& gof) {
 
 }  // namespace
 
-GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
-                     std::uint32_t first_frame, const EncoderSettings& settings,
-                     std::optional<GofChoice>& choice)
+ClusterGofSearch::ClusterGofSearch(const ClusterContext& context, const GofFrames& frames,
+                                   std::uint32_t first_frame, const EncoderSettings& settings,
+                                   std::optional<ClusterChoice>& choice)
     : context_(context),
       frames_(frames),
       first_frame_(first_frame),
@@ -56,12 +56,13 @@ GofSearch::GofSearch(const EncodingContext& context, const GofFrames& frames,
       choice_(choice) {
   const bool world = tools_.frame_mode == FrameMode::kWorld;
   if (!choice_ && tools_.clusters > 0 && tools_.frame_mode != FrameMode::kAuto) {
-    choice_ = GofChoice{tools_.clusters, world};
+    choice_ = ClusterChoice{tools_.clusters, world};
   }
 }
 
-AnalysisSettings GofSearch::analysis_settings(double step, const GofChoice& choice) const {
-  AnalysisSettings a;
+ClusterAnalysisSettings ClusterGofSearch::analysis_settings(double step,
+                                                            const ClusterChoice& choice) const {
+  ClusterAnalysisSettings a;
   a.world = choice.world;
   a.max_components = kLevels.back().max_components;
   const double seed_step =
@@ -80,26 +81,26 @@ AnalysisSettings GofSearch::analysis_settings(double step, const GofChoice& choi
   return a;
 }
 
-CodingSettings GofSearch::coding_settings(double step) const {
-  CodingSettings c;
+ClusterCodingSettings ClusterGofSearch::coding_settings(double step) const {
+  ClusterCodingSettings c;
   c.step = step;
   c.components = settings_.components;
   if (tools_.qu > 0) {
-    c.steps = CodingSettings::Steps::kRanges;
+    c.steps = ClusterCodingSettings::Steps::kRanges;
     c.qu = tools_.qu;
     c.qc = tools_.qc;
     c.dead_zone = 0.0;
   }
   if (!tools_.rdo) {
-    c.allocation = CodingSettings::Allocation::kFixed;
+    c.allocation = ClusterCodingSettings::Allocation::kFixed;
   } else if (settings_.components > 0) {
-    c.allocation = tools_.rate_in_vectors ? CodingSettings::Allocation::kVectorBudget
-                                          : CodingSettings::Allocation::kBitBudget;
+    c.allocation = tools_.rate_in_vectors ? ClusterCodingSettings::Allocation::kVectorBudget
+                                          : ClusterCodingSettings::Allocation::kBitBudget;
   }
   return c;
 }
 
-Clustering GofSearch::cluster(const GofChoice& choice) {
+Clustering ClusterGofSearch::cluster(const ClusterChoice& choice) {
   if (!motion_) motion_.emplace(frames_, context_.triangles, context_.header.position_bits);
   const bool spread = tools_.seed_mode == SeedMode::kSpread ||
                       (tools_.seed_mode == SeedMode::kAuto && tools_.qu == 0);
@@ -107,23 +108,23 @@ Clustering GofSearch::cluster(const GofChoice& choice) {
                 : motion_->clusters(choice.clusters);
 }
 
-GofAnalysis GofSearch::analysis_for(double step, const GofChoice& choice,
-                                    const Clustering& clustering) const {
-  return analyse_gof(context_, frames_, first_frame_, clustering,
-                     analysis_settings(step, choice));
+ClusterGofAnalysis ClusterGofSearch::analysis_for(double step, const ClusterChoice& choice,
+                                                  const Clustering& clustering) const {
+  return analyse_cluster_gof(context_, frames_, first_frame_, clustering,
+                             analysis_settings(step, choice));
 }
 
-double GofSearch::cost(double step, const GofChoice& choice) {
+double ClusterGofSearch::cost(double step, const ClusterChoice& choice) {
   const EncodedGof encoded = encoded_gof(
-      context_,
-      code_gof(frames_, analysis_for(step, choice, cluster(choice)), coding_settings(step)));
+      context_, code_cluster_gof(frames_, analysis_for(step, choice, cluster(choice)),
+                                 coding_settings(step)));
   const double error = squared_error(frames_, encoded.frame);
   const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
   return error + coding_settings(step).lambda_factor * step * step * bits;
 }
 
 // Climbs from a middling number of clusters while the cost falls.
-std::uint32_t GofSearch::choose_count(double step, bool world) {
+std::uint32_t ClusterGofSearch::choose_count(double step, bool world) {
   std::size_t last = 0;
   while (last + 1 < kCounts.size() &&
          kCounts[last + 1] * kVerticesPerCluster <= frames_.num_vertices) {
@@ -146,7 +147,7 @@ std::uint32_t GofSearch::choose_count(double step, bool world) {
   return kCounts[best];
 }
 
-GofChoice GofSearch::choose(double step) {
+ClusterChoice ClusterGofSearch::choose(double step) {
   const bool fast = settings_.preset == Preset::kFast;
   if (fast) {
     const auto wanted = static_cast<std::uint32_t>(std::sqrt(frames_.num_vertices) / 3.0);
@@ -154,17 +155,18 @@ GofChoice GofSearch::choose(double step) {
             tools_.frame_mode == FrameMode::kWorld};
   }
   const auto best_of = [&](bool world) {
-    return GofChoice{tools_.clusters > 0 ? tools_.clusters : choose_count(step, world), world};
+    return ClusterChoice{tools_.clusters > 0 ? tools_.clusters : choose_count(step, world),
+                         world};
   };
   if (tools_.frame_mode != FrameMode::kAuto) {
     return best_of(tools_.frame_mode == FrameMode::kWorld);
   }
-  const GofChoice local = best_of(false);
-  const GofChoice world = best_of(true);
+  const ClusterChoice local = best_of(false);
+  const ClusterChoice world = best_of(true);
   return cost(step, world) < cost(step, local) ? world : local;
 }
 
-EncodedGof GofSearch::encode(double step, double analysis_step) {
+EncodedGof ClusterGofSearch::encode(double step, double analysis_step) {
   if (!choice_) choice_ = choose(step);
   if (!clustering_) clustering_ = cluster(*choice_);
   motion_.reset();
@@ -172,14 +174,15 @@ EncodedGof GofSearch::encode(double step, double analysis_step) {
     cached_.reset();  // before there is another
     cached_ = Cached{analysis_step, analysis_for(analysis_step, *choice_, *clustering_)};
   }
-  return encoded_gof(context_, code_gof(frames_, cached_->analysis, coding_settings(step)));
+  return encoded_gof(context_,
+                     code_cluster_gof(frames_, cached_->analysis, coding_settings(step)));
 }
 
-EncodedGof GofSearch::encode_once(double step, const GofChoice& choice) {
+EncodedGof ClusterGofSearch::encode_once(double step, const ClusterChoice& choice) {
   const Clustering clustering = cluster(choice);
   motion_.reset();
-  const Gof gof =
-      code_gof(frames_, analysis_for(step, choice, clustering), coding_settings(step));
+  const ClusterGof gof =
+      code_cluster_gof(frames_, analysis_for(step, choice, clustering), coding_settings(step));
   return encoded_gof(context_, gof);
 }
 

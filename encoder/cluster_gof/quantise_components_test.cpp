@@ -243,7 +243,7 @@ TEST(MakeComponent, FactorsReproduceTheProductOfTheValues) {
     constexpr std::uint32_t kFrames = 4;
     constexpr std::uint32_t kVertices = 5;
     const QuantisedComponent q = random_component(random, kFrames, kVertices);
-    Gof gof;
+    ClusterGof gof;
     gof.num_frames = kFrames;
     gof.fraction_bits = choose_fraction_bits({{q}});
     ASSERT_LE(gof.fraction_bits, kMaxFractionBits);
@@ -254,7 +254,7 @@ TEST(MakeComponent, FactorsReproduceTheProductOfTheValues) {
     header.num_vertices = kVertices;
     header.position_bits = 24;
     const Topology topology = make_topology(kVertices, {});
-    const GofRecon recon(header, topology, gof);
+    const ClusterRecon recon(header, topology, gof);
     std::vector<std::int32_t> positions(3 * kVertices);
     for (std::uint32_t f = 0; f < kFrames; ++f) {
       recon.frame(f, positions);

@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-struct MainChoice {
-  std::optional<BoneChoice> bones;
-  std::optional<GofChoice> clusters;  // if these are better, or may be
+struct GofKindChoice {
+  std::optional<SkinnedChoice> bones;
+  std::optional<ClusterChoice> clusters;  // if these are better, or may be
   bool has_clusters = false;
   double step = 0.0;        // that bones and clusters were compared for
   int times = 0;            // that they were
@@ -27,13 +27,13 @@ struct MainChoice {
   }
 };
 
-class MainGofSearch : public GofCoder {
+class GofKindSearch : public GofCoder {
  public:
   // All but the number are kept by reference. choice: that of an earlier search of the same
   // GOF, or none.
-  MainGofSearch(const BoneContext& bones, const EncodingContext& context,
+  GofKindSearch(const SkinnedContext& bones, const ClusterContext& context,
                 const GofFrames& frames, std::uint32_t first_frame,
-                const EncoderSettings& settings, MainChoice& choice);
+                const EncoderSettings& settings, GofKindChoice& choice);
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
@@ -41,17 +41,17 @@ class MainGofSearch : public GofCoder {
   EncodedGof encode(double step, double analysis_step) override;
 
  private:
-  bool clusters_promise(const EncodedGof& bones, double step);
-  double cost_of_clusters(const GofChoice& clusters, double step) const;
+  bool clusters_may_win(const EncodedGof& bones, double step);
+  double cost_of_clusters(const ClusterChoice& clusters, double step) const;
   EncodedGof encode_clusters(double step, double analysis_step);
 
-  const EncodingContext& context_;
+  const ClusterContext& context_;
   const GofFrames& frames_;
   std::uint32_t first_frame_;
   const EncoderSettings& settings_;
-  MainChoice& choice_;
-  BoneGofSearch bones_;
-  std::optional<GofSearch> clusters_;
+  GofKindChoice& choice_;
+  SkinnedGofSearch bones_;
+  std::optional<ClusterGofSearch> clusters_;
 };
 
 }  // namespace rlpc

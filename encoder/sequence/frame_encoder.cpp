@@ -151,7 +151,7 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
 
 // The index as large as it gets with GOFs that meet the target in bits.
 std::uint64_t FrameEncoder::Impl::fixed_bytes() const {
-  const std::uint64_t without = stream_->frame_bytes();
+  const std::uint64_t without = stream_->overhead_bytes();
   if (settings_.target.kind != Target::kBpvf) return without;
   std::vector<GofEntry> largest;
   for (const GofSpan& span : spans_) {

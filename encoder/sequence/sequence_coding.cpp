@@ -54,7 +54,7 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
       context_{header_, topology_, connectivity_.triangles} {
   if (header_.profile_idc != kProfileMain) return;
   layers_ = make_layers(header_.num_vertices, connectivity_.triangles);
-  bone_context_.emplace(BoneContext{{}, connectivity_.triangles, header_.position_bits});
+  bone_context_.emplace(SkinnedContext{{}, connectivity_.triangles, header_.position_bits});
   for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
                                       Prediction::kParallelograms, Prediction::kLayers}) {
     bone_context_->meshes.emplace_back(prediction, topology_, layers_);
@@ -88,10 +88,11 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
                                                      std::uint32_t first_frame,
                                                      GofMemory& memory) const {
   if (header_.profile_idc == kProfileMain) {
-    return std::make_unique<MainGofSearch>(*bone_context_, context_, frames, first_frame,
+    return std::make_unique<GofKindSearch>(*bone_context_, context_, frames, first_frame,
                                            settings_, memory.main);
   }
-  return std::make_unique<GofSearch>(context_, frames, first_frame, settings_, memory.clusters);
+  return std::make_unique<ClusterGofSearch>(context_, frames, first_frame, settings_,
+                                            memory.clusters);
 }
 
 InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& span,

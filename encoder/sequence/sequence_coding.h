@@ -37,8 +37,8 @@ TargetSearch::Expected expected_kg(std::vector<const GofCoder*> coders, double s
 
 // The choices of a search that hold for later coders of the same GOF.
 struct GofMemory {
-  std::optional<GofChoice> clusters;  // of the Baseline profile
-  MainChoice main;                    // of the Main profile
+  std::optional<ClusterChoice> clusters;  // of the Baseline profile
+  GofKindChoice main;                     // of the Main profile
 };
 
 class SequenceCoding {
@@ -70,9 +70,9 @@ class SequenceCoding {
   const EncoderSettings& settings_;
   ConnectivityCode connectivity_;
   Topology topology_;
-  EncodingContext context_;
+  ClusterContext context_;
   VertexLayers layers_;  // of the Main profile
-  std::optional<BoneContext> bone_context_;
+  std::optional<SkinnedContext> bone_context_;
 };
 
 // The units of a coded GOF, as they stand in a stream.

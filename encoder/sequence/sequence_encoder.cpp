@@ -183,7 +183,7 @@ double SequenceEncoder::measured(const SequenceTrial& trial) const {
     case Target::kMaxError:
       return trial.metrics.max_error;
     case Target::kBpvf:
-      return bits_per_vertex_per_frame(trial.gof_bytes + stream_->frame_bytes(),
+      return bits_per_vertex_per_frame(trial.gof_bytes + stream_->overhead_bytes(),
                                        header_.num_vertices, header_.num_frames);
     case Target::kNone:
       break;

@@ -26,7 +26,7 @@ class StreamAssembly {
                  const ConnectivityCode& connectivity);
 
   // Of all that is no GOF, hash or index.
-  std::uint64_t frame_bytes() const { return lead_bytes_ + end_bytes_; }
+  std::uint64_t overhead_bytes() const { return lead_bytes_ + end_bytes_; }
   // Of the index of a stream with such GOFs; 0 if it would have none.
   std::uint64_t index_bytes(const std::vector<GofEntry>& gofs) const;
 

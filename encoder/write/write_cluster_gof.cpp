@@ -10,9 +10,10 @@
 namespace rlpc {
 namespace {
 
-class GofSectionWriter {
+class ClusterSectionWriter {
  public:
-  GofSectionWriter(const SequenceHeader& header, const Topology& topology, const Gof& gof)
+  ClusterSectionWriter(const SequenceHeader& header, const Topology& topology,
+                       const ClusterGof& gof)
       : header_(header), topology_(topology), gof_(gof) {}
 
   std::vector<std::uint8_t> write();
@@ -28,9 +29,9 @@ class GofSectionWriter {
 
   const SequenceHeader& header_;
   const Topology& topology_;
-  const Gof& gof_;
+  const ClusterGof& gof_;
   SectionWriter section_;
-  GofModels models_;
+  ClusterModels models_;
   std::vector<std::uint32_t> frame_mean_;
   int previous_scale_idx_ = Component{}.scale_idx;
   int previous_spatial_bits_ = Component{}.spatial_bits;
@@ -38,13 +39,13 @@ class GofSectionWriter {
 };
 
 // 9.5.4 ae_header( field )
-void GofSectionWriter::header_delta(HeaderField field, int value, int previous) {
+void ClusterSectionWriter::header_delta(HeaderField field, int value, int previous) {
   std::uint32_t& mean = models_.header_mean[static_cast<std::size_t>(field)];
   section_.header_value(models_.header, mean, value, previous);
 }
 
 // 6.5.2 cluster_headers( )
-void GofSectionWriter::cluster_headers() {
+void ClusterSectionWriter::cluster_headers() {
   for (const Cluster& cluster : gof_.clusters) {
     section_.bin(models_.lcf_flag, cluster.lcf_flag);
     if (!cluster.lcf_flag) continue;
@@ -56,7 +57,7 @@ void GofSectionWriter::cluster_headers() {
 }
 
 // 6.5.3 cluster_map( )
-void GofSectionWriter::cluster_map() {
+void ClusterSectionWriter::cluster_map() {
   models_.cluster_idx.resize(std::size_t{1} << ceil_log2(gof_.clusters.size()));
   if (gof_.clusters.size() == 1) return;
   std::uint16_t previous = 0;
@@ -69,7 +70,8 @@ void GofSectionWriter::cluster_map() {
   }
 }
 
-void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uint16_t cluster) {
+void ClusterSectionWriter::cluster_idx(const ClusterPrediction& prediction,
+                                       std::uint16_t cluster) {
   const bool predicted = prediction.cluster == cluster;
   section_.bin(models_.cluster_predicted_flag[prediction.context], predicted);
   if (predicted) return;
@@ -82,7 +84,7 @@ void GofSectionWriter::cluster_idx(const ClusterPrediction& prediction, std::uin
 }
 
 // 6.5.4 seed_tracks( )
-void GofSectionWriter::seed_tracks() {
+void ClusterSectionWriter::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
   for (const SeedTrack& track : gof_.seed_tracks) {
     section_.track(models_.seed, frame_mean_, track.residual);
@@ -90,7 +92,7 @@ void GofSectionWriter::seed_tracks() {
 }
 
 // 6.5.5 component_counts( )
-void GofSectionWriter::component_counts() {
+void ClusterSectionWriter::component_counts() {
   int previous = 0;
   for (const Cluster& cluster : gof_.clusters) {
     const int count = static_cast<int>(cluster.components.size());
@@ -100,7 +102,7 @@ void GofSectionWriter::component_counts() {
 }
 
 // 6.5.7 component( )
-void GofSectionWriter::component(const Component& component) {
+void ClusterSectionWriter::component(const Component& component) {
   header_delta(HeaderField::kScaleIdx, component.scale_idx, previous_scale_idx_);
   header_delta(HeaderField::kSpatialBits, component.spatial_bits, previous_spatial_bits_);
   header_delta(HeaderField::kTemporalBits, component.temporal_bits, previous_temporal_bits_);
@@ -129,7 +131,7 @@ void GofSectionWriter::component(const Component& component) {
 }
 
 // 6.5.1 gof_section( )
-std::vector<std::uint8_t> GofSectionWriter::write() {
+std::vector<std::uint8_t> ClusterSectionWriter::write() {
   cluster_headers();
   cluster_map();
   seed_tracks();
@@ -144,7 +146,7 @@ std::vector<std::uint8_t> GofSectionWriter::write() {
 }  // namespace
 
 // 6.5 gof( )
-std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header,
+std::vector<std::uint8_t> write_gof(const ClusterGof& gof, const SequenceHeader& header,
                                     const Topology& topology) {
   BitWriter w;
   w.ue(gof.first_frame);
@@ -156,7 +158,7 @@ std::vector<std::uint8_t> write_gof(const Gof& gof, const SequenceHeader& header
   w.u(3, static_cast<std::uint32_t>(gof.seed_predictor));
   w.flag(gof.seed_coupling_flag);
   w.byte_alignment();
-  w.append(GofSectionWriter(header, topology, gof).write());
+  w.append(ClusterSectionWriter(header, topology, gof).write());
   return w.take();
 }
 

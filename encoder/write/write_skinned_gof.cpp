@@ -16,7 +16,7 @@ namespace rlpc {
 namespace {
 
 // 6.11.1 bone_section( )
-std::vector<std::uint8_t> write_bone_section(const BoneGof& gof, int position_bits) {
+std::vector<std::uint8_t> write_bone_section(const SkinnedGof& gof, int position_bits) {
   SectionWriter section;
   BoneModels models;
   std::vector<std::uint32_t> rotation_mean(gof.num_frames, 0);
@@ -48,7 +48,7 @@ std::vector<std::uint8_t> write_bone_section(const BoneGof& gof, int position_bi
 // 6.12 slice_unit( ), one after the other.
 class SliceWriter {
  public:
-  SliceWriter(const BoneGof& gof, const CodedMesh& mesh)
+  SliceWriter(const SkinnedGof& gof, const CodedMesh& mesh)
       : gof_(gof), mesh_(mesh), trajectory_mean_(gof.num_frames, 0) {}
 
   std::vector<std::uint8_t> write(std::uint32_t group, std::uint32_t layers);
@@ -62,7 +62,7 @@ class SliceWriter {
   void influences(SectionWriter& section, std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(SectionWriter& section, std::uint32_t v, std::uint32_t group);
 
-  const BoneGof& gof_;
+  const SkinnedGof& gof_;
   const CodedMesh& mesh_;
   SliceModels models_;
   Trajectory previous_;
@@ -172,7 +172,7 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
 }
 
 // 6.5 gof( ) and 6.11 bones_of_gof( )
-std::vector<std::uint8_t> write_bones_of_gof(const BoneGof& gof, int position_bits) {
+std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position_bits) {
   BitWriter w;
   w.ue(gof.first_frame);
   w.ue(gof.num_frames - 1);
@@ -200,8 +200,9 @@ std::vector<std::uint8_t> write_bones_of_gof(const BoneGof& gof, int position_bi
 
 }  // namespace
 
-BoneGofPayloads write_bone_gof(const BoneGof& gof, const CodedMesh& mesh, int position_bits) {
-  BoneGofPayloads payloads;
+SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
+                                     int position_bits) {
+  SkinnedGofPayloads payloads;
   payloads.gof = write_bones_of_gof(gof, position_bits);
   SliceWriter writer(gof, mesh);
   for (std::uint32_t group = 0; group < gof.slice_layers.size(); ++group) {

@@ -11,10 +11,11 @@ namespace rlpc {
 
 // Payloads of the unit of a GOF of bones and of its slice units. All values must be legal
 // (asserted). gof.slice_layers says which slices are written.
-struct BoneGofPayloads {
+struct SkinnedGofPayloads {
   std::vector<std::uint8_t> gof;
   std::vector<std::vector<std::uint8_t>> slices;
 };
-BoneGofPayloads write_bone_gof(const BoneGof& gof, const CodedMesh& mesh, int position_bits);
+SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
+                                     int position_bits);
 
 }  // namespace rlpc

@@ -52,7 +52,7 @@ std::int64_t SpatialPrediction::predict(SpatialPredictor predictor,
   return div_round(sum, static_cast<std::int64_t>(list.size()));
 }
 
-ClusterMembers cluster_members(const Gof& gof) {
+ClusterMembers cluster_members(const ClusterGof& gof) {
   ClusterMembers members;
   members.vertices.resize(gof.clusters.size());
   members.local_index.resize(gof.cluster_of_vertex.size());
@@ -95,7 +95,8 @@ std::vector<std::int32_t> recon_spatial(const Component& component,
 }
 
 // 8.1 Decoding a GOF
-GofRecon::GofRecon(const SequenceHeader& header, const Topology& topology, const Gof& gof)
+ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topology,
+                           const ClusterGof& gof)
     : num_frames_(gof.num_frames),
       position_bits_(header.position_bits),
       fraction_bits_(gof.fraction_bits),
@@ -112,7 +113,7 @@ GofRecon::GofRecon(const SequenceHeader& header, const Topology& topology, const
     std::vector<std::uint32_t>& vertices = members.vertices[i];
     const SpatialPrediction prediction(topology, vertices, gof.cluster_of_vertex,
                                        members.local_index);
-    FactorSet factors(3 * vertices.size(), num_frames_);
+    ComponentSum factors(3 * vertices.size(), num_frames_);
     for (const Component& component : cluster.components) {
       std::vector<std::int32_t> temporal = recon_temporal(component);
       for (std::int32_t& t : temporal) {
@@ -132,8 +133,8 @@ GofRecon::GofRecon(const SequenceHeader& header, const Topology& topology, const
 }
 
 // 8.5.4 Positions of a cluster
-void GofRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
-                             std::span<std::int32_t> positions) const {
+void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
+                                 std::span<std::int32_t> positions) const {
   const std::size_t n = cluster.vertices.size();
   std::vector<std::int64_t> local(3 * n);
   cluster.factors.sum(f, local);
@@ -156,7 +157,7 @@ void GofRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
   }
 }
 
-void GofRecon::frame(std::uint32_t f, std::span<std::int32_t> positions) const {
+void ClusterRecon::frame(std::uint32_t f, std::span<std::int32_t> positions) const {
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       positions[3 * std::size_t{track_vertex_[t]} + c] = tracks_[t][f][c];

@@ -39,7 +39,7 @@ struct ClusterMembers {
   std::vector<std::vector<std::uint32_t>> vertices;
   std::vector<std::uint32_t> local_index;  // [num_vertices]; unspecified for seeds
 };
-ClusterMembers cluster_members(const Gof& gof);
+ClusterMembers cluster_members(const ClusterGof& gof);
 
 // 8.5.1 Temporal values of a component, predictions undone; [num_gof_frames], 24 bits.
 std::vector<std::int32_t> recon_temporal(const Component& component);
@@ -47,11 +47,11 @@ std::vector<std::int32_t> recon_temporal(const Component& component);
 std::vector<std::int32_t> recon_spatial(const Component& component,
                                         const SpatialPrediction& prediction);
 
-class GofRecon {
+class ClusterRecon {
  public:
   // Prepares the GOF; all arguments are only read, during the call. Cannot fail: parse has
   // checked every range, and sums are clipped.
-  GofRecon(const SequenceHeader& header, const Topology& topology, const Gof& gof);
+  ClusterRecon(const SequenceHeader& header, const Topology& topology, const ClusterGof& gof);
 
   // Positions of one frame of the GOF, grid units, [num_vertices][3].
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const;
@@ -69,7 +69,7 @@ class GofRecon {
     bool lcf_flag;
     std::array<std::size_t, 3> seed_track;
     std::vector<std::uint32_t> vertices;
-    FactorSet factors;
+    ComponentSum factors;
   };
 
   void cluster_frame(const ClusterState& cluster, std::uint32_t f,

@@ -23,8 +23,8 @@ SequenceHeader header_of(std::uint32_t num_vertices, int position_bits = 20) {
   return header;
 }
 
-Gof world_gof(std::uint32_t num_vertices, std::uint32_t num_frames) {
-  Gof gof;
+ClusterGof world_gof(std::uint32_t num_vertices, std::uint32_t num_frames) {
+  ClusterGof gof;
   gof.num_frames = num_frames;
   gof.clusters.resize(1);
   gof.cluster_of_vertex.assign(num_vertices, 0);
@@ -42,18 +42,18 @@ Component component_of(std::vector<std::int32_t> temporal, std::vector<std::int3
   return component;
 }
 
-Positions frame_of(const SequenceHeader& header, const Gof& gof, std::uint32_t f,
+Positions frame_of(const SequenceHeader& header, const ClusterGof& gof, std::uint32_t f,
                    const std::vector<Triangle>& triangles = {}) {
   const Topology topology = make_topology(header.num_vertices, triangles);
-  const GofRecon recon(header, topology, gof);
+  const ClusterRecon recon(header, topology, gof);
   EXPECT_EQ(recon.num_frames(), gof.num_frames);
   Positions positions(3 * std::size_t{header.num_vertices}, 77777);
   recon.frame(f, positions);
   return positions;
 }
 
-TEST(GofRecon, WorldPositionsAreRoundedSumsOfProducts) {
-  Gof gof = world_gof(2, 3);
+TEST(ClusterRecon, WorldPositionsAreRoundedSumsOfProducts) {
+  ClusterGof gof = world_gof(2, 3);
   gof.clusters[0].components = {
       component_of({1, 2, -1}, {160, -24, /* y */ 8, 7, /* z */ -8, -9}),
       component_of({0, 1, 1}, {16, 32, 48, 64, 80, 96}),
@@ -63,24 +63,24 @@ TEST(GofRecon, WorldPositionsAreRoundedSumsOfProducts) {
   EXPECT_EQ(frame_of(header_of(2), gof, 2), (Positions{-9, 3, 6, 4, 4, 7}));
 }
 
-TEST(GofRecon, FractionBitsAreRoundedAwayBeforeTheLocalUnit) {
-  Gof gof = world_gof(1, 1);
+TEST(ClusterRecon, FractionBitsAreRoundedAwayBeforeTheLocalUnit) {
+  ClusterGof gof = world_gof(1, 1);
   gof.fraction_bits = 3;
   // 60 / 8 = 7.5, up to 8, then 8 / 16, up to 1; 59 / 8 is rounded to 7, then down to 0.
   gof.clusters[0].components = {component_of({1}, {60, 59, -68})};
   EXPECT_EQ(frame_of(header_of(1), gof, 0), (Positions{1, 0, 0}));
 }
 
-TEST(GofRecon, SpatialValuesOfFewBitsAreShiftedUpTo13) {
-  Gof gof = world_gof(1, 1);
+TEST(ClusterRecon, SpatialValuesOfFewBitsAreShiftedUpTo13) {
+  ClusterGof gof = world_gof(1, 1);
   Component component = component_of({16}, {1, -2, 0});
   component.spatial_bits = 2;
   gof.clusters[0].components = {component};
   EXPECT_EQ(frame_of(header_of(1), gof, 0), (Positions{2048, -4096, 0}));
 }
 
-TEST(GofRecon, ScaleMultipliesTheTemporalValues) {
-  Gof gof = world_gof(1, 1);
+TEST(ClusterRecon, ScaleMultipliesTheTemporalValues) {
+  ClusterGof gof = world_gof(1, 1);
   gof.clusters[0].components = {component_of({100}, {16, 32, -16})};
   gof.clusters[0].components[0].scale_idx = kUnitScale + 8;
   EXPECT_EQ(frame_of(header_of(1), gof, 0), (Positions{200, 400, -200}));
@@ -90,7 +90,7 @@ TEST(GofRecon, ScaleMultipliesTheTemporalValues) {
   EXPECT_EQ(frame_of(header_of(1), gof, 0), (Positions{63, 126, -63}));
 }
 
-TEST(GofRecon, TemporalValuesArePredictedAndClippedTo24Bits) {
+TEST(ClusterRecon, TemporalValuesArePredictedAndClippedTo24Bits) {
   Component component = component_of({100, 10, 10, -5}, {});
   component.temporal_predictor = 1;
   EXPECT_EQ(recon_temporal(component), (std::vector<std::int32_t>{100, 110, 120, 115}));
@@ -168,8 +168,8 @@ TEST(SpatialValues, ArePredictedOnlyFromTheSameCluster) {
   EXPECT_EQ(square.values(SpatialPredictor::kNeighbours, {10, 4}), (Values{10, 14}));
 }
 
-TEST(GofRecon, PositionsAreClippedToPositionBits) {
-  Gof gof = world_gof(2, 2);
+TEST(ClusterRecon, PositionsAreClippedToPositionBits) {
+  ClusterGof gof = world_gof(2, 2);
   gof.clusters[0].components = {
       component_of({1, 1 << 18}, {16 * 7, 16 * 8, 16 * -8, -16 * 9, 0, 16})};
   EXPECT_EQ(frame_of(header_of(2, 4), gof, 0), (Positions{7, -8, 0, 7, -8, 1}));
@@ -179,8 +179,8 @@ TEST(GofRecon, PositionsAreClippedToPositionBits) {
 }
 
 // The seeds are vertices 3, 1 and 0 of five; vertices 2 and 4 are coded.
-Gof lcf_gof(std::uint32_t num_frames) {
-  Gof gof = world_gof(5, num_frames);
+ClusterGof lcf_gof(std::uint32_t num_frames) {
+  ClusterGof gof = world_gof(5, num_frames);
   gof.clusters[0].lcf_flag = true;
   gof.clusters[0].seed_vertex = {3, 1, 0};
   gof.seed_predictor = 0;
@@ -189,8 +189,8 @@ Gof lcf_gof(std::uint32_t num_frames) {
   return gof;
 }
 
-TEST(GofRecon, LocalCoordinatesMoveWithTheSeeds) {
-  Gof gof = lcf_gof(2);
+TEST(ClusterRecon, LocalCoordinatesMoveWithTheSeeds) {
+  ClusterGof gof = lcf_gof(2);
   // Frame 0: axes of the world, origin (5, 0, 0). Residuals of frame 0 are against track 0.
   // Frame 1: x to z, y to x, z to y of the world, origin (100, 200, 305).
   gof.seed_tracks[0].residual = {{0, 0, 0}, {100, 200, 300}};
@@ -203,9 +203,9 @@ TEST(GofRecon, LocalCoordinatesMoveWithTheSeeds) {
                                                        306, 100, 200, 300, 100, 204, 303}));
 }
 
-TEST(GofRecon, WithoutComponentsVerticesAreAtTheOrigin) {
+TEST(ClusterRecon, WithoutComponentsVerticesAreAtTheOrigin) {
   EXPECT_EQ(frame_of(header_of(2), world_gof(2, 1), 0), Positions(6, 0));
-  Gof gof = lcf_gof(1);
+  ClusterGof gof = lcf_gof(1);
   gof.seed_tracks[0].residual = {{4, 6, 8}};
   gof.seed_tracks[1].residual = {{10, 0, 0}};
   gof.seed_tracks[2].residual = {{0, 10, 0}};
@@ -213,8 +213,8 @@ TEST(GofRecon, WithoutComponentsVerticesAreAtTheOrigin) {
             (Positions{4, 16, 8, 14, 6, 8, 9, 6, 8, 4, 6, 8, 9, 6, 8}));
 }
 
-TEST(GofRecon, ClustersShareSeedsAndMayBeEmpty) {
-  Gof gof = lcf_gof(1);
+TEST(ClusterRecon, ClustersShareSeedsAndMayBeEmpty) {
+  ClusterGof gof = lcf_gof(1);
   gof.clusters.resize(3);
   gof.clusters[1] = gof.clusters[0];
   gof.clusters[1].seed_vertex = {1, 3, 0};  // the same seeds, x the other way
@@ -230,8 +230,8 @@ TEST(GofRecon, ClustersShareSeedsAndMayBeEmpty) {
             (Positions{0, 10, 0, 10, 0, 0, 6, 2, 3, 0, 0, 0, 4, 2, -3}));
 }
 
-TEST(GofRecon, WorldAndLocalClustersStandSideBySide) {
-  Gof gof = lcf_gof(1);
+TEST(ClusterRecon, WorldAndLocalClustersStandSideBySide) {
+  ClusterGof gof = lcf_gof(1);
   gof.clusters.resize(2);
   gof.cluster_of_vertex[4] = 1;
   gof.seed_tracks[0].residual = {{100, 0, 0}};
@@ -245,8 +245,8 @@ TEST(GofRecon, WorldAndLocalClustersStandSideBySide) {
 }
 
 // Factors and seeds at their bounds: sums of 2^48, local coordinates clipped to 31 bits.
-TEST(GofRecon, SaturatingInputsAreClippedNotWrapped) {
-  Gof gof = lcf_gof(1);
+TEST(ClusterRecon, SaturatingInputsAreClippedNotWrapped) {
+  ClusterGof gof = lcf_gof(1);
   gof.seed_step = kMaxSeedStep;
   for (SeedTrack& track : gof.seed_tracks) track.residual = {{kMost, -kMost, kMost}};
   gof.seed_tracks[1].residual = {{-kMost, 0, 0}};
@@ -268,13 +268,13 @@ TEST(GofRecon, SaturatingInputsAreClippedNotWrapped) {
   EXPECT_EQ((Positions{frame_of(header_of(5, 24), gof, 0)[6]}), Positions{most});
 }
 
-TEST(GofRecon, FramesCanBeAskedForInAnyOrder) {
-  Gof gof = world_gof(2, 4);
+TEST(ClusterRecon, FramesCanBeAskedForInAnyOrder) {
+  ClusterGof gof = world_gof(2, 4);
   gof.clusters[0].components = {component_of({10, 5, -3, 8}, {160, 32, 16, -48, 64, 16})};
   gof.clusters[0].components[0].temporal_predictor = 2;
   const Topology topology = make_topology(2, {});
   const SequenceHeader header = header_of(2);
-  const GofRecon recon(header, topology, gof);
+  const ClusterRecon recon(header, topology, gof);
   std::vector<Positions> forwards(4, Positions(6));
   for (std::uint32_t f = 0; f < 4; ++f) recon.frame(f, forwards[f]);
   for (const std::uint32_t f : {3U, 0U, 2U, 2U, 1U}) {

@@ -5,8 +5,8 @@
 namespace rlpc {
 
 // 8.2.1 Prediction of a seed position
-std::int64_t predict_seed(const Gof& gof, const std::vector<Track>& tracks, std::size_t index,
-                          std::uint32_t f, std::size_t c) {
+std::int64_t predict_seed(const ClusterGof& gof, const std::vector<Track>& tracks,
+                          std::size_t index, std::uint32_t f, std::size_t c) {
   const std::size_t anchor = gof.seed_tracks[index].anchor;
   const auto series_of = [&](std::size_t track) {
     return [&tracks, track, c](std::uint32_t g) { return std::int64_t{tracks[track][g][c]}; };
@@ -24,7 +24,7 @@ std::int64_t predict_seed(const Gof& gof, const std::vector<Track>& tracks, std:
 }
 
 // 8.2 Seed track process
-std::vector<Track> recon_seed_tracks(const Gof& gof, int position_bits) {
+std::vector<Track> recon_seed_tracks(const ClusterGof& gof, int position_bits) {
   std::vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     for (std::uint32_t f = 0; f < gof.num_frames; ++f) {

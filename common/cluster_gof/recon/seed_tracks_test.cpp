@@ -14,8 +14,8 @@ namespace {
 
 constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
-Gof tracks_of(std::vector<SeedTrack> tracks, std::uint32_t num_frames) {
-  Gof gof;
+ClusterGof tracks_of(std::vector<SeedTrack> tracks, std::uint32_t num_frames) {
+  ClusterGof gof;
   gof.num_frames = num_frames;
   gof.seed_tracks = std::move(tracks);
   for (SeedTrack& track : gof.seed_tracks) track.residual.resize(num_frames);
@@ -23,7 +23,7 @@ Gof tracks_of(std::vector<SeedTrack> tracks, std::uint32_t num_frames) {
 }
 
 TEST(SeedTracks, WithoutPredictorAreTheScaledResiduals) {
-  Gof gof = tracks_of({{4, 0, {{1, -2, 3}, {5, 0, -7}}}}, 2);
+  ClusterGof gof = tracks_of({{4, 0, {{1, -2, 3}, {5, 0, -7}}}}, 2);
   gof.seed_predictor = 0;
   gof.seed_step = 10;
   const std::vector<Track> tracks = recon_seed_tracks(gof, 20);
@@ -33,13 +33,13 @@ TEST(SeedTracks, WithoutPredictorAreTheScaledResiduals) {
 
 // In frame 0 the anchor is predicted from the track before, the others from their anchor.
 TEST(SeedTracks, FirstFrameIsPredictedFromOtherTracks) {
-  const Gof gof = tracks_of({{0, 0, {{100, 0, 0}}},
-                             {1, 0, {{1, 1, 1}}},
-                             {2, 0, {{2, 2, 2}}},
-                             {3, 3, {{0, 50, 0}}},
-                             {4, 3, {{0, 0, 1}}},
-                             {5, 1, {{7, 0, 0}}}},
-                            1);
+  const ClusterGof gof = tracks_of({{0, 0, {{100, 0, 0}}},
+                                    {1, 0, {{1, 1, 1}}},
+                                    {2, 0, {{2, 2, 2}}},
+                                    {3, 3, {{0, 50, 0}}},
+                                    {4, 3, {{0, 0, 1}}},
+                                    {5, 1, {{7, 0, 0}}}},
+                                   1);
   const std::vector<Track> tracks = recon_seed_tracks(gof, 20);
   EXPECT_EQ(tracks[0][0], (Vec3i{100, 0, 0}));
   EXPECT_EQ(tracks[1][0], (Vec3i{101, 1, 1}));
@@ -66,7 +66,7 @@ TEST(SeedTracks, FollowPolynomialsWithoutResidualsAfterTheFirstFrames) {
       residual[static_cast<std::size_t>(f)][1] =
           static_cast<std::int32_t>(value(f) - prediction);
     }
-    Gof gof = tracks_of({{0, 0, residual}}, 12);
+    ClusterGof gof = tracks_of({{0, 0, residual}}, 12);
     gof.seed_predictor = order;
     const std::vector<Track> tracks = recon_seed_tracks(gof, 24);
     for (int f = 0; f < 12; ++f) {
@@ -78,7 +78,7 @@ TEST(SeedTracks, FollowPolynomialsWithoutResidualsAfterTheFirstFrames) {
 // With coupling, a track also follows what its anchor does against its own prediction.
 TEST(SeedTracks, CoupledTracksFollowTheirAnchor) {
   const std::vector<Vec3i> jumps{{5, 0, 0}, {100, -40, 3}, {-7, 0, 0}, {0, 0, 90}};
-  Gof gof = tracks_of({{0, 0, jumps}, {1, 0, {{11, 22, 33}}}}, 4);
+  ClusterGof gof = tracks_of({{0, 0, jumps}, {1, 0, {{11, 22, 33}}}}, 4);
   gof.seed_coupling_flag = true;
   for (int order = 0; order <= kMaxPredictorOrder; ++order) {
     gof.seed_predictor = order;
@@ -119,7 +119,7 @@ TEST(SeedTracks, AreClippedToPositionBitsWhateverTheResiduals) {
         }
       }
     }
-    Gof gof = tracks_of(list, kFrames);
+    ClusterGof gof = tracks_of(list, kFrames);
     gof.seed_step = seed % 3 == 0 ? kMaxSeedStep : 1 + static_cast<std::uint32_t>(random() % 9);
     gof.seed_predictor = static_cast<int>(seed % 5);
     gof.seed_coupling_flag = seed % 2 == 0;

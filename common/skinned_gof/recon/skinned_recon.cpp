@@ -71,12 +71,12 @@ void ValuePrediction::predict(std::uint32_t v, std::span<const std::int32_t> val
   for (std::int64_t& x : prediction) x = div_round(x, count);
 }
 
-FactorGroup factor_group(const BoneGof& gof, std::size_t group) {
+FactorGroup factor_group(const SkinnedGof& gof, std::size_t group) {
   return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
 }
 
 // 8.10.2 Spatial values
-std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const BoneGof& gof,
+std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
                                        const ValuePrediction& prediction) {
   const FactorGroup factors = factor_group(gof, group);
@@ -154,8 +154,8 @@ Vec3l skinned_point(const Influences& influences, int weight_bits,
 }
 
 // 8.14.3 Positions
-BoneRecon::BoneRecon(const CodedMesh& mesh, const BoneGof& gof, int position_bits,
-                     const TileLoops& loops)
+SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
+                           const Kernels& loops)
     : num_frames_(gof.num_frames),
       num_vertices_(mesh.num_vertices()),
       widths_{gof.weight_bits, gof.fraction_bits, position_bits},
@@ -167,7 +167,7 @@ BoneRecon::BoneRecon(const CodedMesh& mesh, const BoneGof& gof, int position_bit
   add_factors(mesh, gof, rest);
 }
 
-void BoneRecon::add_influences(const BoneGof& gof, std::span<const std::int32_t> rest) {
+void SkinnedRecon::add_influences(const SkinnedGof& gof, std::span<const std::int32_t> rest) {
   struct Entry {
     Influence influence;
     std::size_t vertex;
@@ -202,8 +202,8 @@ void BoneRecon::add_influences(const BoneGof& gof, std::span<const std::int32_t>
   weight_.resize(weight_.size() + 3);
 }
 
-void BoneRecon::add_factors(const CodedMesh& mesh, const BoneGof& gof,
-                            std::span<const std::int32_t> rest) {
+void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
+                               std::span<const std::int32_t> rest) {
   std::optional<GeometryWeights> weights;
   if (gof.prediction == Prediction::kLayers && !gof.trajectories.empty()) {
     std::array<std::vector<std::int32_t>, 3> plane;
@@ -232,7 +232,7 @@ void BoneRecon::add_factors(const CodedMesh& mesh, const BoneGof& gof,
 }
 
 // Where their bones take the rest positions of a tile, times the sum of the weights.
-void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
+void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   const auto runs =
       std::span(runs_).subspan(first_run_[tile], first_run_[tile + 1] - first_run_[tile]);
   // All vertices follow one bone alone: their places are those of the run.
@@ -258,8 +258,8 @@ void BoneRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   }
 }
 
-void BoneRecon::frames(std::uint32_t first, std::uint32_t count,
-                       std::span<std::int32_t> positions) const {
+void SkinnedRecon::frames(std::uint32_t first, std::uint32_t count,
+                          std::span<std::int32_t> positions) const {
   Sums places{};
   std::array<std::array<std::int32_t, kTileValues>, 3> moved{};
   std::vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);

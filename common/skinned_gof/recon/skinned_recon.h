@@ -23,7 +23,7 @@ class ValuePrediction {
  public:
   // weights: null for rest positions, and without layers.
   ValuePrediction(const CodedMesh& mesh, bool is_rest, const GeometryWeights* weights)
-      : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(tile_loops().back()) {}
+      : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(kernels().back()) {}
 
   // values [num_vertices][n] and prediction [n], n factors.
   void predict(std::uint32_t v, std::span<const std::int32_t> values,
@@ -37,7 +37,7 @@ class ValuePrediction {
   const CodedMesh& mesh_;
   bool is_rest_;
   const GeometryWeights* weights_;
-  TileLoops loops_;
+  Kernels loops_;
 };
 
 // Factors [first, end) of the spatial factors of a GOF, as declared.
@@ -46,11 +46,12 @@ struct FactorGroup {
   std::size_t end = kRestFactors;
   std::size_t size() const { return end - first; }
 };
-FactorGroup factor_group(const BoneGof& gof, std::size_t group);
+FactorGroup factor_group(const SkinnedGof& gof, std::size_t group);
 
 // 8.10.2 Spatial values: what a residual of the rest positions, or of trajectories, adds at a
 // vertex of a layer.
-inline std::int64_t rest_difference(const BoneGof& gof, std::int32_t residual, int layer_step) {
+inline std::int64_t rest_difference(const SkinnedGof& gof, std::int32_t residual,
+                                    int layer_step) {
   return round2(std::int64_t{residual} * layer_step * gof.rest_step, 4);
 }
 inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
@@ -60,7 +61,7 @@ constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
 // of layers whose slices are absent.
-std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const BoneGof& gof,
+std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
                                        const ValuePrediction& prediction);
 
@@ -70,15 +71,15 @@ Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> va
 std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory);
 
 // 8.14.3 Positions: where its bones take a point, by their weights; 4 fractional bits,
-// |point| < 2^31. The plain twin of what BoneRecon does for many vertices.
+// |point| < 2^31. The plain twin of what SkinnedRecon does for many vertices.
 Vec3l skinned_point(const Influences& influences, int weight_bits,
                     std::span<const BoneMotion> bones, std::uint32_t f, const Vec3l& point);
 
-class BoneRecon {
+class SkinnedRecon {
  public:
   // Prepares the GOF; all arguments are only read, during the call. Cannot fail.
-  BoneRecon(const CodedMesh& mesh, const BoneGof& gof, int position_bits,
-            const TileLoops& loops = tile_loops().back());
+  SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
+               const Kernels& loops = kernels().back());
 
   // Positions of frames first to first + count - 1 of the GOF, grid units,
   // [count][num_vertices][3]. Several frames at a time are faster than one.
@@ -98,15 +99,15 @@ class BoneRecon {
   };
   using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
 
-  void add_influences(const BoneGof& gof, std::span<const std::int32_t> rest);
-  void add_factors(const CodedMesh& mesh, const BoneGof& gof,
+  void add_influences(const SkinnedGof& gof, std::span<const std::int32_t> rest);
+  void add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
                    std::span<const std::int32_t> rest);
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
 
   std::uint32_t num_frames_;
   std::size_t num_vertices_;
   PositionWidths widths_;
-  TileLoops loops_;
+  Kernels loops_;
   std::vector<BoneMotion> bones_;
   std::vector<Run> runs_;
   std::vector<std::size_t> first_run_;  // [tiles + 1]
@@ -114,7 +115,7 @@ class BoneRecon {
   std::array<std::vector<std::int32_t>, 3> arm_;  // of the rest position from the pivot
   std::vector<std::int32_t> weight_;
   std::vector<std::uint8_t> place_;  // of the vertex in its tile
-  FactorSet factors_;                // row 3 * f + c: coordinate c of frame f
+  ComponentSum factors_;             // row 3 * f + c: coordinate c of frame f
 };
 
 }  // namespace rlpc

@@ -19,7 +19,7 @@ using Plane = std::vector<std::int64_t>;  // of one factor, by vertex
 // 8.10 and 8.14 as the text has them: factor by factor, and nothing arranged for speed.
 class TextRecon {
  public:
-  explicit TextRecon(const RandomBoneGof& from)
+  explicit TextRecon(const RandomSkinnedGof& from)
       : from_(from),
         gof_(from.gof),
         mesh_(from.coded_mesh()),
@@ -108,25 +108,25 @@ class TextRecon {
     return ring.empty() ? 0 : div_round(sum, static_cast<std::int64_t>(ring.size()));
   }
 
-  const RandomBoneGof& from_;
-  const BoneGof& gof_;
+  const RandomSkinnedGof& from_;
+  const SkinnedGof& gof_;
   CodedMesh mesh_;
   std::vector<BoneMotion> bones_;
   std::optional<GeometryWeights> weights_;
 };
 
 // Slices of all kinds are absent in some of them.
-TEST(RandomBoneGofs, ReconstructAsInTheText) {
+TEST(RandomSkinnedGofs, ReconstructAsInTheText) {
   std::array<int, 4> predictions{};
   int absent = 0;
   for (unsigned seed = 1; seed <= 600; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomBoneGof from(seed, {});
+    const RandomSkinnedGof from(seed, {});
     ++predictions[static_cast<std::size_t>(from.gof.prediction)];
     if (from.gof.slice_layers.back() < from.gof.layer_group_size.size()) ++absent;
     const TextRecon text(from);
     const CodedMesh mesh = from.coded_mesh();
-    const BoneRecon recon(mesh, from.gof, from.header.position_bits);
+    const SkinnedRecon recon(mesh, from.gof, from.header.position_bits);
     ASSERT_EQ(recon.num_frames(), from.gof.num_frames);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
     for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
@@ -145,7 +145,7 @@ TEST(RandomBoneGofs, ReconstructAsInTheText) {
 TEST(RecoveredValues, OfRestPositionsAreThoseOfTheText) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomBoneGof from(seed, {.max_vertices = 120, .max_frames = 1});
+    const RandomSkinnedGof from(seed, {.max_vertices = 120, .max_frames = 1});
     const TextRecon text(from);
     const CodedMesh mesh = from.coded_mesh();
     const auto values =
@@ -179,19 +179,19 @@ TEST(ValuePredictions, TakeTheLatestParallelogramOrTheMeanOfAll) {
 }
 
 // A mesh at rest under one bone that does nothing.
-RandomBoneGof still(unsigned seed) {
-  RandomBoneGof from(seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0});
+RandomSkinnedGof still(unsigned seed) {
+  RandomSkinnedGof from(seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0});
   from.header.position_bits = 16;
   from.gof.bones[0] = Bone{};
   return from;
 }
 
-TEST(BoneRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
+TEST(SkinnedRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
-    const RandomBoneGof from = still(seed);
+    const RandomSkinnedGof from = still(seed);
     const CodedMesh mesh = from.coded_mesh();
     const auto rest = recon_values(mesh, from.gof, 0, 16, {mesh, true, nullptr});
-    const BoneRecon recon(mesh, from.gof, 16);
+    const SkinnedRecon recon(mesh, from.gof, 16);
     std::vector<std::int32_t> positions(rest.size());
     for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
       recon.frame(f, positions);
@@ -203,10 +203,10 @@ TEST(BoneRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
 }
 
 // 8.14.1: vertices of absent layers lie in the middle of their rings.
-TEST(BoneRecon, PredictsVerticesOfAbsentLayers) {
+TEST(SkinnedRecon, PredictsVerticesOfAbsentLayers) {
   int absent = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    const RandomBoneGof from = still(seed);
+    const RandomSkinnedGof from = still(seed);
     if (from.gof.prediction != Prediction::kLayers) continue;
     const CodedMesh mesh = from.coded_mesh();
     std::uint32_t present = 0;
@@ -292,7 +292,7 @@ TEST(SkinnedPoint, IsTheWeightedMeanOfItsBones) {
 }
 
 TEST(FactorGroups, FollowEachOther) {
-  BoneGof gof;
+  SkinnedGof gof;
   gof.group_end = {3, 5, 9};
   EXPECT_EQ(factor_group(gof, 0).first, 0U);
   EXPECT_EQ(factor_group(gof, 0).size(), 3U);

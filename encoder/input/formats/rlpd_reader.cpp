@@ -29,7 +29,7 @@ struct RlpdHeader {
   std::uint64_t bytes_before_frames() const {
     return kHeaderBytes + std::uint64_t{num_triangles} * 12;
   }
-  std::uint64_t frame_bytes() const { return std::uint64_t{num_vertices} * 12; }
+  std::uint64_t overhead_bytes() const { return std::uint64_t{num_vertices} * 12; }
 };
 
 InputResult<RlpdHeader> read_header(InputFile& file) {
@@ -78,11 +78,11 @@ InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader&
                       to_string(header.bytes_before_frames()) + "; the file is truncated"};
   }
   const std::uint64_t payload = file.size() - header.bytes_before_frames();
-  const std::uint64_t frames = payload / header.frame_bytes();
-  if (payload % header.frame_bytes() != 0) {
+  const std::uint64_t frames = payload / header.overhead_bytes();
+  if (payload % header.overhead_bytes() != 0) {
     return InputError{path + ": " + to_string(file.size()) + " bytes end inside frame " +
                       to_string(frames) + " (from 0); a frame has " +
-                      to_string(header.frame_bytes()) + " bytes"};
+                      to_string(header.overhead_bytes()) + " bytes"};
   }
   if (frames == 0) return InputError{path + ": the file holds no frame"};
   if (frames > header.num_frames) {
@@ -118,7 +118,8 @@ class RlpdSource : public FrameSource {
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
     bytes_.resize(xyz.size() * 4);
-    const std::uint64_t offset = header_.bytes_before_frames() + frame * header_.frame_bytes();
+    const std::uint64_t offset =
+        header_.bytes_before_frames() + frame * header_.overhead_bytes();
     if (auto error = file_.read(offset, bytes_)) return error;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
       xyz[i] = grid_value(header_.grid, i % 3, load_i32(bytes_, 4 * i));

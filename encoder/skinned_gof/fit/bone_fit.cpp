@@ -181,7 +181,7 @@ double BoneFit::expected_cost() const {
          error_per_bit() * kInfluenceBits * n * solver_.mean_influences();
 }
 
-double BoneFit::expected_sliding_cost() const {
+double BoneFit::expected_translation_cost() const {
   std::vector<double> residuals;
   residuals.reserve(3 * sample_.positions.size());
   for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
@@ -201,7 +201,7 @@ double BoneFit::rms_error() const {
   return std::sqrt(solver_.error() / static_cast<double>(sample_.positions.size()));
 }
 
-double BoneFit::sliding_error() const {
+double BoneFit::translation_error() const {
   double sum = 0.0;
   for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
     Vec3d mean = Vec3d::Zero();

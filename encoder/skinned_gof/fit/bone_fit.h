@@ -40,11 +40,11 @@ class BoneFit {
   // What coding the GOF with these bones is expected to cost (bone_estimate.h), rest positions
   // left out; and with one that only follows the centre of the vertices.
   double expected_cost() const;
-  double expected_sliding_cost() const;
+  double expected_translation_cost() const;
   // Of a vertex of the sample in a frame, grid units.
   double rms_error() const;
   // The same of one bone that only follows the centre of the vertices.
-  double sliding_error() const;
+  double translation_error() const;
   std::size_t num_bones() const { return solver_.motions().size(); }
 
   // The bones that save more bits than they cost. Bone 0 is the only root; weights are heaviest

@@ -81,10 +81,10 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
   return motions;
 }
 
-class BoneAnalyser {
+class SkinnedAnalyser {
  public:
-  BoneAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-               const Rig& rig, const BoneSettings& settings, double step)
+  SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
+                  const Rig& rig, const SkinnedSettings& settings, double step)
       : mesh_(mesh),
         position_bits_(position_bits),
         frames_(frames),
@@ -92,8 +92,8 @@ class BoneAnalyser {
         settings_(settings),
         step_(step) {}
 
-  BoneAnalysis analyse(std::uint32_t first_frame) {
-    BoneGof& gof = found_.gof;
+  SkinnedAnalysis analyse(std::uint32_t first_frame) {
+    SkinnedGof& gof = found_.gof;
     gof.first_frame = first_frame;
     gof.num_frames = frames_.num_frames;
     gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
@@ -208,7 +208,7 @@ class BoneAnalyser {
   }
 
   void code_rest() {
-    BoneGof& gof = found_.gof;
+    SkinnedGof& gof = found_.gof;
     const double rest_step =
         step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
     gof.rest_step = static_cast<std::uint32_t>(
@@ -272,9 +272,9 @@ class BoneAnalyser {
   int position_bits_;
   const GofFrames& frames_;
   const Rig& rig_;
-  const BoneSettings& settings_;
+  const SkinnedSettings& settings_;
   double step_;
-  BoneAnalysis found_;
+  SkinnedAnalysis found_;
   std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
   std::vector<MeanMotion> mean_;                  // [frame], of the vertex at hand,
   Influences mean_of_;                            // which has these
@@ -282,7 +282,7 @@ class BoneAnalyser {
 
 }  // namespace
 
-double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices) {
+double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices) {
   constexpr double kLeast = 0.4;  // squared errors of a coded value, per vertex
   // One bone leaves trajectories of all vertices, of which many are worth their bits: those of
   // long vectors need more.
@@ -296,10 +296,11 @@ double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices)
   return values * step * step / 12.0 * num_vertices;
 }
 
-BoneAnalysis analyse_bones(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-                           std::uint32_t first_frame, const Rig& rig,
-                           const BoneSettings& settings, double step) {
-  return BoneAnalyser(mesh, position_bits, frames, rig, settings, step).analyse(first_frame);
+SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
+                                    const GofFrames& frames, std::uint32_t first_frame,
+                                    const Rig& rig, const SkinnedSettings& settings,
+                                    double step) {
+  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step).analyse(first_frame);
 }
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ enum class Rounding : std::uint8_t {
   kNearest,   // where the largest error counts
 };
 
-struct BoneSettings {
+struct SkinnedSettings {
   Prediction prediction = Prediction::kLayers;
   int weight_bits = 6;
   int damping_log2 = 8;
@@ -39,8 +39,8 @@ struct BoneSettings {
 
 // Bones, influences and rest positions of a GOF, quantised, and the principal components of
 // what they leave of the motion.
-struct BoneAnalysis {
-  BoneGof gof;  // without trajectories and geometry weights
+struct SkinnedAnalysis {
+  SkinnedGof gof;  // without trajectories and geometry weights
   std::vector<BoneMotion> bones;
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
@@ -48,11 +48,12 @@ struct BoneAnalysis {
 
 // Every coded value adds about the same squared error, step^2 / 12, to the sum over all
 // coordinates of all frames.
-BoneAnalysis analyse_bones(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-                           std::uint32_t first_frame, const Rig& rig,
-                           const BoneSettings& settings, double step);
+SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
+                                    const GofFrames& frames, std::uint32_t first_frame,
+                                    const Rig& rig, const SkinnedSettings& settings,
+                                    double step);
 
 // Energy below which a trajectory costs more than it saves, whatever its temporal vector costs.
-double least_energy(double step, const BoneGof& gof, std::uint32_t num_vertices);
+double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices);
 
 }  // namespace rlpc

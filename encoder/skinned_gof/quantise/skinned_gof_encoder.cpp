@@ -41,8 +41,8 @@ constexpr double kMostSpatial = (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerSt
 // Trajectories and their spatial factors.
 class TrajectoryCoder {
  public:
-  TrajectoryCoder(const CodedMesh& mesh, const BoneAnalysis& analysis,
-                  const BoneSettings& settings, double step)
+  TrajectoryCoder(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                  const SkinnedSettings& settings, double step)
       : mesh_(mesh),
         analysis_(analysis),
         settings_(settings),
@@ -58,7 +58,7 @@ class TrajectoryCoder {
     code_temporal(count);
     return count_ == count;
   }
-  BoneGof code() {
+  SkinnedGof code() {
     while (!code_trajectories()) {
     }
     cut_slices();
@@ -398,13 +398,13 @@ class TrajectoryCoder {
   }
 
   const CodedMesh& mesh_;
-  const BoneAnalysis& analysis_;
-  const BoneSettings& settings_;
+  const SkinnedAnalysis& analysis_;
+  const SkinnedSettings& settings_;
   double step_;
   int least_eighths_ = -1000;  // of eighths_: none so far
   double excess_ = 0.0;        // largest spatial value, of those that fit
   std::size_t num_frames_;
-  BoneGof gof_;
+  SkinnedGof gof_;
   std::size_t num_tried_ = 0;                 // trajectories: the first components,
   std::size_t count_ = 0;                     // of which so many are coded
   std::vector<int> eighths_;                  // of the product of both steps
@@ -418,12 +418,12 @@ class TrajectoryCoder {
 
 }  // namespace
 
-bool has_trajectories(std::size_t count, const CodedMesh& mesh, const BoneAnalysis& analysis,
-                      const BoneSettings& settings, double step) {
+bool has_trajectories(std::size_t count, const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                      const SkinnedSettings& settings, double step) {
   return TrajectoryCoder(mesh, analysis, settings, step).has(count);
 }
 
-double expected_squared_error(const BoneAnalysis& analysis, double step) {
+double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
   constexpr double kOfCoded = 0.52;  // of what uniform quantisation adds to each value
   const double num_values = static_cast<double>(analysis.rest[0].size()) +
                             3.0 * kTemporalError * analysis.gof.num_frames;
@@ -434,8 +434,8 @@ double expected_squared_error(const BoneAnalysis& analysis, double step) {
   return error;
 }
 
-BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
-                      const BoneSettings& settings, double step) {
+SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const SkinnedSettings& settings, double step) {
   return TrajectoryCoder(mesh, analysis, settings, step).code();
 }
 

@@ -11,15 +11,15 @@
 namespace rlpc {
 
 // Whether as many principal components are worth a trajectory.
-bool has_trajectories(std::size_t count, const CodedMesh& mesh, const BoneAnalysis& analysis,
-                      const BoneSettings& settings, double step);
+bool has_trajectories(std::size_t count, const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                      const SkinnedSettings& settings, double step);
 
 // Squared error of a GOF of one bone, but for a factor that hardly depends on the step, of
 // about 0.6 to 1.6: components are left out or quantised, whichever errs less.
-double expected_squared_error(const BoneAnalysis& analysis, double step);
+double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 
 // The GOF ready to be written.
-BoneGof code_bone_gof(const CodedMesh& mesh, const BoneAnalysis& analysis,
-                      const BoneSettings& settings, double step);
+SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const SkinnedSettings& settings, double step);
 
 }  // namespace rlpc

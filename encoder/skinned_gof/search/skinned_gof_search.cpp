@@ -30,14 +30,14 @@ constexpr double kFlexiblePart = 1.0;
 // Expected costs at which bones are looked for: relative to those expected without bones, to
 // the real ones without, and to the real ones once the first bones are there. If the first are
 // very low, nothing else is tried.
-constexpr double kPromising = 0.72;
-constexpr double kPromisingOfReal = 0.85;
-constexpr double kPromisingUnsettled = 0.93;
-constexpr double kPromisingSettled = 0.9;
+constexpr double kTryFactor = 0.72;
+constexpr double kTryFactorOfReal = 0.85;
+constexpr double kTryFactorUnsettled = 0.93;
+constexpr double kTryFactorSettled = 0.9;
 constexpr double kSure = 0.3;
 // Below this part of the cost expected without bones, expected costs are trusted more than the
 // real one: what makes that low, such as vertices at rest, is there with bones, too.
-constexpr double kStrongPromise = 0.5;
+constexpr double kStrongEstimate = 0.5;
 // Limits of promises are so much higher where a trial takes little time.
 constexpr double kHopeOfSmallMesh = 1.35;
 constexpr double kHopeOfFewValues = 1.07;
@@ -54,19 +54,19 @@ constexpr double kHopeless = 0.92;
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
 
-const CodedMesh& mesh_of(const BoneContext& context, Prediction prediction) {
+const CodedMesh& mesh_of(const SkinnedContext& context, Prediction prediction) {
   return context.meshes[static_cast<std::size_t>(prediction)];
 }
 
-EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
+EncodedGof encoded_gof(const SkinnedContext& context, const SkinnedGof& gof) {
   EncodedGof encoded;
   const CodedMesh& mesh = mesh_of(context, gof.prediction);
-  BoneGofPayloads payloads = write_bone_gof(gof, mesh, context.position_bits);
+  SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, context.position_bits);
   encoded.units.push_back({UnitType::kGof, std::move(payloads.gof)});
   for (auto& slice : payloads.slices) {
     encoded.units.push_back({UnitType::kSlice, std::move(slice)});
   }
-  const auto recon = std::make_shared<BoneRecon>(mesh, gof, context.position_bits);
+  const auto recon = std::make_shared<SkinnedRecon>(mesh, gof, context.position_bits);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);
   };
@@ -80,14 +80,14 @@ EncodedGof encoded_gof(const BoneContext& context, const BoneGof& gof) {
   return encoded;
 }
 
-double hope_of(const GofFrames& frames) {
+double threshold_factor_of(const GofFrames& frames) {
   if (frames.num_vertices <= kSmallMesh) return kHopeOfSmallMesh;
   const std::uint64_t values = std::uint64_t{frames.num_vertices} * frames.num_frames;
   return values <= kFewValues ? kHopeOfFewValues : 1.0;
 }
 
 // One bone that does not turn: it follows the centre of the vertices.
-Rig sliding_rig(const GofFrames& frames) {
+Rig translation_rig(const GofFrames& frames) {
   Rig rig;
   const double n = frames.num_vertices;
   rig.bones.resize(1);
@@ -111,15 +111,15 @@ Rig sliding_rig(const GofFrames& frames) {
 
 }  // namespace
 
-BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames,
-                             std::uint32_t first_frame, const EncoderSettings& settings,
-                             std::optional<BoneChoice>& choice)
+SkinnedGofSearch::SkinnedGofSearch(const SkinnedContext& context, const GofFrames& frames,
+                                   std::uint32_t first_frame, const EncoderSettings& settings,
+                                   std::optional<SkinnedChoice>& choice)
     : context_(context),
       frames_(frames),
       first_frame_(first_frame),
       tools_(settings.main),
       preset_(settings.preset),
-      hope_(hope_of(frames)),
+      threshold_factor_(threshold_factor_of(frames)),
       max_influences_(tools_.influences == 0 ? kUsualInfluences : tools_.influences),
       choice_(choice) {
   if (tools_.layer_groups > 1) tools_.prediction = Prediction::kLayers;
@@ -138,27 +138,28 @@ BoneGofSearch::BoneGofSearch(const BoneContext& context, const GofFrames& frames
   if (settings.components > 0) usual_.max_trajectories = settings.components;
 }
 
-BoneAnalysis BoneGofSearch::analyse(const BoneChoice& choice, double step) const {
-  return analyse_bones(mesh_of(context_, choice.settings.prediction), context_.position_bits,
-                       frames_, first_frame_, choice.rig, choice.settings, step);
+SkinnedAnalysis SkinnedGofSearch::analyse(const SkinnedChoice& choice, double step) const {
+  return analyse_skinned_gof(mesh_of(context_, choice.settings.prediction),
+                             context_.position_bits, frames_, first_frame_, choice.rig,
+                             choice.settings, step);
 }
 
-BoneGof BoneGofSearch::code(const BoneAnalysis& analysis, const BoneSettings& settings,
-                            double step) const {
-  return code_bone_gof(mesh_of(context_, settings.prediction), analysis, settings, step);
+SkinnedGof SkinnedGofSearch::code(const SkinnedAnalysis& analysis,
+                                  const SkinnedSettings& settings, double step) const {
+  return code_skinned_gof(mesh_of(context_, settings.prediction), analysis, settings, step);
 }
 
-double BoneGofSearch::cost(const BoneAnalysis& analysis, const BoneSettings& settings,
-                           double step) const {
+double SkinnedGofSearch::cost(const SkinnedAnalysis& analysis, const SkinnedSettings& settings,
+                              double step) const {
   return lagrangian_cost(encoded_gof(context_, code(analysis, settings, step)), frames_, step);
 }
 
-BoneFit BoneGofSearch::fit(std::size_t influences, double step) const {
+BoneFit SkinnedGofSearch::fit(std::size_t influences, double step) const {
   return {frames_, context_.triangles, {.max_influences = influences, .step = step}};
 }
 
 // From a small sample.
-BoneFit BoneGofSearch::quick_fit(std::size_t influences, double step) const {
+BoneFit SkinnedGofSearch::quick_fit(std::size_t influences, double step) const {
   return {frames_,
           context_.triangles,
           {.max_influences = influences,
@@ -169,24 +170,26 @@ BoneFit BoneGofSearch::quick_fit(std::size_t influences, double step) const {
 }
 
 // One bone that turns, if that makes much of a difference, else one that does not.
-void BoneGofSearch::choose_one_bone() {
+void SkinnedGofSearch::choose_one_bone() {
   const BoneFit quick = quick_fit(1, choice_->step);
-  const double sliding = quick.sliding_error();
-  const double part = sliding > 0.0 ? quick.rms_error() / sliding : 1.0;  // nothing moves
+  const double translation = quick.translation_error();
+  const double part =
+      translation > 0.0 ? quick.rms_error() / translation : 1.0;  // nothing moves
   if (preset_ == Preset::kFast) {
-    choice_->rig = part < kRigidPart ? quick.rig(1) : sliding_rig(frames_);
+    choice_->rig = part < kRigidPart ? quick.rig(1) : translation_rig(frames_);
     return;
   }
   const bool slow = preset_ == Preset::kSlow;
-  if (slow || part >= kRigidPart) consider(sliding_rig(frames_), {});
+  if (slow || part >= kRigidPart) consider(translation_rig(frames_), {});
   if (slow || part < kFlexiblePart) consider(quick.rig(1), {});
 }
 
 // The numbers of bones that a small sample promises most of, with vertices that follow so many.
-BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double step) const {
-  Promise best;
+SkinnedGofSearch::BoneEstimate SkinnedGofSearch::estimate(std::size_t influences,
+                                                          double step) const {
+  BoneEstimate best;
   BoneFit quick = quick_fit(influences, step);
-  best.sliding = quick.expected_sliding_cost();
+  best.translation = quick.expected_translation_cost();
   for (const std::uint32_t count : kFewBones) {
     if (!grow(quick, count)) break;
     const double expected = quick.expected_cost();
@@ -195,15 +198,15 @@ BoneGofSearch::Promise BoneGofSearch::promise(std::size_t influences, double ste
       best.cost = expected;
       best.count = count;
     }
-    if (count >= kEnoughBones && best.cost > kHopeless * best.sliding) break;
+    if (count >= kEnoughBones && best.cost > kHopeless * best.translation) break;
   }
   return best;
 }
 
 // Takes a rig if it costs less than the one before, with its analysis.
-double BoneGofSearch::consider(Rig rig, const BoneCounts& counts) {
-  BoneChoice other{std::move(rig), counts, usual_, choice_->step, choice_->times};
-  BoneAnalysis analysis = analyse(other, other.step);
+double SkinnedGofSearch::consider(Rig rig, const BoneCounts& counts) {
+  SkinnedChoice other{std::move(rig), counts, usual_, choice_->step, choice_->times};
+  SkinnedAnalysis analysis = analyse(other, other.step);
   const double now = cost(analysis, other.settings, other.step);
   if (now < least_) {
     least_ = now;
@@ -214,11 +217,11 @@ double BoneGofSearch::consider(Rig rig, const BoneCounts& counts) {
 }
 
 // The same of tools.
-void BoneGofSearch::consider(const BoneSettings& settings) {
-  BoneChoice other{choice_->rig, choice_->counts, settings, choice_->step, choice_->times};
+void SkinnedGofSearch::consider(const SkinnedSettings& settings) {
+  SkinnedChoice other{choice_->rig, choice_->counts, settings, choice_->step, choice_->times};
   const bool same_analysis = settings.prediction == choice_->settings.prediction &&
                              settings.layer_steps == choice_->settings.layer_steps;
-  BoneAnalysis analysis =
+  SkinnedAnalysis analysis =
       same_analysis ? std::move(cached_->analysis) : analyse(other, other.step);
   const double now = cost(analysis, settings, other.step);
   if (now < least_) {
@@ -233,9 +236,9 @@ void BoneGofSearch::consider(const BoneSettings& settings) {
 // Geometry weights cost more than they bring where rest positions tell little, and
 // parallelograms predict regular meshes of few vertices better. Where bones leave little to
 // predict, rest positions cost less without layers.
-void BoneGofSearch::choose_prediction() {
-  const auto try_other = [&](auto BoneSettings::*member, auto value) {
-    BoneSettings other = choice_->settings;
+void SkinnedGofSearch::choose_prediction() {
+  const auto try_other = [&](auto SkinnedSettings::*member, auto value) {
+    SkinnedSettings other = choice_->settings;
     if (other.*member == value) return;
     other.*member = value;
     consider(other);
@@ -243,21 +246,21 @@ void BoneGofSearch::choose_prediction() {
   const bool slow = preset_ == Preset::kSlow;
   const bool small = frames_.num_vertices <= kSmallMesh;
   if (choice_->settings.prediction == Prediction::kLayers) {
-    if (tools_.geometry_weights) try_other(&BoneSettings::damping_log2, 0);
-    if (tools_.layer_steps && (slow || small)) try_other(&BoneSettings::layer_steps, false);
+    if (tools_.geometry_weights) try_other(&SkinnedSettings::damping_log2, 0);
+    if (tools_.layer_steps && (slow || small)) try_other(&SkinnedSettings::layer_steps, false);
   }
   if (!tools_.prediction && choice_->rig.bones.size() > 1) {
-    try_other(&BoneSettings::prediction, Prediction::kNone);
+    try_other(&SkinnedSettings::prediction, Prediction::kNone);
   }
   if (!tools_.prediction && (slow || small)) {
-    try_other(&BoneSettings::prediction, Prediction::kParallelogram);
-    try_other(&BoneSettings::prediction, Prediction::kParallelograms);
+    try_other(&SkinnedSettings::prediction, Prediction::kParallelogram);
+    try_other(&SkinnedSettings::prediction, Prediction::kParallelograms);
   }
 }
 
-void BoneGofSearch::choose(double step) {
-  const BoneChoice before = std::move(choice_).value_or(BoneChoice{});
-  choice_ = BoneChoice{{}, {}, usual_, step, before.times + 1};
+void SkinnedGofSearch::choose(double step) {
+  const SkinnedChoice before = std::move(choice_).value_or(SkinnedChoice{});
+  choice_ = SkinnedChoice{{}, {}, usual_, step, before.times + 1};
   cached_.reset();
   if (preset_ == Preset::kFast && tools_.bones == 0) {
     choose_one_bone();
@@ -275,7 +278,7 @@ void BoneGofSearch::choose(double step) {
 
 // As many bones as were best for another step, or the next number: more for a finer step,
 // fewer, and after the fewest one, for a coarser.
-void BoneGofSearch::choose_bones_near(const BoneCounts& counts, bool finer) {
+void SkinnedGofSearch::choose_bones_near(const BoneCounts& counts, bool finer) {
   const auto at = std::find(kFewBones.begin(), kFewBones.end(), counts.bones);
   const auto first = finer || at == kFewBones.begin() ? at : at - 1;
   const auto end = finer ? std::min(at + 2, kFewBones.end()) : at + 1;
@@ -285,7 +288,7 @@ void BoneGofSearch::choose_bones_near(const BoneCounts& counts, bool finer) {
   try_bones(full, counts.influences, std::span(first, end), counts.bones);
 }
 
-void BoneGofSearch::choose_bones() {
+void SkinnedGofSearch::choose_bones() {
   const double step = choice_->step;
   const std::uint32_t most = std::min(kSearchInfluences, max_influences_);
   if (tools_.bones > 0) {
@@ -297,28 +300,30 @@ void BoneGofSearch::choose_bones() {
     }
     return;
   }
-  // What does not promise much with two influences does so less with one.
-  std::array<Promise, kSearchInfluences> promises;
+  // What does not estimate much with two influences does so less with one.
+  std::array<BoneEstimate, kSearchInfluences> promises;
   double least = kNone;
-  double sliding = 0.0;
+  double translation = 0.0;
   for (std::uint32_t influences = most; influences > 0; --influences) {
-    const Promise of = promise(influences, step);
-    sliding = of.sliding;
-    if (of.cost > std::min(hope_ * kPromising * of.sliding, kNearLeast * least)) break;
+    const BoneEstimate of = estimate(influences, step);
+    translation = of.translation;
+    if (of.cost > std::min(threshold_factor_ * kTryFactor * of.translation, kNearLeast * least))
+      break;
     promises[influences - 1] = of;
     least = std::min(least, of.cost);
   }
-  double without = sliding;
-  if (least > kSure * sliding || preset_ == Preset::kSlow) {
+  double without = translation;
+  if (least > kSure * translation || preset_ == Preset::kSlow) {
     choose_one_bone();
     without = least_;
   }
   for (std::uint32_t influences = 1; influences <= most; ++influences) {
-    const Promise& of = promises[influences - 1];
-    const bool strong = of.cost < kStrongPromise * of.sliding;
-    const double against = strong ? std::max(without, of.sliding) : without;
-    if (of.cost <= std::min(kNearLeast * least, hope_ * kPromisingOfReal * against)) {
-      try_promised_bones(influences, of, against);
+    const BoneEstimate& of = promises[influences - 1];
+    const bool strong = of.cost < kStrongEstimate * of.translation;
+    const double against = strong ? std::max(without, of.translation) : without;
+    if (of.cost <=
+        std::min(kNearLeast * least, threshold_factor_ * kTryFactorOfReal * against)) {
+      try_estimated_bones(influences, of, against);
     }
     if (preset_ == Preset::kSlow) {
       BoneFit full = fit(influences, step);
@@ -329,28 +334,28 @@ void BoneGofSearch::choose_bones() {
 }
 
 // About as many bones as are likely the best, unless the sample was too small to tell.
-void BoneGofSearch::try_promised_bones(std::uint32_t influences, const Promise& promise,
-                                       double without) {
+void SkinnedGofSearch::try_estimated_bones(std::uint32_t influences,
+                                           const BoneEstimate& estimate, double without) {
   BoneFit full = fit(influences, choice_->step);
   std::size_t first = 0;
-  const auto promises_less = [&](double part) {
-    const double correction = full.expected_cost() / promise.costs[first];
-    return correction * promise.cost < hope_ * part * without;
+  const auto estimate_exceeds = [&](double part) {
+    const double correction = full.expected_cost() / estimate.costs[first];
+    return correction * estimate.cost < threshold_factor_ * part * without;
   };
   do {
     if (!can_have(kFewBones[first]) || !full.grow(kFewBones[first])) return;
-    if (!promises_less(kPromisingUnsettled)) return;
+    if (!estimate_exceeds(kTryFactorUnsettled)) return;
     full.settle();
-    if (!promises_less(kPromisingSettled)) return;
-  } while (2 * kFewBones[first] < promise.count && ++first < promise.costs.size());
-  try_bones(full, influences, std::span(kFewBones).subspan(first), promise.count);
+    if (!estimate_exceeds(kTryFactorSettled)) return;
+  } while (2 * kFewBones[first] < estimate.count && ++first < estimate.costs.size());
+  try_bones(full, influences, std::span(kFewBones).subspan(first), estimate.count);
 }
 
-bool BoneGofSearch::can_have(std::uint32_t count) const {
+bool SkinnedGofSearch::can_have(std::uint32_t count) const {
   return count * kMinVerticesOfBone <= frames_.num_vertices;
 }
 
-bool BoneGofSearch::grow(BoneFit& fit, std::uint32_t count) const {
+bool SkinnedGofSearch::grow(BoneFit& fit, std::uint32_t count) const {
   if (!can_have(count) || !fit.grow(count)) return false;
   fit.settle();
   return true;
@@ -358,15 +363,15 @@ bool BoneGofSearch::grow(BoneFit& fit, std::uint32_t count) const {
 
 // Growing numbers of bones, of which the first are there, until the cost rises beyond the
 // number that is likely the best.
-void BoneGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
-                              std::span<const std::uint32_t> counts, std::uint32_t likely) {
+void SkinnedGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
+                                 std::span<const std::uint32_t> counts, std::uint32_t likely) {
   double expected = kNone;
   double before = kNone;
   for (const std::uint32_t count : counts) {
     if (count != counts.front() && !grow(full, count)) break;
     const double now = full.expected_cost();
     expected = std::min(expected, now);
-    if (now > hope_ * kWorthACost * expected) continue;
+    if (now > threshold_factor_ * kWorthACost * expected) continue;
     const double real =
         consider(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
     if (real > before && (count >= likely || real > kFarAbove * least_)) break;
@@ -375,35 +380,35 @@ void BoneGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
 }
 
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
-bool BoneGofSearch::follows(double step) const {
+bool SkinnedGofSearch::follows(double step) const {
   constexpr std::size_t kEnough = 4;
-  const BoneSettings& settings = choice_->settings;
+  const SkinnedSettings& settings = choice_->settings;
   return has_trajectories(kEnough, mesh_of(context_, settings.prediction), cached_->analysis,
                           settings, step);
 }
 
-bool BoneGofSearch::needs_frames(double step, double analysis_step) const {
+bool SkinnedGofSearch::needs_frames(double step, double analysis_step) const {
   return !choice_ || choice_->is_far(analysis_step) || !cached_ ||
          cached_->step != analysis_step || !follows(step);
 }
 
-void BoneGofSearch::analyse_for(double step) {
+void SkinnedGofSearch::analyse_for(double step) {
   if (cached_ && cached_->step == step) return;
   cached_.reset();  // before there is another
   cached_ = Cached{step, analyse(*choice_, step)};
 }
 
-void BoneGofSearch::analyse(double analysis_step) {
+void SkinnedGofSearch::analyse(double analysis_step) {
   if (!choice_ || choice_->is_far(analysis_step)) choose(analysis_step);
   analyse_for(analysis_step);
 }
 
-std::optional<double> BoneGofSearch::expected_error(double step) const {
+std::optional<double> SkinnedGofSearch::expected_error(double step) const {
   if (!cached_ || cached_->analysis.gof.bones.size() > 1) return std::nullopt;
   return expected_squared_error(cached_->analysis, step);
 }
 
-EncodedGof BoneGofSearch::encode(double step, double analysis_step) {
+EncodedGof SkinnedGofSearch::encode(double step, double analysis_step) {
   analyse(analysis_step);
   if (!follows(step)) analyse_for(step);
   return encoded_gof(context_, code(cached_->analysis, choice_->settings, step));

@@ -18,7 +18,7 @@
 
 namespace rlpc {
 
-struct BoneContext {
+struct SkinnedContext {
   std::vector<CodedMesh> meshes;        // by Prediction
   std::span<const Triangle> triangles;  // decoded order
   int position_bits;
@@ -31,10 +31,10 @@ struct BoneCounts {
 };
 
 // Bones and tools of a GOF, and the step that they were chosen for.
-struct BoneChoice {
+struct SkinnedChoice {
   Rig rig;
   BoneCounts counts;
-  BoneSettings settings;
+  SkinnedSettings settings;
   double step = 0.0;
   int times = 0;  // that there was a choice
 
@@ -46,12 +46,13 @@ struct BoneChoice {
   }
 };
 
-class BoneGofSearch : public GofCoder {
+class SkinnedGofSearch : public GofCoder {
  public:
   // All but the number are kept by reference. choice: that of an earlier search of the same
   // GOF, or none; the first encode() makes it.
-  BoneGofSearch(const BoneContext& context, const GofFrames& frames, std::uint32_t first_frame,
-                const EncoderSettings& settings, std::optional<BoneChoice>& choice);
+  SkinnedGofSearch(const SkinnedContext& context, const GofFrames& frames,
+                   std::uint32_t first_frame, const EncoderSettings& settings,
+                   std::optional<SkinnedChoice>& choice);
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
@@ -61,46 +62,49 @@ class BoneGofSearch : public GofCoder {
  private:
   struct Cached {
     double step;  // that it was made for
-    BoneAnalysis analysis;
+    SkinnedAnalysis analysis;
   };
 
-  BoneAnalysis analyse(const BoneChoice& choice, double step) const;
-  BoneGof code(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
-  double cost(const BoneAnalysis& analysis, const BoneSettings& settings, double step) const;
-  struct Promise {
+  SkinnedAnalysis analyse(const SkinnedChoice& choice, double step) const;
+  SkinnedGof code(const SkinnedAnalysis& analysis, const SkinnedSettings& settings,
+                  double step) const;
+  double cost(const SkinnedAnalysis& analysis, const SkinnedSettings& settings,
+              double step) const;
+  struct BoneEstimate {
     std::uint32_t count = 0;                                // bones
     double cost = std::numeric_limits<double>::infinity();  // expected
-    double sliding = 0.0;                                   // the same without bones
+    double translation = 0.0;                               // the same without bones
     std::vector<double> costs;                              // the same of all numbers tried
   };
 
   BoneFit fit(std::size_t influences, double step) const;
   BoneFit quick_fit(std::size_t influences, double step) const;
-  Promise promise(std::size_t influences, double step) const;
+  BoneEstimate estimate(std::size_t influences, double step) const;
   bool follows(double step) const;
   void analyse_for(double step);
   void choose_one_bone();
   double consider(Rig rig, const BoneCounts& counts);
-  void consider(const BoneSettings& settings);
+  void consider(const SkinnedSettings& settings);
   void choose_bones();
   void choose_bones_near(const BoneCounts& counts, bool finer);
   bool can_have(std::uint32_t count) const;
   bool grow(BoneFit& fit, std::uint32_t count) const;
-  void try_promised_bones(std::uint32_t influences, const Promise& promise, double without);
+  void try_estimated_bones(std::uint32_t influences, const BoneEstimate& estimate,
+                           double without);
   void try_bones(BoneFit& full, std::uint32_t influences, std::span<const std::uint32_t> counts,
                  std::uint32_t likely);
   void choose_prediction();
   void choose(double step);
 
-  const BoneContext& context_;
+  const SkinnedContext& context_;
   const GofFrames& frames_;
   std::uint32_t first_frame_;
   MainTools tools_;
-  BoneSettings usual_;
+  SkinnedSettings usual_;
   Preset preset_;
-  double hope_;  // the higher, the less bones have to promise to be tried
+  double threshold_factor_;  // the higher, the less bones have to estimate to be tried
   std::uint32_t max_influences_;
-  std::optional<BoneChoice>& choice_;
+  std::optional<SkinnedChoice>& choice_;
   std::optional<Cached> cached_;
   double least_ = 0.0;  // cost of the choice so far
 };

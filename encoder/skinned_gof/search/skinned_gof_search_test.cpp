@@ -90,9 +90,9 @@ struct Outcome {
 };
 
 Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
-  const BoneContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<BoneChoice> choice;
-  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<SkinnedChoice> choice;
+  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
   Outcome outcome;
   outcome.gof = search.encode(step, step);
   for (const auto& unit : outcome.gof.units) outcome.bytes += unit.payload.size();
@@ -115,7 +115,7 @@ EncoderSettings fast() {
 }
 
 // The cost of more frames of the same shape.
-TEST(BoneGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
+TEST(SkinnedGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
   const std::size_t one = encode(Animation(still, 2), 8.0, fast()).bytes;
   const Outcome many = encode(Animation(still, 100), 8.0, fast());
   EXPECT_EQ(many.gof.clusters, 1U);
@@ -125,7 +125,7 @@ TEST(BoneGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
   EXPECT_LT(many.rms_error, 8.0);
 }
 
-TEST(BoneGofSearch, ARigidMotionIsOneBone) {
+TEST(SkinnedGofSearch, ARigidMotionIsOneBone) {
   const Outcome still_mesh = encode(Animation(still, 40), 8.0, fast());
   const Outcome moving = encode(Animation(rigid, 40), 8.0, fast());
   EXPECT_EQ(moving.gof.clusters, 1U);
@@ -136,7 +136,7 @@ TEST(BoneGofSearch, ARigidMotionIsOneBone) {
 }
 
 // Closed loop: the error follows the step, and does not grow on the way.
-TEST(BoneGofSearch, TheErrorFollowsTheStep) {
+TEST(SkinnedGofSearch, TheErrorFollowsTheStep) {
   const Animation a(bending);
   double last_error = 0.0;
   std::size_t last_bytes = 1U << 30;
@@ -151,11 +151,11 @@ TEST(BoneGofSearch, TheErrorFollowsTheStep) {
 }
 
 // The real error is another, by about the same factor at all steps.
-TEST(BoneGofSearch, ExpectsTheErrorOfOneBone) {
+TEST(SkinnedGofSearch, ExpectsTheErrorOfOneBone) {
   const Animation a(bending);
-  const BoneContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<BoneChoice> choice;
-  BoneGofSearch search(context, a.frames, 0, fast(), choice);
+  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<SkinnedChoice> choice;
+  SkinnedGofSearch search(context, a.frames, 0, fast(), choice);
   EXPECT_FALSE(search.expected_error(10.0));
   search.analyse(10.0);
   double least = 1e9;
@@ -171,18 +171,18 @@ TEST(BoneGofSearch, ExpectsTheErrorOfOneBone) {
   EXPECT_LT(most, 1.1 * least);
 }
 
-TEST(BoneGofSearch, ExpectsNothingOfManyBones) {
+TEST(SkinnedGofSearch, ExpectsNothingOfManyBones) {
   const Animation a(bending);
-  const BoneContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<BoneChoice> choice;
+  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<SkinnedChoice> choice;
   EncoderSettings settings = fast();
   settings.main.bones = 2;
-  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
   search.analyse(10.0);
   EXPECT_FALSE(search.expected_error(10.0));
 }
 
-TEST(BoneGofSearch, IsTheSameEachTime) {
+TEST(SkinnedGofSearch, IsTheSameEachTime) {
   const Animation a(bending);
   const Outcome first = encode(a, 20.0, {});
   const Outcome second = encode(a, 20.0, {});
@@ -194,18 +194,18 @@ TEST(BoneGofSearch, IsTheSameEachTime) {
 }
 
 // The encoder tries steps one after the other: what is kept from one to the next does not show.
-TEST(BoneGofSearch, DoesNotDependOnTheStepsTriedBefore) {
+TEST(SkinnedGofSearch, DoesNotDependOnTheStepsTriedBefore) {
   const Animation a(bending);
   const EncoderSettings settings = fast();
-  const BoneContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<BoneChoice> choice;
-  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<SkinnedChoice> choice;
+  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
   search.encode(20.0, 20.0);
   ASSERT_TRUE(choice);
   for (const auto& [step, analysis_step] :
        {std::pair{50.0, 20.0}, std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
-    std::optional<BoneChoice> same = choice;
-    BoneGofSearch fresh(context, a.frames, 0, settings, same);
+    std::optional<SkinnedChoice> same = choice;
+    SkinnedGofSearch fresh(context, a.frames, 0, settings, same);
     const auto expected = fresh.encode(step, analysis_step).units;
     const auto units = search.encode(step, analysis_step).units;
     ASSERT_EQ(units.size(), expected.size());
@@ -215,7 +215,7 @@ TEST(BoneGofSearch, DoesNotDependOnTheStepsTriedBefore) {
   }
 }
 
-TEST(BoneGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
+TEST(SkinnedGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
   const Animation a(bending);
   EncoderSettings settings = fast();
   settings.main.bones = 3;
@@ -226,7 +226,7 @@ TEST(BoneGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
 }
 
 // As far as bones, tools and their prediction go, nothing that can be asked for is better.
-TEST(BoneGofSearch, ChoosesThePredictionThatCostsLeast) {
+TEST(SkinnedGofSearch, ChoosesThePredictionThatCostsLeast) {
   const double step = 20.0;
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
     const Outcome o = encode(a, step, settings);
@@ -250,12 +250,12 @@ TEST(BoneGofSearch, ChoosesThePredictionThatCostsLeast) {
 }
 
 // Frames may go where they are not needed.
-TEST(BoneGofSearch, SaysWhenItNeedsTheFrames) {
+TEST(SkinnedGofSearch, SaysWhenItNeedsTheFrames) {
   Animation a(bending);
   const EncoderSettings settings = fast();
-  const BoneContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<BoneChoice> choice;
-  BoneGofSearch search(context, a.frames, 0, settings, choice);
+  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
+  std::optional<SkinnedChoice> choice;
+  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
   EXPECT_TRUE(search.needs_frames(20.0, 20.0));
   search.encode(20.0, 20.0);
   EXPECT_FALSE(search.needs_frames(22.0, 20.0));
@@ -270,7 +270,7 @@ TEST(BoneGofSearch, SaysWhenItNeedsTheFrames) {
   }
 }
 
-TEST(BoneGofSearch, CountsItsFactors) {
+TEST(SkinnedGofSearch, CountsItsFactors) {
   const Outcome outcome = encode(Animation(bending), 4.0, fast());
   const std::uint64_t bones = outcome.gof.clusters;
   const std::uint64_t trajectories = outcome.gof.components;
