@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/syntax/gof_header.h"
 
 namespace rlpc {
 
@@ -46,9 +47,7 @@ struct SeedTrack {
   std::vector<Vec3i> residual;  // [num_gof_frames]
 };
 
-struct ClusterGof {
-  std::uint32_t first_frame = 0;
-  std::uint32_t num_frames = 1;
+struct ClusterGof : GofHeader {
   int fraction_bits = 0;
   std::uint32_t seed_step = 1;
   int seed_predictor = 1;  // order, 0 to kMaxPredictorOrder

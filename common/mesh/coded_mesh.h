@@ -8,9 +8,11 @@
 
 #include "common/mesh/topology.h"
 #include "common/mesh/vertex_layers.h"
-#include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
+
+// 7.11: prediction_idc
+enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, kLayers };
 
 class CodedMesh {
  public:

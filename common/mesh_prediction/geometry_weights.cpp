@@ -41,14 +41,15 @@ std::optional<Vec3l> solve_moment(const Moment& m, const Vec3l& gap) {
 // The weights of one vertex.
 class VertexWeights {
  public:
-  VertexWeights(const SkinnedGof& gof, const std::array<std::span<const std::int32_t>, 3>& rest)
-      : gof_(gof), rest_(rest) {}
+  VertexWeights(const WeightSettings& settings,
+                const std::array<std::span<const std::int32_t>, 3>& rest)
+      : settings_(settings), rest_(rest) {}
 
   std::span<const std::int64_t> find(std::uint32_t v, std::span<const std::uint32_t> ring,
                                      std::span<const std::uint32_t> outer_ring) {
     ring_size_ = ring.size();
     plain_weights(outer_ring.size());
-    if (gof_.damping_log2 > 0 && ring_size_ > 1) {
+    if (settings_.damping_log2 > 0 && ring_size_ > 1) {
       vertices_.assign(ring.begin(), ring.end());
       vertices_.insert(vertices_.end(), outer_ring.begin(), outer_ring.end());
       find_offsets(v);
@@ -63,7 +64,7 @@ class VertexWeights {
     weights_.assign(ring_size_ + outer_size, 0);
     const auto n = static_cast<std::int64_t>(ring_size_);
     const auto m = static_cast<std::int64_t>(outer_size);
-    const std::int64_t a = m == 0 ? 0 : gof_.outer_weight;
+    const std::int64_t a = m == 0 ? 0 : settings_.outer_weight;
     const std::int64_t of_ring = n > 0 ? div_round((16 + a) << 10, n) : 0;
     const std::int64_t of_outer = m > 0 ? -div_round(a << 10, m) : 0;
     std::fill_n(weights_.begin(), ring_size_, of_ring);
@@ -109,13 +110,13 @@ class VertexWeights {
         if (k < ring_size_) {
           square += x * x;
         } else {
-          x = round2(x * gof_.outer_scale, 4);
+          x = round2(x * settings_.outer_scale, 4);
         }
       }
       for (std::size_t i = 0; i < 6; ++i) moment[i] += o[kMomentRow[i]] * o[kMomentColumn[i]];
     }
     const std::int64_t damping =
-        std::max<std::int64_t>(div_round(square, n) >> gof_.damping_log2, 1);
+        std::max<std::int64_t>(div_round(square, n) >> settings_.damping_log2, 1);
     for (std::size_t i = 0; i < 3; ++i) moment[i] += damping;
     const std::int64_t largest = std::max({moment[0], moment[1], moment[2]});
     const int shift =
@@ -129,7 +130,7 @@ class VertexWeights {
       const std::int64_t sum =
           o[0] * (*solution)[0] + o[1] * (*solution)[1] + o[2] * (*solution)[2];
       std::int64_t change = round2(sum, kSolutionFractionBits - kWeightFractionBits + shift);
-      if (k >= ring_size_) change = round2(change * gof_.outer_scale, 4);
+      if (k >= ring_size_) change = round2(change * settings_.outer_scale, 4);
       change = clip_signed(kChangeBits, change);
       weights_[k] += change;
       total += change;
@@ -139,7 +140,7 @@ class VertexWeights {
     weights_[0] -= total - n * share;
   }
 
-  const SkinnedGof& gof_;
+  const WeightSettings& settings_;
   const std::array<std::span<const std::int32_t>, 3>& rest_;
   std::size_t ring_size_ = 0;
   std::vector<std::uint32_t> vertices_;  // ring, then outer ring
@@ -150,10 +151,10 @@ class VertexWeights {
 
 }  // namespace
 
-GeometryWeights::GeometryWeights(const CodedMesh& mesh, const SkinnedGof& gof,
+GeometryWeights::GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
                                  const std::array<std::span<const std::int32_t>, 3>& rest)
     : first_(std::size_t{mesh.num_vertices()} + 1, 0) {
-  VertexWeights vertex(gof, rest);
+  VertexWeights vertex(settings, rest);
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     for (const std::int64_t w : vertex.find(v, mesh.ring(v), mesh.outer_ring(v))) {
       weights_.push_back(static_cast<std::int32_t>(w));

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/mesh/weight_settings.h"
 
 namespace rlpc {
 
@@ -17,8 +17,8 @@ inline constexpr int kWeightFractionBits = 14;
 class GeometryWeights {
  public:
   // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh is
-  // one with layers; damping_log2, outer_weight and outer_scale are those of the GOF.
-  GeometryWeights(const CodedMesh& mesh, const SkinnedGof& gof,
+  // one with layers.
+  GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 
   // Of the vertices of the ring of v, then of its outer ring.

@@ -24,7 +24,7 @@ using Real3 = std::array<double, 3>;
 struct Patch {
   std::size_t ring_size = 0;
   Rest rest;  // ring, outer ring, then the vertex
-  SkinnedGof gof;
+  WeightSettings weights;
 
   std::size_t outer_size() const { return rest.size() - 1 - ring_size; }
 };
@@ -49,7 +49,7 @@ Weights weights_of(const Patch& patch) {
     for (std::size_t c = 0; c < 3; ++c) planes[c].push_back(p[c]);
   }
   const GeometryWeights weights(
-      mesh, patch.gof,
+      mesh, patch.weights,
       std::array<std::span<const std::int32_t>, 3>{planes[0], planes[1], planes[2]});
   const auto found = weights[n - 1];
   EXPECT_EQ(found.size(), patch.rest.size() - 1);
@@ -86,13 +86,13 @@ struct Exact {
 Exact exact_weights(const Patch& patch) {
   const std::size_t n = patch.ring_size;
   const std::size_t m = patch.outer_size();
-  const double a = n < 2 || m == 0 ? 0.0 : patch.gof.outer_weight / 16.0;
+  const double a = n < 2 || m == 0 ? 0.0 : patch.weights.outer_weight / 16.0;
   Exact exact;
   for (std::size_t k = 0; k < n + m; ++k) {
     exact.weights.push_back(k < n ? (1.0 + a) / static_cast<double>(n)
                                   : -a / static_cast<double>(m));
   }
-  exact.solved = patch.gof.damping_log2 == 0;
+  exact.solved = patch.weights.damping_log2 == 0;
   if (exact.solved) return exact;
   Real3 centre{};
   for (std::size_t k = 0; k < n; ++k) {
@@ -103,7 +103,7 @@ Exact exact_weights(const Patch& patch) {
   double square = 0.0;
   for (std::size_t c = 0; c < 3; ++c) system[c][3] = patch.rest.back()[c] - centre[c];
   for (std::size_t k = 0; k < n + m; ++k) {
-    const double scale = k < n ? 1.0 : patch.gof.outer_scale / 16.0;
+    const double scale = k < n ? 1.0 : patch.weights.outer_scale / 16.0;
     for (std::size_t c = 0; c < 3; ++c) {
       const double offset = patch.rest[k][c] - centre[c];
       if (k < n) square += offset * offset;
@@ -114,7 +114,8 @@ Exact exact_weights(const Patch& patch) {
       for (std::size_t j = 0; j < 3; ++j) system[i][j] += columns[k][i] * columns[k][j];
     }
   }
-  const double damping = square / static_cast<double>(n) * std::exp2(-patch.gof.damping_log2);
+  const double damping =
+      square / static_cast<double>(n) * std::exp2(-patch.weights.damping_log2);
   for (std::size_t i = 0; i < 3; ++i) system[i][i] += damping;
   Real3 solution{};
   exact.solved = solve(system, solution);
@@ -122,7 +123,7 @@ Exact exact_weights(const Patch& patch) {
   for (std::size_t k = 0; k < n + m; ++k) {
     double change = 0.0;
     for (std::size_t c = 0; c < 3; ++c) change += columns[k][c] * solution[c];
-    if (k >= n) change *= patch.gof.outer_scale / 16.0;
+    if (k >= n) change *= patch.weights.outer_scale / 16.0;
     exact.weights[k] += change;
     total += change;
   }
@@ -161,9 +162,9 @@ Patch random_patch(Random& random, std::int32_t bound) {
   for (Vec3i& p : patch.rest) {
     for (std::int32_t& x : p) x = random.within(bound);
   }
-  patch.gof.damping_log2 = static_cast<int>(random.below(16));
-  patch.gof.outer_weight = static_cast<int>(random.below(16));
-  patch.gof.outer_scale = static_cast<int>(random.below(16));
+  patch.weights.damping_log2 = static_cast<int>(random.below(16));
+  patch.weights.outer_weight = static_cast<int>(random.below(16));
+  patch.weights.outer_scale = static_cast<int>(random.below(16));
   return patch;
 }
 
@@ -175,7 +176,7 @@ TEST(GeometryWeights, FollowTheFormula) {
   int count = 0;
   for (int i = 0; i < 4000; ++i) {
     Patch patch = random_patch(random, 1);
-    patch.gof.damping_log2 = static_cast<int>(random.below(7));
+    patch.weights.damping_log2 = static_cast<int>(random.below(7));
     patch.ring_size = std::clamp<std::size_t>(patch.ring_size, 5, patch.rest.size() - 1);
     if (patch.ring_size < 5) continue;
     const double size = std::exp2(11 + random.below(17));
@@ -214,7 +215,7 @@ TEST(GeometryWeights, PlaceTheVertexWhereItIs) {
     for (Vec3i& p : patch.rest) {
       for (std::int32_t& x : p) x += random.within(d / 4);
     }
-    patch.gof.damping_log2 = 15;
+    patch.weights.damping_log2 = 15;
     const Weights weights = weights_of(patch);
     for (std::size_t c = 0; c < 3; ++c) {
       double place = 0.0;
@@ -254,9 +255,9 @@ TEST(GeometryWeights, PlainOnesOfAnOuterRingAreNegative) {
   patch.ring_size = 4;
   patch.rest = {{1000, 0, 0}, {0, 1000, 0},  {-1000, 0, 0}, {0, -1000, 0},
                 {2000, 0, 0}, {-2000, 0, 0}, {0, 0, 0}};
-  patch.gof.outer_weight = 4;
+  patch.weights.outer_weight = 4;
   EXPECT_EQ(weights_of(patch), (Weights{5120, 5120, 5120, 5120, -2048, -2048}));
-  patch.gof.outer_weight = 15;
+  patch.weights.outer_weight = 15;
   EXPECT_EQ(weights_of(patch), (Weights{7936, 7936, 7936, 7936, -7680, -7680}));
 }
 
@@ -265,7 +266,7 @@ TEST(GeometryWeights, OfOneVertexAreItAlone) {
   Patch patch;
   patch.ring_size = 1;
   patch.rest = {{5, 6, 7}, {100, 0, 0}};
-  patch.gof.outer_weight = patch.gof.outer_scale = 15;
+  patch.weights.outer_weight = patch.weights.outer_scale = 15;
   EXPECT_EQ(weights_of(patch), Weights{kOne});
 }
 
@@ -274,11 +275,11 @@ TEST(GeometryWeights, OfOneVertexAreItAlone) {
 TEST(GeometryWeights, OfALineWithLittleDampingAreThePlainOnes) {
   Patch patch;
   patch.ring_size = 4;
-  patch.gof.damping_log2 = 15;
+  patch.weights.damping_log2 = 15;
   patch.rest = {
       {-30'000, 0, 0}, {-10'000, 0, 0}, {10'000, 0, 0}, {30'000, 0, 0}, {7'000, 0, 0}};
   EXPECT_EQ(weights_of(patch), (Weights{4096, 4096, 4096, 4096}));
-  patch.gof.damping_log2 = 4;
+  patch.weights.damping_log2 = 4;
   EXPECT_NE(weights_of(patch), (Weights{4096, 4096, 4096, 4096}));
 }
 

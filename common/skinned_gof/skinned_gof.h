@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
+#include "common/mesh/weight_settings.h"
+#include "common/syntax/gof_header.h"
 
 namespace rlpc {
 
@@ -22,8 +25,6 @@ inline constexpr int kMaxTemporalWeights = 3;
 inline constexpr int kTemporalWeightOffset = 256;
 // Values of temporal_predictor: the orders, then 1 to kMaxTemporalWeights weights.
 inline constexpr int kMaxTemporalPredictor = 7;
-
-enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, kLayers };
 
 // Residuals of a series of three coordinates, in steps; [num_gof_frames].
 using TrackResiduals = std::vector<Vec3i>;
@@ -65,17 +66,16 @@ struct Trajectory {
   TrackResiduals residual;
 };
 
-// What absent slices would hold is zero, but for influences, which are then predicted.
-struct SkinnedGof {
-  std::uint32_t first_frame = 0;
-  std::uint32_t num_frames = 1;
+// What absent slices would hold is zero; influences are then predicted (8.14.1), which
+// reconstruction does.
+struct SkinnedGof : GofHeader {
+  SkinnedGof() { kind = GofKind::kSkinned; }
+
   int fraction_bits = 0;
   int weight_bits = 0;
   std::uint32_t rest_step = 1;  // 1/16 grid units
   Prediction prediction = Prediction::kLayers;
-  int damping_log2 = 0;
-  int outer_weight = 0;                         // 1/16
-  int outer_scale = 0;                          // 1/16
+  WeightSettings weights;
   std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
   std::vector<std::uint8_t> layer_step;         // of each layer, 1 to kMaxLayerStep
   std::vector<Bone> bones;

@@ -110,9 +110,9 @@ class RandomSkinnedGof {
     gof.layer_group_size = {mesh.num_layers()};
     gof.layer_step.assign(mesh.num_layers(), kMaxLayerStep);
     if (gof.prediction != Prediction::kLayers) return;
-    gof.damping_log2 = between(0, 15);
-    gof.outer_weight = between(0, 15);
-    gof.outer_scale = between(0, 15);
+    gof.weights.damping_log2 = between(0, 15);
+    gof.weights.outer_weight = between(0, 15);
+    gof.weights.outer_scale = between(0, 15);
     gof.layer_group_size.clear();
     for (std::uint32_t left = mesh.num_layers(); left > 0;
          left -= gof.layer_group_size.back()) {

@@ -22,7 +22,7 @@ void StreamValidator::run() {
     if (!is_foreign()) walk();
     end_slices();
     findings_.in_unit(std::nullopt);
-    for (const GofIndexCheck& index : indexes_) compare_index(index);
+    for (const GofIndexCheck& index : index_.checks) compare_index(index);
     warn_of_stream();
   } else {
     report_.complete = false;
@@ -77,11 +77,7 @@ void StreamValidator::lose_units() {
   frames_suspect_ = true;
   next_frame_.reset();
   previous_.reset();
-  gof_unit_.reset();
-  bone_parser_.reset();
-  previous_gof_.reset();
-  previous_bones_.reset();
-  previous_gof_frames_ = 0;
+  gof_ = {};
   report_.complete = false;
 }
 
@@ -103,7 +99,8 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
       return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
     case UnitType::kSlice: {
       const bool behind_slice = !previous_ || previous_->type() == UnitType::kSlice;
-      return units_.version_minor() > 0 && ((gof_unit_ && may_have_slices_) || behind_slice);
+      return units_.version_minor() > 0 &&
+             ((gof_.unit && gof_.may_have_slices) || behind_slice);
     }
     case UnitType::kEndOfSequence:
       return seen(UnitType::kGof);
@@ -133,7 +130,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   ++report_.units;
   ++seen_[unit.type_byte];
   previous_ = unit;
-  if (unit.type() != UnitType::kGof && unit.type() != UnitType::kSlice) gof_unit_.reset();
+  if (unit.type() != UnitType::kGof && unit.type() != UnitType::kSlice) gof_.unit.reset();
   const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
   if (unit.ancillary() && !known_ancillary) {
     findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,
@@ -147,8 +144,9 @@ bool StreamValidator::visit(const UnitHeader& unit) {
   findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
   const bool known = unsupported_ || check_place(unit);
   const bool is_gof = unit.type() == UnitType::kGof;
-  if (is_gof && header_ && header_->usable && next_frame_ == header_->header.num_frames) {
-    findings_.suspect(frames_suspect_ || header_suspect_);
+  if (is_gof && lead_.header && lead_.header->usable &&
+      next_frame_ == lead_.header->header.num_frames) {
+    findings_.suspect(frames_suspect_ || lead_.header_suspect);
     findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
                     "the GOFs before have all " + std::to_string(*next_frame_) + " frames");
     findings_.suspect(false);

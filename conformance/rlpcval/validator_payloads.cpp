@@ -1,20 +1,19 @@
 // What units hold: 6.3 to 6.12, and the hash check of 8.6.2.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "common/bitstream/crc32.h"
-#include "common/cluster_gof/recon/cluster_recon.h"
-#include "common/skinned_gof/recon/skinned_recon.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_json.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_connectivity.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/parse_metadata.h"
 #include "decoder/parse/parse_vertex_order.h"
+#include "decoder/recon/gof_recon.h"
 
 namespace rlpc {
 namespace {
@@ -68,51 +67,51 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
 }
 
 bool StreamValidator::can_read() {
-  findings_.suspect(findings_.suspect() || header_suspect_);
-  if (header_ && header_->usable && within_limits_) return true;
+  findings_.suspect(findings_.suspect() || lead_.header_suspect);
+  if (lead_.header && lead_.header->usable && lead_.within_limits) return true;
   report_.complete = false;
   return false;
 }
 
 // 6.3 sequence_header( )
 void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& payload) {
-  if (header_) return;  // it stands in the wrong place, that was said
+  if (lead_.header) return;  // it stands in the wrong place, that was said
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
-  header_ = check_sequence_header(r, units_.version_minor());
-  header_bit_pos_ = unit.payload_offset() * 8;
-  header_suspect_ = findings_.suspect() || r.failures() > 0;
-  if (!header_->supported) unsupported_ = true;
-  if (!header_->supported && r.failures() == 0) {
+  lead_.header = check_sequence_header(r, units_.version_minor());
+  lead_.header_bit_pos = unit.payload_offset() * 8;
+  lead_.header_suspect = findings_.suspect() || r.failures() > 0;
+  if (!lead_.header->supported) unsupported_ = true;
+  if (!lead_.header->supported && r.failures() == 0) {
     findings_.in_unit(std::nullopt);
     findings_.error(unsupported_minor_version(),
                     "version 1." + std::to_string(units_.version_minor()) +
                         " is not the first that has the profile of the stream, " +
-                        std::to_string(header_->header.profile_idc));
+                        std::to_string(lead_.header->header.profile_idc));
   }
-  if (!header_->usable) return;
-  units_.set_max_unit_bytes(header_->header.level().max_unit_bytes);
-  report_.header = header_->header;
+  if (!lead_.header->usable) return;
+  units_.set_max_unit_bytes(lead_.header->header.level().max_unit_bytes);
+  report_.header = lead_.header->header;
   check_limits();
 }
 
 void StreamValidator::check_limits() {
   const DecodeLimits& limits = options_.limits;
-  const SequenceHeader& h = header_->header;
+  const SequenceHeader& h = lead_.header->header;
   const char* element = nullptr;
   if (memory_of(h) > limits.max_memory_bytes) element = "num_vertices_minus1";
   if (h.num_frames > limits.max_frames) element = "num_frames_minus1";
   if (h.num_triangles > limits.max_triangles) element = "num_triangles";
   if (h.num_vertices > limits.max_vertices) element = "num_vertices_minus1";
-  within_limits_ = element == nullptr;
-  if (within_limits_) return;
-  findings_.error({Errc::kLimitExceeded, "", element, header_bit_pos_});
+  lead_.within_limits = element == nullptr;
+  if (lead_.within_limits) return;
+  findings_.error({Errc::kLimitExceeded, "", element, lead_.header_bit_pos});
 }
 
 // 6.4 Connectivity
 void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payload) {
-  if (has_connectivity_ || !can_read()) return;
-  connectivity_suspect_ = findings_.suspect();
-  const SequenceHeader& h = header_->header;
+  if (lead_.has_connectivity || !can_read()) return;
+  lead_.connectivity_suspect = findings_.suspect();
+  const SequenceHeader& h = lead_.header->header;
   BitReader r = bits_of(unit, payload);
   const auto triangles = parse_connectivity(r, h.num_vertices, h.num_triangles);
   if (!triangles) {
@@ -120,32 +119,28 @@ void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payloa
     report_.complete = false;
     return;
   }
-  topology_ = make_topology(h.num_vertices, *triangles);
-  if (h.profile_idc == kProfileMain) mesh_predictions_.emplace(topology_, *triangles);
-  has_connectivity_ = true;
+  lead_.context.header = h;
+  lead_.context.set_connectivity(*triangles);
+  lead_.has_connectivity = true;
 }
 
 // 6.6 vertex_order( )
 void StreamValidator::vertex_order(const UnitHeader& unit, const Payload& payload) {
-  if (has_vertex_order_ || !can_read()) return;
+  if (lead_.has_vertex_order || !can_read()) return;
   BitReader r = bits_of(unit, payload);
-  const auto order = parse_vertex_order(r, header_->header.num_vertices);
-  has_vertex_order_ = static_cast<bool>(order);
+  const auto order = parse_vertex_order(r, lead_.header->header.num_vertices);
+  lead_.has_vertex_order = static_cast<bool>(order);
   if (!order) findings_.error(order.error());
 }
 
 // What is known of a GOF before it is read.
 void StreamValidator::begin_gof(const UnitHeader& unit) {
-  gofs_.push_back({unit.offset, 0});
-  gof_unit_ = unit;
-  gof_place_ = {report_.units, unit.type_byte, unit.offset};
-  may_have_slices_ = true;
-  slice_counts_.reset();
-  bone_parser_.reset();
-  previous_gof_.reset();
-  previous_bones_.reset();
-  previous_gof_frames_ = 0;
-  expected_first_frame_ = std::exchange(next_frame_, std::nullopt);
+  index_.gofs.push_back({unit.offset, 0});
+  gof_ = {};
+  gof_.unit = unit;
+  gof_.place = {report_.units, unit.type_byte, unit.offset};
+  gof_.may_have_slices = true;
+  gof_.expected_first_frame = std::exchange(next_frame_, std::nullopt);
 }
 
 // 6.5 gof( )
@@ -154,84 +149,63 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   const bool damaged = findings_.suspect();
   findings_.suspect(damaged || frames_suspect_);
   // One GOF too many was said; it may be a copy of any other.
-  const bool surplus = expected_first_frame_ == header_->header.num_frames;
+  const bool surplus = gof_.expected_first_frame == lead_.header->header.num_frames;
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
   const std::uint32_t num_layers =
-      mesh_predictions_ ? mesh_predictions_->get(Prediction::kLayers).num_layers() : 0;
+      lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
   const GofHeaderCheck header = check_gof_header(
-      r, header_->header, surplus ? std::nullopt : expected_first_frame_, num_layers);
-  may_have_slices_ = damaged || header.bones_flag.value_or(true);
-  slice_counts_ = header.slices;
+      r, lead_.header->header, surplus ? std::nullopt : gof_.expected_first_frame, num_layers);
+  gof_.may_have_slices = damaged || header.bones_flag.value_or(true);
+  gof_.slice_counts = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
-  previous_gof_frames_ = header.num_frames;
+  gof_.num_frames = header.num_frames;
   if (header.num_frames > 0) {
-    gofs_.back().first_frame = header.first_frame;
-    ++known_first_frames_;
+    index_.gofs.back().first_frame = header.first_frame;
+    ++index_.known_first_frames;
     next_frame_ = header.first_frame + header.num_frames;
   }
-  if (surplus) next_frame_ = expected_first_frame_;
-  previous_gof_suspect_ = damaged || connectivity_suspect_;
-  findings_.suspect(previous_gof_suspect_);
-  if (header.bones_flag.value_or(false)) {
-    bone_section(unit, payload, header);
-  } else {
-    gof_section(unit, payload, header);
-  }
+  if (surplus) next_frame_ = gof_.expected_first_frame;
+  gof_.suspect = damaged || lead_.connectivity_suspect;
+  findings_.suspect(gof_.suspect);
+  gof_body(unit, payload, header);
 }
 
-// 6.5.1 gof_section( )
-void StreamValidator::gof_section(const UnitHeader& unit, const Payload& payload,
-                                  const GofHeaderCheck& header) {
-  if (!header.section_readable || !has_connectivity_) {
+// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( )
+void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
+                               const GofHeaderCheck& header) {
+  const bool has_bones = header.bones_flag.value_or(false);
+  if (!header.section_readable || !lead_.has_connectivity ||
+      (has_bones && !lead_.header->positions)) {
     report_.complete = false;
     return;
   }
+  gof_.parser =
+      std::make_unique<AccessUnitParser>(lead_.context, options_.limits.max_memory_bytes);
   BitReader r = bits_of(unit, payload);
-  const GofStart start = parse_gof_start(r, header_->header, header.first_frame);
-  auto gof =
-      parse_clusters(r, header_->header, topology_, start, options_.limits.max_memory_bytes);
-  if (!gof) {
-    findings_.error(gof.error());
-    report_.complete = false;
-    return;
-  }
-  ++report_.gofs;
-  report_.frames += gof->num_frames;
-  warn_of_gof(unit, *gof);
-  previous_gof_ = std::move(*gof);
-}
-
-// 6.11.1 bone_section( )
-void StreamValidator::bone_section(const UnitHeader& unit, const Payload& payload,
-                                   const GofHeaderCheck& header) {
-  if (!header.section_readable || !mesh_predictions_ || !header_->positions) {
-    report_.complete = false;
-    return;
-  }
-  bone_parser_.emplace(header_->header, *mesh_predictions_, options_.limits.max_memory_bytes);
-  BitReader r = bits_of(unit, payload);
-  const GofStart start = parse_gof_start(r, header_->header, header.first_frame);
-  if (const auto read = bone_parser_->bones(r, start); !read) {
+  if (const auto read = gof_.parser->gof(r, header.first_frame, unit.end() - unit.offset);
+      !read) {
     findings_.error(read.error());
     report_.complete = false;
-    bone_parser_.reset();
+    gof_.parser.reset();
+  } else if (!gof_.parser->has_slices()) {
+    end_slices();
   }
 }
 
 // 6.12 slice_unit( )
 void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
-  if (!gof_unit_ || !slice_counts_) {
+  if (!gof_.unit || !gof_.slice_counts) {
     report_.complete = false;
     return;
   }
-  previous_gof_suspect_ = previous_gof_suspect_ || findings_.suspect();
-  findings_.suspect(previous_gof_suspect_);
+  gof_.suspect = gof_.suspect || findings_.suspect();
+  findings_.suspect(gof_.suspect);
   ElementReader header(payload, unit.payload_offset() * 8, findings_);
-  bool read = check_slice_header(header, *slice_counts_);
-  if (read && bone_parser_) {
+  bool read = check_slice_header(header, *gof_.slice_counts);
+  if (read && gof_.parser) {
     BitReader r = bits_of(unit, payload);
-    const auto result = bone_parser_->slice(r, unit.offset * 8);
+    const auto result = gof_.parser->slice(r, unit.offset * 8, unit.end() - unit.offset);
     if (!result) findings_.error(result.error());
     read = static_cast<bool>(result);
   }
@@ -239,24 +213,24 @@ void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (read) return;
   // What slices behind it hold depends on it.
   report_.complete = false;
-  previous_gof_suspect_ = true;
-  bone_parser_.reset();
+  gof_.suspect = true;
+  gof_.parser.reset();
 }
 
 // 8.14.1: slices at the end of a GOF can be absent.
 void StreamValidator::end_slices() {
-  if (!bone_parser_) return;
-  previous_bones_ = bone_parser_->finish();
-  bone_parser_.reset();
+  if (!gof_.parser) return;
+  gof_.access_unit = gof_.parser->finish();
+  gof_.parser.reset();
   ++report_.gofs;
-  report_.frames += previous_bones_->num_frames;
-  findings_.in_unit(gof_place_);
-  warn_of_bones(*gof_unit_, *previous_bones_);
+  report_.frames += gof_.access_unit->header().num_frames;
+  findings_.in_unit(gof_.place);
+  std::visit([this](const auto& gof) { warn_of_gof(*gof_.unit, gof); }, gof_.access_unit->gof);
 }
 
 // 6.7 gof_hash( )
 void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
-  if (!gof_unit_) {
+  if (!gof_.unit) {
     // Behind a gap, the GOF may be what was lost.
     if (previous_) {
       findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
@@ -264,45 +238,40 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
     }
     return;
   }
-  if (previous_gof_frames_ == 0) {
+  if (gof_.num_frames == 0) {
     report_.complete = false;
     return;
   }
-  findings_.suspect(findings_.suspect() || previous_gof_suspect_);
+  findings_.suspect(findings_.suspect() || gof_.suspect);
   BitReader r = bits_of(unit, payload);
-  const auto hash = parse_gof_hash(r, previous_gof_frames_);
-  const SequenceHeader& h = header_->header;
+  const auto hash = parse_gof_hash(r, gof_.num_frames);
   if (!hash) {
     findings_.error(hash.error());
-  } else if (previous_gof_ && header_->positions) {
-    compare_hashes(unit, *hash, ClusterRecon(h, topology_, *previous_gof_));
-  } else if (previous_bones_) {
-    const CodedMesh& mesh = mesh_predictions_->get(previous_bones_->prediction);
-    compare_hashes(unit, *hash, SkinnedRecon(mesh, *previous_bones_, h.position_bits));
+  } else if (gof_.access_unit && lead_.header->positions) {
+    compare_hashes(unit, *hash);
   } else {
     report_.complete = false;
   }
 }
 
 // 8.6.2 Hash check
-template <class Recon>
-void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash,
-                                     const Recon& recon) {
+void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash) {
+  const auto recon = make_recon(*gof_.access_unit, lead_.context);
   const bool per_frame = hash.per_frame_flag;
-  std::vector<std::int32_t> positions(3 * std::size_t{header_->header.num_vertices});
+  std::vector<std::int32_t> positions(3 * std::size_t{lead_.header->header.num_vertices});
   std::uint32_t crc = 0;
   std::uint32_t wrong_frames = 0;
   std::string first_wrong;
-  const std::uint32_t num_frames = recon.num_frames();
+  const std::uint32_t num_frames = recon->num_frames();
   for (std::uint32_t f = 0; f < num_frames; ++f) {
-    recon.frame(f, positions);
+    recon->frame(f, positions);
     crc = crc32_of_positions(positions, per_frame ? 0 : crc);
     if (!per_frame && f + 1 < num_frames) continue;
     const std::uint32_t stored = hash.position_crc[per_frame ? f : 0];
     if (crc == stored) continue;
     ++wrong_frames;
     if (!first_wrong.empty()) continue;
-    const std::uint32_t frame = gofs_.back().first_frame + f;
+    const std::uint32_t frame = index_.gofs.back().first_frame + f;
     first_wrong = (per_frame ? "of frame " : "of the GOF that ends with frame ") +
                   std::to_string(frame) + ": position_crc is " + hex(stored) +
                   ", the decoded positions give " + hex(crc);
@@ -323,11 +292,11 @@ void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash
 void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   ElementReader r(payload, unit.payload_offset() * 8, findings_, Checked::kNotByDecoding);
-  indexes_.push_back(
-      check_gof_index(r, header_->header.num_frames, options_.limits.max_memory_bytes));
-  indexes_.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
-  indexes_.back().suspect = findings_.suspect();
-  if (indexes_.back().too_large) {
+  index_.checks.push_back(
+      check_gof_index(r, lead_.header->header.num_frames, options_.limits.max_memory_bytes));
+  index_.checks.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
+  index_.checks.back().suspect = findings_.suspect();
+  if (index_.checks.back().too_large) {
     findings_.error({Errc::kLimitExceeded, "", "num_index_gofs_minus1", r.bit_pos()});
   }
 }
@@ -351,7 +320,7 @@ void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& pay
   r.expect_end();
   const bool follows_index = previous_ && previous_->type() == UnitType::kGofIndex;
   const bool leads_to_it = follows_index && previous_->offset + distance == unit.offset;
-  if (leads_to_it) ++index_units_found_;
+  if (leads_to_it) ++index_.units_found;
   if (distance != 0 && r.readable() && !leads_to_it && previous_) {
     findings_.unchecked(
         "R-END-03", "index_distance", unit.payload_offset() * 8,
@@ -361,13 +330,13 @@ void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& pay
                        std::to_string(unit.offset - previous_->offset) + " bytes before"
                  : "the unit directly before is no GOF index unit"));
   }
-  if (!header_ || !header_->usable) return;
-  findings_.suspect(findings_.suspect() || header_suspect_ || frames_suspect_);
-  if (next_frame_ && *next_frame_ != header_->header.num_frames) {
+  if (!lead_.header || !lead_.header->usable) return;
+  findings_.suspect(findings_.suspect() || lead_.header_suspect || frames_suspect_);
+  if (next_frame_ && *next_frame_ != lead_.header->header.num_frames) {
     findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
                     "the GOFs have " + std::to_string(*next_frame_) +
                         " frames, the sequence header announces " +
-                        std::to_string(header_->header.num_frames));
+                        std::to_string(lead_.header->header.num_frames));
   }
 }
 

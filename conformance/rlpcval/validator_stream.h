@@ -3,20 +3,20 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "common/cluster_gof/cluster_gof.h"
 #include "common/mesh/mesh.h"
-#include "common/mesh/topology.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
 #include "conformance/rlpcval/validator.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
 #include "conformance/rlpcval/validator_units.h"
+#include "decoder/parse/access_unit_parser.h"
 #include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/parse_skinned_gof.h"
 
 namespace rlpc {
 
@@ -49,16 +49,12 @@ class StreamValidator {
   void vertex_order(const UnitHeader& unit, const Payload& payload);
   void begin_gof(const UnitHeader& unit);
   void gof(const UnitHeader& unit, const Payload& payload);
-  void gof_section(const UnitHeader& unit, const Payload& payload,
-                   const GofHeaderCheck& header);
-  void bone_section(const UnitHeader& unit, const Payload& payload,
-                    const GofHeaderCheck& header);
+  void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
-  // No slice can follow any more of the GOF whose slices were read.
+  // No slice can follow any more: the access unit is complete, but for its hash.
   void end_slices();
   void gof_hash(const UnitHeader& unit, const Payload& payload);
-  template <class Recon>
-  void compare_hashes(const UnitHeader& unit, const GofHash& hash, const Recon& recon);
+  void compare_hashes(const UnitHeader& unit, const GofHash& hash);
   void gof_index(const UnitHeader& unit, const Payload& payload);
   void metadata(const UnitHeader& unit, const Payload& payload);
   void end_of_sequence(const UnitHeader& unit, const Payload& payload);
@@ -68,7 +64,7 @@ class StreamValidator {
   // validator_summary.cpp: what shows only with the whole stream.
   void compare_index(const GofIndexCheck& index);
   void warn_of_gof(const UnitHeader& unit, const ClusterGof& gof);
-  void warn_of_bones(const UnitHeader& unit, const SkinnedGof& gof);
+  void warn_of_gof(const UnitHeader& unit, const SkinnedGof& gof);
   void warn_of_stream();
   void warn_of_level();
 
@@ -84,35 +80,43 @@ class StreamValidator {
   bool ended_ = false;        // an end_of_sequence unit was there
   bool unsupported_ = false;  // payloads may mean anything
 
-  // Sequence header, connectivity.
-  std::optional<HeaderCheck> header_;
-  std::uint64_t header_bit_pos_ = 0;  // of the payload
-  bool header_suspect_ = false;
-  bool within_limits_ = true;
-  bool connectivity_suspect_ = false;
-  bool has_connectivity_ = false;
-  bool has_vertex_order_ = false;
-  Topology topology_;
-  std::optional<MeshPredictions> mesh_predictions_;  // in the Main profile
+  // Units before the first GOF.
+  struct LeadingUnits {
+    std::optional<HeaderCheck> header;
+    std::uint64_t header_bit_pos = 0;  // of the payload
+    bool header_suspect = false;
+    bool within_limits = true;
+    bool has_connectivity = false;
+    bool connectivity_suspect = false;
+    bool has_vertex_order = false;
+    StreamContext context;  // once there is connectivity
+  };
+  LeadingUnits lead_;
 
-  // GOFs.
-  std::optional<std::uint32_t> next_frame_ = 0;        // nothing if it is not known
-  std::optional<std::uint32_t> expected_first_frame_;  // of the GOF being read
+  // The GOF whose units were read last.
+  struct CurrentGof {
+    std::optional<UnitHeader> unit;  // if it, or a slice of it, is directly before
+    FindingUnit place;
+    std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
+    std::uint32_t num_frames = 0;                       // 0: not known
+    bool suspect = false;
+    bool may_have_slices = false;  // it is one of bones, or that is not known
+    std::optional<SliceCounts> slice_counts;
+    std::unique_ptr<AccessUnitParser> parser;  // if its units so far could be read
+    std::optional<AccessUnit> access_unit;     // if all could be read
+  };
+  CurrentGof gof_;
+  std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
   bool frames_suspect_ = false;
-  std::vector<GofLocation> gofs_;  // all GOF units; first_frame only if known
-  std::size_t known_first_frames_ = 0;
-  bool previous_gof_suspect_ = false;
-  std::uint32_t previous_gof_frames_ = 0;     // 0: not known
-  std::optional<ClusterGof> previous_gof_;    // if its section could be read
-  std::optional<SkinnedGof> previous_bones_;  // if its slices could be read as well
-  std::optional<UnitHeader> gof_unit_;        // if it, or a slice of it, is directly before
-  FindingUnit gof_place_;
-  bool may_have_slices_ = false;  // that GOF: it is one of bones, or that is not known
-  std::optional<SliceCounts> slice_counts_;
-  std::optional<SkinnedGofParser> bone_parser_;  // if the sections so far could be read
-  std::vector<GofIndexCheck> indexes_;
-  std::uint64_t index_units_found_ = 0;  // those that index_distance leads to
-  Level needed_{};                       // the most that any GOF takes
+  Level needed_{};  // the most that any GOF takes
+
+  struct Index {
+    std::vector<GofLocation> gofs;  // all GOF units; first_frame only if known
+    std::size_t known_first_frames = 0;
+    std::vector<GofIndexCheck> checks;
+    std::uint64_t units_found = 0;  // those that index_distance leads to
+  };
+  Index index_;
 };
 
 }  // namespace rlpc

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/skinned_gof/recon/skinned_recon.h"
 #include "conformance/rlpcval/validator_stream.h"
 
 namespace rlpc {
@@ -39,11 +40,11 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
   findings_.in_unit(index.unit);
   findings_.suspect(index.suspect || frames_suspect_);
   const std::uint64_t at = (index.unit.offset + kUnitHeaderBytes) * 8;
-  const bool frames_known = known_first_frames_ == gofs_.size();
-  const std::size_t common = std::min(index.gofs.size(), gofs_.size());
+  const bool frames_known = index_.known_first_frames == index_.gofs.size();
+  const std::size_t common = std::min(index.gofs.size(), index_.gofs.size());
   for (std::size_t g = 0; g < common; ++g) {
     const GofLocation& listed = index.gofs[g];
-    const GofLocation& found = gofs_[g];
+    const GofLocation& found = index_.gofs[g];
     if (listed.offset != found.offset) {
       return findings_.unchecked("R-IDX-03", "index_gof_bytes", at,
                                  "GOF " + std::to_string(g) + " is listed at byte " +
@@ -58,10 +59,10 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
                                      std::to_string(found.first_frame));
     }
   }
-  if (index.gofs.size() != gofs_.size()) {
+  if (index.gofs.size() != index_.gofs.size()) {
     return findings_.unchecked("R-IDX-03", "num_index_gofs_minus1", at,
                                std::to_string(index.gofs.size()) + " GOFs are listed, there " +
-                                   "are " + std::to_string(gofs_.size()) + " GOF units");
+                                   "are " + std::to_string(index_.gofs.size()) + " GOF units");
   }
   if (index.end <= index.gofs.back().offset || index.end > index.unit.offset) {
     findings_.unchecked("R-IDX-03", "index_gof_bytes", at,
@@ -107,9 +108,10 @@ void StreamValidator::warn_of_gof(const UnitHeader& unit, const ClusterGof& gof)
   }
 }
 
-void StreamValidator::warn_of_bones(const UnitHeader& unit, const SkinnedGof& gof) {
+void StreamValidator::warn_of_gof(const UnitHeader& unit, const SkinnedGof& gof) {
   std::vector<bool> in_use(gof.bones.size(), false);
-  for (const Influences& influences : gof.influences) {
+  const CodedMesh& mesh = (*lead_.context.meshes)[gof.prediction];
+  for (const Influences& influences : complete_influences(mesh, gof)) {
     for (const Influence& influence : influences) in_use[influence.bone] = true;
   }
   // Parents come before their children.
@@ -142,7 +144,7 @@ void StreamValidator::warn_of_bones(const UnitHeader& unit, const SkinnedGof& go
 
 void StreamValidator::warn_of_level() {
   if (findings_.failures() > 0 || !report_.complete) return;
-  const SequenceHeader& h = header_->header;
+  const SequenceHeader& h = lead_.header->header;
   for (std::uint32_t level_idc = 1; level_idc < h.level_idc; ++level_idc) {
     const Level& level = kLevels[level_idc - 1];
     if (h.num_vertices <= level.max_vertices && h.num_triangles <= level.max_triangles &&
@@ -152,7 +154,7 @@ void StreamValidator::warn_of_level() {
         needed_.max_gof_values <= level.max_gof_values &&
         needed_.max_gof_factors <= level.max_gof_factors &&
         needed_.max_unit_bytes <= level.max_unit_bytes) {
-      findings_.warning("W-LVL-01", "level_idc", header_bit_pos_ + 8,
+      findings_.warning("W-LVL-01", "level_idc", lead_.header_bit_pos + 8,
                         "level_idc is " + std::to_string(h.level_idc) + ", level " +
                             std::to_string(level_idc) + " would do");
       return;
@@ -163,13 +165,13 @@ void StreamValidator::warn_of_level() {
 void StreamValidator::warn_of_stream() {
   findings_.suspect(findings_.failures() > 0);
   const std::uint64_t end = 8 * report_.bytes;
-  if (!header_ || !header_->usable) return;
-  const FrameRate& rate = header_->header.frame_rate;
+  if (!lead_.header || !lead_.header->usable) return;
+  const FrameRate& rate = lead_.header->header.frame_rate;
   const std::uint64_t numerator = rate.numerator;
   const std::uint64_t denominator = rate.denominator;
   if (kMinFrameSeconds * numerator < denominator || numerator > kMaxFrameRate * denominator) {
     findings_.warning(
-        "W-HDR-01", "frame_rate_numerator_minus1", header_bit_pos_,
+        "W-HDR-01", "frame_rate_numerator_minus1", lead_.header_bit_pos,
         std::to_string(numerator) + "/" + std::to_string(denominator) + " frames per second");
   }
   warn_of_level();
@@ -185,9 +187,9 @@ void StreamValidator::warn_of_stream() {
   if (gofs >= kManyGofs && indexes == 0) {
     findings_.warning("W-IDX-01", "gof_index", end, std::to_string(gofs) + " GOFs");
   }
-  if (indexes > index_units_found_ && ended_) {
+  if (indexes > index_.units_found && ended_) {
     findings_.unchecked("R-IDX-04", "gof_index", end,
-                        std::to_string(indexes - index_units_found_) + " of " +
+                        std::to_string(indexes - index_.units_found) + " of " +
                             std::to_string(indexes) + " GOF index units");
   }
   if (seen(UnitType::kMetadata) > 1) {

@@ -420,7 +420,7 @@ TEST(Validator, WarnsOfWhatIsSurelyNotMeant) {
   append(UnitType::kConnectivity, write_connectivity(4, {}).payload);
   append(static_cast<UnitType>(0xFF), {1, 2, 3});
   for (; gof.first_frame < 16; ++gof.first_frame) {
-    append(UnitType::kGof, write_gof(gof, header, make_topology(4, {})));
+    append(UnitType::kGof, write_cluster_gof(gof, header, make_topology(4, {})));
   }
   append(UnitType::kMetadata, write_metadata("1"));
   append(UnitType::kMetadata, write_metadata("2"));

@@ -11,6 +11,7 @@
 #include "common/cluster_gof/recon/cluster_recon.h"
 #include "conformance/roundtrip/count_memory.h"
 #include "decoder/parse/parse_cluster_gof.h"
+#include "decoder/parse/parse_gof_header.h"
 #include "encoder/write/write_cluster_gof.h"
 
 namespace rlpc {
@@ -172,11 +173,11 @@ void expect_equal(const ClusterGof& a, const ClusterGof& b) {
 }
 
 void expect_round_trip(const Generator& from, const ClusterGof& gof) {
-  const std::vector<std::uint8_t> payload = write_gof(gof, from.header, from.topology);
+  const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   BitReader r(payload);
-  const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
-  EXPECT_FALSE(start.bones_flag);
-  const auto parsed = parse_clusters(r, from.header, from.topology, start, kAmple);
+  const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
+  EXPECT_EQ(header.kind, GofKind::kClusters);
+  const auto parsed = parse_clusters(r, from.header, from.topology, header, kAmple);
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
   expect_equal(gof, *parsed);
 
@@ -265,22 +266,22 @@ std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
   while (enough - too_few > enough / 50) {
     const std::uint64_t middle = too_few + (enough - too_few) / 2;
     BitReader r(payload);
-    const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
-    (parse_clusters(r, from.header, from.topology, start, middle) ? enough : too_few) = middle;
+    const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
+    (parse_clusters(r, from.header, from.topology, header, middle) ? enough : too_few) = middle;
   }
   return enough;
 }
 
 // What parsing and reconstruction have at a time, beside what they need for any GOF.
 void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof) {
-  const std::vector<std::uint8_t> payload = write_gof(gof, from.header, from.topology);
+  const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   const std::uint64_t estimate = estimated_memory(from, gof, payload);
   memory_count.peak = memory_count.now;
   const std::size_t before = memory_count.now;
   {
     BitReader r(payload);
-    const GofStart start = parse_gof_start(r, from.header, gof.first_frame);
-    const auto parsed = parse_clusters(r, from.header, from.topology, start, kAmple);
+    const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
+    const auto parsed = parse_clusters(r, from.header, from.topology, header, kAmple);
     ASSERT_TRUE(parsed);
     const ClusterRecon recon(from.header, from.topology, *parsed);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});

@@ -137,8 +137,8 @@ class SlicedAnimation {
     gof.layer_group_size = {1};
     gof.layer_step = {16};
     if (prediction == Prediction::kLayers) {
-      gof.damping_log2 = 5;
-      gof.outer_weight = gof.outer_scale = 3;
+      gof.weights.damping_log2 = 5;
+      gof.weights.outer_weight = gof.weights.outer_scale = 3;
       gof.layer_group_size = {1, layers_.num_layers - 1};
       gof.layer_step.assign(layers_.num_layers, 12);
     }
@@ -198,7 +198,7 @@ class SlicedAnimation {
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
   }
   void append_gof(StreamBytes& bytes, const ClusterGof& gof) const {
-    append(bytes, UnitType::kGof, write_gof(gof, header_, topology_));
+    append(bytes, UnitType::kGof, write_cluster_gof(gof, header_, topology_));
     const ClusterRecon recon(header_, topology_, gof);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }

@@ -102,7 +102,7 @@ Places places_of(const StreamBytes& stream) {
   const auto cutter = SubStreamExtractor::open(memory_source(stream), {});
   EXPECT_TRUE(cutter);
   Places places;
-  for (const ListedGof& gof : cutter->gofs()) {
+  for (const GofSummary& gof : cutter->gofs()) {
     places.emplace_back();
     for (const SliceEntry& s : gof.slices) {
       places.back().emplace_back(s.component_group_idx, s.layer_group_idx);

@@ -73,6 +73,7 @@ std::vector<KeyFigure> key_figures(const Distortion& d) {
 
 struct Parsed {
   BitCounter counter;
+  std::vector<GofSummary> gofs;
   StreamRates rates;
 };
 
@@ -86,12 +87,14 @@ std::optional<InputError> parse(const std::string& path, Parsed& parsed) {
   const std::uint64_t bytes = (*source)->size();
   DecoderOptions options;
   options.trace = &parsed.counter;
-  auto decoder = Decoder::open(std::move(*source), options);
-  if (!decoder) return complain(decoder.error());
-  if (const auto rest = decoder->parse_rest(); !rest) return complain(rest.error());
+  StreamReader stream(std::move(*source), options);
+  if (const auto opened = stream.open(); !opened) return complain(opened.error());
+  auto gofs = summarise_all(stream);
+  if (!gofs) return complain(gofs.error());
+  parsed.gofs = std::move(*gofs);
   parsed.counter.finish(8 * bytes);
-  parsed.rates = {decoder->header().num_vertices, decoder->header().num_frames, bytes,
-                  &parsed.counter};
+  parsed.rates = {stream.header().num_vertices, stream.header().num_frames, bytes,
+                  &parsed.counter, &parsed.gofs};
   return std::nullopt;
 }
 

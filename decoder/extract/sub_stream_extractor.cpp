@@ -26,32 +26,30 @@ class SharedSource final : public ByteSource {
 }  // namespace
 
 SubStreamExtractor::SubStreamExtractor(std::unique_ptr<ByteSource> units, Decoder decoder,
-                                       const SliceCut& cut, std::vector<ListedGof> gofs)
+                                       const SliceCut& cut, std::vector<GofSummary> gofs)
     : units_(std::move(units), nullptr),
       decoder_(std::move(decoder)),
       cut_(cut),
       gofs_(std::move(gofs)),
       cuts_any_(std::any_of(gofs_.begin(), gofs_.end(),
-                            [this](const ListedGof& gof) { return cuts(gof); })) {}
+                            [this](const GofSummary& gof) { return cuts(gof); })) {}
 
 Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> source,
                                                     const SliceCut& cut,
                                                     const DecodeLimits& limits) {
   const std::shared_ptr<ByteSource> shared = std::move(source);
-  ListingTrace trace;
   DecoderOptions options;
   options.limits = limits;
-  options.trace = &trace;
-  auto whole = Decoder::open(std::make_unique<SharedSource>(shared), options);
-  if (!whole) return whole.error();
-  if (const auto ok = whole->parse_rest(); !ok) return ok.error();
-  options.trace = nullptr;
+  StreamReader whole(std::make_unique<SharedSource>(shared), options);
+  if (const auto ok = whole.open(); !ok) return ok.error();
+  auto gofs = summarise_all(whole);
+  if (!gofs) return gofs.error();
   options.verify_hashes = false;
   options.cut = cut;
   auto decoder = Decoder::open(std::make_unique<SharedSource>(shared), options);
   if (!decoder) return decoder.error();
   return SubStreamExtractor(std::make_unique<SharedSource>(shared), std::move(*decoder), cut,
-                            trace.gofs());
+                            std::move(*gofs));
 }
 
 Result<Bytes> SubStreamExtractor::next() {
@@ -77,7 +75,7 @@ Result<Bytes> SubStreamExtractor::next() {
 
 // What is in the place of a unit; nothing if it is left out.
 Result<Bytes> SubStreamExtractor::cut_unit(const UnitHeader& unit, const Bytes& payload) {
-  const ListedGof* const before = std::exchange(gof_, nullptr);
+  const GofSummary* const before = std::exchange(gof_, nullptr);
   switch (unit.type()) {
     case UnitType::kVertexOrder: {
       BitReader r = units_.bits(unit, payload);
@@ -121,7 +119,7 @@ void SubStreamExtractor::start_gof() {
 }
 
 // 8.6.2 Hash check, of the same kind as before
-Result<Bytes> SubStreamExtractor::new_hash(const ListedGof& gof, const UnitHeader& unit,
+Result<Bytes> SubStreamExtractor::new_hash(const GofSummary& gof, const UnitHeader& unit,
                                            const Bytes& payload) {
   BitReader r = units_.bits(unit, payload);
   const auto old = parse_gof_hash(r, gof.num_frames);

@@ -12,6 +12,7 @@
 #include "common/testing/fuzz_input.h"
 #include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/parse_sequence_header.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
@@ -28,8 +29,8 @@ constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
 void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topology,
                 std::uint32_t first_frame, std::span<const std::uint8_t> payload) {
   rlpc::BitReader r(payload);
-  const rlpc::GofStart start = rlpc::parse_gof_start(r, header, first_frame);
-  const auto gof = rlpc::parse_clusters(r, header, topology, start, kMaxMemoryBytes);
+  const rlpc::GofHeader gof_header = rlpc::parse_gof_header(r, header, first_frame);
+  const auto gof = rlpc::parse_clusters(r, header, topology, gof_header, kMaxMemoryBytes);
   if (!gof) return;
   const rlpc::ClusterRecon recon(header, topology, *gof);
   rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);

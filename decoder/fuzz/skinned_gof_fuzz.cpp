@@ -12,6 +12,7 @@
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/testing/fuzz_input.h"
 #include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/parse_sequence_header.h"
 #include "decoder/parse/parse_skinned_gof.h"
 
@@ -39,8 +40,9 @@ std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
   return pieces;
 }
 
-void check_influences(const rlpc::SkinnedGof& gof) {
-  for (const rlpc::Influences& influences : gof.influences) {
+void check_influences(const rlpc::SkinnedGof& gof,
+                      std::span<const rlpc::Influences> of_vertices) {
+  for (const rlpc::Influences& influences : of_vertices) {
     int sum = 0;
     for (const rlpc::Influence& influence : influences) {
       rlpc::fuzz_check(influence.bone < gof.bones.size() && influence.weight > 0);
@@ -50,19 +52,19 @@ void check_influences(const rlpc::SkinnedGof& gof) {
   }
 }
 
-void decode_gof(const rlpc::SequenceHeader& header, rlpc::MeshPredictions& meshes,
+void decode_gof(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes,
                 std::uint32_t first_frame, std::span<const Piece> pieces) {
   rlpc::SkinnedGofParser parser(header, meshes, kMaxMemoryBytes);
   rlpc::BitReader gof_bits(pieces[0]);
-  const rlpc::GofStart start = rlpc::parse_gof_start(gof_bits, header, first_frame);
-  if (!start.bones_flag || !parser.bones(gof_bits, start)) return;
+  const rlpc::GofHeader gof_header = rlpc::parse_gof_header(gof_bits, header, first_frame);
+  if (gof_header.kind != rlpc::GofKind::kSkinned || !parser.bones(gof_bits, gof_header)) return;
   for (const Piece& piece : pieces.subspan(1)) {
     rlpc::BitReader slice_bits(piece);
     if (!parser.slice(slice_bits, 0)) return;
   }
-  const rlpc::CodedMesh& mesh = parser.mesh();
   const rlpc::SkinnedGof gof = parser.finish();
-  check_influences(gof);
+  const rlpc::CodedMesh& mesh = meshes[gof.prediction];
+  check_influences(gof, rlpc::complete_influences(mesh, gof));
   const rlpc::SkinnedRecon recon(mesh, gof, header.position_bits);
   rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
   std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
@@ -91,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       rlpc::parse_connectivity(connectivity_bits, header->num_vertices, header->num_triangles);
   if (!triangles) return 0;
   const rlpc::Topology topology = rlpc::make_topology(header->num_vertices, *triangles);
-  rlpc::MeshPredictions meshes(topology, *triangles);
+  rlpc::CodedMeshes meshes(topology, *triangles);
   decode_gof(*header, meshes, first_frame, std::span(pieces).subspan(kGofPiece));
   return 0;
 }

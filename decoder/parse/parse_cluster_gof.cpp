@@ -236,34 +236,13 @@ void ClusterSectionParser::parse() {
 
 }  // namespace
 
-// 6.5 gof( )
-GofStart parse_gof_start(BitReader& r, const SequenceHeader& header,
-                         std::uint32_t first_frame) {
-  const Level& level = header.level();
-  GofStart start;
-  start.first_frame = first_frame;
-  r.ue("first_frame", {first_frame, first_frame}, "R-GOF-01");
-  const std::uint64_t at = r.bit_pos();
-  const std::uint32_t frames_left = header.num_frames - first_frame;
-  start.num_frames =
-      r.ue("num_gof_frames_minus1", {0, std::int64_t{frames_left} - 1}, "R-GOF-02") + 1;
-  const std::uint64_t num_values = std::uint64_t{start.num_frames} * header.num_vertices;
-  if (!r.error() &&
-      (start.num_frames > level.max_gof_frames || num_values > level.max_gof_values)) {
-    r.fail(Errc::kInvalid, "R-LVL-04", "num_gof_frames_minus1", at);
-  }
-  if (header.profile_idc == kProfileMain) start.bones_flag = r.flag("bones_flag");
-  return start;
-}
-
 // 6.5 clusters_of_gof( )
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
-                                  const Topology& topology, const GofStart& start,
+                                  const Topology& topology, const GofHeader& gof_header,
                                   std::uint64_t max_memory_bytes) {
   const Level& level = header.level();
   ClusterGof gof;
-  gof.first_frame = start.first_frame;
-  gof.num_frames = start.num_frames;
+  static_cast<GofHeader&>(gof) = gof_header;
   const std::uint32_t num_clusters =
       r.ue("num_clusters_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
   gof.fraction_bits =

@@ -12,6 +12,7 @@
 #include "common/bitstream/bit_writer.h"
 #include "common/bitstream/range_encoder.h"
 #include "common/cluster_gof/cluster_models.h"
+#include "decoder/parse/parse_gof_header.h"
 
 namespace rlpc {
 namespace {
@@ -41,7 +42,7 @@ Result<ClusterGof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
       make_topology(5, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {3, 1, 4}});
   BitReader r(payload, 0, trace);
   const SequenceHeader header = header_of(5, 5);
-  return parse_clusters(r, header, topology, parse_gof_start(r, header, 2), max_memory_bytes);
+  return parse_clusters(r, header, topology, parse_gof_header(r, header, 2), max_memory_bytes);
 }
 
 void expect_invalid(const Result<ClusterGof>& gof, const std::string& rule,
@@ -212,7 +213,7 @@ Result<ClusterGof> parse(const Bytes& payload, const SequenceHeader& header,
                          std::uint32_t first_frame = 0) {
   const Topology topology = make_topology(header.num_vertices, {});
   BitReader r(payload);
-  return parse_clusters(r, header, topology, parse_gof_start(r, header, first_frame), kAmple);
+  return parse_clusters(r, header, topology, parse_gof_header(r, header, first_frame), kAmple);
 }
 
 // One world cluster without components.
@@ -258,7 +259,7 @@ TEST(ParseGof, EveryFixedElementIsTakenUpToItsBoundsAndNotBeyond) {
   }
 }
 
-TEST(ParseGofStart, HasAFlagForBonesInTheMainProfileAlone) {
+TEST(ParseGofHeader, HasAFlagForBonesInTheMainProfileAlone) {
   for (const std::uint32_t profile_idc : {kProfileBaseline, kProfileMain}) {
     for (const bool bones_flag : {false, true}) {
       SequenceHeader header = header_of(5, 20);
@@ -271,16 +272,16 @@ TEST(ParseGofStart, HasAFlagForBonesInTheMainProfileAlone) {
       w.byte_alignment();
       const Bytes payload = w.take();
       BitReader r(payload);
-      const GofStart start = parse_gof_start(r, header, 3);
-      EXPECT_EQ(start.first_frame, 3U);
-      EXPECT_EQ(start.num_frames, 17U);
-      EXPECT_EQ(start.bones_flag, profile_idc == kProfileMain && bones_flag);
+      const GofHeader gof = parse_gof_header(r, header, 3);
+      EXPECT_EQ(gof.first_frame, 3U);
+      EXPECT_EQ(gof.num_frames, 17U);
+      EXPECT_EQ(gof.kind == GofKind::kSkinned, profile_idc == kProfileMain && bones_flag);
       EXPECT_EQ(r.bit_pos(), profile_idc == kProfileMain ? 15U : 14U);
       EXPECT_FALSE(r.error());
       // All but the last three bits of these elements.
       const Bytes prefix(payload.begin(), payload.begin() + 1);
       BitReader cut(prefix);
-      parse_gof_start(cut, header, 3);
+      parse_gof_header(cut, header, 3);
       EXPECT_TRUE(cut.error());
     }
   }

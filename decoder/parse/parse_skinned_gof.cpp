@@ -81,9 +81,9 @@ void SkinnedGofParser::layers(BitReader& r) {
   gof_.layer_group_size = {mesh_->num_layers()};
   gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
   if (gof_.prediction != Prediction::kLayers) return;
-  gof_.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
-  gof_.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
-  gof_.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
+  gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
+  gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
+  gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
   const std::int64_t num_layers = mesh_->num_layers();
   const std::uint32_t num_groups =
       r.ue("num_layer_groups_minus1", {0, num_layers - 1}, "R-BON-03") + 1;
@@ -122,10 +122,9 @@ void SkinnedGofParser::bone_section(BitReader& r) {
 }
 
 // 6.11 bones_of_gof( )
-Result<bool> SkinnedGofParser::bones(BitReader& r, const GofStart& start) {
+Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) {
   gof_ = {};
-  gof_.first_frame = start.first_frame;
-  gof_.num_frames = start.num_frames;
+  static_cast<GofHeader&>(gof_) = gof_header;
   const Level& level = header_.level();
   const std::uint32_t num_bones =
       r.ue("num_bones_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
@@ -137,7 +136,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofStart& start) {
       r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
   gof_.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
   if (r.error()) return *r.error();
-  mesh_ = &meshes_.get(gof_.prediction);
+  mesh_ = &meshes_[gof_.prediction];
   layers(r);
   r.byte_alignment();
   if (r.error()) return *r.error();
@@ -343,6 +342,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
       r.ue("layer_group_idx", {0, static_cast<std::int64_t>(gof_.layer_group_size.size()) - 1},
            "R-SLI-01");
   if (r.error()) return *r.error();
+  last_slice_.reset();
   if (group >= end_component_group_ || layers >= end_layer_group_) {
     is_cut_ = true;
     return true;
@@ -352,26 +352,17 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   }
   r.byte_alignment();
   if (r.error()) return *r.error();
+  const std::size_t trajectories_before = gof_.trajectories.size();
   SliceParser(*this, r, group, layers).parse();
   if (r.error()) return *r.error();
   // Only the slice tells how many trajectories its group has.
-  is_cut_ = is_cut_ || group >= end_component_group_;
-  return true;
-}
-
-// 8.14.1 AddAbsentInfluences( )
-SkinnedGof SkinnedGofParser::finish() {
-  InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
-                                 gof_.weight_bits);
-  std::uint32_t first = 0;
-  for (std::uint32_t j = 0; j < gof_.slice_layers[0]; ++j) first += gof_.layer_group_size[j];
-  for (const std::uint32_t v : mesh_->vertices_of_layers(first, mesh_->num_layers())) {
-    prediction.start(mesh_->ring(v));
-    for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
-      prediction.add_candidate(k, 0);
-    gof_.influences[v] = prediction.finish();
+  if (group >= end_component_group_) {
+    is_cut_ = true;
+    return true;
   }
-  return std::move(gof_);
+  const std::size_t count = gof_.trajectories.size() - trajectories_before;
+  last_slice_ = SliceEntry{group, layers, static_cast<std::uint32_t>(count), 0};
+  return true;
 }
 
 }  // namespace rlpc

@@ -1,46 +1,22 @@
 // 6.11 and 6.12: bones of a GOF, and slices, parsing side.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "common/bitstream/bit_reader.h"
-#include "common/mesh/coded_mesh.h"
+#include "common/mesh/coded_meshes.h"
 #include "common/result.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/skinned_gof/slice_models.h"
+#include "common/syntax/access_unit.h"
 #include "common/syntax/sequence_header.h"
-#include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
-
-// What a decoder keeps of a stream for the prediction along the mesh.
-class MeshPredictions {
- public:
-  // triangles: in decoded order, read during the call. The topology must outlive it.
-  MeshPredictions(const Topology& topology, std::span<const Triangle> triangles)
-      : topology_(topology),
-        layers_(make_layers(static_cast<std::uint32_t>(topology.earlier_neighbours.size()),
-                            triangles)),
-        meshes_{CodedMesh(Prediction::kNone, topology_, layers_),
-                CodedMesh(Prediction::kParallelogram, topology_, layers_),
-                CodedMesh(Prediction::kParallelograms, topology_, layers_),
-                CodedMesh(Prediction::kLayers, topology_, layers_)} {}
-  MeshPredictions(const MeshPredictions&) = delete;
-  MeshPredictions& operator=(const MeshPredictions&) = delete;
-
-  const CodedMesh& get(Prediction prediction) const {
-    return meshes_[static_cast<std::size_t>(prediction)];
-  }
-
- private:
-  const Topology& topology_;
-  VertexLayers layers_;
-  std::array<CodedMesh, 4> meshes_;
-};
 
 // The unit of a GOF of bones and the slice units behind it, one after the other. Every size
 // is checked against the level, and what it needs against max_memory_bytes, before memory is
@@ -48,18 +24,19 @@ class MeshPredictions {
 class SkinnedGofParser {
  public:
   // All must outlive it.
-  SkinnedGofParser(const SequenceHeader& header, const MeshPredictions& meshes,
+  SkinnedGofParser(const SequenceHeader& header, const CodedMeshes& meshes,
                    std::uint64_t max_memory_bytes, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
 
   // 6.11 bones_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
-  Result<bool> bones(BitReader& r, const GofStart& start);
+  Result<bool> bones(BitReader& r, const GofHeader& gof_header);
   // 6.12 slice_unit( ), after bones( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
-  // After the last slice: the GOF, with what absent slices are predicted to hold.
-  SkinnedGof finish();
+  // After the last slice.
+  SkinnedGof finish() { return std::move(gof_); }
 
-  const CodedMesh& mesh() const { return *mesh_; }
+  // What the last slice() was; of one that was left out, nothing.
+  const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
   // Whether a slice was left out so far.
   bool is_cut() const { return is_cut_; }
 
@@ -71,7 +48,7 @@ class SkinnedGofParser {
   bool may_follow(std::uint32_t group, std::uint32_t layers) const;
 
   const SequenceHeader& header_;
-  const MeshPredictions& meshes_;
+  const CodedMeshes& meshes_;
   std::uint64_t max_memory_bytes_;
   SliceCut cut_;
   const CodedMesh* mesh_ = nullptr;
@@ -89,6 +66,7 @@ class SkinnedGofParser {
   std::uint32_t end_component_group_ = 0;
   std::uint32_t end_layer_group_ = 0;
   bool is_cut_ = false;
+  std::optional<SliceEntry> last_slice_;
 };
 
 }  // namespace rlpc

@@ -7,14 +7,14 @@
 
 namespace rlpc {
 
-std::span<const std::int32_t> FrameBand::frame(const FrameRecon& recon, std::uint32_t f,
+std::span<const std::int32_t> FrameBand::frame(const GofRecon& recon, std::uint32_t f,
                                                std::size_t frame_size) {
   if (f < first_ || f >= first_ + count_) fill(recon, f, frame_size);
   return std::span<const std::int32_t>(positions_)
       .subspan((f - first_) * frame_size, frame_size);
 }
 
-void FrameBand::fill(const FrameRecon& recon, std::uint32_t first, std::size_t frame_size) {
+void FrameBand::fill(const GofRecon& recon, std::uint32_t first, std::size_t frame_size) {
   first_ = first;
   count_ = std::min(next_count_, recon.num_frames() - first);
   next_count_ = std::min(2 * next_count_, most_);

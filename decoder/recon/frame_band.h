@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "decoder/recon/frame_recon.h"
+#include "decoder/recon/gof_recon.h"
 
 namespace rlpc {
 
@@ -24,11 +24,11 @@ class FrameBand {
   // The next frame may be the only one that is wanted.
   void begin_small() { next_count_ = 1; }
   // Frame f of the GOF in decoded order, frame_size values; until the next call.
-  std::span<const std::int32_t> frame(const FrameRecon& recon, std::uint32_t f,
+  std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,
                                       std::size_t frame_size);
 
  private:
-  void fill(const FrameRecon& recon, std::uint32_t first, std::size_t frame_size);
+  void fill(const GofRecon& recon, std::uint32_t first, std::size_t frame_size);
 
   std::uint32_t most_;
   std::uint32_t next_count_;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "decoder/parse/parse_gof_hash.h"
+#include "common/syntax/gof_hash.h"
 
 namespace rlpc {
 

@@ -2,107 +2,68 @@
 
 #include <utility>
 
-#include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/recon/async.h"
 
 namespace rlpc {
 
-Prefetch::Prefetch(UnitReader& units, const SequenceHeader& header, const Topology& topology,
-                   const MeshPredictions* meshes, std::uint64_t max_memory_bytes,
-                   const SliceCut& cut)
-    : units_(units),
-      header_(header),
-      topology_(topology),
-      meshes_(meshes),
-      max_memory_bytes_(max_memory_bytes),
-      cut_(cut) {}
+PreparedGof prepare(AccessUnit access_unit, const StreamContext& context) {
+  auto recon = make_recon(access_unit, context);
+  return {access_unit.header(), std::move(access_unit.hash), access_unit.is_cut,
+          std::move(recon)};
+}
 
-std::optional<Prefetch::Parsed> Prefetch::take(std::uint64_t offset,
-                                               std::uint32_t first_frame) {
-  std::optional<Parsed> parsed;
+std::optional<Prefetch::Found> Prefetch::take(std::uint64_t offset, std::uint32_t first_frame) {
+  std::optional<Found> found;
   if (!gofs_.empty()) {
     Ahead& ahead = gofs_.front();
-    const GofUnits& units = ahead.units;
-    if (units.gof.unit.offset == offset && units.start.first_frame == first_frame &&
-        ahead.done.get() && ahead.recon) {
-      parsed = Parsed{std::move(*ahead.recon), units.end()};
+    if (ahead.coded.units.front().header.offset == offset &&
+        ahead.coded.gof.first_frame == first_frame && ahead.done.get() && ahead.gof) {
+      found = Found{std::move(*ahead.gof), ahead.coded.end()};
       gofs_.pop_front();
     }
   }
-  if (!parsed) gofs_.clear();
-  return parsed;
+  if (!found) gofs_.clear();
+  return found;
 }
 
 void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count) {
-  while (!gofs_.empty() && gofs_.front().units.start.first_frame != first_frame)
+  while (!gofs_.empty() && gofs_.front().coded.gof.first_frame != first_frame)
     gofs_.pop_front();
   if (!gofs_.empty()) {
-    offset = gofs_.back().units.end();
-    first_frame = gofs_.back().units.end_frame();
+    offset = gofs_.back().coded.end();
+    first_frame = gofs_.back().coded.end_frame();
   }
-  while (gofs_.size() < count && first_frame < header_.num_frames) {
-    auto units = read(offset, first_frame);
-    if (!units) return;
-    offset = units->end();
-    first_frame = units->end_frame();
-    gofs_.push_back({std::move(*units), std::nullopt, {}});
+  while (gofs_.size() < count && first_frame < stream_.header().num_frames) {
+    auto coded = collect(offset, first_frame);
+    if (!coded) return;
+    offset = coded->end();
+    first_frame = coded->end_frame();
+    gofs_.push_back({std::move(*coded), std::nullopt, {}});
     Ahead& ahead = gofs_.back();
-    ahead.done = run_async([this, &ahead] { ahead.recon = parse(ahead.units); });
+    ahead.done = run_async([this, &ahead] { ahead.gof = parse(ahead.coded); });
   }
 }
 
-// The next GOF, past ancillary units, if its units fit into max_memory_bytes. Nothing is read
-// behind the end of the sequence.
-std::optional<GofUnits> Prefetch::read(std::uint64_t offset, std::uint32_t first_frame) {
-  GofUnits units;
-  std::uint64_t num_bytes = 0;
-  for (bool have_gof = false; offset < units_.size();) {
-    const auto unit = units_.header_at(offset);
+// The next GOF, past ancillary units. Nothing is read behind the end of the sequence.
+std::optional<CodedAccessUnit> Prefetch::collect(std::uint64_t offset,
+                                                 std::uint32_t first_frame) {
+  UnitReader& units = stream_.units();
+  while (offset < units.size()) {
+    const auto unit = units.header_at(offset);
     if (!unit) return std::nullopt;
-    const bool is_gof = !have_gof && unit->type() == UnitType::kGof;
-    const bool is_slice = units.start.bones_flag && unit->type() == UnitType::kSlice;
-    if (is_gof || is_slice) {
-      num_bytes += unit->size;
-      if (num_bytes > max_memory_bytes_) return std::nullopt;
-      auto payload = units_.payload(*unit);
-      if (!payload) return std::nullopt;
-      GofUnits::Coded coded{*unit, std::move(*payload)};
-      if (is_slice) {
-        units.slices.push_back(std::move(coded));
-      } else {
-        BitReader r = units_.bits(*unit, coded.payload);
-        units.start = parse_gof_start(r, header_, first_frame);
-        if (r.error()) return std::nullopt;
-        units.gof = std::move(coded);
-        have_gof = true;
-      }
-    } else if (have_gof) {
-      return units;
-    } else if (!unit->ancillary()) {
-      return std::nullopt;
+    if (unit->type() == UnitType::kGof) {
+      return stream_.access_units().collect(*unit, first_frame, max_memory_bytes_);
     }
+    if (!unit->ancillary()) return std::nullopt;
     offset = unit->end();
   }
   return std::nullopt;
 }
 
-std::optional<FrameRecon> Prefetch::parse(const GofUnits& units) const {
-  BitReader r = units_.bits(units.gof.unit, units.gof.payload);
-  const GofStart start = parse_gof_start(r, header_, units.start.first_frame);
-  if (!start.bones_flag) {
-    const auto gof = parse_clusters(r, header_, topology_, start, max_memory_bytes_);
-    if (!gof) return std::nullopt;
-    return FrameRecon(ClusterRecon(header_, topology_, *gof));
-  }
-  SkinnedGofParser parser(header_, *meshes_, max_memory_bytes_, cut_);
-  if (!parser.bones(r, start)) return std::nullopt;
-  for (const auto& [unit, payload] : units.slices) {
-    BitReader slice = units_.bits(unit, payload);
-    if (!parser.slice(slice, unit.offset * 8)) return std::nullopt;
-  }
-  const CodedMesh& mesh = parser.mesh();
-  return FrameRecon(SkinnedRecon(mesh, parser.finish(), header_.position_bits),
-                    parser.is_cut());
+std::optional<PreparedGof> Prefetch::parse(const CodedAccessUnit& coded) const {
+  auto access_unit = stream_.access_units().parse(coded, max_memory_bytes_);
+  if (!access_unit) return std::nullopt;
+  return prepare(std::move(*access_unit), stream_.context());
 }
 
 }  // namespace rlpc

@@ -100,7 +100,6 @@ void BitCounter::element(const char* name, std::int64_t value, std::uint64_t bit
   const auto part = part_of_.find(word);
   open_part_ = part == part_of_.end() ? unit_part_ : part->second;
   if (open_part_ == kRestPart && !rest_positions_) open_part_ = kSpatialPart;
-  listing_.element(name, value);
 }
 
 void BitCounter::finish(std::uint64_t bit_pos) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/bitstream/trace.h"
-#include "decoder/report/slice_listing.h"
 
 namespace rlpc {
 
@@ -30,7 +29,6 @@ class BitCounter final : public Trace {
 
   const PartSizes& bits() const { return bits_; }
   std::uint64_t num_units() const { return num_units_; }
-  const std::vector<ListedGof>& gofs() const { return listing_.gofs(); }
   // Of each GOF, with its slices and hashes; once finished.
   const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
 
@@ -50,7 +48,6 @@ class BitCounter final : public Trace {
   std::uint64_t num_units_ = 0;
   PartSizes unit_bits_{};  // of the unit that is open
   std::vector<PartSizes> gof_bits_;
-  SliceListing listing_;
 };
 
 }  // namespace rlpc

@@ -36,7 +36,7 @@ std::vector<ChartSeries> part_series(const PartSizes& bits) {
 
 std::string cell(const std::string& text) { return "<td>" + escape_html(text) + "</td>"; }
 
-std::string frames_text(const ListedGof& gof) {
+std::string frames_text(const GofSummary& gof) {
   return std::to_string(gof.first_frame) + " – " +
          std::to_string(gof.first_frame + gof.num_frames - 1);
 }
@@ -49,7 +49,7 @@ std::uint64_t sum(const PartSizes& bits) {
 
 // A line for each component group, a column for each layer group, and what stays of the GOF if
 // it is cut behind one of them.
-std::string slice_table(const ListedGof& gof) {
+std::string slice_table(const GofSummary& gof) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
   const std::size_t columns = gof.layer_group_size.size();
   for (const std::uint32_t layers : gof.layer_group_size) {
@@ -96,7 +96,7 @@ std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>&
 }
 
 std::string gof_rate_chart(const StreamRates& rates) {
-  const std::vector<ListedGof>& gofs = rates.counter->gofs();
+  const std::vector<GofSummary>& gofs = *rates.gofs;
   const std::vector<PartSizes>& bits = rates.counter->gof_bits();
   const std::size_t together = (gofs.size() + kMaxBars - 1) / kMaxBars;
   std::vector<Bar> bars;
@@ -141,8 +141,8 @@ void add_rate_section(HtmlPage& page, const StreamRates& rates) {
 }
 
 void add_gof_section(HtmlPage& page, const StreamRates& rates) {
-  const std::vector<ListedGof>& gofs = rates.counter->gofs();
-  const auto has_bones = [](const ListedGof& gof) { return gof.has_bones(); };
+  const std::vector<GofSummary>& gofs = *rates.gofs;
+  const auto has_bones = [](const GofSummary& gof) { return gof.has_bones(); };
   const bool any_bones = std::any_of(gofs.begin(), gofs.end(), has_bones);
   const bool any_clusters = !std::all_of(gofs.begin(), gofs.end(), has_bones);
   std::string html = "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
@@ -151,7 +151,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   html += "<th>bytes</th><th>bpvf</th></tr></thead>\n";
   const auto count = [](std::uint64_t n) { return cell(n == 0 ? "" : grouped_text(n)); };
   for (std::size_t g = 0; g < std::min(gofs.size(), kMaxGofRows); ++g) {
-    const ListedGof& gof = gofs[g];
+    const GofSummary& gof = gofs[g];
     const std::uint64_t bits = sum(rates.counter->gof_bits()[g]);
     html += "<tr>" + cell(frames_text(gof));
     if (any_bones) {

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
+#include "decoder/stream/gof_summary.h"
 
 namespace rlpc {
 
@@ -13,7 +15,8 @@ struct StreamRates {
   std::uint64_t num_vertices = 0;
   std::uint64_t num_frames = 0;
   std::uint64_t bytes = 0;
-  const BitCounter* counter = nullptr;  // not owned; finished
+  const BitCounter* counter = nullptr;            // not owned; finished
+  const std::vector<GofSummary>* gofs = nullptr;  // not owned
 
   double bpvf(double bits) const {
     return bits / (static_cast<double>(num_vertices) * static_cast<double>(num_frames));

@@ -10,7 +10,7 @@
 namespace rlpc {
 
 // GOFs as the index before the end of the sequence tells them; empty if there is none. Whether
-// they are where it says shows when they are parsed (parse_gof_start).
+// they are where it says shows when they are parsed (parse_gof_header).
 //
 //   first_unit  offset that the end of the sequence is not before, bytes
 //   num_frames  of the sequence

@@ -60,7 +60,7 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                 std::uint64_t bytes) {
   bool met = true;
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
-  for (const ListedGof& gof : cutter.gofs()) {
+  for (const GofSummary& gof : cutter.gofs()) {
     const SliceTotals after = cutter.totals_that_stay(gof);
     met = met && !too_many_layers(o, after);
     gofs.push_back({{"first_frame", gof.first_frame},
@@ -83,7 +83,7 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
               cutter.size(), bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
               bpvf(cutter, bytes));
-  for (const ListedGof& gof : cutter.gofs()) {
+  for (const GofSummary& gof : cutter.gofs()) {
     if (!gof.has_bones()) {
       std::printf("  frames %u to %u: of clusters, %" PRIu64 " bytes, which stay\n",
                   gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.bytes);

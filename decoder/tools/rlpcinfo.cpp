@@ -19,8 +19,9 @@
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
-#include "decoder/report/slice_listing.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/stream/gof_summary.h"
+#include "decoder/stream/stream_reader.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/extract_verb.h"
 #include "decoder/tools/standard_output.h"
@@ -72,7 +73,7 @@ struct Summary {
   const rlpc::SequenceHeader& header;
   const rlpc::BitCounter& counter;
   std::uint64_t bytes;
-  std::uint32_t num_gofs;
+  const std::vector<rlpc::GofSummary>& gofs;
   const std::string& metadata;
 };
 
@@ -81,11 +82,11 @@ double bpvf(const Summary& s, double bits) {
 }
 
 // Component groups that have slices, with that of the rest positions.
-std::uint32_t num_groups(const rlpc::ListedGof& gof) {
+std::uint32_t num_groups(const rlpc::GofSummary& gof) {
   return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
 }
 
-nlohmann::ordered_json json_of(const rlpc::ListedGof& gof) {
+nlohmann::ordered_json json_of(const rlpc::GofSummary& gof) {
   if (!gof.has_bones()) {
     return {{"first_frame", gof.first_frame},
             {"num_frames", gof.num_frames},
@@ -163,12 +164,12 @@ void print_json(const Summary& s) {
       {"grid_log2_step", h.grid.log2_step},
       {"grid_origin", h.grid.origin},
       {"position_bits", h.position_bits},
-      {"num_gofs", s.num_gofs},
+      {"num_gofs", s.gofs.size()},
       {"num_units", s.counter.num_units()},
       {"bytes", s.bytes},
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
-  for (const rlpc::ListedGof& gof : s.counter.gofs()) json["gofs"].push_back(json_of(gof));
+  for (const rlpc::GofSummary& gof : s.gofs) json["gofs"].push_back(json_of(gof));
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
@@ -186,7 +187,7 @@ std::string counted(std::uint64_t count, const Noun& noun) {
 
 // "12 clusters", or "3 to 12 clusters"
 template <class Count>
-std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Noun& noun,
+std::string range_over(const std::vector<rlpc::GofSummary>& gofs, const Noun& noun,
                        const Count& count) {
   const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
   const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
@@ -195,13 +196,14 @@ std::string range_over(const std::vector<rlpc::ListedGof>& gofs, const Noun& nou
                                        : std::to_string(count(*least)) + " to " + most_counted;
 }
 
-std::vector<rlpc::ListedGof> of_kind(std::vector<rlpc::ListedGof> gofs, bool has_bones) {
-  std::erase_if(gofs, [&](const rlpc::ListedGof& gof) { return gof.has_bones() != has_bones; });
+std::vector<rlpc::GofSummary> of_kind(std::vector<rlpc::GofSummary> gofs, bool has_bones) {
+  std::erase_if(gofs,
+                [&](const rlpc::GofSummary& gof) { return gof.has_bones() != has_bones; });
   return gofs;
 }
 
-void print_clusters(const std::vector<rlpc::ListedGof>& gofs) {
-  using Entry = rlpc::ListedGof;
+void print_clusters(const std::vector<rlpc::GofSummary>& gofs) {
+  using Entry = rlpc::GofSummary;
   std::printf(
       "  GOFs of clusters: %zu, with %s and %s each\n", gofs.size(),
       range_over(gofs, {"cluster", "clusters"}, [](const Entry& g) { return g.num_clusters; })
@@ -211,8 +213,8 @@ void print_clusters(const std::vector<rlpc::ListedGof>& gofs) {
       }).c_str());
 }
 
-void print_bones(const std::vector<rlpc::ListedGof>& gofs) {
-  using Entry = rlpc::ListedGof;
+void print_bones(const std::vector<rlpc::GofSummary>& gofs) {
+  using Entry = rlpc::GofSummary;
   const auto over = [&](const Noun& noun, const auto& count) {
     return range_over(gofs, noun, count);
   };
@@ -233,7 +235,7 @@ void print_bones(const std::vector<rlpc::ListedGof>& gofs) {
 
 // Of a GOF of bones, a line for each component group, a column for each layer group; and what
 // stays of the GOF if it is cut behind one of them.
-void print_gof(const rlpc::ListedGof& gof) {
+void print_gof(const rlpc::GofSummary& gof) {
   if (!gof.has_bones()) {
     std::printf("\n  frames %u to %u: %s, %s in %" PRIu64 " bytes\n", gof.first_frame,
                 gof.first_frame + gof.num_frames - 1,
@@ -278,9 +280,9 @@ void print_table(const Options& o, const Summary& s) {
               counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
               counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
               counted(h.num_frames, {"frame", "frames"}).c_str(), h.frame_rate.numerator,
-              h.frame_rate.denominator, counted(s.num_gofs, {"GOF", "GOFs"}).c_str());
-  const auto clusters = of_kind(s.counter.gofs(), false);
-  const auto bones = of_kind(s.counter.gofs(), true);
+              h.frame_rate.denominator, counted(s.gofs.size(), {"GOF", "GOFs"}).c_str());
+  const auto clusters = of_kind(s.gofs, false);
+  const auto bones = of_kind(s.gofs, true);
   if (!clusters.empty()) print_clusters(clusters);
   if (!bones.empty()) print_bones(bones);
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
@@ -295,7 +297,7 @@ void print_table(const Options& o, const Summary& s) {
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", printable(s.metadata).c_str());
   if (o.gofs) {
-    for (const rlpc::ListedGof& gof : s.counter.gofs()) print_gof(gof);
+    for (const rlpc::GofSummary& gof : s.gofs) print_gof(gof);
   }
 }
 
@@ -318,7 +320,7 @@ std::string page_text(const Options& o, const Summary& s) {
   page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
                             std::to_string(h.position_bits) + " bits");
   if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
-  const rlpc::StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter};
+  const rlpc::StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter, &s.gofs};
   const double total = 8.0 * static_cast<double>(s.bytes);
   const double seconds =
       static_cast<double>(h.num_frames) * h.frame_rate.denominator / h.frame_rate.numerator;
@@ -327,7 +329,8 @@ std::string page_text(const Options& o, const Summary& s) {
        {rlpc::grouped_text(s.bytes), "bytes"},
        {rlpc::number_text(total / seconds / 1000, 3), "kbit per second"},
        {rlpc::number_text(96 / bpvf(s, total), 3) + " : 1", "against 32-bit floats"},
-       {std::to_string(s.num_gofs), s.num_gofs == 1 ? "group of frames" : "groups of frames"}});
+       {std::to_string(s.gofs.size()),
+        s.gofs.size() == 1 ? "group of frames" : "groups of frames"}});
   rlpc::add_rate_section(page, rates);
   rlpc::add_gof_section(page, rates);
   return page.text();
@@ -347,12 +350,12 @@ int inform(const Options& o) {
   rlpc::DecoderOptions options;
   options.limits.max_memory_bytes = o.max_memory_bytes;
   options.trace = &counter;
-  auto decoder = rlpc::Decoder::open(std::move(*source), options);
-  if (!decoder) return complain(o, decoder.error());
-  const auto num_gofs = decoder->parse_rest();
-  if (!num_gofs) return complain(o, num_gofs.error());
+  rlpc::StreamReader stream(std::move(*source), options);
+  if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
+  const auto gofs = rlpc::summarise_all(stream);
+  if (!gofs) return complain(o, gofs.error());
   counter.finish(8 * bytes);
-  const Summary summary{decoder->header(), counter, bytes, *num_gofs, decoder->metadata()};
+  const Summary summary{stream.header(), counter, bytes, *gofs, stream.metadata()};
   if (o.trace) return rlpc::kExitDone;
   if (page) {
     if (const auto error = rlpc::write_and_commit(*page, page_text(o, summary)))

@@ -25,7 +25,8 @@ constexpr double kMinEnergySteps = 1.2;
 
 EncodedGof encoded_gof(const ClusterContext& context, const ClusterGof& gof) {
   EncodedGof encoded;
-  encoded.units.push_back({UnitType::kGof, write_gof(gof, context.header, context.topology)});
+  encoded.units.push_back(
+      {UnitType::kGof, write_cluster_gof(gof, context.header, context.topology)});
   const auto recon = std::make_shared<ClusterRecon>(context.header, context.topology, gof);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);

@@ -146,8 +146,8 @@ std::vector<std::uint8_t> ClusterSectionWriter::write() {
 }  // namespace
 
 // 6.5 gof( )
-std::vector<std::uint8_t> write_gof(const ClusterGof& gof, const SequenceHeader& header,
-                                    const Topology& topology) {
+std::vector<std::uint8_t> write_cluster_gof(const ClusterGof& gof, const SequenceHeader& header,
+                                            const Topology& topology) {
   BitWriter w;
   w.ue(gof.first_frame);
   w.ue(gof.num_frames - 1);

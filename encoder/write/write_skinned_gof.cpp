@@ -184,9 +184,9 @@ std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position
   w.ue(gof.num_component_groups);
   w.u(2, static_cast<std::uint32_t>(gof.prediction));
   if (gof.prediction == Prediction::kLayers) {
-    w.u(4, static_cast<std::uint32_t>(gof.damping_log2));
-    w.u(4, static_cast<std::uint32_t>(gof.outer_weight));
-    w.u(4, static_cast<std::uint32_t>(gof.outer_scale));
+    w.u(4, static_cast<std::uint32_t>(gof.weights.damping_log2));
+    w.u(4, static_cast<std::uint32_t>(gof.weights.outer_weight));
+    w.u(4, static_cast<std::uint32_t>(gof.weights.outer_scale));
     w.ue(static_cast<std::uint32_t>(gof.layer_group_size.size()) - 1);
     for (std::size_t j = 0; j + 1 < gof.layer_group_size.size(); ++j) {
       w.ue(gof.layer_group_size[j] - 1);

@@ -7,69 +7,14 @@
 #include "common/cluster_gof/recon/lcf.h"
 #include "common/components/series_predictor.h"
 #include "common/int_math.h"
+#include "common/skinned_gof/influences.h"
 
 namespace rlpc {
 namespace {
 
 constexpr int kTemporalWeightFractionBits = 6;
 
-// 8.10.3: the parallelogram with the latest edge.
-const Parallelogram& latest_of(std::span<const Parallelogram> list) {
-  return *std::max_element(list.begin(), list.end(),
-                           [](const Parallelogram& p, const Parallelogram& q) {
-                             return std::pair(p.b, p.a) < std::pair(q.b, q.a);
-                           });
-}
-
 }  // namespace
-
-void ValuePrediction::by_parallelograms(std::span<const Parallelogram> list,
-                                        std::span<const std::int32_t> values,
-                                        std::span<std::int64_t> prediction) const {
-  const std::size_t n = prediction.size();
-  const bool one = mesh_.prediction() == Prediction::kParallelogram;
-  const auto used = one ? std::span(&latest_of(list), 1) : list;
-  for (const Parallelogram& p : used) {
-    for (std::size_t k = 0; k < n; ++k) {
-      prediction[k] +=
-          std::int64_t{values[p.a * n + k]} + values[p.b * n + k] - values[p.c * n + k];
-    }
-  }
-  const auto count = static_cast<std::int64_t>(used.size());
-  if (count == 1) return;
-  for (std::int64_t& x : prediction) x = div_round(x, count);
-}
-
-void ValuePrediction::predict(std::uint32_t v, std::span<const std::int32_t> values,
-                              std::span<std::int64_t> prediction) const {
-  const std::size_t n = prediction.size();
-  std::fill(prediction.begin(), prediction.end(), 0);
-  const auto ring = mesh_.ring(v);
-  if (weights_ != nullptr) {
-    const auto outer_ring = mesh_.outer_ring(v);
-    const auto weights = (*weights_)[v];
-    const auto add = [&](std::uint32_t u, std::int32_t w) {
-      loops_.add_weighted(&values[std::size_t{u} * n], w, n, prediction.data());
-    };
-    for (std::size_t i = 0; i < ring.size(); ++i) add(ring[i], weights[i]);
-    for (std::size_t i = 0; i < outer_ring.size(); ++i) {
-      add(outer_ring[i], weights[ring.size() + i]);
-    }
-    for (std::int64_t& x : prediction) x = round2(x, kWeightFractionBits);
-    return;
-  }
-  if (mesh_.prediction() == Prediction::kNone && !is_rest_) return;
-  if (mesh_.prediction() != Prediction::kLayers && !mesh_.parallelograms(v).empty()) {
-    by_parallelograms(mesh_.parallelograms(v), values, prediction);
-    return;
-  }
-  if (ring.empty()) return;
-  for (const std::uint32_t u : ring) {
-    for (std::size_t k = 0; k < n; ++k) prediction[k] += values[std::size_t{u} * n + k];
-  }
-  const auto count = static_cast<std::int64_t>(ring.size());
-  for (std::int64_t& x : prediction) x = div_round(x, count);
-}
 
 FactorGroup factor_group(const SkinnedGof& gof, std::size_t group) {
   return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
@@ -99,6 +44,21 @@ std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& 
     }
   }
   return values;
+}
+
+std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedGof& gof) {
+  std::vector<Influences> influences = gof.influences;
+  InfluencePrediction prediction(influences, static_cast<std::uint32_t>(gof.bones.size()),
+                                 gof.weight_bits);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < gof.slice_layers[0]; ++j) first += gof.layer_group_size[j];
+  for (const std::uint32_t v : mesh.vertices_of_layers(first, mesh.num_layers())) {
+    prediction.start(mesh.ring(v));
+    for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
+      prediction.add_candidate(k, 0);
+    influences[v] = prediction.finish();
+  }
+  return influences;
 }
 
 // 8.14.2 Trajectories
@@ -163,11 +123,12 @@ SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int pos
       bones_(recon_bones(gof.bones, gof.num_frames)),
       factors_(mesh.num_vertices(), 3 * std::size_t{gof.num_frames}, loops) {
   const auto rest = recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
-  add_influences(gof, rest);
+  add_influences(complete_influences(mesh, gof), rest);
   add_factors(mesh, gof, rest);
 }
 
-void SkinnedRecon::add_influences(const SkinnedGof& gof, std::span<const std::int32_t> rest) {
+void SkinnedRecon::add_influences(std::span<const Influences> influences,
+                                  std::span<const std::int32_t> rest) {
   struct Entry {
     Influence influence;
     std::size_t vertex;
@@ -176,7 +137,7 @@ void SkinnedRecon::add_influences(const SkinnedGof& gof, std::span<const std::in
   for (std::size_t first = 0; first < num_vertices_; first += kTileValues) {
     of_tile.clear();
     for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices_); ++v) {
-      for (const Influence& influence : gof.influences[v]) of_tile.push_back({influence, v});
+      for (const Influence& influence : influences[v]) of_tile.push_back({influence, v});
     }
     std::stable_sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
       return a.influence.bone < b.influence.bone;
@@ -208,7 +169,7 @@ void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
   if (gof.prediction == Prediction::kLayers && !gof.trajectories.empty()) {
     std::array<std::vector<std::int32_t>, 3> plane;
     for (std::size_t i = 0; i < rest.size(); ++i) plane[i % 3].push_back(rest[i]);
-    weights.emplace(mesh, gof,
+    weights.emplace(mesh, gof.weights,
                     std::array<std::span<const std::int32_t>, 3>{plane[0], plane[1], plane[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);

@@ -11,34 +11,11 @@
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
-#include "common/mesh_prediction/geometry_weights.h"
+#include "common/mesh_prediction/value_prediction.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
-
-// 8.10.3 Prediction of a value: those of a vertex for some spatial factors, from those of the
-// vertices before it.
-class ValuePrediction {
- public:
-  // weights: null for rest positions, and without layers.
-  ValuePrediction(const CodedMesh& mesh, bool is_rest, const GeometryWeights* weights)
-      : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(kernels().back()) {}
-
-  // values [num_vertices][n] and prediction [n], n factors.
-  void predict(std::uint32_t v, std::span<const std::int32_t> values,
-               std::span<std::int64_t> prediction) const;
-
- private:
-  void by_parallelograms(std::span<const Parallelogram> list,
-                         std::span<const std::int32_t> values,
-                         std::span<std::int64_t> prediction) const;
-
-  const CodedMesh& mesh_;
-  bool is_rest_;
-  const GeometryWeights* weights_;
-  Kernels loops_;
-};
 
 // Factors [first, end) of the spatial factors of a GOF, as declared.
 struct FactorGroup {
@@ -64,6 +41,10 @@ constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
                                        const ValuePrediction& prediction);
+
+// 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
+// absent; [num_vertices].
+std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedGof& gof);
 
 // 8.14.2 PredictTrajectory( series, f ), from the values of the frames so far.
 Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values);
@@ -99,7 +80,8 @@ class SkinnedRecon {
   };
   using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
 
-  void add_influences(const SkinnedGof& gof, std::span<const std::int32_t> rest);
+  void add_influences(std::span<const Influences> influences,
+                      std::span<const std::int32_t> rest);
   void add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
                    std::span<const std::int32_t> rest);
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;

@@ -56,7 +56,7 @@ class TextRecon {
   void make_weights() {
     std::array<std::vector<std::int32_t>, 3> rest;
     for (std::size_t c = 0; c < 3; ++c) rest[c].assign(factors[c].begin(), factors[c].end());
-    weights_.emplace(mesh_, gof_,
+    weights_.emplace(mesh_, gof_.weights,
                      std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
 

@@ -49,9 +49,7 @@ class TrajectoryCoder {
         step_(step),
         num_frames_(analysis.gof.num_frames),
         gof_(analysis.gof) {
-    gof_.damping_log2 = settings.damping_log2;
-    gof_.outer_weight = settings.outer_weight;
-    gof_.outer_scale = settings.outer_scale;
+    gof_.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
   }
 
   bool has(std::size_t count) {
@@ -236,7 +234,7 @@ class TrajectoryCoder {
     std::optional<GeometryWeights> weights;
     if (gof_.prediction == Prediction::kLayers) {
       const auto& rest = analysis_.rest;
-      weights.emplace(mesh_, gof_,
+      weights.emplace(mesh_, gof_.weights,
                       std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
     }
     const ValuePrediction prediction(mesh_, false, weights ? &*weights : nullptr);

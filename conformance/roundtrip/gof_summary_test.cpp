@@ -1,5 +1,5 @@
 // What rlpcinfo lists of GOFs, from streams with layer groups, an absent slice, and clusters.
-#include "decoder/report/slice_listing.h"
+#include "decoder/stream/gof_summary.h"
 
 #include <gtest/gtest.h>
 
@@ -13,22 +13,21 @@
 namespace rlpc {
 namespace {
 
-std::vector<ListedGof> entries_of(const StreamBytes& stream) {
-  ListingTrace trace;
-  DecoderOptions options;
-  options.trace = &trace;
-  auto decoder = Decoder::open(memory_source(stream), options);
-  EXPECT_TRUE(decoder && decoder->parse_rest());
-  return trace.gofs();
+std::vector<GofSummary> entries_of(const StreamBytes& stream) {
+  StreamReader reader(memory_source(stream), {});
+  EXPECT_TRUE(reader.open());
+  const auto gofs = summarise_all(reader);
+  EXPECT_TRUE(gofs);
+  return gofs ? *gofs : std::vector<GofSummary>();
 }
 
-TEST(SliceListing, TellsOfGofsAndTheirSlices) {
+TEST(GofSummaries, TellsOfGofsAndTheirSlices) {
   const StreamBytes stream = sliced_stream();
   const auto gofs = entries_of(stream);
   ASSERT_EQ(gofs.size(), 2U);
   EXPECT_EQ(gofs[0].first_frame, 0U);
   EXPECT_EQ(gofs[1].first_frame, 2U);
-  for (const ListedGof& gof : gofs) {
+  for (const GofSummary& gof : gofs) {
     EXPECT_EQ(gof.num_frames, 2U);
     EXPECT_EQ(gof.num_bones, 3U);
     EXPECT_EQ(gof.num_component_groups, 2U);
@@ -46,10 +45,10 @@ TEST(SliceListing, TellsOfGofsAndTheirSlices) {
   EXPECT_EQ(gofs[1].num_trajectories(), 1U);
 }
 
-TEST(SliceListing, CountsTheBytesOfUnits) {
+TEST(GofSummaries, CountsTheBytesOfUnits) {
   for (const StreamBytes& stream : {sliced_stream(), mixed_stream()}) {
     std::vector<std::size_t> listed;
-    for (const ListedGof& gof : entries_of(stream)) {
+    for (const GofSummary& gof : entries_of(stream)) {
       listed.push_back(gof.bytes);
       for (const SliceEntry& slice : gof.slices) listed.push_back(slice.bytes);
     }
@@ -62,9 +61,9 @@ TEST(SliceListing, CountsTheBytesOfUnits) {
   }
 }
 
-TEST(SliceListing, NumbersSlicesAsTheyStand) {
+TEST(GofSummaries, NumbersSlicesAsTheyStand) {
   const auto gofs = entries_of(sliced_stream());
-  const auto places = [](const ListedGof& gof) {
+  const auto places = [](const GofSummary& gof) {
     std::vector<std::vector<std::uint32_t>> list;
     for (const SliceEntry& s : gof.slices) {
       list.push_back({s.component_group_idx, s.layer_group_idx, s.num_trajectories});
@@ -78,7 +77,7 @@ TEST(SliceListing, NumbersSlicesAsTheyStand) {
             (std::vector<std::vector<std::uint32_t>>{{0, 0, 0}, {1, 0, 1}}));
 }
 
-TEST(SliceListing, TellsOfGofsOfClusters) {
+TEST(GofSummaries, TellsOfGofsOfClusters) {
   const auto gofs = entries_of(rich_stream());
   ASSERT_EQ(gofs.size(), 2U);
   for (std::size_t g = 0; g < 2; ++g) {
@@ -91,7 +90,7 @@ TEST(SliceListing, TellsOfGofsOfClusters) {
   }
 }
 
-TEST(SliceListing, TellsBothKindsInOneStream) {
+TEST(GofSummaries, TellsBothKindsInOneStream) {
   const auto gofs = entries_of(mixed_stream());
   ASSERT_EQ(gofs.size(), 7U);
   for (std::size_t g = 0; g < gofs.size(); ++g) {

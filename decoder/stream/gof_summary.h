@@ -1,22 +1,16 @@
-// What rlpcinfo tells of GOFs: clusters and components, or bones, trajectories and slices.
+// What is in a GOF, in numbers: clusters and components, or bones, trajectories and slices.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
-#include "common/bitstream/trace.h"
+#include "common/result.h"
+#include "common/syntax/access_unit.h"
 #include "decoder/slice_cut.h"
+#include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
-
-struct SliceEntry {
-  std::uint32_t component_group_idx = 0;
-  std::uint32_t layer_group_idx = 0;
-  std::uint32_t num_trajectories = 0;  // whose temporal values are in it
-  std::uint64_t bytes = 0;             // of the unit
-};
 
 // Of a GOF: its first component groups, with that of the rest positions, and its first layer
 // groups.
@@ -37,7 +31,8 @@ struct SliceTotals {
   std::uint64_t bytes = 0;       // of the GOF unit and of slice units
 };
 
-struct ListedGof {
+struct GofSummary {
+  GofKind kind = GofKind::kClusters;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::uint64_t bytes = 0;  // of the GOF unit
@@ -53,37 +48,15 @@ struct ListedGof {
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   std::vector<SliceEntry> slices;
 
-  bool has_bones() const { return num_bones > 0; }
+  bool has_bones() const { return kind == GofKind::kSkinned; }
   std::uint32_t num_trajectories() const { return totals({}).num_trajectories; }
   SliceTotals totals(const SliceGroups& groups) const;
   SliceGroups groups_that_stay(const SliceCut& cut) const;
 };
 
-// Listens to a trace, and makes a list of it.
-class SliceListing {
- public:
-  void element(std::string_view name, std::int64_t value);
-  // Once all elements were heard.
-  const std::vector<ListedGof>& gofs() const { return gofs_; }
+GofSummary summarise(const AccessUnit& access_unit);
 
- private:
-  std::vector<ListedGof> gofs_;
-  std::uint64_t unit_bytes_ = 0;
-  std::uint32_t first_frame_ = 0;
-  std::uint32_t num_frames_ = 0;
-};
-
-// A trace that only lists.
-class ListingTrace final : public Trace {
- public:
-  void begin(const char*, std::uint64_t) override {}
-  void element(const char* name, std::int64_t value, std::uint64_t) override {
-    listing_.element(name, value);
-  }
-  const std::vector<ListedGof>& gofs() const { return listing_.gofs(); }
-
- private:
-  SliceListing listing_;
-};
+// Those of all GOFs of a stream, which is read to its end.
+Result<std::vector<GofSummary>> summarise_all(StreamReader& stream);
 
 }  // namespace rlpc

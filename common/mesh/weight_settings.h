@@ -1,0 +1,13 @@
+// 7.11: what a GOF says of the weights that predict along the mesh (8.11).
+#pragma once
+
+namespace rlpc {
+
+struct WeightSettings {
+  int damping_log2 = 0;  // 0: plain weights
+  int outer_weight = 0;  // 1/16
+  int outer_scale = 0;   // 1/16
+  bool operator==(const WeightSettings&) const = default;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,43 @@
+// One GOF of a stream as parsed: the GOF unit, the slice units behind it, and its hash. Made by
+// decoder/parse/access_unit_parser.h; whoever looks at a GOF looks here, and make_recon()
+// (decoder/recon/gof_recon.h) decodes it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/gof_hash.h"
+#include "common/syntax/gof_header.h"
+
+namespace rlpc {
+
+// One of each kind, in the order of GofKind.
+using AnyGof = std::variant<ClusterGof, SkinnedGof>;
+
+// 6.12 slice_unit( )
+struct SliceEntry {
+  std::uint32_t component_group_idx = 0;
+  std::uint32_t layer_group_idx = 0;
+  std::uint32_t num_trajectories = 0;  // whose temporal values are in it
+  std::uint64_t bytes = 0;             // of the unit
+};
+
+struct AccessUnit {
+  AnyGof gof;
+  std::vector<SliceEntry> slices;  // in the order of the stream
+  std::optional<GofHash> hash;     // none: there is no hash unit, or it was not wanted
+  std::uint64_t gof_bytes = 0;     // of the GOF unit
+  // Slices were left out on request (SliceCut): they are not among `slices`, and the hash is
+  // not that of the positions that are left.
+  bool is_cut = false;
+
+  const GofHeader& header() const {
+    return std::visit([](const auto& g) -> const GofHeader& { return g; }, gof);
+  }
+};
+
+}  // namespace rlpc

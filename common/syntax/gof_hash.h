@@ -1,0 +1,14 @@
+// 6.7 GOF hash.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace rlpc {
+
+struct GofHash {
+  bool per_frame_flag = false;
+  std::vector<std::uint32_t> position_crc;  // one per frame, or one for the GOF
+};
+
+}  // namespace rlpc

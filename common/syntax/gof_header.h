@@ -1,0 +1,19 @@
+// 6.5 gof( ): what every kind of GOF begins with.
+#pragma once
+
+#include <cstdint>
+
+namespace rlpc {
+
+enum class GofKind : std::uint8_t {
+  kClusters,  // 6.5: clusters in local frames
+  kSkinned,   // 6.11: bones, and trajectories of what they leave
+};
+
+struct GofHeader {
+  GofKind kind = GofKind::kClusters;
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 1;
+};
+
+}  // namespace rlpc

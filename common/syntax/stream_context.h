@@ -1,0 +1,30 @@
+// What all GOFs of a stream are parsed and reconstructed with.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "common/mesh/coded_meshes.h"
+#include "common/mesh/topology.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+// Set once, before the first GOF; then only read, by any number of threads.
+struct StreamContext {
+  SequenceHeader header;
+  Topology topology;
+  std::optional<CodedMeshes> meshes;  // if the profile has GOFs of bones
+
+  StreamContext() = default;
+  StreamContext(const StreamContext&) = delete;
+  StreamContext& operator=(const StreamContext&) = delete;
+
+  // After the header. triangles: in decoded order, read during the call.
+  void set_connectivity(std::span<const Triangle> triangles) {
+    topology = make_topology(header.num_vertices, triangles);
+    if (header.profile_idc == kProfileMain) meshes.emplace(topology, triangles);
+  }
+};
+
+}  // namespace rlpc

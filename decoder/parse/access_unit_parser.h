@@ -1,0 +1,50 @@
+// An access unit from its units, one after the other. The one place that knows which kind of
+// GOF is parsed how; whoever reads a stream hands its units to it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/result.h"
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
+#include "decoder/parse/parse_skinned_gof.h"
+#include "decoder/slice_cut.h"
+
+namespace rlpc {
+
+// Every size is checked against the level, and what it needs against max_memory_bytes, before
+// memory is taken for it. After an error only destruction makes sense.
+class AccessUnitParser {
+ public:
+  // The context must outlive it, with its connectivity set. Slices that the cut leaves out are
+  // as if they were absent.
+  AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
+                   const SliceCut& cut = {})
+      : context_(context), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
+
+  // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
+  //
+  // 6.5 gof( ), once. first_frame: that the GOF has to begin with.
+  Result<bool> gof(BitReader& r, std::uint32_t first_frame, std::uint64_t unit_bytes);
+  // Whether slice units may follow.
+  bool has_slices() const { return skinned_.has_value(); }
+  // 6.12 slice_unit( ), any number. unit_bit_pos: of the unit.
+  Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
+  // 6.7 gof_hash( ), once or not at all.
+  Result<bool> hash(BitReader& r);
+
+  // After the last unit.
+  AccessUnit finish();
+
+ private:
+  const StreamContext& context_;
+  std::uint64_t max_memory_bytes_;
+  SliceCut cut_;
+  std::uint32_t num_frames_ = 0;
+  std::optional<SkinnedGofParser> skinned_;
+  AccessUnit access_unit_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,16 @@
+// 6.5 gof( ), up to what its kind has, parsing side.
+#pragma once
+
+#include <cstdint>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/syntax/gof_header.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+// expected_first_frame: less than num_frames of the sequence. The error is left in `r`.
+GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
+                           std::uint32_t expected_first_frame);
+
+}  // namespace rlpc

@@ -1,0 +1,35 @@
+// A GOF of any kind, ready to give its frames.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
+
+namespace rlpc {
+
+class GofRecon {
+ public:
+  GofRecon() = default;
+  GofRecon(const GofRecon&) = delete;
+  GofRecon& operator=(const GofRecon&) = delete;
+  virtual ~GofRecon() = default;
+
+  virtual std::uint32_t num_frames() const = 0;
+  // Frames first to first + count - 1 of the GOF, in decoded order, grid units,
+  // [count][num_vertices][3]. Several threads may call it.
+  virtual void frames(std::uint32_t first, std::uint32_t count,
+                      std::span<std::int32_t> positions) const = 0;
+  void frame(std::uint32_t f, std::span<std::int32_t> positions) const {
+    frames(f, 1, positions);
+  }
+};
+
+// 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive
+// the result. Cannot fail: parsing has checked every range.
+std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
+                                     const StreamContext& context);
+
+}  // namespace rlpc

@@ -1,0 +1,87 @@
+#include "decoder/stream/access_unit_reader.h"
+
+#include <utility>
+
+#include "decoder/parse/parse_gof_header.h"
+
+namespace rlpc {
+
+Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit,
+                                          std::uint32_t first_frame) {
+  AccessUnitParser parser(context_, max_memory_bytes_, cut_);
+  for (std::optional<UnitHeader> unit = gof_unit; unit;) {
+    const auto payload = units_.payload(*unit);
+    if (!payload) return payload.error();
+    if (auto ok = parse_unit(parser, *unit, *payload, first_frame); !ok) return ok.error();
+    end_ = unit->end();
+    const auto next = unit_after(*unit, parser.has_slices());
+    if (!next) return next.error();
+    unit = *next;
+  }
+  return parser.finish();
+}
+
+std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_unit,
+                                                         std::uint32_t first_frame,
+                                                         std::uint64_t max_memory_bytes) {
+  CodedAccessUnit coded;
+  std::uint64_t num_bytes = 0;
+  for (std::optional<UnitHeader> unit = gof_unit; unit;) {
+    num_bytes += unit->size;
+    if (num_bytes > max_memory_bytes) return std::nullopt;
+    auto payload = units_.payload(*unit);
+    if (!payload) return std::nullopt;
+    if (coded.units.empty()) {
+      BitReader r = units_.bits(*unit, *payload);
+      coded.gof = parse_gof_header(r, context_.header, first_frame);
+      if (r.error()) return std::nullopt;
+    }
+    coded.units.push_back({*unit, std::move(*payload)});
+    const auto next = unit_after(*unit, coded.gof.kind == GofKind::kSkinned);
+    if (!next) return std::nullopt;
+    unit = *next;
+  }
+  return coded;
+}
+
+Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
+                                           std::uint64_t max_memory_bytes) const {
+  AccessUnitParser parser(context_, max_memory_bytes, cut_);
+  for (const auto& [unit, payload] : coded.units) {
+    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame); !ok)
+      return ok.error();
+  }
+  return parser.finish();
+}
+
+Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
+                                          const std::vector<std::uint8_t>& payload,
+                                          std::uint32_t first_frame) const {
+  BitReader r = units_.bits(unit, payload);
+  const std::uint64_t unit_bytes = unit.end() - unit.offset;
+  switch (unit.type()) {
+    case UnitType::kGof:
+      return parser.gof(r, first_frame, unit_bytes);
+    case UnitType::kSlice:
+      return parser.slice(r, unit.offset * 8, unit_bytes);
+    default:
+      return parser.hash(r);
+  }
+}
+
+// The next unit of the access unit that `unit` belongs to, if there is one.
+Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader& unit,
+                                                               bool has_slices) {
+  using Next = std::optional<UnitHeader>;
+  const bool may_follow = has_slices || wants_hash_;
+  if (unit.type() == UnitType::kGofHash || !may_follow || unit.end() == units_.size()) {
+    return Next();
+  }
+  const auto next = units_.header_at(unit.end());
+  if (!next) return next.error();
+  const bool follows = (has_slices && next->type() == UnitType::kSlice) ||
+                       (wants_hash_ && next->type() == UnitType::kGofHash);
+  return follows ? Next(*next) : Next();
+}
+
+}  // namespace rlpc

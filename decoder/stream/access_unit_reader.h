@@ -1,0 +1,68 @@
+// Access units from the units of a stream.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/result.h"
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
+#include "decoder/parse/access_unit_parser.h"
+#include "decoder/rlpc_decoder.h"
+#include "decoder/stream/unit_reader.h"
+
+namespace rlpc {
+
+// The units of an access unit, not yet parsed but for the header of its GOF.
+struct CodedAccessUnit {
+  struct Unit {
+    UnitHeader header;
+    std::vector<std::uint8_t> payload;
+  };
+  GofHeader gof;
+  std::vector<Unit> units;  // the GOF unit first
+
+  std::uint64_t end() const { return units.back().header.end(); }  // in the stream, bytes
+  std::uint32_t end_frame() const { return gof.first_frame + gof.num_frames; }
+};
+
+class AccessUnitReader {
+ public:
+  // Units and context must outlive it. Of the options: limits, cut, and whether hashes are
+  // verified; if not, hash units are left to whoever goes past the access unit.
+  AccessUnitReader(UnitReader& units, const StreamContext& context,
+                   const DecoderOptions& options)
+      : units_(units),
+        context_(context),
+        max_memory_bytes_(options.limits.max_memory_bytes),
+        cut_(options.cut),
+        wants_hash_(options.verify_hashes) {}
+
+  // gof_unit: a GOF unit; first_frame: that its GOF has to begin with.
+  Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame);
+  // Where the units end that were read last, bytes from the start of the stream.
+  std::uint64_t end() const { return end_; }
+
+  // The same in two steps, of which the second may run on another thread, with max_memory_bytes
+  // for the payloads, and again for what they are parsed into. None, and an error of parse():
+  // read() tells what is wrong.
+  std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                                         std::uint64_t max_memory_bytes);
+  Result<AccessUnit> parse(const CodedAccessUnit& coded, std::uint64_t max_memory_bytes) const;
+
+ private:
+  Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
+                          const std::vector<std::uint8_t>& payload,
+                          std::uint32_t first_frame) const;
+  Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit, bool has_slices);
+
+  UnitReader& units_;
+  const StreamContext& context_;
+  std::uint64_t max_memory_bytes_;
+  SliceCut cut_;
+  bool wants_hash_;
+  std::uint64_t end_ = 0;
+};
+
+}  // namespace rlpc

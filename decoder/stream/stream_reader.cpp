@@ -1,0 +1,247 @@
+#include "decoder/stream/stream_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/syntax/stream_format.h"
+#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/parse_end_of_sequence.h"
+#include "decoder/parse/parse_gof_header.h"
+#include "decoder/parse/parse_metadata.h"
+#include "decoder/parse/parse_sequence_header.h"
+#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/stream/find_gof_index.h"
+
+namespace rlpc {
+namespace {
+
+// 6.2 CheckUnitType( expected )
+// A unit where it may not stand, or a critical one that this version does not know.
+Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
+  const UnitType last = version_minor > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
+  const bool known =
+      unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader && unit.type() <= last);
+  return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
+               "unit_type", unit.offset * 8};
+}
+
+}  // namespace
+
+StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
+    : limits_(options.limits),
+      units_(std::move(source), options.trace, options.limits.max_memory_bytes),
+      access_units_(units_, context_, options) {}
+
+Result<bool> StreamReader::open() {
+  if (auto ok = units_.stream_header(); !ok) return ok;
+  if (auto ok = read_sequence_header(); !ok) return ok;
+  bool have_connectivity = false;
+  for (;;) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kConnectivity && !have_connectivity) {
+      if (auto ok = read_connectivity(*unit); !ok) return ok;
+      have_connectivity = true;
+    } else if (unit->type() == UnitType::kVertexOrder && have_connectivity &&
+               vertex_order_.empty()) {
+      if (auto ok = read_vertex_order(*unit); !ok) return ok;
+    } else if (unit->type() == UnitType::kGof && have_connectivity) {
+      return true;
+    } else if (auto ok = read_ancillary(*unit); !ok) {
+      return ok;
+    }
+    offset_ = unit->end();
+  }
+}
+
+// 6.3: always the first unit.
+Result<bool> StreamReader::read_sequence_header() {
+  const auto unit = units_.header_at(offset_);
+  if (!unit) return unit.error();
+  if (unit->type() != UnitType::kSequenceHeader)
+    return misplaced(*unit, units_.version_minor());
+  const auto payload = units_.payload(*unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(*unit, *payload);
+  const auto header = parse_sequence_header(r, units_.version_minor());
+  if (!header) return header.error();
+  context_.header = *header;
+  units_.set_max_unit_bytes(context_.header.level().max_unit_bytes);
+  offset_ = unit->end();
+  return check_limits();
+}
+
+Result<bool> StreamReader::check_limits() const {
+  const SequenceHeader& header = context_.header;
+  const auto exceeded = [](const char* element) {
+    return Error{Errc::kLimitExceeded, "", element, kStreamHeaderBytes * 8};
+  };
+  if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
+  if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
+  if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
+  // Connectivity, topology, in the Main profile layers, and frames, as this decoder holds
+  // them.
+  const std::uint64_t of_vertex =
+      (header.profile_idc == kProfileMain ? 400 : 100) + 12 * kFramesHeld;
+  const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
+                              std::uint64_t{header.num_triangles} * 120;
+  if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1");
+  return true;
+}
+
+Result<bool> StreamReader::read_connectivity(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto triangles =
+      parse_connectivity(r, context_.header.num_vertices, context_.header.num_triangles);
+  if (!triangles) return triangles.error();
+  triangles_ = std::move(*triangles);
+  context_.set_connectivity(triangles_);
+  return true;
+}
+
+Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto order = parse_vertex_order(r, context_.header.num_vertices);
+  if (!order) return order.error();
+  vertex_order_ = std::move(*order);
+  for (Triangle& t : triangles_) {
+    for (std::uint32_t& v : t) v = vertex_order_[v];
+  }
+  return true;
+}
+
+// Units that a decoder may skip: their CRC holds, and metadata is kept.
+Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
+  if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
+  if (unit.type() != UnitType::kMetadata) return units_.skip(unit);
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto json = parse_metadata(r);
+  if (!json) return json.error();
+  metadata_ = std::move(*json);
+  return true;
+}
+
+Result<std::optional<UnitHeader>> StreamReader::find_gof() {
+  for (;;) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kGof) {
+      if (frames_parsed_ == context_.header.num_frames) {
+        return Error{Errc::kInvalid, "R-END-01", "unit_type", unit->offset * 8};
+      }
+      return std::optional(*unit);
+    }
+    if (unit->type() == UnitType::kEndOfSequence) {
+      if (const auto ok = check_end(*unit); !ok) return ok.error();
+      return std::optional<UnitHeader>();
+    }
+    if (const auto ok = read_ancillary(*unit); !ok) return ok.error();
+    offset_ = unit->end();
+  }
+}
+
+// 6.8 end_of_sequence( )
+Result<bool> StreamReader::check_end(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  parse_end_of_sequence(r);
+  units_.flush_trace();
+  if (r.error()) return *r.error();
+  if (frames_parsed_ != context_.header.num_frames) {
+    return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
+  }
+  if (unit.end() != units_.size()) {
+    return Error{Errc::kInvalid, "R-END-02", "end_of_sequence", unit.end() * 8};
+  }
+  ended_ = true;
+  return true;
+}
+
+Result<AccessUnit> StreamReader::read(const UnitHeader& gof_unit) {
+  auto access_unit = access_units_.read(gof_unit, frames_parsed_);
+  if (access_unit) {
+    go_past(gof_unit, access_unit->header().num_frames, access_units_.end());
+  }
+  return access_unit;
+}
+
+void StreamReader::go_past(const UnitHeader& gof_unit, std::uint32_t num_frames,
+                           std::uint64_t end) {
+  remember_gof(gof_unit);
+  frames_parsed_ += num_frames;
+  offset_ = end;
+}
+
+Result<std::optional<AccessUnit>> StreamReader::next() {
+  const auto unit = find_gof();
+  if (!unit) return unit.error();
+  if (!*unit) return std::optional<AccessUnit>();
+  auto access_unit = read(**unit);
+  if (!access_unit) return access_unit.error();
+  return std::optional(std::move(*access_unit));
+}
+
+Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
+  constexpr std::uint32_t kEnough = 16;  // two codes of at most 63 bits, and a flag
+  const auto bytes = units_.payload_start(unit, kEnough);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  const GofHeader header = parse_gof_header(r, context_.header, frames_parsed_);
+  if (r.error()) return *r.error();
+  return header;
+}
+
+Result<bool> StreamReader::skip_slices() {
+  while (offset_ < units_.size()) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() != UnitType::kSlice) break;
+    offset_ = unit->end();
+  }
+  return true;
+}
+
+void StreamReader::remember_gof(const UnitHeader& unit) {
+  if (gofs_.empty() || gofs_.back().first_frame < frames_parsed_) {
+    gofs_.push_back({unit.offset, frames_parsed_});
+  }
+}
+
+Result<bool> StreamReader::seek(std::uint32_t frame) {
+  ended_ = false;
+  const bool met = !gofs_.empty() && frame < frames_parsed_;
+  if (!met && !index_tried_) {
+    auto gofs = find_gof_index(units_, offset_, context_.header.num_frames);
+    if (!gofs) return gofs.error();
+    index_tried_ = true;
+    if (!gofs->empty()) gofs_ = std::move(*gofs);
+  }
+  const auto after =
+      std::upper_bound(gofs_.begin(), gofs_.end(), frame,
+                       [](std::uint32_t f, const GofLocation& g) { return f < g.first_frame; });
+  if (after != gofs_.begin()) {
+    offset_ = std::prev(after)->offset;
+    frames_parsed_ = std::prev(after)->first_frame;
+  }
+  // Forward over GOFs that are not wanted: only their headers are read.
+  for (;;) {
+    const auto unit = find_gof();
+    if (!unit) return unit.error();
+    if (!*unit) return Error{Errc::kInvalid, "R-END-01", "unit_type", offset_ * 8};
+    const auto gof = gof_header(**unit);
+    if (!gof) return gof.error();
+    if (frame < frames_parsed_ + gof->num_frames) return true;
+    go_past(**unit, gof->num_frames, (*unit)->end());
+    if (gof->kind != GofKind::kSkinned) continue;
+    if (auto ok = skip_slices(); !ok) return ok;
+  }
+}
+
+}  // namespace rlpc

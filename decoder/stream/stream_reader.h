@@ -1,0 +1,88 @@
+// Goes through a stream from access unit to access unit, parsing all and reconstructing
+// nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/result.h"
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
+#include "decoder/parse/parse_gof_index.h"
+#include "decoder/rlpc_decoder.h"
+#include "decoder/stream/access_unit_reader.h"
+#include "decoder/stream/unit_reader.h"
+
+namespace rlpc {
+
+// Frames that a decoder holds beside its GOF; open() leaves room for them in max_memory_bytes.
+inline constexpr std::uint32_t kFramesHeld = 4;
+
+class StreamReader {
+ public:
+  StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options);
+  StreamReader(const StreamReader&) = delete;
+  StreamReader& operator=(const StreamReader&) = delete;
+
+  // Up to the first GOF: sequence header, connectivity, vertex order.
+  Result<bool> open();
+
+  const StreamContext& context() const { return context_; }
+  const SequenceHeader& header() const { return context_.header; }
+  std::span<const Triangle> triangles() const { return triangles_; }  // in output order
+  // 8.6.1: of each decoded vertex, its index in the output; empty: they are the same.
+  std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
+  const std::string& metadata() const { return metadata_; }  // the last so far
+
+  // Goes to the next GOF unit, past everything in between. None: the sequence has ended as it
+  // should.
+  Result<std::optional<UnitHeader>> find_gof();
+  // The access unit that begins with the unit found; goes past it.
+  Result<AccessUnit> read(const UnitHeader& gof_unit);
+  // The same, if it was read elsewhere: its units end at `end`.
+  void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
+  // Both in one, for those who want them all.
+  Result<std::optional<AccessUnit>> next();
+  // Makes the GOF with `frame`, which is below num_frames, the next one.
+  Result<bool> seek(std::uint32_t frame);
+
+  // First frame of the GOF that find_gof() finds.
+  std::uint32_t next_first_frame() const { return frames_parsed_; }
+  bool ended() const { return ended_; }
+  std::uint64_t offset() const { return offset_; }  // of the next unit
+  std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
+  UnitReader& units() { return units_; }
+  AccessUnitReader& access_units() { return access_units_; }
+
+ private:
+  Result<bool> read_sequence_header();
+  Result<bool> read_connectivity(const UnitHeader& unit);
+  Result<bool> read_vertex_order(const UnitHeader& unit);
+  Result<bool> read_ancillary(const UnitHeader& unit);
+  Result<bool> check_limits() const;
+  Result<bool> check_end(const UnitHeader& unit);
+  // Of a GOF that is skipped: from its first bytes alone.
+  Result<GofHeader> gof_header(const UnitHeader& unit);
+  Result<bool> skip_slices();
+  void remember_gof(const UnitHeader& unit);
+
+  DecodeLimits limits_;
+  UnitReader units_;
+  StreamContext context_;
+  AccessUnitReader access_units_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> vertex_order_;
+  std::string metadata_;
+
+  std::uint64_t offset_ = kStreamHeaderBytes;
+  std::uint32_t frames_parsed_ = 0;
+  std::vector<GofLocation> gofs_;  // those met so far, ascending
+  bool index_tried_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace rlpc
