@@ -5,18 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/components/component_limits.h"
 #include "common/mesh/mesh.h"
 #include "common/syntax/gof_header.h"
 
 namespace rlpc {
 
-inline constexpr int kMaxFractionBits = 24;
 inline constexpr std::uint32_t kMaxSeedStep = 1U << 16;
-inline constexpr int kMaxPredictorOrder = 4;
-inline constexpr int kMaxSpatialBits = 24;
-inline constexpr int kMaxTemporalBits = 26;
-inline constexpr int kTemporalIndexBits = 24;  // width of a temporal value before scaling
-inline constexpr int kMaxScaleIdx = 127;
 
 enum class SpatialPredictor : std::uint8_t { kNone = 0, kNeighbours = 1, kParallelogram = 2 };
 inline constexpr int kMaxSpatialPredictor = 2;

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
-#include "common/cluster_gof/recon/lcf.h"
+#include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/kernels/kernels_avx2.h"
 #include "common/kernels/kernels_wasm.h"
-#include "common/skinned_gof/recon/bones.h"
 
 namespace rlpc {
 namespace {

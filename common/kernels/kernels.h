@@ -8,10 +8,9 @@
 #include <cstdint>
 #include <span>
 
-namespace rlpc {
+#include "common/components/component_limits.h"
 
-// Small enough for the spatial factors of a tile to stay in the first cache; a multiple of 16.
-inline constexpr std::size_t kTileValues = 64;
+namespace rlpc {
 
 // Factors of some components, two components (a pair) beside each other; the last pair of an
 // odd number of components has zeros in it.

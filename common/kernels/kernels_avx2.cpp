@@ -6,8 +6,7 @@
 
 #include <cstring>
 
-#include "common/cluster_gof/recon/lcf.h"
-#include "common/skinned_gof/recon/bones.h"
+#include "common/fixed_point.h"
 
 #define RLPC_AVX2 [[gnu::target("avx2")]]
 

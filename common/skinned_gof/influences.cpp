@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "common/cluster_gof/cluster_models.h"
+#include "common/components/track_models.h"
 #include "common/int_math.h"
 
 namespace rlpc {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "common/components/component_limits.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/weight_settings.h"
@@ -89,5 +91,18 @@ struct SkinnedGof : GofHeader {
   // [groups][num_vertices * factors of the group]: residuals, in steps of the layer.
   std::vector<std::vector<std::int32_t>> vertex_residual;
 };
+
+// Width of rest positions, of 4 fractional bits.
+constexpr int rest_bits(int position_bits) { return position_bits + 5; }
+
+// Factors [first, end) of the spatial factors of a GOF, as declared.
+struct FactorGroup {
+  std::size_t first = 0;
+  std::size_t end = kRestFactors;
+  std::size_t size() const { return end - first; }
+};
+inline FactorGroup factor_group(const SkinnedGof& gof, std::size_t group) {
+  return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
+}
 
 }  // namespace rlpc

@@ -10,7 +10,7 @@
 
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
-#include "common/cluster_gof/cluster_models.h"
+#include "common/components/track_models.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
 

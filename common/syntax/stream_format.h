@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "common/result.h"
+
 namespace rlpc {
 
 // 6.1: the first byte is no text, and a transfer that rewrites line ends is noticed.
@@ -31,5 +33,10 @@ enum class UnitType : std::uint8_t {
 };
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;
+
+// R-STR-03: a minor version that is not known, or not that of the stream's profile.
+inline Error unsupported_minor_version() {
+  return {Errc::kUnsupported, "R-STR-03", "version_minor", 72};
+}
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/bitstream/crc32.h"
+#include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_json.h"
 #include "conformance/rlpcval/validator_stream.h"

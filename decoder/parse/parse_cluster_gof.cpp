@@ -4,7 +4,6 @@
 
 #include "common/cluster_gof/cluster_models.h"
 #include "common/int_math.h"
-#include "common/kernels/kernels.h"
 #include "decoder/parse/parse_component_header.h"
 #include "decoder/parse/parse_track.h"
 #include "decoder/parse/section_reader.h"

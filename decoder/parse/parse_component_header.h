@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "common/cluster_gof/cluster_models.h"
-#include "common/kernels/component_sum.h"
+#include "common/components/component_limits.h"
+#include "common/components/track_models.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {

@@ -1,6 +1,6 @@
 #include "decoder/parse/parse_sequence_header.h"
 
-#include "decoder/stream/unit_reader.h"
+#include "common/syntax/stream_format.h"
 
 namespace rlpc {
 namespace {

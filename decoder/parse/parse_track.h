@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/cluster_gof/cluster_models.h"
+#include "common/components/track_models.h"
 #include "common/mesh/mesh.h"
 #include "decoder/parse/section_reader.h"
 

@@ -15,10 +15,6 @@ std::uint32_t big_endian(std::span<const std::uint8_t> b) {
 
 }  // namespace
 
-Error unsupported_minor_version() {
-  return {Errc::kUnsupported, "R-STR-03", "version_minor", 72};
-}
-
 // 6.1 stream( )
 Result<bool> UnitReader::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};

@@ -29,9 +29,6 @@ struct UnitHeader {
   std::uint64_t end() const { return payload_offset() + size + kUnitCrcBytes; }
 };
 
-// R-STR-03: a minor version that is not known, or not that of the stream's profile.
-Error unsupported_minor_version();
-
 class UnitReader {
  public:
   // max_payload_bytes: of a unit that payload() reads.

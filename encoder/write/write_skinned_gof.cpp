@@ -8,7 +8,6 @@
 #include "common/bitstream/bit_writer.h"
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
-#include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/write/section_writer.h"
 

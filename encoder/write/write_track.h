@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/cluster_gof/cluster_models.h"
+#include "common/components/track_models.h"
 #include "common/mesh/mesh.h"
 #include "encoder/write/write_residual.h"
 

@@ -7,7 +7,7 @@ Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comm
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
-             is a string literal in exactly one decoder/parse_* file (or the reader of units),
+             is a string literal in exactly one file of decoder/parse/ (or the reader of units),
              or read in exactly one other file of decoder/, and none reads others. An element
              that several functions of the specification read may be in as many files. Blocks of
              the clause of the parsing process describe bins, not elements.
@@ -23,7 +23,7 @@ import sys
 import cpp_source
 
 PARSING_PROCESS = "9"
-PARSERS = ("parse_", "unit_reader")
+PARSERS = ("decoder/parse/", "decoder/stream/unit_reader.")
 
 _NUMBER = r"(?:\d+|[A-Z])(?:\.\d+)*"
 _DOTTED = r"(?:[1-9]\d*|[A-Z])(?:\.[1-9]\d*)+"
@@ -197,7 +197,7 @@ def check_elements(spec, parsers):
 def check(root):
     spec = Spec(root)
     if not spec.files:
-        return [], "spec/ is empty, nothing to compare with"
+        return ["spec/ is empty"], ""
     complaints = list(spec.complaints)
     for rule, places in sorted(spec.rules.items()):
         if len(places) > 1:
@@ -215,8 +215,10 @@ def check(root):
         used |= set(_RULE.findall(text))
         if relative.parts[0] == "decoder" and not cpp_source.is_test(path):
             text = cpp_source.without_comments(text)
-            parsers[str(relative)] = (text if path.name.startswith(PARSERS)
+            parsers[str(relative)] = (text if relative.as_posix().startswith(PARSERS)
                                       else cpp_source.kept(text, _READ))
+    complaints += [f"{place} has no sources" for place in PARSERS
+                   if not any(name.startswith(place) for name in parsers)]
     complaints += check_elements(spec, parsers)
     summary = (f"{len(spec.clauses)} clauses, {len(spec.elements)} syntax elements, "
                f"{len(spec.rules)} rules of which {len(used & set(spec.rules))} in code")

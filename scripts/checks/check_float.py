@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No floating point where everything is an integer: common/, decoder/parse_*, decoder/recon_*.
+"""No floating point in the folders of integers (scripts/checks/rooms.py).
 
 Tests are free to use it. Division and shifts of signed numbers are not looked for: text alone
 cannot tell them from those of unsigned numbers, which are exact.
@@ -11,6 +11,7 @@ import re
 import sys
 
 import cpp_source
+import rooms
 
 _FLOAT = re.compile(
     r"""\b(?:float|double|float_t|double_t)\b
@@ -24,16 +25,14 @@ _FLOAT = re.compile(
 
 
 def covered(root):
-    for path in cpp_source.files(root, ("common", "decoder")):
-        whole_folder = path.relative_to(root).parts[0] == "common"
-        if not cpp_source.is_test(path) and (
-                whole_folder or path.name.startswith(("parse_", "recon_"))):
-            yield path
+    return [path for path in cpp_source.files(root, rooms.INTEGER_FOLDERS)
+            if not cpp_source.is_test(path)]
 
 
 def check(root):
-    paths = list(covered(root))
-    complaints = []
+    complaints = [f"{folder}/ has no sources"
+                  for folder in rooms.INTEGER_FOLDERS if not cpp_source.files(root, (folder,))]
+    paths = covered(root)
     for path in paths:
         text = path.read_text(encoding="utf-8")
         for match in _FLOAT.finditer(cpp_source.code_only(text)):

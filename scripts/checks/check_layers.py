@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The layer rules: who may include, import or link whom.
 
-common includes neither side; encoder and decoder never reach each other, nor conformance;
-readers and writers of mesh files know nothing of coding; Eigen stays in the encoder; the
-specification interpreter and the judge are plain Python.
+Each folder includes what scripts/checks/rooms.py allows: common neither side, encoder and decoder
+never each other, parsing nothing that reconstructs, readers and writers of mesh files nothing of
+coding. Eigen stays in the encoder; the specification interpreter and the judge are plain Python.
 """
 
 import argparse
@@ -13,31 +13,10 @@ import re
 import sys
 
 import cpp_source
+import rooms
 
-# What a layer may include of ours, and of other libraries (by first part of the path).
-OURS = {
-    "common": {"common"},
-    "decoder": {"common", "decoder"},
-    "encoder": {"common", "encoder"},
-    "conformance": {"common", "decoder", "encoder", "conformance"},
-}
-# What readers and writers of mesh files may include of their own layer: folders, and files.
-FORMATS = {
-    "decoder/output": {"decoder/output", "decoder/float_position.h"},
-    "encoder/input": {"encoder/input", "encoder/input/formats", "encoder/input/gltf"},
-    "encoder/input/formats": {"encoder/input", "encoder/input/formats"},
-    "encoder/input/gltf": {"encoder/input", "encoder/input/formats", "encoder/input/gltf",
-                           "encoder/math/det_math.h"},
-}
-TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
-PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
-LIBRARIES = {
-    "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
-    "decoder": TOOLS | {"tiny_gltf.h"},
-    "encoder": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"},
-    "conformance": TOOLS | {"tiny_gltf.h", "tiny_obj_loader.h", "Eigen"} | PEERS,
-}
-TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
+LAYERS = ("common", "decoder", "encoder", "conformance")
+
 # common computes; it neither reads, writes nor logs.
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
@@ -48,6 +27,8 @@ C_HEADERS = {"stddef.h", "stdint.h"}
 # Folder: other folders whose modules it may import.
 PLAIN_PYTHON = {"conformance/specdec": (), "conformance/judge": ("conformance/specdec",)}
 
+# A free function of a header: its line begins with the type, not with white space.
+_DECLARATION = re.compile(r"^[A-Za-z][\w:<>,&*\[\] ]*?[ &*](\w+)\(", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b[ \t]*(.*)$", re.MULTILINE)
 
 
@@ -59,30 +40,24 @@ def includes(text):
         yield (line, *target.groups()) if target else (line, "", match.group(1).strip())
 
 
-def check_ours(root, layer, path, included):
-    first = included.split("/")[0]
-    if first not in OURS or ".." in included.split("/"):
+def check_ours(root, path, included):
+    folder = path.parent.relative_to(root).as_posix()
+    if included.split("/")[0] not in LAYERS or ".." in included.split("/"):
         return f'"{included}" is not spelled from the top, like "common/result.h"'
-    if first not in OURS[layer]:
-        return f"{layer}/ must not include {first}/ (it includes \"{included}\")"
     if not (root / included).is_file():
         return f'"{included}" does not exist'
-    folder = path.parent.relative_to(root).as_posix()
-    if folder in FORMATS and first != "common" and not FORMATS[folder] & {
-            included, pathlib.PurePosixPath(included).parent.as_posix()}:
-        return f"{folder}/ must know nothing of coding (it includes \"{included}\")"
-    if path.name.startswith("parse_") and pathlib.Path(included).name.startswith("recon_"):
-        return f'parsing must not know reconstruction (it includes "{included}")'
+    if not rooms.allowed(folder, included, cpp_source.is_test(path)):
+        return f'{folder}/ must not include "{included}" (scripts/checks/rooms.py)'
     return None
 
 
 def check_library(layer, path, included):
     first = included.split("/")[0]
-    if first in OURS:
+    if first in LAYERS:
         return f'<{included}> is ours: write "{included}"'
-    if first in LIBRARIES[layer] or (cpp_source.is_test(path) and first in TEST_LIBRARIES):
+    if first in rooms.LIBRARIES[layer] or (cpp_source.is_test(path) and first in rooms.TEST_LIBRARIES):
         return None
-    if "/" in included or first in set().union(TEST_LIBRARIES, *LIBRARIES.values()):
+    if "/" in included or first in set().union(rooms.TEST_LIBRARIES, *rooms.LIBRARIES.values()):
         return f"{layer}/ must not use <{included}>"
     if layer == "common" and not cpp_source.is_test(path):
         if included in INPUT_OUTPUT:
@@ -97,7 +72,7 @@ def check_file(root, path):
     layer = relative.parts[0]
     for line, bracket, included in includes(path.read_text(encoding="utf-8")):
         if bracket == '"':
-            complaint = check_ours(root, layer, path, included)
+            complaint = check_ours(root, path, included)
         elif bracket == "<":
             complaint = check_library(layer, path, included)
         else:
@@ -129,7 +104,7 @@ def check_links(root):
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
                 code = line.split("#")[0]
                 for other in re.findall(r"\brlpc(?:_|::)(decoder|encoder)\b", code):
-                    if other not in OURS[layer]:
+                    if other not in ("common", layer):
                         yield (f"{path.relative_to(root)}:{number}: "
                                f"{layer}/ must not link rlpc_{other}")
                 if layer != "encoder" and "Eigen" in code:
@@ -142,7 +117,10 @@ def check_python(root, folder, others):
     local = {base.name} | {path.stem for path in base.rglob("*.py")}
     local |= {path.stem for other in others for path in (root / other).rglob("*.py")}
     local |= {path.name for path in base.rglob("*") if path.is_dir()}
-    for path in sorted(base.rglob("*.py")):
+    paths = sorted(base.rglob("*.py"))
+    if not paths:
+        yield f"{folder}/ has no Python in it"
+    for path in paths:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), str(path))):
             names = []
             if isinstance(node, ast.Import):
@@ -156,15 +134,59 @@ def check_python(root, folder, others):
                            f"{folder} must not import {name}")
 
 
+def called_functions(root, places):
+    """Names of the free functions that headers of folders, and single headers, declare."""
+    names = set()
+    for place in places:
+        headers = [root / place] if place.endswith(".h") else sorted((root / place).glob("*.h"))
+        for header in headers:
+            code = cpp_source.code_only(header.read_text(encoding="utf-8"))
+            names |= set(_DECLARATION.findall(code))
+    return names
+
+
+def check_calls(root, folder, places):
+    """Code of a room does not call what it must not know, through whatever header it sees it."""
+    names = called_functions(root, places)
+    if not names:
+        yield f"scripts/checks/rooms.py: NOT_CALLED of {folder} names no function"
+        return
+    call = re.compile(r"\b(" + "|".join(sorted(names)) + r")\s*\(")
+    for path in sorted((root / folder).glob("*")):
+        if path.suffix not in (".h", ".cpp") or cpp_source.is_test(path):
+            continue
+        text = path.read_text(encoding="utf-8")
+        for match in call.finditer(cpp_source.code_only(text)):
+            yield (f"{path.relative_to(root)}:{cpp_source.line_of(text, match.start())}: "
+                   f"{folder}/ must not call {match.group(1)}( )")
+
+
+def check_rooms(root, paths):
+    """Every folder with sources is a room, and every room has some."""
+    found = {path.parent.relative_to(root).as_posix() for path in paths}
+    found = {folder for folder in found if rooms.layer_of(folder) != rooms.BOTH_SIDES}
+    for folder in sorted(found - set(rooms.ROOMS)):
+        yield f"{folder}/ has sources, but is no room of scripts/checks/rooms.py"
+    for folder in sorted(set(rooms.ROOMS) - found):
+        yield f"scripts/checks/rooms.py: {folder}/ has no sources"
+
+
 def check(root):
     paths = cpp_source.files(root, cpp_source.LAYERS)
-    complaints = [c for path in paths for c in check_file(root, path)]
+    complaints = list(check_rooms(root, paths))
+    known = [path for path in paths if path.parent.relative_to(root).as_posix() in rooms.ROOMS
+             or path.relative_to(root).parts[0] == rooms.BOTH_SIDES]
+    complaints += [c for path in known for c in check_file(root, path)]
+    for folder, places in rooms.NOT_CALLED.items():
+        complaints += check_calls(root, folder, places)
     for header in PUBLIC_HEADERS:
+        if not (root / header).is_file():
+            complaints.append(f"{header}: a public header that is not there")
         complaints += check_public_header(root, header)
     complaints += check_links(root)
     for folder, others in PLAIN_PYTHON.items():
         complaints += check_python(root, folder, others)
-    return complaints, f"{len(paths)} files keep to their layer"
+    return complaints, f"{len(paths)} files in {len(rooms.ROOMS)} rooms include what they may"
 
 
 def main():

@@ -137,7 +137,7 @@ def stream_complaints(root, found):
 def check(root):
     found, complaints = rules(root)
     if not (root / "spec").is_dir():
-        return [], "there is no spec/"
+        return ["there is no spec/"], ""
     path = root / "spec" / "rules.json"
     if not path.exists() or path.read_text(encoding="utf-8") != text_of(found):
         complaints.append("spec/rules.json is not up to date: scripts/rules")

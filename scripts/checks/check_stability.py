@@ -37,6 +37,8 @@ def released(root):
     text = (root / "spec" / "versions.md").read_text(encoding="utf-8")
     stated = {m.group(1): m.group(2).strip() for m in
               re.finditer(r"^\| (\d+\.\d+(?:s\d+)?) \|[^|]*\|([^|]*)\|$", text, re.MULTILINE)}
+    if not stated:
+        yield "spec/versions.md: no table of versions"
     for version, status in stated.items():
         sums = root / "streams" / f"v{version}" / "SHA256SUMS"
         if status.startswith("released") != sums.is_file():

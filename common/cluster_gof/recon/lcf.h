@@ -4,14 +4,11 @@
 #include <array>
 #include <cstdint>
 
+#include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
 
 namespace rlpc {
-
-inline constexpr int kLocalFractionBits = 4;  // of local coordinates
-inline constexpr int kLocalBits = 31;         // local coordinates are clipped to this width
-inline constexpr int kAxisFractionBits = 30;  // of the unit vectors
 
 struct Lcf {
   Vec3l doubled_origin;       // p1 + p2: the midpoint, doubled so that it stays an integer

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -14,11 +15,7 @@ namespace rlpc {
 
 // Unit quaternion w, x, y, z with 30 fractional bits.
 using Quaternion = std::array<std::int64_t, 4>;
-inline constexpr int kQuaternionFractionBits = 30;
 inline constexpr Quaternion kNoRotation{std::int64_t{1} << kQuaternionFractionBits, 0, 0, 0};
-
-// Points of the rest shape, and where bones take them, have 4 fractional bits.
-inline constexpr int kPointFractionBits = 4;
 
 // 8.12.1 StepOf( idx ), idx <= kMaxStepIdx; below 2^30.
 std::int64_t step_of(std::uint32_t idx);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/cluster_gof/cluster_gof.h"
-#include "common/cluster_gof/recon/lcf.h"
 #include "common/components/series_predictor.h"
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
@@ -15,10 +13,6 @@ namespace {
 constexpr int kTemporalWeightFractionBits = 6;
 
 }  // namespace
-
-FactorGroup factor_group(const SkinnedGof& gof, std::size_t group) {
-  return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
-}
 
 // 8.10.2 Spatial values
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,

@@ -17,14 +17,6 @@
 
 namespace rlpc {
 
-// Factors [first, end) of the spatial factors of a GOF, as declared.
-struct FactorGroup {
-  std::size_t first = 0;
-  std::size_t end = kRestFactors;
-  std::size_t size() const { return end - first; }
-};
-FactorGroup factor_group(const SkinnedGof& gof, std::size_t group);
-
 // 8.10.2 Spatial values: what a residual of the rest positions, or of trajectories, adds at a
 // vertex of a layer.
 inline std::int64_t rest_difference(const SkinnedGof& gof, std::int32_t residual,
@@ -34,7 +26,6 @@ inline std::int64_t rest_difference(const SkinnedGof& gof, std::int32_t residual
 inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
   return std::int64_t{residual} * layer_step;
 }
-constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
 // of layers whose slices are absent.

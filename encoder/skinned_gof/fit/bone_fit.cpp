@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "encoder/gof/gof_coder.h"
+#include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"
-#include "encoder/skinned_gof/search/bone_estimate.h"
 
 namespace rlpc {
 namespace {

@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/search/bone_estimate.h"
+#include "encoder/skinned_gof/fit/bone_estimate.h"
 
 #include <algorithm>
 #include <cmath>

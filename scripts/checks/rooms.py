@@ -1,0 +1,116 @@
+"""Which folder may include what: the source layout of CONTRIBUTING.md, as a table.
+
+A room is a folder. It may include its own files, files of the folders named (not of folders in
+them), and single files; other libraries only where LIBRARIES says so.
+"""
+
+_BITS = {"common", "common/bitstream"}
+_MESH = _BITS | {"common/mesh"}
+_GOFS = _MESH | {"common/syntax", "common/components", "common/cluster_gof", "common/skinned_gof"}
+_RECON = {"common/kernels", "common/mesh_prediction", "common/cluster_gof/recon",
+          "common/skinned_gof/recon"}
+_PUBLIC_DECODER = {"decoder"}
+_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/write"}
+
+ROOMS = {
+    # Integers only. Nothing here knows who reads or writes a stream.
+    "common": set(),
+    "common/bitstream": {"common"},
+    "common/mesh": _BITS,
+    "common/components": _BITS,
+    "common/syntax": _GOFS,
+    "common/cluster_gof": _MESH | {"common/syntax", "common/components"},
+    "common/skinned_gof": _MESH | {"common/syntax", "common/components"},
+    "common/kernels": {"common", "common/components"},
+    "common/mesh_prediction": {"common", "common/mesh", "common/kernels"},
+    "common/cluster_gof/recon": _GOFS | _RECON,
+    "common/skinned_gof/recon": _GOFS | _RECON,
+    "common/c_api": {"common"},
+    "common/testing": _GOFS,
+    # Bits to structures; no reconstruction, no files.
+    "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
+    # Structures to positions.
+    "decoder/recon": _GOFS | _RECON | {"decoder/stream"},
+    "decoder/stream": _GOFS | {"decoder/parse"} | _PUBLIC_DECODER,
+    "decoder": _GOFS | {"decoder/stream", "decoder/recon"},
+    "decoder/extract": _GOFS | {"decoder/parse", "decoder/stream"} | _PUBLIC_DECODER,
+    "decoder/report": _GOFS | {"decoder/stream", "decoder/output"} | _PUBLIC_DECODER,
+    "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
+    # Writers of mesh files know nothing of coding.
+    "decoder/output": {"common", "common/mesh", "decoder/float_position.h"},
+    "decoder/player": {"common/bitstream", "common/mesh", "decoder/output", "decoder/stream",
+                       "decoder/tools", "decoder/recon/async.h"} | _PUBLIC_DECODER,
+    "decoder/tools": _GOFS | {"decoder/extract", "decoder/output", "decoder/player",
+                              "decoder/report", "decoder/stream"} | _PUBLIC_DECODER,
+    "decoder/fuzz": _GOFS | _RECON | {"common/testing", "decoder/parse", "decoder/stream"}
+                    | _PUBLIC_DECODER,
+    # Floating point, decisions, structures to bits.
+    "encoder": {"common/mesh", "common/skinned_gof", "common/syntax", "encoder/input",
+                "encoder/metrics"},
+    "encoder/math": set(),
+    "encoder/metrics": {"common/mesh", "encoder/math"},
+    "encoder/write": _GOFS | {"encoder/math/det_math.h"},
+    "encoder/gof": _ENCODER | {"encoder/cluster_gof", "encoder/skinned_gof/search"},
+    "encoder/cluster_gof": _ENCODER,
+    "encoder/skinned_gof/fit": _ENCODER,
+    "encoder/skinned_gof/quantise": _ENCODER | {"encoder/skinned_gof/fit"},
+    "encoder/skinned_gof/search": _ENCODER | {"encoder/skinned_gof/fit",
+                                              "encoder/skinned_gof/quantise"},
+    "encoder/sequence": _ENCODER | {"encoder/cluster_gof", "encoder/input", "encoder/metrics",
+                                    "encoder/input/formats"},
+    "encoder/c_api": {"common/c_api", "encoder"},
+    # Readers of mesh files know nothing of coding.
+    "encoder/input": {"common", "common/mesh", "common/syntax/stream_format.h",
+                      "encoder/input/formats", "encoder/input/gltf"},
+    "encoder/input/formats": {"common", "common/mesh", "encoder/input"},
+    "encoder/input/gltf": {"common", "common/mesh", "common/syntax/sequence_header.h",
+                           "encoder/input", "encoder/input/formats",
+                           "encoder/math/det_math.h"},
+    "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
+                           "encoder/input/gltf"},
+    "encoder/tools": {"encoder", "encoder/input", "encoder/metrics", "encoder/sequence"},
+}
+# Although the room is open: layers of vertices are made with the connectivity (8.9), not while a
+# GOF is parsed.
+CLOSED = {"decoder/parse": {"common/mesh/vertex_layers.h"}}
+# Functions that headers of these folders and files declare are not called by name in the room,
+# through whatever header they are seen.
+NOT_CALLED = {"decoder/parse": ("common/cluster_gof/recon", "common/skinned_gof/recon",
+                                "common/mesh_prediction", "common/kernels", "decoder/recon",
+                                "common/mesh/vertex_layers.h")}
+# Sees both sides; nothing includes it.
+BOTH_SIDES = "conformance"
+
+# Folders in which all is an integer, folders in them included.
+INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
+                   "decoder/extract")
+
+_TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
+_PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
+# Other libraries, by the first part of the path of what is included; of a folder and those in it.
+LIBRARIES = {
+    "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
+    "decoder": _TOOLS,
+    "encoder": _TOOLS | {"Eigen"},
+    "conformance": _TOOLS | _PEERS | {"Eigen"},
+}
+TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
+
+
+def layer_of(folder):
+    return folder.split("/")[0]
+
+
+def allowed(folder, included, is_test):
+    """Whether a file of the folder may include `included`, a path from the top.
+
+    A test may include all of its side: it builds what it needs to test one thing.
+    """
+    target = included.rpartition("/")[0]
+    if included in CLOSED.get(folder, ()) and not is_test:
+        return False
+    if folder == BOTH_SIDES or folder.startswith(BOTH_SIDES + "/"):
+        return True
+    if is_test and layer_of(target) in ("common", layer_of(folder)):
+        return True
+    return target == folder or target in ROOMS[folder] or included in ROOMS[folder]

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Faults planted in a copy of the real tree, one at a time, and the complaint that each must draw.
+
+A guard that looks past what it guards would let its fault pass.
+"""
+
+import contextlib
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import check_clauses  # noqa: E402
+import check_float  # noqa: E402
+import check_layers  # noqa: E402
+import check_rules  # noqa: E402
+import cpp_source  # noqa: E402
+import rooms  # noqa: E402
+
+ROOT = cpp_source.repository_root()
+COPIED = (*cpp_source.LAYERS, "spec")
+
+
+class RealTree(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = pathlib.Path(cls.folder.name)
+        for name in COPIED:
+            shutil.copytree(ROOT / name, cls.root / name)
+        (cls.root / "streams").symlink_to(ROOT / "streams")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @contextlib.contextmanager
+    def planted(self, name, change):
+        """The tree with one file changed: `change` takes its text (None: it is new)."""
+        path = self.root / name
+        before = path.read_text(encoding="utf-8") if path.exists() else None
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(change(before), encoding="utf-8")
+        try:
+            yield
+        finally:
+            if before is None:
+                path.unlink()
+            else:
+                path.write_text(before, encoding="utf-8")
+
+    def complaint(self, check, name, change, *expected):
+        with self.planted(name, change):
+            found = check(self.root)[0]
+        self.assertEqual(len(found), 1, found)
+        for words in expected:
+            self.assertIn(words, found[0])
+
+    def include(self, name, line, *expected):
+        """One include more in an existing file."""
+        self.assertTrue((self.root / name).is_file(), name)
+        self.complaint(check_layers.check, name, lambda text: text + line + "\n", name, *expected)
+
+    @contextlib.contextmanager
+    def without(self, folder):
+        """The tree without a folder."""
+        away = self.root / "away"
+        (self.root / folder).rename(away)
+        try:
+            yield
+        finally:
+            away.rename(self.root / folder)
+
+
+class Layers(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_layers.check(self.root)[0], [])
+
+    def test_sides_include_each_other_never(self):
+        self.include("decoder/decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
+        self.include("encoder/sequence/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
+                     "must not include")
+        self.include("common/mesh/topology.cpp", '#include "decoder/slice_cut.h"',
+                     "must not include")
+        self.include("decoder/recon/hash_check.cpp",
+                     '#include "conformance/roundtrip/count_memory.h"', "must not include")
+
+    def test_parsing_includes_nothing_that_reconstructs(self):
+        for header in ("common/skinned_gof/recon/skinned_recon.h", "common/kernels/kernels.h",
+                       "common/cluster_gof/recon/lcf.h", "decoder/recon/gof_recon.h",
+                       "common/mesh_prediction/geometry_weights.h",
+                       "common/mesh/vertex_layers.h", "decoder/stream/unit_reader.h"):
+            with self.subTest(header=header):
+                self.include("decoder/parse/parse_skinned_gof.cpp", f'#include "{header}"', header)
+
+    def test_parsing_calls_nothing_that_reconstructs(self):
+        for call in ("make_layers(n, triangles);", "make_recon(unit, context);",
+                     "complete_influences(mesh, gof);", "make_lcf(a, b, c);"):
+            with self.subTest(call=call):
+                self.complaint(check_layers.check, "decoder/parse/access_unit_parser.cpp",
+                               lambda text, call=call: text + f"void f() {{ {call} }}\n",
+                               "decoder/parse/access_unit_parser.cpp", "must not call")
+
+    def test_files_of_meshes_know_nothing_of_coding(self):
+        self.include("encoder/input/formats/obj_reader.cpp", '#include "encoder/gof/gof_coder.h"',
+                     "must not include")
+        self.include("decoder/output/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
+                     "must not include")
+
+    def test_other_libraries_stay_where_they_are(self):
+        self.include("decoder/recon/prefetch.cpp", "#include <Eigen/Dense>",
+                     "decoder/ must not use <Eigen/Dense>")
+        self.include("common/mesh/cut_border.cpp", "#include <fstream>", "no input or output")
+        self.include("common/mesh/cut_border.cpp", "#include <unistd.h>",
+                     "only the standard library")
+        self.include("common/syntax/write_units.cpp", "#include <encoder/rlpc_encoder.h>",
+                     "is ours")
+
+    def test_there_is_no_way_round(self):
+        self.include("decoder/decoder.cpp", '#include "../encoder/rlpc_encoder.h"',
+                     "not spelled from the top")
+        self.include("decoder/decoder.cpp", "#include HEADER", "cannot be followed")
+        self.include("decoder/decoder.cpp", '#include "decoder/no_such.h"', "does not exist")
+
+    def test_links_follow_the_rule(self):
+        self.complaint(check_layers.check, "decoder/CMakeLists.txt",
+                       lambda text: text + "target_link_libraries(rlpcdec PRIVATE rlpc_encoder)\n",
+                       "decoder/CMakeLists.txt", "must not link rlpc_encoder")
+        self.complaint(check_layers.check, "common/CMakeLists.txt",
+                       lambda text: text + "target_link_libraries(rlpc_common Eigen3::Eigen)\n",
+                       "must not use Eigen")
+
+    def test_public_headers_show_the_standard_library_alone(self):
+        self.complaint(check_layers.check, "decoder/slice_cut.h",
+                       lambda text: text + "#include <CLI/CLI.hpp>\n",
+                       "decoder/slice_cut.h", "reaches <CLI/CLI.hpp>")
+
+    def test_folders_are_rooms_and_rooms_are_folders(self):
+        self.complaint(check_layers.check, "decoder/attic/a.h", lambda _: "#pragma once\n",
+                       "decoder/attic/ has sources, but is no room")
+        with self.without("decoder/extract"):
+            found = check_layers.check(self.root)[0]
+        self.assertIn("scripts/checks/rooms.py: decoder/extract/ has no sources", found)
+
+    def test_a_rule_about_calls_that_names_none_is_told(self):
+        before = rooms.NOT_CALLED
+        rooms.NOT_CALLED = {"decoder/parse": ("common/no_such_folder",)}
+        try:
+            found = check_layers.check(self.root)[0]
+        finally:
+            rooms.NOT_CALLED = before
+        self.assertEqual(len(found), 1, found)
+        self.assertIn("names no function", found[0])
+
+    def test_python_of_specification_and_judge_is_plain(self):
+        self.complaint(check_layers.check, "conformance/specdec/specdec.py",
+                       lambda text: "import numpy as np\n" + text,
+                       "conformance/specdec/specdec.py:1", "must not import numpy")
+        self.complaint(check_layers.check, "conformance/judge/grading.py",
+                       lambda text: "from rlpcgen import recipe\n" + text,
+                       "conformance/judge/grading.py:1", "must not import rlpcgen")
+
+
+class Float(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_float.check(self.root)[0], [])
+
+    def plant(self, name, line):
+        self.assertTrue((self.root / name).is_file(), name)
+        self.complaint(check_float.check, name, lambda text: line + "\n" + text, f"{name}:1",
+                       "floating point")
+
+    def test_every_folder_of_integers_is_looked_at(self):
+        for name in ("common/mesh_prediction/value_prediction.cpp",
+                     "common/skinned_gof/recon/skinned_recon.h", "common/int_math.h",
+                     "decoder/parse/section_reader.h", "decoder/recon/hash_check.cpp",
+                     "decoder/stream/stream_reader.cpp",
+                     "decoder/extract/sub_stream_extractor.cpp"):
+            with self.subTest(name=name):
+                self.plant(name, "double x;")
+
+    def test_types_functions_and_literals_are_found(self):
+        for line in ("float f();", "int r = std::sqrt(x);", "auto x = 0.5;", "auto x = 2.f;",
+                     "auto x = 1e9;", "#include <cmath>"):
+            with self.subTest(line=line):
+                self.plant("common/mesh/topology.h", line)
+
+    def test_comments_literals_tests_and_writers_are_free(self):
+        for name, line in (("common/mesh/topology.h", "// a double, 0.5"),
+                           ("common/mesh/topology.cpp", 'const char* s = "float 1.5";'),
+                           ("common/mesh/topology_test.cpp", "double x;"),
+                           ("decoder/output/mesh_sink.cpp", "float y;")):
+            with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
+                self.assertEqual(check_float.check(self.root)[0], [])
+
+    def test_an_empty_folder_is_told(self):
+        with self.without("decoder/stream"):
+            found = check_float.check(self.root)[0]
+        self.assertEqual(found, ["decoder/stream/ has no sources"])
+
+
+class Specification(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_clauses.check(self.root)[0], [])
+        self.assertEqual(check_rules.check(self.root)[0], [])
+
+    def test_a_clause_that_does_not_exist(self):
+        self.complaint(check_clauses.check, "decoder/recon/hash_check.cpp",
+                       lambda text: text + "// 8.99.7 No such process\n",
+                       "decoder/recon/hash_check.cpp", "8.99.7")
+
+    def test_an_element_that_no_parser_reads(self):
+        with self.planted("decoder/parse/parse_gof_header.cpp",
+                          lambda text: text.replace('"first_frame"', '"frame"')):
+            found = check_clauses.check(self.root)[0]
+        self.assertEqual(len(found), 2, found)
+        self.assertIn("syntax element first_frame is read by no parser", found[0])
+        self.assertIn("frame is in no syntax table", found[1])
+
+    def test_a_rule_without_stream(self):
+        with self.planted("spec/07-semantics.md", lambda text: text + (
+                "\nIt is a requirement of bitstream conformance that the sky is blue.\n"
+                "{R-GOF-99}\n")):
+            found = check_rules.check(self.root)[0]
+        self.assertIn("streams/: no stream breaks R-GOF-99: write a recipe", found)
+        self.assertTrue(any("R-GOF-99 has no check in rlpcval" in text for text in found), found)
+
+
+if __name__ == "__main__":
+    unittest.main()
