@@ -1,10 +1,7 @@
 #include "conformance/tools/comparison_input.h"
 
 #include <cassert>
-#include <filesystem>
-#include <initializer_list>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,23 +9,12 @@
 #include "decoder/float_position.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/input/input_file.h"
+#include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
 namespace rlpc {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-// The first file of the same stem with one of other extensions, if there is one.
-std::string sibling(const std::string& path, std::initializer_list<const char*> extensions) {
-  std::error_code ec;
-  for (const char* const extension : extensions) {
-    const fs::path other = fs::path(path).replace_extension(extension);
-    if (fs::is_regular_file(other, ec)) return other.string();
-  }
-  return "";
-}
 
 // A stream as a sequence of float32 frames.
 class StreamSource final : public FrameSource {
@@ -85,10 +71,10 @@ InputResult<ComparisonInput> open_stream(const std::string& path) {
 InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions& options,
                                        std::uint32_t frames) {
   if (input.frames->num_frames() != 1 || frames == 1) return input;
-  if (!options.points.empty() || !is_mesh_extension(lower_extension(options.path))) {
+  if (!options.points.empty() || !is_mesh_extension(options.path)) {
     return input;
   }
-  const std::string cache = sibling(options.path, {".pc2", ".mdd"});
+  const std::string cache = sibling_of(options.path, InputFormat::Holds::kPoints);
   if (cache.empty()) return input;
   return open_comparison_input({options.path, cache, std::nullopt});
 }
@@ -104,8 +90,10 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
                       given.points};
   }
   InputOptions options = given;
-  if ((extension == ".pc2" || extension == ".mdd") && given.points.empty()) {
-    const std::string mesh = sibling(given.path, {".obj", ".ply", ".off"});
+  const InputFormat* const format = format_of_extension(given.path);
+  const bool is_cache = format != nullptr && format->holds == InputFormat::Holds::kPoints;
+  if (is_cache && given.points.empty()) {
+    const std::string mesh = sibling_of(given.path, InputFormat::Holds::kMesh);
     if (!mesh.empty()) {
       options.path = mesh;
       options.points = given.path;

@@ -276,7 +276,7 @@ int run(Options& o) {
     if (const auto wrong = written_over(o, side->frames->files()))
       return complain(*wrong), kUsage;
   }
-  if (!o.fps.empty() && !rlpc::is_gltf(o.a) && !rlpc::is_gltf(o.b)) {
+  if (!o.fps.empty() && !rlpc::has_clips(o.a) && !rlpc::has_clips(o.b)) {
     return complain("--fps: neither A nor B is a glTF file"), kUsage;
   }
   const auto map = rlpc::match_vertices(*pair, o.order_map);

@@ -11,10 +11,8 @@
 #include "common/syntax/stream_format.h"
 #include "encoder/input/formats/mesh_sequence.h"
 #include "encoder/input/formats/point_cache.h"
-#include "encoder/input/formats/rlpd_reader.h"
-#include "encoder/input/gltf/source.h"
 #include "encoder/input/input_file.h"
-#include "encoder/input/mesh_reader.h"
+#include "encoder/input/input_format.h"
 
 namespace rlpc {
 
@@ -64,62 +62,47 @@ InputResult<std::unique_ptr<FrameSource>> open_listed(
   return open_mesh_sequence(std::move(*paths), options.frame_rate);
 }
 
-enum class FileKind : std::uint8_t { kUnknown, kGltf, kRlpd, kMesh, kPointCache, kStream };
-
-// By the extension; if that says nothing, by how the file begins.
-FileKind kind_of(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".glb" || extension == ".gltf") return FileKind::kGltf;
-  if (extension == ".rlpd") return FileKind::kRlpd;
-  if (extension == ".pc2" || extension == ".mdd") return FileKind::kPointCache;
-  if (is_mesh_extension(extension)) return FileKind::kMesh;
-  const std::string begin = beginning_of(path);
-  const std::size_t first = begin.find_first_not_of(" \t\r\n");
-  if (begin.starts_with("glTF") || (first != begin.npos && begin[first] == '{')) {
-    return FileKind::kGltf;
-  }
-  if (begin.starts_with("RLPD")) return FileKind::kRlpd;
-  if (begin.starts_with(std::string(kSignature.begin(), kSignature.end()))) {
-    return FileKind::kStream;
-  }
-  if (begin.starts_with("POINTCACHE2")) return FileKind::kPointCache;
-  return mesh_format_of(path).empty() ? FileKind::kUnknown : FileKind::kMesh;
+bool is_stream(const std::string& path) {
+  return beginning_of(path).starts_with(std::string(kSignature.begin(), kSignature.end()));
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options, bool exists) {
+  using Holds = InputFormat::Holds;
   const std::string& path = options.path;
-  switch (kind_of(path)) {
-    case FileKind::kGltf:
-      return open_gltf(options);
-    case FileKind::kRlpd:
-      return open_rlpd(path, options.frame_rate);
-    case FileKind::kMesh:
-      return open_mesh_sequence({path}, options.frame_rate);
-    case FileKind::kPointCache:
+  const InputFormat* const format = format_of(path);
+  if (format == nullptr && is_stream(path)) {
+    return InputError{name_of_input(path) +
+                      ": is an RLPC stream already; rlpcdec decodes it, and rlpcinfo --extract "
+                      "makes a smaller one of it"};
+  }
+  if (format == nullptr) {
+    return InputError{name_of_input(path) +
+                      (exists ? ": unknown kind of file" : ": no such file or folder") +
+                      "; expected " + extensions_text({Holds::kMesh, Holds::kAnimation}) +
+                      ", a folder of " + extensions_text({Holds::kMesh}) +
+                      " files, or a pattern such as walk_%04d.obj or 'walk_*.obj'"};
+  }
+  switch (format->holds) {
+    case Holds::kAnimation:
+      return format->open(options);
+    case Holds::kPoints:
       return InputError{name_of_input(path) +
                         ": a point cache has no triangles; give its mesh as the input and the "
                         "cache with --points"};
-    case FileKind::kStream:
-      return InputError{name_of_input(path) +
-                        ": is an RLPC stream already; rlpcdec decodes it, and rlpcinfo "
-                        "--extract makes a smaller one of it"};
     default:
-      return InputError{name_of_input(path) +
-                        (exists ? ": unknown kind of file" : ": no such file or folder") +
-                        "; expected an .obj, .ply, .off, .glb, .gltf or .rlpd file, a folder "
-                        "of .obj, .ply or .off files, or a pattern such as walk_%04d.obj or "
-                        "'walk_*.obj'"};
+      return open_mesh_sequence({path}, options.frame_rate);
   }
 }
 
 }  // namespace
 
-bool is_gltf(const InputOptions& options) {
-  return options.points.empty() && kind_of(options.path) == FileKind::kGltf;
+bool has_clips(const InputOptions& options) {
+  const InputFormat* const format = format_of(options.path);
+  return options.points.empty() && format != nullptr && format->has_clips;
 }
 
 std::optional<InputError> check_gltf_options(const InputOptions& options) {
-  if ((options.animation.empty() && options.weld) || is_gltf(options)) return std::nullopt;
+  if ((options.animation.empty() && options.weld) || has_clips(options)) return std::nullopt;
   return InputError{name_of_input(options.path) +
                     (options.weld
                          ? ": only .glb and .gltf files have animations to choose from"
@@ -133,7 +116,10 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
   const bool exists = path == "-" || fs::exists(path, ec);
   if (auto error = check_gltf_options(options)) return *error;
   if (!options.points.empty()) {
-    return open_point_cache(path, options.points, options.frame_rate);
+    const InputFormat* const format = format_of(options.points);
+    const bool known = format != nullptr && format->open_points != nullptr;
+    return (known ? format->open_points : open_point_cache)(path, options.points,
+                                                            options.frame_rate);
   }
   if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
   // A file of exactly this name comes first, whatever characters are in it.

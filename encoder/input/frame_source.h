@@ -93,7 +93,8 @@ struct InputOptions {
 // Checks what can be checked without reading every frame; read_frame() checks the rest.
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options);
 
-bool is_gltf(const InputOptions& options);
+// Whether the input may have several animations to choose from, and vertices to weld.
+bool has_clips(const InputOptions& options);
 // Error: options of glTF (animation, no welding) are set for other input.
 std::optional<InputError> check_gltf_options(const InputOptions& options);
 

@@ -356,7 +356,7 @@ TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {
   expect_error({path("f%d_%d.obj"), "", {}}, "expected one %d or %04d");
   expect_error({path("none/f%d.obj"), "", {}}, "cannot list the folder");
   expect_error({path("f*.obj"), "", {}}, "no file matches");
-  expect_error({folder_.string(), "", {}}, "no .obj, .ply or .off file in this folder");
+  expect_error({folder_.string(), "", {}}, "no .obj, .off or .ply file in this folder");
   expect_error({path("none"), "", {}}, "no such file or folder");
   expect_error({put("a.stl", "solid"), "", {}}, "unknown kind of file");
 }

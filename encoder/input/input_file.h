@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "encoder/input/frame_source.h"
 
@@ -32,6 +33,12 @@ class InputFile {
 
 // The path, or "standard input" for "-".
 std::string name_of_input(const std::string& path);
+
+// Without white space at its start.
+inline std::string_view after_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first == text.npos ? std::string_view() : text.substr(first);
+}
 
 // The first bytes, 64 at most; none if it cannot be read.
 std::string beginning_of(const std::string& path);

@@ -1,13 +1,10 @@
 #include "encoder/input/mesh_reader.h"
 
 #include <filesystem>
-#include <string_view>
 #include <utility>
 
-#include "encoder/input/formats/obj_reader.h"
-#include "encoder/input/formats/off_reader.h"
-#include "encoder/input/formats/ply_reader.h"
 #include "encoder/input/input_file.h"
+#include "encoder/input/input_format.h"
 
 namespace rlpc {
 
@@ -17,32 +14,19 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-bool is_mesh_extension(const std::string& extension) {
-  return extension == ".obj" || extension == ".ply" || extension == ".off";
-}
-
-std::string mesh_format_of(const std::string& path) {
-  std::string extension = lower_extension(path);
-  if (is_mesh_extension(extension)) return extension;
-  const std::string begin = beginning_of(path);
-  if (begin.starts_with("ply\n") || begin.starts_with("ply\r")) return ".ply";
-  const std::size_t first = begin.find_first_not_of(" \t\r\n");
-  if (first == begin.npos) return "";
-  const std::string_view text = std::string_view(begin).substr(first);
-  if (looks_like_off(text)) return ".off";
-  const bool obj = text.starts_with("#") || text.starts_with("v ") || text.starts_with("o ");
-  return obj ? ".obj" : "";
+bool is_mesh_extension(const std::string& path) {
+  const InputFormat* const format = format_of_extension(path);
+  return format != nullptr && format->holds == InputFormat::Holds::kMesh;
 }
 
 InputResult<SingleMesh> read_mesh(const std::string& path) {
   const auto text = read_whole_file(path);
   if (!text) return text.error();
   const std::string name = name_of_input(path);
-  const std::string format = mesh_format_of(path);
-  if (format == ".obj") return parse_obj(*text, name);
-  if (format == ".ply") return parse_ply(*text, name);
-  if (format == ".off") return parse_off(*text, name);
-  return InputError{name + ": not an OBJ, PLY or OFF file, neither by name nor by content"};
+  const InputFormat* const format = format_of(path);
+  if (format != nullptr && format->parse != nullptr) return format->parse(*text, name);
+  return InputError{name + ": not a mesh (" + extensions_text({InputFormat::Holds::kMesh}) +
+                    "), neither by name nor by contents"};
 }
 
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,

@@ -16,13 +16,10 @@ struct SingleMesh {
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
 };
 
-// By extension, in small letters: ".obj", ".ply", ".off".
-bool is_mesh_extension(const std::string& extension);
+// Whether the extension of a path is that of a mesh format.
+bool is_mesh_extension(const std::string& path);
 
-// ".obj", ".ply" or ".off": by the extension of the file; if that says nothing, by how it
-// begins; empty: neither does.
-std::string mesh_format_of(const std::string& path);
-
+// By the extension, otherwise by the contents.
 InputResult<SingleMesh> read_mesh(const std::string& path);
 
 // Of a source with the triangles of `mesh`. The frame rate: the one given, else that of the
@@ -31,7 +28,7 @@ FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual = {});
 
-// Of the last part of `path`, in small letters: ".obj" of "a/B.OBJ".
+// Of the last part of `path`, in lower case: ".obj" of "a/B.OBJ".
 std::string lower_extension(const std::string& path);
 
 }  // namespace rlpc

@@ -22,6 +22,7 @@
 
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
+#include "encoder/input/input_format.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/dry_run.h"
 #include "encoder/sequence/quality.h"
@@ -202,11 +203,8 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
   if (source.triangles().empty())
     notes.emplace_back("has no triangles; points alone are coded");
   if (source.num_frames() > 1 || input.path == "-") return notes;
-  for (const char* const extension : {".pc2", ".mdd"}) {
-    const std::string cache =
-        std::filesystem::path(input.path).replace_extension(extension).string();
-    std::error_code ignored;
-    if (cache == input.path || !std::filesystem::exists(cache, ignored)) continue;
+  const std::string cache = sibling_of(input.path, InputFormat::Holds::kPoints);
+  if (!cache.empty() && is_mesh_extension(input.path)) {
     notes.push_back("is one frame; with --points " + cache + " it has those of that file");
   }
   return notes;

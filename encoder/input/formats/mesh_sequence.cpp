@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
 namespace rlpc {
@@ -213,11 +214,9 @@ bool natural_less(std::string_view a, std::string_view b) {
 
 InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {
   auto paths = list_matching(
-      folder,
-      [](const std::string& name) {
-        return name[0] != '.' && is_mesh_extension(lower_extension(name));
-      },
-      folder + ": no .obj, .ply or .off file in this folder; expected one per frame");
+      folder, [](const std::string& name) { return name[0] != '.' && is_mesh_extension(name); },
+      folder + ": no " + extensions_text({InputFormat::Holds::kMesh}) +
+          " file in this folder; expected one per frame");
   if (!paths) return paths;
   const std::string extension = lower_extension(paths->front());
   for (const std::string& path : *paths) {

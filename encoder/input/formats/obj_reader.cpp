@@ -1,5 +1,6 @@
 #include "encoder/input/formats/obj_reader.h"
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/input_file.h"
 
 namespace rlpc {
 
@@ -154,5 +156,22 @@ InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name
   }
   return ObjParser(text, name).parse();
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 1> kObjExtensions{".obj"};
+
+}  // namespace
+
+const InputFormat kObjFormat{
+    .holds = InputFormat::Holds::kMesh,
+    .extensions = kObjExtensions,
+    .begins =
+        [](std::string_view beginning) {
+          const std::string_view text = after_blanks(beginning);
+          return text.starts_with("#") || text.starts_with("v ") || text.starts_with("o ");
+        },
+    .parse = parse_obj,
+};
 
 }  // namespace rlpc

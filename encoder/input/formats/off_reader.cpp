@@ -1,5 +1,6 @@
 #include "encoder/input/formats/off_reader.h"
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/input_file.h"
 
 namespace rlpc {
 
@@ -129,5 +131,19 @@ bool looks_like_off(std::string_view text) {
 InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name) {
   return OffParser(text, name).parse();
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 1> kOffExtensions{".off"};
+
+}  // namespace
+
+const InputFormat kOffFormat{
+    .holds = InputFormat::Holds::kMesh,
+    .extensions = kOffExtensions,
+    .begins =
+        [](std::string_view beginning) { return looks_like_off(after_blanks(beginning)); },
+    .parse = parse_off,
+};
 
 }  // namespace rlpc

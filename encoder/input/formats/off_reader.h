@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
 namespace rlpc {
@@ -14,5 +15,7 @@ bool looks_like_off(std::string_view text);
 
 // `name` stands in error messages.
 InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name);
+
+extern const InputFormat kOffFormat;
 
 }  // namespace rlpc

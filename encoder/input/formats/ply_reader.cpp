@@ -1,5 +1,6 @@
 #include "encoder/input/formats/ply_reader.h"
 
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -298,5 +299,21 @@ InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name
   }
   return PlyReader<BinaryBody>(text, name, *header).read();
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 1> kPlyExtensions{".ply"};
+
+}  // namespace
+
+const InputFormat kPlyFormat{
+    .holds = InputFormat::Holds::kMesh,
+    .extensions = kPlyExtensions,
+    .begins =
+        [](std::string_view beginning) {
+          return beginning.starts_with("ply\n") || beginning.starts_with("ply\r");
+        },
+    .parse = parse_ply,
+};
 
 }  // namespace rlpc

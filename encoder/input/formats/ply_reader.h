@@ -8,11 +8,14 @@
 #include <string>
 #include <string_view>
 
+#include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
 namespace rlpc {
 
 // `name` stands in error messages.
 InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name);
+
+extern const InputFormat kPlyFormat;
 
 }  // namespace rlpc

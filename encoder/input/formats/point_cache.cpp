@@ -184,4 +184,29 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
 }
 
+namespace {
+
+constexpr std::array<std::string_view, 1> kPc2Extensions{".pc2"};
+
+}  // namespace
+
+const InputFormat kPc2Format{
+    .holds = InputFormat::Holds::kPoints,
+    .extensions = kPc2Extensions,
+    .begins = [](std::string_view beginning) { return beginning.starts_with("POINTCACHE2"); },
+    .open_points = open_point_cache,
+};
+
+namespace {
+
+constexpr std::array<std::string_view, 1> kMddExtensions{".mdd"};
+
+}  // namespace
+
+const InputFormat kMddFormat{
+    .holds = InputFormat::Holds::kPoints,
+    .extensions = kMddExtensions,
+    .open_points = open_point_cache,
+};
+
 }  // namespace rlpc

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "encoder/input/frame_source.h"
+#include "encoder/input/input_format.h"
 
 namespace rlpc {
 
@@ -20,5 +21,8 @@ namespace rlpc {
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
     const std::optional<FrameRate>& frame_rate);
+
+extern const InputFormat kPc2Format;
+extern const InputFormat kMddFormat;
 
 }  // namespace rlpc

@@ -154,4 +154,18 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(
       std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
 }
 
+namespace {
+
+constexpr std::array<std::string_view, 1> kRlpdExtensions{".rlpd"};
+
+}  // namespace
+
+const InputFormat kRlpdFormat{
+    .holds = InputFormat::Holds::kAnimation,
+    .extensions = kRlpdExtensions,
+    .begins = [](std::string_view beginning) { return beginning.starts_with("RLPD"); },
+    .open =
+        [](const InputOptions& options) { return open_rlpd(options.path, options.frame_rate); },
+};
+
 }  // namespace rlpc

@@ -6,11 +6,14 @@
 #include <string>
 
 #include "encoder/input/frame_source.h"
+#include "encoder/input/input_format.h"
 
 namespace rlpc {
 
 // Reads the frames that are present, which may be fewer than the header announces.
 InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
                                                     const std::optional<FrameRate>& frame_rate);
+
+extern const InputFormat kRlpdFormat;
 
 }  // namespace rlpc

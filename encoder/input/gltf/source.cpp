@@ -1,6 +1,7 @@
 #include "encoder/input/gltf/source.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <map>
@@ -145,5 +146,22 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   }
   return source;
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 2> kGltfExtensions{".glb", ".gltf"};
+
+}  // namespace
+
+const InputFormat kGltfFormat{
+    .holds = InputFormat::Holds::kAnimation,
+    .extensions = kGltfExtensions,
+    .begins =
+        [](std::string_view beginning) {
+          return beginning.starts_with("glTF") || after_blanks(beginning).starts_with("{");
+        },
+    .has_clips = true,
+    .open = [](const InputOptions& options) { return open_gltf(options); },
+};
 
 }  // namespace rlpc

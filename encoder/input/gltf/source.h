@@ -5,6 +5,7 @@
 
 #include "encoder/input/frame_source.h"
 #include "encoder/input/gltf/model.h"
+#include "encoder/input/input_format.h"
 
 namespace rlpc {
 
@@ -16,5 +17,7 @@ namespace rlpc {
 // Points and lines are left out. Extensions that change the mesh are refused if required.
 InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits = {});
+
+extern const InputFormat kGltfFormat;
 
 }  // namespace rlpc

@@ -1,0 +1,54 @@
+// The formats that input is read from. A format is a definition beside its reader, and a line
+// in input_format.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "encoder/input/frame_source.h"
+#include "encoder/input/mesh_reader.h"
+
+namespace rlpc {
+
+struct InputFormat {
+  enum class Holds : std::uint8_t {
+    kAnimation,  // has open
+    kMesh,       // one mesh: has parse
+    kPoints,     // positions for the triangles of a mesh: has open_points
+  };
+
+  Holds holds;
+  std::span<const std::string_view> extensions;  // lower case, ".obj"
+  // Whether a file of this format may begin so, 64 bytes at most; null: the contents do not
+  // tell.
+  bool (*begins)(std::string_view beginning) = nullptr;
+  bool has_clips = false;  // --animation and welding apply
+
+  InputResult<std::unique_ptr<FrameSource>> (*open)(const InputOptions& options) = nullptr;
+  // name: for error messages.
+  InputResult<SingleMesh> (*parse)(std::string_view text, const std::string& name) = nullptr;
+  InputResult<std::unique_ptr<FrameSource>> (*open_points)(
+      const std::string& mesh_path, const std::string& points_path,
+      const std::optional<FrameRate>& frame_rate) = nullptr;
+};
+
+// Those that the beginning of a file tells most surely come first.
+std::span<const InputFormat* const> input_formats();
+
+// By the extension, otherwise by the contents; null: neither is of a known format.
+const InputFormat* format_of(const std::string& path);
+// By the extension alone.
+const InputFormat* format_of_extension(const std::string& path);
+
+// ".obj, .off or .ply": of the formats that hold such.
+std::string extensions_text(std::initializer_list<InputFormat::Holds> holds);
+
+// A file that exists beside `path`, with its name but an extension of a format that holds such;
+// empty: there is none.
+std::string sibling_of(const std::string& path, InputFormat::Holds holds);
+
+}  // namespace rlpc
