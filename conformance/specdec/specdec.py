@@ -8,6 +8,7 @@
   --trace           print every syntax element: bit position, name, value
   --check-widths    fail if an intermediate value does not fit 64 bits (slow)
   --spec FOLDER     the specification (default: spec/ of the project)
+  --cache FOLDER    before the verb: keep the translated pseudo-code there, for later runs
 
 OUT.rlpd holds exactly the frames before an error. Exit code: 0 decoded; 1 not a conforming
 stream; 2 not supported; 3 more memory needed than allowed; 4 a file could not be read or
@@ -24,6 +25,7 @@ import traceback
 import zlib
 
 sys.dont_write_bytecode = True
+import program_cache  # noqa: E402
 import spec_program  # noqa: E402
 
 DONE, INVALID, UNSUPPORTED, LIMIT, IO, USAGE, SPEC_ERROR = 0, 1, 2, 3, 4, 64, 70
@@ -112,9 +114,16 @@ class Output:
             self._file.close()
 
 
-def describe(folder):
+def program_of(options):
+    if options.cache is None:
+        return spec_program.Program(options.spec)
+    return program_cache.CachedProgram(options.spec, options.cache)
+
+
+def describe(options):
     """The answer to --rlpc-conformance, all of it from the specification."""
-    variables = spec_program.Program(folder).compile(
+    folder = options.spec
+    variables = program_of(options).compile(
         {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
          "output_bytes": None})
     text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
@@ -141,7 +150,7 @@ def decode(options):
     except OSError as error:
         print(f"specdec: {error}", file=sys.stderr)
         return IO
-    program = spec_program.Program(options.spec)
+    program = program_of(options)
     if options.max_mem is not None:
         limit_memory(options.max_mem)
     output = Output(options.output)
@@ -180,6 +189,7 @@ def arguments(argv):
                         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rlpc-conformance", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--spec", type=pathlib.Path, default=SPEC, help=argparse.SUPPRESS)
+    parser.add_argument("--cache", type=pathlib.Path, help=argparse.SUPPRESS)
     verbs = parser.add_subparsers(dest="verb", parser_class=_Arguments)
     verb = verbs.add_parser("decode")
     verb.add_argument("input")
@@ -197,7 +207,7 @@ def main(argv=None):
     options = arguments(argv)
     try:
         if options.rlpc_conformance:
-            print(json.dumps(describe(options.spec)))
+            print(json.dumps(describe(options)))
             return DONE
         return decode(options)
     except spec_program.SpecError as error:

@@ -12,6 +12,7 @@ import random
 import re
 import sys
 import unittest
+import unittest.mock
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -264,6 +265,35 @@ class Commands(FolderTest):
                 self.assertTrue(line.startswith("rlpc-verdict "), line)
                 self.assertEqual(json.loads(line[13:])["rule"], rule)
                 self.assertFalse((self.folder / "a.rlpd").exists())
+
+    def test_a_cache_saves_the_translation_and_nothing_else(self):
+        stream = ROOT / "streams" / "v1.0" / "accept" / "GOF" / "GOF-0002a.rlpc"
+        plain, cached = self.folder / "plain.rlpd", self.folder / "cached.rlpd"
+        self.assertEqual(self.specdec("decode", stream, plain)[0], 0)
+        cache = self.folder / "cache"
+        with unittest.mock.patch.object(spec_program, "Program",
+                                        wraps=spec_program.Program) as program:
+            for _ in range(2):
+                cached.unlink(missing_ok=True)
+                self.assertEqual(self.specdec("--cache", cache, "decode", stream, cached)[0], 0)
+                self.assertEqual(cached.read_bytes(), plain.read_bytes())
+            self.assertEqual(program.call_count, 1)
+            code, output, _ = self.specdec("--cache", cache, "decode", stream, cached, "--trace")
+            self.assertEqual((code, program.call_count), (0, 2))  # which is another program
+            self.assertIn("profile_idc = ", output)
+            self.assertEqual(self.specdec("--cache", cache, "--rlpc-conformance"),
+                             self.specdec("--rlpc-conformance"))
+
+    def test_a_cache_knows_other_texts(self):
+        spec = self.folder / "spec"
+        spec.mkdir()
+        for rule in ("R-AAA-01", "R-AAA-02"):
+            (spec / "a.md").write_text("# 1 T\n\n```rlpc\ndef stream():\n"
+                                       f'    require(0, "{rule}")\n```\n', encoding="utf-8")
+            code, _, errors = self.specdec("--spec", spec, "--cache", self.folder / "cache",
+                                           "decode", __file__, self.folder / "out.rlpd")
+            self.assertEqual(code, 1)
+            self.assertIn(rule, errors)
 
     def test_missing_input_is_no_verdict(self):
         code, _, errors = self.specdec("decode", self.folder / "none", self.folder / "a.rlpd")
