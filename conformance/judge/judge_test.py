@@ -40,8 +40,7 @@ class FakeDecoders(JudgeTest):
     def draws(self, fault, spoiled, grades, code, *args):
         """`spoiled`: stream to (outcome, reason); with --only among args just those are run."""
         with self.subTest(fault=fault):
-            got, report, errors = self.judge(fake(fault), "--reference", fake("none"),
-                                             "--jobs", "2", *args)
+            got, report, errors = self.judge(fake(fault), "--reference", fake("none"), *args)
             self.assertIsNotNone(report, errors)
             rows = {row["id"]: row for row in report["rows"]}
             if "--only" not in args:
@@ -132,8 +131,8 @@ class FakeDecoders(JudgeTest):
                           | each((WITH_FRAMES, WITH_HEADER), "FAIL-frames", "no-output"),
                           NO_INT, 1)
         self.assertIn("OUT does not exist", rows[ACCEPT[0]]["text"])
-        code, report, _ = self.judge(fake("always_the_first_output"), "--jobs", "1",
-                                     "--reference", fake("none"))
+        code, report, _ = self.judge(fake("always_the_first_output"), "--reference",
+                                     fake("none"))
         outcomes = {row["id"]: row["outcome"] for row in report["rows"]}
         self.assertEqual((code, outcomes[ACCEPT[1]], outcomes[WITH_FRAMES]),
                          (1, "FAIL-output", "FAIL-frames"))

@@ -141,7 +141,8 @@ class JudgeTest(unittest.TestCase):
         if "--max-mem" not in args:
             args = (*args, "--max-mem", "0")  # decoders with sanitizers need it
         code, _, errors = self.run_here("--decoder", decoder, "--suite",
-                                        suite_folder or self.suite, "--json", path, *args)
+                                        suite_folder or self.suite, "--json", path, "--jobs", "1",
+                                        *args)
         return code, json.loads(path.read_text()) if path.exists() else None, errors
 
     @staticmethod

@@ -97,7 +97,7 @@ def with_cmake(args, prefix, work):
     run(args.cmake, "-S", CONSUMER, "-B", work, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DCMAKE_C_COMPILER={args.cc}", f"-DCMAKE_CXX_COMPILER={args.cxx}",
         f"-DCMAKE_C_FLAGS={args.flags}", f"-DCMAKE_CXX_FLAGS={args.flags}", *link)
-    run(args.cmake, "--build", work)
+    run(args.cmake, "--build", work, "--parallel", "1")
     return work
 
 

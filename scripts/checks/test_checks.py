@@ -11,6 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_clauses  # noqa: E402
 import check_index  # noqa: E402
+import check_labels  # noqa: E402
 import check_pages  # noqa: E402
 import check_rules  # noqa: E402
 import check_stability  # noqa: E402
@@ -94,6 +95,25 @@ bin = ae(ctx)
 # Annex B (normative) Levels
 """
 PARSER = '// 6.3.1 sequence_header( )\nh.a = r.flag("lcf_flag");\nh.b = r.ue("step", {0, 1});\n'
+
+
+class Labels(unittest.TestCase):
+    KNOWN = {"unit", "cli"}
+
+    def test_one_kind_each(self):
+        good = {"a": {"unit"}, "b": {"cli", "slow"}}
+        self.assertEqual(check_labels.complaints_of(good, self.KNOWN), [])
+        for labels, words in (({"slow"}, "not none"), ({"unit", "cli"}, "not cli, unit"),
+                              ({"unit", "other"}, "other: not in")):
+            found = check_labels.complaints_of({**good, "c": labels}, self.KNOWN)
+            self.assertEqual(len(found), 1, found)
+            self.assertIn(words, found[0])
+        self.assertEqual(check_labels.complaints_of({"a": {"unit"}}, self.KNOWN),
+                         ["scripts/cmake/tests.cmake: no test is labelled cli"])
+
+    def test_the_list_is_that_of_the_project(self):
+        self.assertLessEqual({"unit", "cli", "suite", "browser"},
+                             check_labels.kinds(cpp_source.repository_root()))
 
 
 class Clauses(TreeTest):

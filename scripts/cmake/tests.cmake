@@ -1,0 +1,79 @@
+# How tests become entries of ctest. Each has one label that says what it tests:
+#
+#   unit     functions and classes, in C++ or C
+#   cli      programs as people run them
+#   spec     what runs the specification: specdec, rlpcgen, rlpccov
+#   judge    the judge of decoders and encoders
+#   suite    the conformance streams
+#   checks   rules of the project, its headers, its installed package
+#   figures  what scripts/compare and scripts/bench write
+#   browser  pages in Chromium
+#
+# More labels: `slow` for more than three seconds of a processor, which `scripts/test --fast` leaves
+# out; `pure` for what runs nothing that was built, and need not run again with another preset.
+# A test that keeps several processors busy says so (PROCESSORS), and uses no more.
+include(GoogleTest)
+
+# rlpc_test(NAME SOURCE... LIBS lib...): one GoogleTest binary, each TEST its own entry.
+function(rlpc_test name)
+  if(NOT BUILD_TESTING)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LIBS")
+  add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main rlpc_flags)
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS unit)
+endfunction()
+
+# rlpc_tests(FOLDER... LIBS lib... [EXCEPT name...]): the binaries of all tests in folders, named
+# after their files.
+function(rlpc_tests)
+  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "" "LIBS;EXCEPT")
+  foreach(folder IN LISTS ARG_UNPARSED_ARGUMENTS)
+    file(GLOB tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*_test.cpp)
+    if(NOT tests)
+      message(FATAL_ERROR "no tests in ${CMAKE_CURRENT_SOURCE_DIR}/${folder}")
+    endif()
+    foreach(test IN LISTS tests)
+      get_filename_component(name ${test} NAME_WE)
+      if(NOT name IN_LIST ARG_EXCEPT)
+        rlpc_test(${name} ${test} LIBS ${ARG_LIBS})
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
+# rlpc_python_test(NAME LABEL SCRIPT ARGUMENT... [SLOW] [PURE] [PROCESSORS n]): one entry.
+# PURE: it runs nothing that was built.
+function(rlpc_python_test name label script)
+  cmake_parse_arguments(PARSE_ARGV 3 ARG "SLOW;PURE" "PROCESSORS" "")
+  add_test(NAME ${name} COMMAND Python3::Interpreter -B ${CMAKE_CURRENT_SOURCE_DIR}/${script}
+                                ${ARG_UNPARSED_ARGUMENTS})
+  set(labels ${label})
+  if(ARG_PURE)
+    list(APPEND labels pure)
+  endif()
+  if(ARG_SLOW)
+    list(APPEND labels slow)
+    set_tests_properties(${name} PROPERTIES COST 10)  # first, until their times are known
+  endif()
+  if(ARG_PROCESSORS)
+    set_tests_properties(${name} PROPERTIES PROCESSORS ${ARG_PROCESSORS} COST 100)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}")
+endfunction()
+
+# rlpc_python_tests(PREFIX LABEL SCRIPT CLASS... [SLOW class...]): one entry for each class of a
+# script that takes --bin, the folder of the programs.
+function(rlpc_python_tests prefix label script)
+  cmake_parse_arguments(PARSE_ARGV 3 ARG "" "" "SLOW")
+  foreach(class IN LISTS ARG_UNPARSED_ARGUMENTS ARG_SLOW)
+    set(slow "")
+    if(class IN_LIST ARG_SLOW)
+      set(slow SLOW)
+    endif()
+    rlpc_python_test(${prefix}.${class} ${label} ${script}
+                     --bin ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${class} ${slow})
+  endforeach()
+endfunction()
