@@ -10,6 +10,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_clauses  # noqa: E402
+import check_headers_first  # noqa: E402
 import check_index  # noqa: E402
 import check_labels  # noqa: E402
 import check_pages  # noqa: E402
@@ -95,6 +96,22 @@ bin = ae(ctx)
 # Annex B (normative) Levels
 """
 PARSER = '// 6.3.1 sequence_header( )\nh.a = r.flag("lcf_flag");\nh.b = r.ue("step", {0, 1});\n'
+
+
+class HeadersFirst(TreeTest):
+    def run_on(self, source, *expected):
+        tree = {"common/a.h": "", "common/a.cpp": source, "common/b.h": ""}
+        (self.assert_one if expected else self.assert_clean)(check_headers_first.check, tree,
+                                                             *expected)
+
+    def test_the_first_include_counts(self):
+        self.run_on('// #include "common/b.h"\n#include "common/a.h"\n#include <vector>\n')
+        self.run_on('#include <vector>\n#include "common/a.h"\n', "common/a.cpp", "common/a.h")
+        self.run_on('#include "common/b.h"\n#include "common/a.h"\n', "not included first")
+        self.run_on("int x;\n", "not included first")
+
+    def test_a_tree_without_any_is_not_the_project(self):
+        self.assert_one(check_headers_first.check, {"common/a.h": ""}, "no header")
 
 
 class Labels(unittest.TestCase):
