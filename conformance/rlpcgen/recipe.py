@@ -26,6 +26,9 @@ from the beginning of its unit or component; with indices, those of that part on
 first. `n*v` is n times v, `random(low, high)` a number, and `...` at the end repeats what stands
 before it. What is not given is 0, or what fits: see DEFAULTS of recipe_source.py.
 
+`repeat N of M`, between units, has the last M units N times in all, with other random numbers each
+time.
+
 A recipe that says `twin: ID` has the units of that recipe and changes them: `change N NAME` adds
 to unit N, counted from 0; `insert N NAME` puts a unit before it, and `drop N` leaves it out.
 """
@@ -37,6 +40,7 @@ import zlib
 
 _META = re.compile(r"([a-z_]+):\s*(.*)$")
 _UNIT = re.compile(r"(unit|change|insert)\s+(?:(\d+)\s+)?([A-Z_]+|0x[0-9A-Fa-f]{2})$")
+_REPEAT = re.compile(r"repeat\s+(\d+)\s+of\s+(\d+)$")
 _DROP = re.compile(r"drop\s+(\d+)$")
 _COMPONENT = re.compile(r"component\s+(\d+|all)$")
 _ENTRY = re.compile(r"([a-z][a-z0-9_]*)((?:\[\d+\])*)\s*=\s*(.*)$")
@@ -63,10 +67,11 @@ class Unit:
     name: str
     entries: list = dataclasses.field(default_factory=list)
     components: dict = dataclasses.field(default_factory=dict)  # number -> entries
+    repetition: int = 0
 
     def copy(self):
         return Unit(self.name, list(self.entries),
-                    {n: list(entries) for n, entries in self.components.items()})
+                    {n: list(entries) for n, entries in self.components.items()}, self.repetition)
 
 
 @dataclasses.dataclass
@@ -177,6 +182,8 @@ class _Parser:
             self._base[int(_DROP.match(line).group(1))] = None
         elif line == "stream":
             self._entries = self.recipe.stream
+        elif _REPEAT.match(line):
+            self._repeat(*map(int, _REPEAT.match(line).groups()))
         elif _COMPONENT.match(line):
             if self._unit is None:
                 self.fail("a component stands in a unit")
@@ -201,6 +208,13 @@ class _Parser:
             self.recipe.stream += twin.stream
             if "seed" in twin.meta:
                 self.recipe.meta.setdefault("seed", twin.meta["seed"])
+
+    def _repeat(self, times, count):
+        units = self.recipe.units
+        if self._base is not None or not 0 < count <= len(units):
+            self.fail("`repeat N of M` follows M units, in a recipe without a twin")
+        for n in range(1, times):
+            units += [dataclasses.replace(u.copy(), repetition=n) for u in units[-count:]]
 
     def _base_unit(self, number):
         if self._base is None or number >= len(self._base) or self._base[number] is None:

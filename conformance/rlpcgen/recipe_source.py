@@ -22,6 +22,7 @@ _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
 _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "deflated", "payload",
                             "payload_cut", "payload_append", "payload_replaced", "section_end",
                             "alignment", "stop"}
+_NEXT_SEED = 1000003  # from one repetition of a unit to the next
 _STREAM = ("version_major", "version_minor", "signature", "cut", "keep", "append", "flip")
 
 
@@ -48,21 +49,22 @@ class RecipeSource:
 
     def begin(self, unit, code, ns):
         self.unit_code = code
-        self._values = self._group(unit.entries)
-        self._scopes = {n: self._group(e, n) for n, e in unit.components.items()}
+        seed = self._seed + unit.repetition * _NEXT_SEED
+        self._values = self._group(unit.entries, seed)
+        self._scopes = {n: self._group(e, seed + (n if isinstance(n, int) else 0))
+                        for n, e in unit.components.items()}
         self._component = None
         self._before = {"num_components": 0, "vertex_order": 0}
         self._gates = self._gate_elements(ns)
 
-    def _group(self, entries, number=0):
+    def _group(self, entries, seed):
         grouped = {}
         for entry in entries:
             if (entry.name not in self._elements and entry.name not in _PSEUDO
                     and entry.name != "unit_crc"):
                 raise recipes.RecipeError(f"{entry.place}: {entry.name} is no syntax element")
             # Of two entries of the same name and indices, the later one counts.
-            grouped.setdefault(entry.name, {})[entry.indices] = recipes.Values(
-                entry, self._seed + (number if isinstance(number, int) else 0))
+            grouped.setdefault(entry.name, {})[entry.indices] = recipes.Values(entry, seed)
         return grouped
 
     def entry(self, name):

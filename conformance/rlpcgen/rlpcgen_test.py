@@ -94,6 +94,18 @@ class Recipes(unittest.TestCase):
         self.assertEqual(build(text), build(text))
         self.assertNotEqual(build(text), build("seed: 7\n" + text))
 
+    def test_units_repeat_with_other_random_numbers(self):
+        hashed = self.changed("10 0 0 5 7 0 1 2 3", "random(-50, 50) ...").replace(
+            "unit GOF\n", "unit GOF\n  num_gof_frames_minus1 = 0\n")
+        twice = hashed.replace("unit GOF_HASH", "unit GOF_HASH\nrepeat 2 of 2")
+        frames = expected(build(twice.replace("num_triangles = 4",
+                                              "num_triangles = 4\n  num_frames_minus1 = 1")))
+        self.assertEqual((frames["expect"], frames["frames"]), ("accept", 2))
+        self.assertEqual(len(set(frames["frame_sha256"])), 2)
+        self.assertEqual(frames["frame_sha256"][0], expected(build(hashed))["frame_sha256"][0])
+        self.refuses("follows M units", "repeat 2 of 1\n" + TETRAHEDRON)
+        self.refuses("follows M units", TETRAHEDRON + "repeat 2 of 6\n")
+
     def test_any_element_can_be_illegal(self):
         self.breaks("R-HDR-06", self.changed("num_triangles = 4",
                                              "num_triangles = 4\n  position_bits = 25"))
