@@ -12,10 +12,11 @@
 //     use(decoder->triangles(), positions);
 //   }
 //
-// Nothing throws. Memory stays within one GOF and four frames; whatever a stream claims is
-// compared with its level and with DecodeLimits before memory is taken for it. A Decoder is
-// used by one thread at a time; different Decoders are independent. After an error the decoder
-// repeats it until seek() succeeds, for example with a frame past the damage.
+// Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory stays
+// within one GOF and four frames; whatever a stream claims is compared with its level and with
+// DecodeLimits before memory is taken for it. A Decoder is used by one thread at a time;
+// different Decoders are independent. After an error the decoder repeats it until seek()
+// succeeds, for example with a frame past the damage.
 #pragma once
 
 #include <cstdint>

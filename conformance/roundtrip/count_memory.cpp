@@ -19,7 +19,12 @@ constexpr std::size_t kBefore = alignof(std::max_align_t);
 // Null if there is no memory.
 void* take(std::size_t size) noexcept {
   const std::lock_guard<std::mutex> lock(counting);
-  if (memory_count.calls_left == 0) return nullptr;
+  if (memory_count.calls_left == 0) {
+    ++memory_count.failures;
+    if (memory_count.fails_once)
+      memory_count.calls_left = std::numeric_limits<std::size_t>::max();
+    return nullptr;
+  }
   --memory_count.calls_left;
   auto* start = static_cast<std::byte*>(std::malloc(size + kBefore));
   if (start == nullptr) return nullptr;

@@ -12,6 +12,8 @@ struct MemoryCount {
   std::size_t peak = 0;                                              // most bytes at a time
   std::size_t calls = 0;                                             // of new
   std::size_t calls_left = std::numeric_limits<std::size_t>::max();  // until new fails
+  bool fails_once = false;   // only that call; else all after it as well
+  std::size_t failures = 0;  // calls that failed
 };
 extern MemoryCount memory_count;
 

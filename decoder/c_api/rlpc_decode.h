@@ -24,8 +24,8 @@
 // keeps it takes with the allocator of C++, and it cannot be given another: when it opens a
 // stream, for each GOF, and for the first frame. Within a GOF, frames take nothing but, every
 // fourth, one buffer for the moment; more with several threads, or after a seek. If memory
-// ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed; what the call had
-// taken may stay taken.
+// ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which gives all of
+// it back.
 #pragma once
 
 #include <stddef.h>

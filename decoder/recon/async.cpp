@@ -1,4 +1,4 @@
-// Compiled with exceptions: what a thread throws would end the program.
+// What a thread throws would end the program.
 #include "decoder/recon/async.h"
 
 #include <utility>

@@ -21,7 +21,8 @@
 // Memory: frames, bytes and reports are in buffers of the caller or only shown to him, who has
 // nothing to free but the handle, which can stand in memory of the caller as well (place). What
 // the analysis needs it takes with the allocator of C++; it cannot be given another one. If
-// memory ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed.
+// memory ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which gives
+// all of it back.
 #pragma once
 
 #include <stddef.h>
