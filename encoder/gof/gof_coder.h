@@ -17,6 +17,9 @@ namespace rlpc {
 // rate of a uniform quantiser, 1 / (2 ln 2 D) bits with D = step^2 / 12.
 inline constexpr double kErrorPerBit = 0.1155;
 
+// Sets the decoded positions of frame f of a GOF, as a decoder has them; [num_vertices][3].
+using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
+
 // One encoding of a GOF.
 struct EncodedGof {
   struct Unit {
@@ -24,8 +27,7 @@ struct EncodedGof {
     std::vector<std::uint8_t> payload;
   };
   std::vector<Unit> units;  // the GOF unit, then its slices
-  // Decoded positions of frame f of the GOF, as a decoder has them; [num_vertices][3].
-  std::function<void(std::uint32_t f, std::span<std::int32_t> positions)> frame;
+  DecodeFrame frame;
   std::uint64_t num_factors = 0;      // NumFactors of the specification
   std::uint32_t clusters = 0;         // or bones
   std::uint32_t components = 0;       // or trajectories

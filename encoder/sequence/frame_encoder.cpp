@@ -9,12 +9,13 @@
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/check_settings.h"
+#include "encoder/sequence/gof_batch.h"
 #include "encoder/sequence/gof_cuts.h"
 #include "encoder/sequence/grid_choice.h"
 #include "encoder/sequence/level_choice.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
-#include "encoder/sequence/target_search.h"
+#include "encoder/sequence/target_loop.h"
 
 namespace rlpc {
 namespace {
@@ -81,7 +82,7 @@ class FrameEncoder::Impl {
       : format_(std::move(format)),
         settings_(std::move(settings)),
         sink_(std::move(sink)),
-        metrics_(format_.num_vertices, MetricsAccumulator::kTotals) {}
+        coded_(format_.num_vertices) {}
 
   std::optional<InputError> prepare();  // of a format that was checked
   std::optional<InputError> add_frame(std::span<const float> xyz);
@@ -89,26 +90,26 @@ class FrameEncoder::Impl {
   std::uint32_t num_added() const { return num_added_; }
 
  private:
-  // The encoding of a GOF that comes closest to the target, and where it is.
-  struct Best {
-    EncodedGof encoded;
-    GofBytes bytes;
-    double step = 0.0;
-    double kg_error_percent = 0.0;
-    bool met = false;  // within the target
+  // What the GOFs so far came to.
+  struct Coded {
+    explicit Coded(std::uint32_t num_vertices)
+        : metrics(num_vertices, MetricsAccumulator::kTotals) {}
+
+    std::size_t gofs = 0;
+    double step = 0.0;  // of the last, grid steps; 0: none yet
+    MetricsAccumulator metrics;
+    EncodeReport report;
   };
 
   std::optional<InputError> check_frame(std::span<const float> xyz) const;
   std::optional<InputError> encode_gof();
-  // Replaces the header that prepare() has made.
   void use_header(const SequenceHeader& header);
   // With the grid for the finest error that matters.
   SequenceHeader header_for(double finest) const;
-  InputResult<Best> search(const GofSpan& span, double rms_spread);
-  InputResult<Best> search_first(const GofSpan& span, double rms_spread);
-  double measured(const Metrics& metrics, const GofBytes& gof) const;
+  InputResult<TargetResult> search(const GofSpan& span, double rms_spread);
+  InputResult<TargetResult> search_first(const GofSpan& span, double rms_spread);
   std::optional<InputError> keep_to_level(const LevelNeeds& needs);
-  std::uint64_t fixed_bytes() const;
+  double fixed_bits_per_frame() const;
   InputError fail(InputError error) {
     failure_ = error;
     return error;
@@ -117,60 +118,59 @@ class FrameEncoder::Impl {
   FrameFormat format_;
   EncoderSettings settings_;
   ByteSink sink_;
-  SequenceHeader header_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
-  std::optional<StreamAssembly> stream_;
+  std::optional<StreamAssembly> stream_;  // from the first GOF on
   std::optional<GofBuffer> buffer_;
-  MetricsAccumulator metrics_;
-  double fixed_bits_per_frame_ = 0.0;  // of all that is no GOF
   std::uint32_t num_added_ = 0;
-  std::size_t num_coded_ = 0;  // GOFs
-  double last_step_ = 0.0;     // grid steps; 0: none yet
-  EncodeReport report_;
+  Coded coded_;
   std::optional<InputError> failure_;
 };
 
 std::optional<InputError> FrameEncoder::Impl::prepare() {
   if (auto error = check_settings(settings_)) return error;
-  header_.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
-  header_.num_vertices = format_.num_vertices;
-  header_.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
-  header_.num_frames = format_.num_frames;
-  header_.frame_rate = format_.frame_rate;
-  spans_ = equal_gofs(header_.num_frames, longest_gof(settings_));
+  SequenceHeader header;
+  header.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
+  header.num_vertices = format_.num_vertices;
+  header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
+  header.num_frames = format_.num_frames;
+  header.frame_rate = format_.frame_rate;
+  spans_ = equal_gofs(header.num_frames, longest_gof(settings_));
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
-  if (auto error = choose_level(header_, longest, format_.least_level)) return error;
+  if (auto error = choose_level(header, longest, format_.least_level)) return error;
   // GOFs that come later can have all that is asked for.
-  if (auto error = raise_level(header_.level_idc, LevelNeeds(settings_), longest)) return error;
-  coding_.emplace(header_, settings_, format_.triangles);
+  if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;
+  coding_.emplace(header, settings_, format_.triangles);
   format_.triangles = {};
   return std::nullopt;
 }
 
-// The index as large as it gets with GOFs that meet the target in bits.
-std::uint64_t FrameEncoder::Impl::fixed_bytes() const {
-  const std::uint64_t without = stream_->overhead_bytes();
-  if (settings_.target.kind != Target::kBpvf) return without;
-  std::vector<GofEntry> largest;
-  for (const GofSpan& span : spans_) {
-    const double bits = settings_.target.value * header_.num_vertices * span.count;
-    largest.push_back({span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, 0x1p31))});
+// Of all that is no GOF, with an index as large as it gets with GOFs that meet a target in
+// bits.
+double FrameEncoder::Impl::fixed_bits_per_frame() const {
+  std::uint64_t bytes = stream_->overhead_bytes();
+  if (settings_.target.kind == Target::kBpvf) {
+    std::vector<GofEntry> largest;
+    for (const GofSpan& span : spans_) {
+      const double bits = settings_.target.value * format_.num_vertices * span.count;
+      largest.push_back({span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, 0x1p31))});
+    }
+    bytes += stream_->index_bytes(largest);
   }
-  return without + stream_->index_bytes(largest);
+  return 8.0 * static_cast<double>(bytes) / format_.num_frames;
 }
 
 std::optional<InputError> FrameEncoder::Impl::check_frame(std::span<const float> xyz) const {
   const std::string frame = "frame " + std::to_string(num_added_) + " (from 0)";
-  if (num_added_ == header_.num_frames) {
+  if (num_added_ == format_.num_frames) {
     return InputError{frame + " is one more than the number of frames announced, " +
-                      std::to_string(header_.num_frames)};
+                      std::to_string(format_.num_frames)};
   }
-  if (xyz.size() != 3 * std::size_t{header_.num_vertices}) {
+  if (xyz.size() != 3 * std::size_t{format_.num_vertices}) {
     return InputError{frame + " has " + std::to_string(xyz.size()) + " values; " +
-                      std::to_string(header_.num_vertices) + " vertices have " +
-                      std::to_string(3 * std::size_t{header_.num_vertices})};
+                      std::to_string(format_.num_vertices) + " vertices have " +
+                      std::to_string(3 * std::size_t{format_.num_vertices})};
   }
   for (std::size_t i = 0; i < xyz.size(); ++i) {
     const std::size_t c = i % 3;
@@ -186,7 +186,7 @@ std::optional<InputError> FrameEncoder::Impl::check_frame(std::span<const float>
 std::optional<InputError> FrameEncoder::Impl::add_frame(std::span<const float> xyz) {
   if (failure_) return failure_;
   if (auto error = check_frame(xyz)) return fail(*error);
-  if (!buffer_) buffer_.emplace(header_.num_vertices, spans_[num_coded_].count);
+  if (!buffer_) buffer_.emplace(format_.num_vertices, spans_[coded_.gofs].count);
   buffer_->add(xyz);
   ++num_added_;
   if (!buffer_->is_full()) return std::nullopt;
@@ -194,140 +194,104 @@ std::optional<InputError> FrameEncoder::Impl::add_frame(std::span<const float> x
   return std::nullopt;
 }
 
-double FrameEncoder::Impl::measured(const Metrics& metrics, const GofBytes& gof) const {
-  switch (settings_.target.kind) {
-    case Target::kKg:
-      return metrics.kg_error_percent;
-    case Target::kMaxError:
-      return metrics.max_error;
-    case Target::kBpvf:
-      return (8.0 * static_cast<double>(gof.size()) / gof.num_frames + fixed_bits_per_frame_) /
-             header_.num_vertices;
-    case Target::kNone:
-      break;
-  }
-  return 0.0;
-}
-
 void FrameEncoder::Impl::use_header(const SequenceHeader& header) {
-  header_ = header;
-  coding_->follow_grid();
-  stream_.emplace(header_, settings_, coding_->connectivity());
-  fixed_bits_per_frame_ = 8.0 * static_cast<double>(fixed_bytes()) / header_.num_frames;
+  coding_->set_header(header);
+  stream_.emplace(header, settings_, coding_->connectivity());
 }
 
 SequenceHeader FrameEncoder::Impl::header_for(double finest) const {
   Extent extent;
   std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
   std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
-  SequenceHeader header = header_;
+  SequenceHeader header = coding_->header();
   set_grid(header, choose_grid(extent, finest));
   return header;
 }
 
-InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search(const GofSpan& span,
-                                                                 double rms_spread) {
-  const GofSpan all{0, span.count};
-  const auto frames = coding_->read_frames(*buffer_, all);
-  if (!frames) return frames.error();
-  GofMemory memory;
-  const auto coder = coding_->make_coder(*frames, span.first, memory);
-  TargetSearch search = search_for(settings_, header_, rms_spread);
-  const bool for_kg = settings_.target.kind == Target::kKg;
-  const double spread = rms_spread * exact_exp2(-header_.grid.log2_step);
-  const auto expected = [&] {
-    if (!for_kg) return TargetSearch::Expected{};
-    return expected_kg({coder.get()},
-                       spread * spread * static_cast<double>(frames->xyz.size()));
-  };
-  if (last_step_ > 0.0) {
-    search.begin_at(last_step_);  // GOFs are much alike
-  } else if (for_kg) {
-    coder->analyse(search.analysis_step());
-    if (const auto by_analysis = expected()) search.begin_at(by_analysis);
-  }
-  std::optional<Best> best;
-  while (!search.finished()) {
-    ++report_.trials;
-    Best trial{coder->encode(search.step(), search.analysis_step()), {}, search.step()};
-    MetricsAccumulator metrics(header_.num_vertices, MetricsAccumulator::kTotals);
-    auto hash_unit = coding_->measure(*buffer_, all, trial.encoded, metrics);
-    if (!hash_unit) return hash_unit.error();
-    trial.bytes = {span.count, write_gof_units(trial.encoded), std::move(*hash_unit)};
-    trial.kg_error_percent = metrics.result().kg_error_percent;
-    const bool better =
-        search.report(measured(metrics.result(), trial.bytes), trial.bytes.size(), expected());
-    if (better || !best) best = std::move(trial);
-  }
-  best->met = search.met();
-  return std::move(*best);
+InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double rms_spread) {
+  GofBatch batch(*coding_, *buffer_, {{0, span.count}},
+                 {.first_frame = span.first,
+                  .keep_decoded = true,
+                  .metrics = MetricsAccumulator::kTotals});
+  auto best = reach_target({.settings = settings_,
+                            .header = coding_->header(),
+                            .rms_spread = rms_spread,
+                            .fixed_bits = fixed_bits_per_frame() * span.count,
+                            .first_step = coded_.step},  // GOFs are much alike
+                           batch);
+  if (best) coded_.report.trials += best->trials;
+  return best;
 }
 
 // The first GOF sets the grid; where the target is a rate, by the error that this allows.
-InputResult<FrameEncoder::Impl::Best> FrameEncoder::Impl::search_first(const GofSpan& span,
-                                                                       double rms_spread) {
+InputResult<TargetResult> FrameEncoder::Impl::search_first(const GofSpan& span,
+                                                           double rms_spread) {
   use_header(header_for(finest_error(settings_.target, rms_spread) / kReserve));
   auto best = search(span, rms_spread);
   if (!best || settings_.target.kind != Target::kBpvf) return best;
-  const double error = rms_spread * best->kg_error_percent / 100.0;
+  const double error = rms_spread * best->trial.metrics.kg_error_percent / 100.0;
   const SequenceHeader finer = header_for(error / kReserve);
-  if (finer.position_bits <= header_.position_bits) return best;
+  if (finer.position_bits <= coding_->header().position_bits) return best;
   use_header(finer);
   return search(span, rms_spread);
 }
 
 // The first GOF sets the level, with a reserve; the others keep to it.
 std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& needs) {
-  const GofSpan& span = spans_[num_coded_];
-  if (num_coded_ == 0) return raise_level(header_.level_idc, needs.with_reserve(), span.count);
-  std::uint32_t needed = header_.level_idc;
-  if (auto error = raise_level(needed, needs, span.count)) return error;
-  if (needed == header_.level_idc) return std::nullopt;
+  const GofSpan& span = spans_[coded_.gofs];
+  SequenceHeader header = coding_->header();
+  const std::uint32_t level_idc = header.level_idc;
+  const bool first = coded_.gofs == 0;
+  const LevelNeeds wanted = first ? needs.with_reserve() : needs;
+  if (auto error = raise_level(header.level_idc, wanted, span.count)) return error;
+  if (first) coding_->set_header(header);
+  if (first || header.level_idc == level_idc) return std::nullopt;
   return InputError{"frames " + std::to_string(span.first) + " to " +
                     std::to_string(span.first + span.count - 1) + " need level " +
-                    std::to_string(needed) +
+                    std::to_string(header.level_idc) +
                     " (specification, Annex B), but the stream was begun at level " +
-                    std::to_string(header_.level_idc) +
+                    std::to_string(level_idc) +
                     ": encode again with that as the least level, or with fewer components"};
 }
 
 std::optional<InputError> FrameEncoder::Impl::encode_gof() {
-  const GofSpan& span = spans_[num_coded_];
+  const GofSpan& span = spans_[coded_.gofs];
   const auto extent = measure_extent(*buffer_);
   if (!extent) return extent.error();
-  const auto best = num_coded_ == 0 ? search_first(span, extent->rms_spread)
-                                    : search(span, extent->rms_spread);
+  const auto best = coded_.gofs == 0 ? search_first(span, extent->rms_spread)
+                                     : search(span, extent->rms_spread);
   if (!best) return best.error();
-  report_.target_met = report_.target_met && best->met;
-  last_step_ = best->step;
-  report_.clusters += best->encoded.clusters;
-  report_.components += best->encoded.components;
-  if (auto error = keep_to_level(LevelNeeds(best->encoded))) return error;
-  if (auto hash = coding_->measure(*buffer_, {0, span.count}, best->encoded, metrics_); !hash) {
-    return hash.error();
-  }
-  const bool written = (num_coded_ > 0 || stream_->write_lead(header_, sink_)) &&
-                       stream_->write_gof(best->bytes, sink_);
+  const CodedGof& gof = best->trial.gofs.front();
+  coded_.report.target_met = coded_.report.target_met && best->met;
+  coded_.report.clusters += gof.clusters;
+  coded_.report.components += gof.components;
+  coded_.step = best->step;
+  if (auto error = keep_to_level(gof.needs)) return error;
+  const auto hash = coding_->measure(*buffer_, {0, span.count}, gof.frame, coded_.metrics);
+  if (!hash) return hash.error();
+  const bool written = (coded_.gofs > 0 || stream_->write_lead(coding_->header(), sink_)) &&
+                       stream_->write_gof(gof.bytes, sink_);
   if (!written) return InputError{"the stream could not be written"};
-  ++num_coded_;
+  ++coded_.gofs;
   buffer_.reset();
   return std::nullopt;
 }
 
 InputResult<EncodeReport> FrameEncoder::Impl::finish() {
   if (failure_) return *failure_;
-  if (num_added_ < header_.num_frames) {
+  if (num_added_ < format_.num_frames) {
     return fail({"the stream ends after " + std::to_string(num_added_) + " of " +
-                 std::to_string(header_.num_frames) + " frames announced"});
+                 std::to_string(format_.num_frames) + " frames announced"});
   }
   if (!stream_->write_end(sink_)) return fail({"the stream could not be written"});
-  stream_->describe(header_, coding_->connectivity(), report_);
-  report_.metrics = metrics_.result();
+  EncodeReport& report = coded_.report;
+  stream_->describe(coding_->header(), coding_->connectivity(), report);
+  report.metrics = coded_.metrics.result();
   if (settings_.baseline.qu == 0) {
-    report_.step = last_step_ * exact_exp2(header_.grid.log2_step);
+    report.step = coded_.step * exact_exp2(coding_->header().grid.log2_step);
   }
   failure_ = InputError{"the stream is finished already"};
-  return std::move(report_);
+  return std::move(report);
 }
 
 InputResult<FrameEncoder> FrameEncoder::create(FrameFormat format, EncoderSettings settings,

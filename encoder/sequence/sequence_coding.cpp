@@ -1,6 +1,5 @@
 #include "encoder/sequence/sequence_coding.h"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -34,17 +33,6 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
           analysis_range};
 }
 
-TargetSearch::Expected expected_kg(std::vector<const GofCoder*> coders, double squared_spread) {
-  for (const GofCoder* coder : coders) {
-    if (!coder->expected_error(1.0)) return {};
-  }
-  return [coders = std::move(coders), squared_spread](double step) {
-    double error = 0.0;
-    for (const GofCoder* coder : coders) error += coder->expected_error(step).value_or(0.0);
-    return 100.0 * std::sqrt(error / squared_spread);
-  };
-}
-
 SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                                std::span<const Triangle> triangles)
     : header_(header),
@@ -61,7 +49,8 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
   }
 }
 
-void SequenceCoding::follow_grid() {
+void SequenceCoding::set_header(const SequenceHeader& header) {
+  header_ = header;
   if (bone_context_) bone_context_->position_bits = header_.position_bits;
 }
 
@@ -96,7 +85,7 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
 }
 
 InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& span,
-                                           const EncodedGof& encoded,
+                                           const DecodeFrame& decode,
                                            MetricsAccumulator& metrics) const {
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
   std::vector<std::int32_t> positions(values);
@@ -104,7 +93,7 @@ InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& s
   std::vector<float> decoded(values);
   std::vector<std::uint32_t> crc;
   for (std::uint32_t f = 0; f < span.count; ++f) {
-    encoded.frame(f, positions);
+    decode(f, positions);
     if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
       crc.push_back(crc32_of_positions(positions));
     } else {

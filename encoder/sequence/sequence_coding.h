@@ -31,10 +31,6 @@ std::uint32_t longest_gof(const EncoderSettings& settings);
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread);
 
-// KG error that coders of GOFs expect, if all of them do; squared_spread: sum of the squared
-// coordinates about the means of their frames, over all of these, grid units.
-TargetSearch::Expected expected_kg(std::vector<const GofCoder*> coders, double squared_spread);
-
 // The choices of a search that hold for later coders of the same GOF.
 struct GofMemory {
   std::optional<ClusterChoice> clusters;  // of the Baseline profile
@@ -43,16 +39,17 @@ struct GofMemory {
 
 class SequenceCoding {
  public:
-  // Keeps references to header and settings. Every index of the triangles is below
-  // num_vertices.
+  // Keeps a reference to the settings. Every index of the triangles is below num_vertices.
   SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                  std::span<const Triangle> triangles);
   SequenceCoding(const SequenceCoding&) = delete;
   SequenceCoding& operator=(const SequenceCoding&) = delete;
 
+  const SequenceHeader& header() const { return header_; }
   const ConnectivityCode& connectivity() const { return connectivity_; }
-  // After the grid of the header has changed. Frames and coders from before are of no use.
-  void follow_grid();
+  // The same with another level, or with another grid: frames and coders from before are then
+  // of no use.
+  void set_header(const SequenceHeader& header);
 
   // The frames of a GOF, in decoded vertex order and grid units. Error: that of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
@@ -63,10 +60,10 @@ class SequenceCoding {
   // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
   // unit of the GOF, empty if there is to be none. Error: that of the source.
   InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
-                             const EncodedGof& encoded, MetricsAccumulator& metrics) const;
+                             const DecodeFrame& decode, MetricsAccumulator& metrics) const;
 
  private:
-  const SequenceHeader& header_;
+  SequenceHeader header_;
   const EncoderSettings& settings_;
   ConnectivityCode connectivity_;
   Topology topology_;

@@ -1,0 +1,69 @@
+#include "encoder/sequence/target_loop.h"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "encoder/math/det_math.h"
+#include "encoder/sequence/target_search.h"
+
+namespace rlpc {
+namespace {
+
+double measured(const TargetTask& task, const BatchTrial& trial, std::uint32_t num_frames) {
+  switch (task.settings.target.kind) {
+    case Target::kKg:
+      return trial.metrics.kg_error_percent;
+    case Target::kMaxError:
+      return trial.metrics.max_error;
+    case Target::kBpvf:
+      return (8.0 * static_cast<double>(trial.gof_bytes) + task.fixed_bits) /
+             (static_cast<double>(task.header.num_vertices) * num_frames);
+    case Target::kNone:
+      break;
+  }
+  return 0.0;
+}
+
+// The KG error that analyses expect of a step; empty where they tell nothing.
+TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch) {
+  if (task.settings.target.kind != Target::kKg) return {};
+  auto squared_error = batch.expected_error();
+  if (!squared_error) return {};
+  const double spread = task.rms_spread * exact_exp2(-task.header.grid.log2_step);
+  const double squared_spread =
+      spread * spread * 3.0 * task.header.num_vertices * batch.num_frames();
+  return [squared_error = std::move(squared_error), squared_spread](double step) {
+    return 100.0 * std::sqrt(squared_error(step) / squared_spread);
+  };
+}
+
+}  // namespace
+
+InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
+  TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
+  if (task.first_step > 0.0) {
+    search.begin_at(task.first_step);
+  } else if (task.settings.target.kind == Target::kKg) {
+    if (auto error = batch.analyse(search.analysis_step())) return *error;
+    if (const auto expected = expected_kg(task, batch)) search.begin_at(expected);
+  }
+  std::optional<TargetResult> best;
+  std::uint32_t trials = 0;
+  while (!search.finished()) {
+    ++trials;
+    const auto progress = [&](double done) {
+      if (task.progress) task.progress(trials, done);
+    };
+    auto trial = batch.encode(search.step(), search.analysis_step(), progress);
+    if (!trial) return trial.error();
+    const bool better = search.report(measured(task, *trial, batch.num_frames()),
+                                      trial->gof_bytes, expected_kg(task, batch));
+    if (better || !best) best = TargetResult{std::move(*trial), search.last_step()};
+  }
+  best->met = search.met();
+  best->trials = trials;
+  return std::move(*best);
+}
+
+}  // namespace rlpc
