@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "encoder/rlpc_encoder.h"
+#include "encoder/sequence/step_search.h"
 
 namespace rlpc {
 
@@ -45,16 +46,17 @@ class TargetSearch {
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
   // The best encoding does not exceed the target.
-  bool met() const { return target_.kind == Target::kNone || met_; }
+  bool met() const { return target_.kind == Target::kNone || best_.met(); }
 
  private:
   bool serves(double analysis_step, double step) const {
     return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
   }
-  bool is_better(double measured, std::uint64_t bytes) const;
   bool is_near(double measured) const;
-  double usual_slope() const { return target_.kind == Target::kBpvf ? -0.5 : 0.85; }
   void choose_next(double measured, const Expected& expected);
+  void sample_beyond_jump();
+  void narrow_bracket(double aim);
+  double factor_to(double aim, double value, const Expected& expected) const;
   double step_for(double value, const Expected& expected) const;
 
   Target target_;
@@ -62,20 +64,12 @@ class TargetSearch {
   double step_ = 1.0;
   double frozen_ = 0.0;  // analysis step; 0: not yet
   double last_step_ = 1.0;
-  double best_ = 0.0;  // measured value of the best encoding
-  std::uint64_t best_bytes_ = 0;
-  double fine_ = 0.0;  // largest step known to be too fine or just right; 0: none
-  double fine_value_ = 0.0;
-  double coarse_ = 0.0;  // smallest step known to be too coarse
-  double coarse_value_ = 0.0;
-  double slope_;             // of log measured against log step
-  double last_value_ = 0.0;  // measured; 0: none
-  double previous_step_ = 1.0;
+  BestEncoding best_;
+  Bracket bracket_;
+  PowerLaw power_law_;
   int trials_ = 0;
   double sampled_from_ = 0.0;  // the step that others are tried beyond; 0: none yet
   int samples_ = 0;
-  bool met_ = false;    // there is an encoding within the target
-  bool close_ = false;  // and one as close to it as asked for
   bool finished_ = false;
 };
 
