@@ -11,7 +11,7 @@
 namespace rlpc {
 
 // Whether as many principal components are worth a trajectory.
-bool has_trajectories(std::size_t count, const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
                       const SkinnedSettings& settings, double step);
 
 // Squared error of a GOF of one bone, but for a factor that hardly depends on the step, of

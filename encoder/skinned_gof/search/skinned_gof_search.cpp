@@ -382,9 +382,7 @@ void SkinnedGofSearch::try_bones(BoneFit& full, std::uint32_t influences,
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
 bool SkinnedGofSearch::follows(double step) const {
   constexpr std::size_t kEnough = 4;
-  const SkinnedSettings& settings = choice_->settings;
-  return has_trajectories(kEnough, mesh_of(context_, settings.prediction), cached_->analysis,
-                          settings, step);
+  return has_trajectories(kEnough, cached_->analysis, choice_->settings, step);
 }
 
 bool SkinnedGofSearch::needs_frames(double step, double analysis_step) const {

@@ -1,0 +1,89 @@
+#include "encoder/skinned_gof/quantise/slice_cuts.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "common/int_math.h"
+
+namespace rlpc {
+namespace {
+
+// A slice is worth having if it holds about this much.
+constexpr double kBytesOfSlice = 4000.0;
+
+double estimated_bytes(std::span<const std::int32_t> residual) {
+  constexpr double kZeroBits = 0.4;
+  double bits = 0.0;
+  for (const std::int32_t r : residual) {
+    bits +=
+        r == 0 ? kZeroBits : 2.0 + 1.5 * floor_log2(static_cast<std::uint64_t>(r < 0 ? -r : r));
+  }
+  return bits / 8.0;
+}
+
+// Each group of layers but the last ends where an eighth of the vertices of the next is left,
+// or sooner, if else there were not as many groups as are asked for.
+void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t asked,
+                SkinnedGof& gof) {
+  const std::uint32_t num_layers = mesh.num_layers();
+  asked = std::min(asked, num_layers);
+  std::vector<std::uint32_t> ends{num_layers};
+  for (std::uint32_t last = num_layers; ends.size() < num_groups; ends.push_back(last)) {
+    const std::size_t most = mesh.vertices_of_layers(0, last).size() / 8;
+    const auto num_ends = static_cast<std::uint32_t>(ends.size());
+    const std::uint32_t first = std::max(asked, num_ends + 1) - num_ends;
+    while (last > first && mesh.vertices_of_layers(0, last).size() > most) --last;
+    if (last == ends.back()) break;
+  }
+  gof.layer_group_size.clear();
+  std::uint32_t first = 0;
+  for (std::size_t i = ends.size(); i-- > 0;) {
+    gof.layer_group_size.push_back(ends[i] - first);
+    first = ends[i];
+  }
+}
+
+// Each group of trajectories has about three times as many as those before, or fewer, if else
+// there were not as many groups as are asked for.
+void cut_components(std::size_t num_vertices, std::size_t num_groups, std::size_t asked,
+                    std::span<const std::int32_t> residual, SkinnedGof& gof) {
+  const std::size_t count = gof.trajectories.size();
+  asked = std::min(asked, count);
+  std::vector<std::size_t> ends{count};
+  while (ends.size() < num_groups && ends.back() > 1) {
+    const std::size_t least = std::max(asked, ends.size() + 1) - ends.size();
+    ends.push_back(std::max(ends.back() / 3 + 1, least));
+  }
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::size_t first = 0;
+  for (std::size_t i = ends.size(); i-- > 0;) {
+    const std::size_t size = ends[i] - first;
+    std::vector<std::int32_t> of_group(num_vertices * size);
+    for (std::size_t v = 0; v < num_vertices; ++v) {
+      std::copy_n(&residual[v * count + first], size, &of_group[v * size]);
+    }
+    gof.vertex_residual.push_back(std::move(of_group));
+    gof.group_end.push_back(kRestFactors + ends[i]);
+    first = ends[i];
+  }
+  gof.num_component_groups = static_cast<std::uint32_t>(ends.size());
+}
+
+}  // namespace
+
+void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings,
+                std::span<const std::int32_t> residual, SkinnedGof& gof) {
+  std::size_t num_groups = settings.component_groups;
+  std::size_t num_layer_groups = settings.layer_groups;
+  const double slices = estimated_bytes(residual) / kBytesOfSlice;
+  if (num_groups == 0) num_groups = slices < 4 ? 1 : slices < 12 ? 2 : slices < 24 ? 3 : 4;
+  if (num_layer_groups == 0) num_layer_groups = slices < 6 ? 1 : slices < 16 ? 2 : 3;
+  cut_layers(mesh, num_layer_groups, settings.layer_groups, gof);
+  if (!gof.trajectories.empty()) {
+    cut_components(mesh.num_vertices(), num_groups, settings.component_groups, residual, gof);
+  }
+  gof.slice_layers.assign(gof.group_end.size(),
+                          static_cast<std::uint32_t>(gof.layer_group_size.size()));
+}
+
+}  // namespace rlpc

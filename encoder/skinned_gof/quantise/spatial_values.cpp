@@ -1,0 +1,175 @@
+#include "encoder/skinned_gof/quantise/spatial_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "common/int_math.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/residual_choice.h"
+#include "encoder/math/matrix_products.h"
+
+namespace rlpc {
+namespace {
+
+// Wanted values up to this one fit their width, whatever they are rounded to.
+constexpr double kMostSpatial = (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;
+
+// Cholesky decomposition of a matrix, [n][n], in place; only the lower triangle counts. Vectors
+// that vanished in quantisation get no factor: a root of 0.
+void decompose(std::vector<double>& g, std::size_t n) {
+  for (std::size_t j = 0; j < n; ++j) {
+    double d = g[j * n + j];
+    for (std::size_t k = 0; k < j; ++k) d -= g[j * n + k] * g[j * n + k];
+    const double root = d > 1e-9 * g[j * n + j] ? std::sqrt(d) : 0.0;
+    g[j * n + j] = root;
+    for (std::size_t i = j + 1; i < n; ++i) {
+      double x = g[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) x -= g[i * n + k] * g[j * n + k];
+      g[i * n + j] = root > 0.0 ? x / root : 0.0;
+    }
+  }
+}
+
+// 0 where there is no factor.
+void divide(std::vector<double>& values, double root) {
+  for (double& x : values) x = root > 0.0 ? x / root : 0.0;
+}
+
+// Spatial factors in grid units, by least squares against the decoded temporal vectors. The
+// matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in those. So the
+// factors are pc.spatial * mixing.
+class SpatialFactors {
+ public:
+  SpatialFactors(const ComponentsByRow& pc, const TemporalValues& temporal)
+      : pc_(pc),
+        count_(temporal.size()),
+        num_tried_(temporal.num_tried),
+        mixing_(find_mixing(temporal)) {}
+
+  // [vertex][trajectory]
+  std::vector<double> of(std::span<const std::uint32_t> vertices) const {
+    std::vector<double> components;
+    components.reserve(vertices.size() * num_tried_);
+    for (const std::uint32_t v : vertices) {
+      const auto from =
+          pc_.spatial.begin() + static_cast<std::ptrdiff_t>(v * pc_.temporal.size());
+      components.insert(components.end(), from, from + static_cast<std::ptrdiff_t>(num_tried_));
+    }
+    return matrix_product(components, num_tried_, mixing_, count_);
+  }
+
+ private:
+  // [component][trajectory]
+  std::vector<double> find_mixing(const TemporalValues& temporal) const {
+    const std::size_t width = temporal.decoded.front().size();
+    const std::vector<double> decoded = as_columns(temporal.decoded, width);
+    std::vector<double> g;
+    for (const auto& vector : temporal.decoded) {
+      const std::vector<double> row = ordered_product(vector, decoded, count_);
+      g.insert(g.end(), row.begin(), row.end());
+    }
+    decompose(g, count_);
+    const auto tried = std::span(pc_.temporal).first(num_tried_);
+    const std::vector<double> components = as_columns(tried, width);
+    std::vector<std::vector<double>> mixing;  // [trajectory][component]
+    for (const auto& vector : temporal.decoded) {
+      mixing.push_back(ordered_product(vector, components, num_tried_));
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        subtract_multiple(g[i * count_ + k], mixing[k], mixing[i]);
+      }
+      divide(mixing[i], g[i * count_ + i]);
+    }
+    for (std::size_t i = count_; i-- > 0;) {
+      for (std::size_t k = i + 1; k < count_; ++k) {
+        subtract_multiple(g[k * count_ + i], mixing[k], mixing[i]);
+      }
+      divide(mixing[i], g[i * count_ + i]);
+    }
+    return as_columns(mixing, num_tried_);
+  }
+
+  const ComponentsByRow& pc_;
+  std::size_t count_;
+  std::size_t num_tried_;
+  std::vector<double> mixing_;
+};
+
+// Residuals of vertices, each trajectory in turn, as the settings have them rounded.
+class ResidualRounding {
+ public:
+  ResidualRounding(const CodedMesh& mesh, std::size_t count, Rounding rounding)
+      : round_up_(rounding == Rounding::kNearest ? 0.5 : kRoundUpOfDeadZone) {
+    if (rounding == Rounding::kCheapest) choice_.emplace(mesh, count);
+  }
+  void start(std::uint32_t v) {
+    if (choice_) choice_->start(v);
+  }
+  // Of the next trajectory; wanted, in steps.
+  std::int32_t next(double wanted) {
+    return choice_ ? choice_->next(wanted) : rounded_residual(wanted, round_up_);
+  }
+
+ private:
+  static constexpr double kRoundUpOfDeadZone = 0.42;
+
+  double round_up_;
+  std::optional<VertexResidualChoice> choice_;
+};
+
+}  // namespace
+
+SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
+                                  const SkinnedAnalysis& analysis,
+                                  const TemporalValues& temporal, Rounding rounding,
+                                  double step) {
+  constexpr std::size_t kTogether = 16;  // vertices whose factors are found at a time
+  const std::size_t count = temporal.size();
+  std::optional<GeometryWeights> weights;
+  if (gof.prediction == Prediction::kLayers) {
+    const auto& rest = analysis.rest;
+    weights.emplace(mesh, gof.weights,
+                    std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
+  }
+  const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
+  const SpatialFactors all_factors(analysis.pc, temporal);
+  ResidualRounding residuals(mesh, count, rounding);
+  SpatialValues result;
+  result.residual.resize(mesh.num_vertices() * count);
+  result.largest.assign(count, 0);
+  std::vector<std::int32_t> values(result.residual.size());
+  std::vector<double> factors;
+  std::vector<std::int64_t> predicted(count);
+  double most = 0.0;
+  const double per_step = kMaxLayerStep / step;
+  const std::span<const std::uint32_t> order = mesh.order();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t v = order[i];
+    prediction.predict(v, values, predicted);
+    const std::size_t place = i % kTogether;
+    if (place == 0) {
+      factors = all_factors.of(order.subspan(i, std::min(kTogether, order.size() - i)));
+    }
+    const int layer_step = gof.layer_step[mesh.layer_of(v)];
+    residuals.start(v);
+    for (std::size_t l = 0; l < count; ++l) {
+      const double wanted = factors[place * count + l] * per_step;
+      most = std::max(most, std::abs(wanted));
+      const std::int32_t residual =
+          residuals.next((wanted - static_cast<double>(predicted[l])) / layer_step);
+      result.residual[v * count + l] = residual;
+      const std::int32_t value =
+          clip_signed(kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));
+      values[v * count + l] = value;
+      result.largest[l] = std::max(result.largest[l], value < 0 ? ~value : value);
+    }
+  }
+  result.excess = most / kMostSpatial;
+  return result;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,146 @@
+#include "encoder/skinned_gof/quantise/temporal_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/gof_coder.h"
+#include "encoder/math/det_math.h"
+#include "encoder/skinned_gof/quantise/track_coding.h"
+
+namespace rlpc {
+namespace {
+
+// What bones leave is in few places, where neighbours tell little about it.
+constexpr double kTemporalErrorOfBones = 2.0;
+// What a vertex costs at least for a trajectory, in squared steps.
+constexpr double kSpatialCost = 0.02;
+constexpr double kSpatialCostOfBones = 0.06;
+
+// Products of steps, in eighths of an octave, have a scale_idx up to this one.
+constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;
+// Wanted values up to this one fit their width, whatever they are rounded to.
+constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);
+
+double largest_magnitude(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double x : values) most = std::max(most, std::abs(x));
+  return most;
+}
+
+double power_of_eighths(int eighths) {
+  const int whole = eighths >= 0 ? eighths / 8 : -((7 - eighths) / 8);
+  const auto part = static_cast<std::size_t>(eighths - 8 * whole);
+  return static_cast<double>(kScaleMantissa[part]) / 32768.0 * exact_exp2(whole);
+}
+
+class TemporalCoder {
+ public:
+  TemporalCoder(const SkinnedAnalysis& analysis, const SkinnedSettings& settings, double step)
+      : analysis_(analysis),
+        settings_(settings),
+        step_(step),
+        num_vertices_(analysis.gof.influences.size()),
+        state_(analysis.gof.num_frames) {}
+
+  TemporalValues code(const TemporalLimits& limits) {
+    constexpr int kMostInVain = 4;  // of the next ones, none will do better
+    TemporalValues values;
+    const std::vector<double>& energy = analysis_.pc.energy;
+    const double least =
+        least_energy(step_, analysis_.gof, static_cast<std::uint32_t>(num_vertices_));
+    int in_vain = 0;
+    std::size_t& l = values.num_tried;
+    for (; l < analysis_.pc.temporal.size(); ++l) {
+      const bool enough = values.size() == limits.max_trajectories || in_vain == kMostInVain;
+      if (enough || energy[l] <= least) break;
+      in_vain = code(l, limits.least_eighths, values) ? 0 : in_vain + 1;
+    }
+    return values;
+  }
+
+ private:
+  // Codes a component with the step at which its error is as large as the others'. False: it is
+  // not worth its bits.
+  bool code(std::size_t l, int least_eighths, TemporalValues& values) {
+    const std::size_t num_frames = analysis_.gof.num_frames;
+    const std::vector<double>& temporal = analysis_.pc.temporal[l];
+    const int eighths = eighths_of(l, least_eighths);
+    const double unit = power_of_eighths(eighths) / step_;
+    std::vector<std::array<double, 3>> wanted(num_frames);
+    for (std::size_t f = 0; f < num_frames; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) wanted[f][c] = temporal[c * num_frames + f];
+    }
+    Trajectory trajectory;
+    TrackState after = state_;
+    const TrackCost cost =
+        code_trajectory(wanted, unit,
+                        {.refine = settings_.temporal_weights,
+                         .nearest = settings_.rounding == Rounding::kNearest},
+                        after, trajectory);
+    const double saved = analysis_.pc.energy[l] * (1.0 - cost.error * unit * unit);
+    if (saved < least_worth(cost.bits)) return false;
+    state_ = std::move(after);
+    values.eighths.push_back(eighths);
+    values.indices.push_back(recon_trajectory(trajectory));
+    values.trajectories.push_back(std::move(trajectory));
+    std::vector<double>& decoded = values.decoded.emplace_back(3 * num_frames);
+    for (std::size_t f = 0; f < num_frames; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        decoded[c * num_frames + f] = unit * values.indices.back()[f][c];
+      }
+    }
+    return true;
+  }
+
+  // The product of both steps is 2^(eighths / 8), of which the stream keeps the exponent.
+  int eighths_of(std::size_t l, int least_eighths) const {
+    const double error = has_bones() ? kTemporalErrorOfBones : kTemporalError;
+    const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
+    const double least = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMostTemporal;
+    return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),
+                      least_eighths, kMostEighths);
+  }
+
+  // The energy that a trajectory must save: what its temporal values cost, and its spatial
+  // factors cost and leave.
+  double least_worth(double bits) const {
+    const double of_vertex = has_bones() ? kSpatialCostOfBones : kSpatialCost;
+    return step_ * step_ *
+           (kErrorPerBit * bits + of_vertex * static_cast<double>(num_vertices_));
+  }
+
+  bool has_bones() const { return analysis_.gof.bones.size() > 1; }
+
+  // How much an error of a temporal value weighs: its sum of squared spatial factors, or as in
+  // Vasa and Skala 2009, (18) and (19), the square of their summed magnitudes.
+  double importance(std::size_t l) const {
+    if (!settings_.cobra_steps) return analysis_.pc.energy[l];
+    double sum = 0.0;
+    const std::size_t width = analysis_.pc.temporal.size();
+    for (std::size_t v = 0; v < num_vertices_; ++v) {
+      sum += std::abs(double{analysis_.pc.spatial[v * width + l]});
+    }
+    return std::max(sum * sum / static_cast<double>(num_vertices_), 1e-12);
+  }
+
+  const SkinnedAnalysis& analysis_;
+  const SkinnedSettings& settings_;
+  double step_;
+  std::size_t num_vertices_;
+  TrackState state_;
+};
+
+}  // namespace
+
+TemporalValues code_temporal_values(const SkinnedAnalysis& analysis,
+                                    const SkinnedSettings& settings, double step,
+                                    const TemporalLimits& limits) {
+  return TemporalCoder(analysis, settings, step).code(limits);
+}
+
+}  // namespace rlpc

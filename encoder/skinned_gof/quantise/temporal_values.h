@@ -1,0 +1,38 @@
+// Temporal values of the trajectories of a GOF: which components are worth one, and their
+// values, quantised and predicted (8.14.2 backwards).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+#include "encoder/skinned_gof/quantise/skinned_analysis.h"
+
+namespace rlpc {
+
+// Squared error of a temporal value of one bone's trajectories, relative to that of a spatial
+// one.
+inline constexpr double kTemporalError = 0.8;
+
+struct TemporalValues {
+  std::vector<Trajectory> trajectories;      // predictors, weights and residuals
+  std::vector<int> eighths;                  // of the product of both steps, 2^(eighths / 8)
+  std::vector<std::vector<Vec3i>> indices;   // [trajectory][frame]
+  std::vector<std::vector<double>> decoded;  // [trajectory][3 * num_frames], unit vectors
+  std::size_t num_tried = 0;                 // the first components, of which some are coded
+
+  std::size_t size() const { return trajectories.size(); }
+};
+
+struct TemporalLimits {
+  std::size_t max_trajectories;
+  int least_eighths = -1000;  // finer products of steps do not fit
+};
+
+// step: of the quantisers, grid units.
+TemporalValues code_temporal_values(const SkinnedAnalysis& analysis,
+                                    const SkinnedSettings& settings, double step,
+                                    const TemporalLimits& limits);
+
+}  // namespace rlpc
