@@ -249,13 +249,13 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
 
 }  // namespace
 
-ClusterGofAnalysis analyse_cluster_gof(const ClusterContext& context, const GofFrames& frames,
-                                       std::uint32_t first_frame, const Clustering& clustering,
+ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames& frames,
+                                       const Clustering& clustering,
                                        const ClusterAnalysisSettings& settings) {
-  const int position_bits = context.header.position_bits;
+  const int position_bits = mesh.header.position_bits;
   ClusterGofAnalysis analysis;
   ClusterGof& gof = analysis.gof;
-  gof.first_frame = first_frame;
+  gof.first_frame = frames.first_frame;
   gof.num_frames = frames.num_frames;
   gof.seed_step = settings.seed_step;
   if (settings.world) {
@@ -270,7 +270,7 @@ ClusterGofAnalysis analyse_cluster_gof(const ClusterContext& context, const GofF
   analysis.clusters.resize(gof.clusters.size());
   for (std::size_t i = 0; i < gof.clusters.size(); ++i) {
     ClusterAnalysis& cluster = analysis.clusters[i];
-    cluster.prediction.emplace(context.topology, members.vertices[i], gof.cluster_of_vertex,
+    cluster.prediction.emplace(mesh.topology, members.vertices[i], gof.cluster_of_vertex,
                                members.local_index);
     cluster.vertices = members.vertices[i];
     cluster.lcf = recovered_frames(gof, gof.clusters[i], tracks);
@@ -304,7 +304,7 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
   }
   std::vector<std::size_t> chosen(count);
   if (settings.allocation == Allocation::kSlope) {
-    const double lambda = settings.lambda_factor * settings.step * settings.step;
+    const double lambda = kClusterErrorPerBit * settings.step * settings.step;
     for (std::size_t i = 0; i < count; ++i) chosen[i] = allocate_by_slope(curves[i], lambda);
   } else if (settings.allocation == Allocation::kFixed) {
     for (std::size_t i = 0; i < count; ++i) chosen[i] = components[i].size();

@@ -3,20 +3,21 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/cluster_gof/recon/cluster_recon.h"
 #include "common/cluster_gof/recon/lcf.h"
-#include "common/mesh/topology.h"
-#include "common/syntax/sequence_header.h"
 #include "encoder/cluster_gof/clustering.h"
 #include "encoder/cluster_gof/quantise_components.h"
 #include "encoder/gof/gof_frames.h"
+#include "encoder/gof/sequence_mesh.h"
 #include "encoder/math/principal_components.h"
 
 namespace rlpc {
+
+// What a bit must save, in squared steps.
+inline constexpr double kClusterErrorPerBit = 0.18;
 
 // What the analysis of a GOF depends on.
 struct ClusterAnalysisSettings {
@@ -40,7 +41,6 @@ struct ClusterCodingSettings {
   int qc = 12;
   Allocation allocation = Allocation::kSlope;
   std::uint32_t components = 0;  // per cluster: all but kSlope
-  double lambda_factor = 0.18;   // kSlope: a bit must save lambda_factor * step^2
   double dead_zone = 0.06;
 };
 
@@ -56,15 +56,9 @@ struct ClusterGofAnalysis {
   std::vector<ClusterAnalysis> clusters;
 };
 
-struct ClusterContext {
-  const SequenceHeader& header;
-  const Topology& topology;
-  std::span<const Triangle> triangles;  // decoded order
-};
-
 // Seed tracks in closed loop, and principal components in the recovered frames.
-ClusterGofAnalysis analyse_cluster_gof(const ClusterContext& context, const GofFrames& frames,
-                                       std::uint32_t first_frame, const Clustering& clustering,
+ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames& frames,
+                                       const Clustering& clustering,
                                        const ClusterAnalysisSettings& settings);
 
 // The GOF ready to be written, from the frames that were analysed.

@@ -42,7 +42,7 @@ struct Strip {
       }
     }
   }
-  ClusterContext context() const { return {header, topology, triangles}; }
+  SequenceMesh mesh() const { return {header, topology, triangles}; }
   Clustering halves() const {
     Clustering clustering{{{0, 2, 1}, {38, 36, 39}}, {}};
     for (std::uint32_t v = 0; v < header.num_vertices; ++v) {
@@ -72,7 +72,7 @@ TEST(AnalyseGof, SeedsAreRecoveredToHalfASeedStep) {
     ClusterAnalysisSettings settings;
     settings.seed_step = seed_step;
     const ClusterGofAnalysis analysis =
-        analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
+        analyse_cluster_gof(strip.mesh(), strip.frames, strip.halves(), settings);
     const std::vector<Track> tracks = recon_seed_tracks(analysis.gof, 20);
     ASSERT_EQ(tracks.size(), 6U);
     for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -90,8 +90,7 @@ TEST(AnalyseGof, SharedSeedsHaveOneTrackAndSeedsAreInNoCluster) {
   const Strip strip(3);
   Clustering clustering = strip.halves();
   clustering.seeds = {{0, 2, 1}, {2, 4, 1}};
-  const ClusterGof gof =
-      analyse_cluster_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
+  const ClusterGof gof = analyse_cluster_gof(strip.mesh(), strip.frames, clustering, {}).gof;
   ASSERT_EQ(gof.seed_tracks.size(), 4U);
   const std::vector<std::uint32_t> vertices{0, 2, 1, 4};
   const std::vector<std::uint32_t> anchors{0, 0, 0, 1};
@@ -126,8 +125,7 @@ TEST(AnalyseGof, SeedResidualsStayWithinTheirBounds) {
     }
   }
   const Clustering clustering{{{0, 1, 2}}, {0, 0, 0}};
-  const ClusterGof gof =
-      analyse_cluster_gof(strip.context(), strip.frames, 0, clustering, {}).gof;
+  const ClusterGof gof = analyse_cluster_gof(strip.mesh(), strip.frames, clustering, {}).gof;
   for (const SeedTrack& track : gof.seed_tracks) {
     for (const Vec3i& r : track.residual) {
       for (const std::int32_t x : r) ASSERT_LE(magnitude_of(x), kMaxResidual);
@@ -141,7 +139,7 @@ TEST(CodeGof, ErrorFollowsTheStep) {
     ClusterAnalysisSettings settings;
     settings.world = world;
     const ClusterGofAnalysis analysis =
-        analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), settings);
+        analyse_cluster_gof(strip.mesh(), strip.frames, strip.halves(), settings);
     for (const double step : {4.0, 16.0, 64.0}) {
       ClusterCodingSettings coding;
       coding.step = step;
@@ -155,7 +153,7 @@ TEST(CodeGof, ErrorFollowsTheStep) {
 TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
   const Strip strip(10);
   const ClusterGofAnalysis analysis =
-      analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), {});
+      analyse_cluster_gof(strip.mesh(), strip.frames, strip.halves(), {});
   for (const std::uint32_t count : {0U, 1U, 3U, 500U}) {
     ClusterCodingSettings coding;
     coding.allocation = ClusterCodingSettings::Allocation::kFixed;
@@ -171,7 +169,7 @@ TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
 TEST(CodeGof, AVectorBudgetIsSharedByTheClusters) {
   const Strip strip(30);
   const ClusterGofAnalysis analysis =
-      analyse_cluster_gof(strip.context(), strip.frames, 0, strip.halves(), {});
+      analyse_cluster_gof(strip.mesh(), strip.frames, strip.halves(), {});
   ClusterCodingSettings coding;
   coding.allocation = ClusterCodingSettings::Allocation::kVectorBudget;
   coding.components = 2;

@@ -1,4 +1,4 @@
-// One GOF, encoded at varying steps, whatever its profile.
+// One GOF, encoded at varying steps, whatever its kind.
 #pragma once
 
 #include <cstdint>
@@ -41,6 +41,8 @@ inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames
   return squared_error(frames, encoded.frame) + kErrorPerBit * step * step * bits;
 }
 
+// Encodes one GOF. What is chosen for it stands as long as the coder does; the analysis of the
+// last step, which is large, can be released, and is then made again when it is needed.
 class GofCoder {
  public:
   virtual ~GofCoder() = default;
@@ -54,6 +56,7 @@ class GofCoder {
   // step: of the quantisers, in grid steps. analysis_step: that the analysis is made for, near
   // it; the last analysis is kept, and serves again for its step.
   virtual EncodedGof encode(double step, double analysis_step) = 0;
+  virtual void release_analysis() = 0;
 };
 
 }  // namespace rlpc

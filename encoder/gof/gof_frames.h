@@ -14,7 +14,8 @@ namespace rlpc {
 struct GofFrames {
   std::uint32_t num_vertices = 0;
   std::uint32_t num_frames = 0;
-  std::vector<double> xyz;  // [num_frames][num_vertices][3], decoded vertex order
+  std::vector<double> xyz;        // [num_frames][num_vertices][3], decoded vertex order
+  std::uint32_t first_frame = 0;  // in the sequence
 
   const double* at(std::uint32_t frame, std::uint32_t vertex) const {
     return &xyz[(std::size_t{frame} * num_vertices + vertex) * 3];

@@ -22,11 +22,9 @@ std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analys
     auto frames = coding_.read_frames(source_, gof.span);
     if (!frames) return frames.error();
     gof.frames = std::move(*frames);
+    gof.frames.first_frame += options_.first_frame;
   }
-  if (!gof.coder) {
-    gof.coder =
-        coding_.make_coder(gof.frames, options_.first_frame + gof.span.first, gof.memory);
-  }
+  if (!gof.coder) gof.coder = coding_.make_coder(gof.frames);
   return std::nullopt;
 }
 
@@ -57,8 +55,10 @@ InputResult<CodedGof> GofBatch::encode(Gof& gof, double step, double analysis_st
                                        MetricsAccumulator& metrics) {
   if (auto error = prepare(gof, step, analysis_step)) return *error;
   const EncodedGof encoded = gof.coder->encode(step, analysis_step);
-  if (!options_.keep_analyses) gof.coder.reset();
-  if (!gof.coder || !gof.coder->needs_frames(step, analysis_step)) gof.frames = {};
+  if (!options_.keep_analyses) gof.coder->release_analysis();
+  if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
+    gof.frames = {};
+  }
   auto hash_unit = coding_.measure(source_, gof.span, encoded.frame, metrics);
   if (!hash_unit) return hash_unit.error();
   return CodedGof{{gof.span.count, write_gof_units(encoded), std::move(*hash_unit)},

@@ -36,7 +36,7 @@ class GofBatch {
  public:
   struct Options {
     std::uint32_t first_frame = 0;  // of the source, in the stream
-    bool keep_analyses = true;      // from one step to the next; else only what was chosen
+    bool keep_analyses = true;      // from one step to the next; else only what is chosen
     bool keep_decoded = false;      // CodedGof::frame
     MetricsAccumulator::Keep metrics = MetricsAccumulator::kFrames;
   };
@@ -59,7 +59,6 @@ class GofBatch {
   struct Gof {
     GofSpan span;
     GofFrames frames;  // while they are needed
-    GofMemory memory;
     std::unique_ptr<GofCoder> coder;
   };
 

@@ -4,33 +4,15 @@
 #include <vector>
 
 #include "common/bitstream/crc32.h"
-#include "common/mesh/coded_mesh.h"
+#include "encoder/gof/gof_kind_search.h"
 #include "encoder/input/grid_value.h"
 #include "encoder/math/det_math.h"
+#include "encoder/sequence/gof_kinds.h"
 
 namespace rlpc {
 
 std::uint32_t longest_gof(const EncoderSettings& settings) {
   return settings.gof_frames == 0 ? kDefaultGofFrames : settings.gof_frames;
-}
-
-TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
-                        double rms_spread) {
-  const double steps_per_unit = exact_exp2(-header.grid.log2_step);
-  double step_of_error = 6.0;
-  AnalysisRange analysis_range;
-  if (header.profile_idc == kProfileMain && settings.target.kind == Target::kKg) {
-    // At larger errors more components are left out, which err less than coded ones would.
-    constexpr double kUsualError = 0.1;  // per cent
-    step_of_error = 9.0 * det_exp2(0.2 * det_log2(settings.target.value / kUsualError));
-  }
-  if (header.profile_idc == kProfileMain && settings.preset == Preset::kFast) {
-    // Analyses for finer steps than are needed cost less than others.
-    analysis_range = {.finest = 0.9, .made_for = 1.25, .coarsest = 1.65};
-    step_of_error *= 0.92;
-  }
-  return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error,
-          analysis_range};
 }
 
 SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
@@ -39,25 +21,14 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
       settings_(settings),
       connectivity_(write_connectivity(header.num_vertices, triangles)),
       topology_(make_topology(header.num_vertices, connectivity_.triangles)),
-      context_{header_, topology_, connectivity_.triangles} {
-  if (header_.profile_idc != kProfileMain) return;
-  layers_ = make_layers(header_.num_vertices, connectivity_.triangles);
-  bone_context_.emplace(SkinnedContext{{}, connectivity_.triangles, header_.position_bits});
-  for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
-                                      Prediction::kParallelograms, Prediction::kLayers}) {
-    bone_context_->meshes.emplace_back(prediction, topology_, layers_);
-  }
-}
-
-void SequenceCoding::set_header(const SequenceHeader& header) {
-  header_ = header;
-  if (bone_context_) bone_context_->position_bits = header_.position_bits;
-}
+      mesh_{header_, topology_, connectivity_.triangles},
+      kinds_(make_gof_kinds(mesh_, settings_)) {}
 
 InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
   const std::uint32_t n = header_.num_vertices;
-  GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3)};
+  GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
+                   span.first};
   std::vector<float> input(std::size_t{n} * 3);
   const double per_step = exact_exp2(-header_.grid.log2_step);
   double* out = frames.xyz.data();
@@ -73,15 +44,9 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
   return frames;
 }
 
-std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
-                                                     std::uint32_t first_frame,
-                                                     GofMemory& memory) const {
-  if (header_.profile_idc == kProfileMain) {
-    return std::make_unique<GofKindSearch>(*bone_context_, context_, frames, first_frame,
-                                           settings_, memory.main);
-  }
-  return std::make_unique<ClusterGofSearch>(context_, frames, first_frame, settings_,
-                                            memory.clusters);
+std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames) const {
+  if (kinds_.size() == 1) return kinds_.front()->make_coder(frames);
+  return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
 }
 
 InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& span,

@@ -7,16 +7,14 @@
 #include <span>
 
 #include "common/mesh/topology.h"
-#include "common/mesh/vertex_layers.h"
 #include "common/syntax/sequence_header.h"
 #include "common/syntax/write_units.h"
-#include "encoder/cluster_gof/cluster_gof_search.h"
 #include "encoder/gof/gof_coder.h"
-#include "encoder/gof/gof_kind_search.h"
+#include "encoder/gof/gof_kind.h"
+#include "encoder/gof/sequence_mesh.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/gof_cuts.h"
-#include "encoder/sequence/target_search.h"
 #include "encoder/write/write_connectivity.h"
 
 namespace rlpc {
@@ -25,17 +23,6 @@ inline constexpr std::uint32_t kDefaultGofFrames = 128;
 
 // The longest GOF that the settings allow.
 std::uint32_t longest_gof(const EncoderSettings& settings);
-
-// rms_spread: of a coordinate about the mean of its frame, units, over the frames that the
-// target is for.
-TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
-                        double rms_spread);
-
-// The choices of a search that hold for later coders of the same GOF.
-struct GofMemory {
-  std::optional<ClusterChoice> clusters;  // of the Baseline profile
-  GofKindChoice main;                     // of the Main profile
-};
 
 class SequenceCoding {
  public:
@@ -49,14 +36,13 @@ class SequenceCoding {
   const ConnectivityCode& connectivity() const { return connectivity_; }
   // The same with another level, or with another grid: frames and coders from before are then
   // of no use.
-  void set_header(const SequenceHeader& header);
+  void set_header(const SequenceHeader& header) { header_ = header; }
 
-  // The frames of a GOF, in decoded vertex order and grid units. Error: that of the source.
+  // The frames of a GOF, in decoded vertex order and grid units; span.first is that of the
+  // source. Error: that of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
-  // For the GOF that begins with first_frame of the sequence. Keeps references to frames and
-  // memory.
-  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, std::uint32_t first_frame,
-                                       GofMemory& memory) const;
+  // Keeps a reference to the frames.
+  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const;
   // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
   // unit of the GOF, empty if there is to be none. Error: that of the source.
   InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
@@ -67,9 +53,8 @@ class SequenceCoding {
   const EncoderSettings& settings_;
   ConnectivityCode connectivity_;
   Topology topology_;
-  ClusterContext context_;
-  VertexLayers layers_;  // of the Main profile
-  std::optional<SkinnedContext> bone_context_;
+  SequenceMesh mesh_;
+  GofKinds kinds_;
 };
 
 // The units of a coded GOF, as they stand in a stream.

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "encoder/math/det_math.h"
-#include "encoder/sequence/target_search.h"
 
 namespace rlpc {
 namespace {
@@ -39,6 +38,25 @@ TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch
 }
 
 }  // namespace
+
+TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
+                        double rms_spread) {
+  const double steps_per_unit = exact_exp2(-header.grid.log2_step);
+  double step_of_error = 6.0;
+  AnalysisRange analysis_range;
+  if (header.profile_idc == kProfileMain && settings.target.kind == Target::kKg) {
+    // At larger errors more components are left out, which err less than coded ones would.
+    constexpr double kUsualError = 0.1;  // per cent
+    step_of_error = 9.0 * det_exp2(0.2 * det_log2(settings.target.value / kUsualError));
+  }
+  if (header.profile_idc == kProfileMain && settings.preset == Preset::kFast) {
+    // Analyses for finer steps than are needed cost less than others.
+    analysis_range = {.finest = 0.9, .made_for = 1.25, .coarsest = 1.65};
+    step_of_error *= 0.92;
+  }
+  return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error,
+          analysis_range};
+}
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);

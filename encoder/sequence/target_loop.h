@@ -6,8 +6,14 @@
 
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/gof_batch.h"
+#include "encoder/sequence/target_search.h"
 
 namespace rlpc {
+
+// rms_spread: of a coordinate about the mean of its frame, units, over the frames that the
+// target is for.
+TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
+                        double rms_spread);
 
 struct TargetTask {
   const EncoderSettings& settings;

@@ -92,9 +92,9 @@ class SkinnedAnalyser {
         settings_(settings),
         step_(step) {}
 
-  SkinnedAnalysis analyse(std::uint32_t first_frame) {
+  SkinnedAnalysis analyse() {
     SkinnedGof& gof = found_.gof;
-    gof.first_frame = first_frame;
+    gof.first_frame = frames_.first_frame;
     gof.num_frames = frames_.num_frames;
     gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
     gof.prediction = settings_.prediction;
@@ -297,10 +297,9 @@ double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertic
 }
 
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
-                                    const GofFrames& frames, std::uint32_t first_frame,
-                                    const Rig& rig, const SkinnedSettings& settings,
-                                    double step) {
-  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step).analyse(first_frame);
+                                    const GofFrames& frames, const Rig& rig,
+                                    const SkinnedSettings& settings, double step) {
+  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step).analyse();
 }
 
 }  // namespace rlpc

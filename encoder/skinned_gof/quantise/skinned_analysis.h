@@ -49,9 +49,8 @@ struct SkinnedAnalysis {
 // Every coded value adds about the same squared error, step^2 / 12, to the sum over all
 // coordinates of all frames.
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
-                                    const GofFrames& frames, std::uint32_t first_frame,
-                                    const Rig& rig, const SkinnedSettings& settings,
-                                    double step);
+                                    const GofFrames& frames, const Rig& rig,
+                                    const SkinnedSettings& settings, double step);
 
 // Energy below which a trajectory costs more than it saves, whatever its temporal vector costs.
 double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices);

@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/search/skinned_gof_search.h"
+#include "encoder/skinned_gof/skinned_gof_coder.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,6 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPositionBits = 20;
 constexpr std::uint32_t kRings = 24;
 constexpr std::uint32_t kSides = 8;
 constexpr std::uint32_t kVertices = kRings * kSides;
@@ -31,7 +30,8 @@ struct Animation {
                                         Prediction::kParallelograms, Prediction::kLayers}) {
       meshes.emplace_back(prediction, topology, layers);
     }
-    frames.num_vertices = kVertices;
+    header.num_vertices = frames.num_vertices = kVertices;
+    header.position_bits = 20;
     frames.num_frames = num_frames;
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < kVertices; ++v) {
@@ -58,6 +58,12 @@ struct Animation {
     return list;
   }
 
+  // The settings are kept by reference.
+  SkinnedContext context(const EncoderSettings& settings) const {
+    return {header, settings, triangles, meshes};
+  }
+
+  SequenceHeader header;
   std::vector<Triangle> triangles;
   Topology topology;
   VertexLayers layers;
@@ -90,11 +96,10 @@ struct Outcome {
 };
 
 Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
-  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<SkinnedChoice> choice;
-  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
+  const SkinnedContext context = a.context(settings);
+  SkinnedGofCoder coder(context, a.frames);
   Outcome outcome;
-  outcome.gof = search.encode(step, step);
+  outcome.gof = coder.encode(step, step);
   for (const auto& unit : outcome.gof.units) outcome.bytes += unit.payload.size();
   std::vector<std::int32_t> positions(3 * kVertices);
   double sum = 0.0;
@@ -115,7 +120,7 @@ EncoderSettings fast() {
 }
 
 // The cost of more frames of the same shape.
-TEST(SkinnedGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
+TEST(SkinnedGofCoder, MoreFramesOfAStillMeshCostNextToNothing) {
   const std::size_t one = encode(Animation(still, 2), 8.0, fast()).bytes;
   const Outcome many = encode(Animation(still, 100), 8.0, fast());
   EXPECT_EQ(many.gof.clusters, 1U);
@@ -125,7 +130,7 @@ TEST(SkinnedGofSearch, MoreFramesOfAStillMeshCostNextToNothing) {
   EXPECT_LT(many.rms_error, 8.0);
 }
 
-TEST(SkinnedGofSearch, ARigidMotionIsOneBone) {
+TEST(SkinnedGofCoder, ARigidMotionIsOneBone) {
   const Outcome still_mesh = encode(Animation(still, 40), 8.0, fast());
   const Outcome moving = encode(Animation(rigid, 40), 8.0, fast());
   EXPECT_EQ(moving.gof.clusters, 1U);
@@ -136,7 +141,7 @@ TEST(SkinnedGofSearch, ARigidMotionIsOneBone) {
 }
 
 // Closed loop: the error follows the step, and does not grow on the way.
-TEST(SkinnedGofSearch, TheErrorFollowsTheStep) {
+TEST(SkinnedGofCoder, TheErrorFollowsTheStep) {
   const Animation a(bending);
   double last_error = 0.0;
   std::size_t last_bytes = 1U << 30;
@@ -151,18 +156,18 @@ TEST(SkinnedGofSearch, TheErrorFollowsTheStep) {
 }
 
 // The real error is another, by about the same factor at all steps.
-TEST(SkinnedGofSearch, ExpectsTheErrorOfOneBone) {
+TEST(SkinnedGofCoder, ExpectsTheErrorOfOneBone) {
   const Animation a(bending);
-  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<SkinnedChoice> choice;
-  SkinnedGofSearch search(context, a.frames, 0, fast(), choice);
-  EXPECT_FALSE(search.expected_error(10.0));
-  search.analyse(10.0);
+  const EncoderSettings settings = fast();
+  const SkinnedContext context = a.context(settings);
+  SkinnedGofCoder coder(context, a.frames);
+  EXPECT_FALSE(coder.expected_error(10.0));
+  coder.analyse(10.0);
   double least = 1e9;
   double most = 0.0;
   for (const double step : {10.0, 13.0, 16.0, 20.0}) {
-    const double real = squared_error(a.frames, search.encode(step, 10.0).frame);
-    const double factor = std::sqrt(real / search.expected_error(step).value());
+    const double real = squared_error(a.frames, coder.encode(step, 10.0).frame);
+    const double factor = std::sqrt(real / coder.expected_error(step).value());
     least = std::min(least, factor);
     most = std::max(most, factor);
   }
@@ -171,18 +176,17 @@ TEST(SkinnedGofSearch, ExpectsTheErrorOfOneBone) {
   EXPECT_LT(most, 1.1 * least);
 }
 
-TEST(SkinnedGofSearch, ExpectsNothingOfManyBones) {
+TEST(SkinnedGofCoder, ExpectsNothingOfManyBones) {
   const Animation a(bending);
-  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<SkinnedChoice> choice;
   EncoderSettings settings = fast();
   settings.main.bones = 2;
-  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
-  search.analyse(10.0);
-  EXPECT_FALSE(search.expected_error(10.0));
+  const SkinnedContext context = a.context(settings);
+  SkinnedGofCoder coder(context, a.frames);
+  coder.analyse(10.0);
+  EXPECT_FALSE(coder.expected_error(10.0));
 }
 
-TEST(SkinnedGofSearch, IsTheSameEachTime) {
+TEST(SkinnedGofCoder, IsTheSameEachTime) {
   const Animation a(bending);
   const Outcome first = encode(a, 20.0, {});
   const Outcome second = encode(a, 20.0, {});
@@ -194,20 +198,18 @@ TEST(SkinnedGofSearch, IsTheSameEachTime) {
 }
 
 // The encoder tries steps one after the other: what is kept from one to the next does not show.
-TEST(SkinnedGofSearch, DoesNotDependOnTheStepsTriedBefore) {
+TEST(SkinnedGofCoder, AReleasedAnalysisIsMadeAgain) {
   const Animation a(bending);
   const EncoderSettings settings = fast();
-  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<SkinnedChoice> choice;
-  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
-  search.encode(20.0, 20.0);
-  ASSERT_TRUE(choice);
-  for (const auto& [step, analysis_step] :
-       {std::pair{50.0, 20.0}, std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
-    std::optional<SkinnedChoice> same = choice;
-    SkinnedGofSearch fresh(context, a.frames, 0, settings, same);
-    const auto expected = fresh.encode(step, analysis_step).units;
-    const auto units = search.encode(step, analysis_step).units;
+  const SkinnedContext context = a.context(settings);
+  SkinnedGofCoder keeping(context, a.frames);
+  SkinnedGofCoder releasing(context, a.frames);
+  for (const auto& [step, analysis_step] : {std::pair{20.0, 20.0}, std::pair{50.0, 20.0},
+                                            std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
+    const auto expected = releasing.encode(step, analysis_step).units;
+    releasing.release_analysis();
+    EXPECT_TRUE(releasing.needs_frames(step, analysis_step));
+    const auto units = keeping.encode(step, analysis_step).units;
     ASSERT_EQ(units.size(), expected.size());
     for (std::size_t i = 0; i < units.size(); ++i) {
       EXPECT_EQ(units[i].payload, expected[i].payload) << step << " " << i;
@@ -215,7 +217,7 @@ TEST(SkinnedGofSearch, DoesNotDependOnTheStepsTriedBefore) {
   }
 }
 
-TEST(SkinnedGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
+TEST(SkinnedGofCoder, HasAsManyBonesAndTrajectoriesAsAsked) {
   const Animation a(bending);
   EncoderSettings settings = fast();
   settings.main.bones = 3;
@@ -226,7 +228,7 @@ TEST(SkinnedGofSearch, HasAsManyBonesAndTrajectoriesAsAsked) {
 }
 
 // As far as bones, tools and their prediction go, nothing that can be asked for is better.
-TEST(SkinnedGofSearch, ChoosesThePredictionThatCostsLeast) {
+TEST(SkinnedGofCoder, ChoosesThePredictionThatCostsLeast) {
   const double step = 20.0;
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
     const Outcome o = encode(a, step, settings);
@@ -250,27 +252,26 @@ TEST(SkinnedGofSearch, ChoosesThePredictionThatCostsLeast) {
 }
 
 // Frames may go where they are not needed.
-TEST(SkinnedGofSearch, SaysWhenItNeedsTheFrames) {
+TEST(SkinnedGofCoder, SaysWhenItNeedsTheFrames) {
   Animation a(bending);
   const EncoderSettings settings = fast();
-  const SkinnedContext context{a.meshes, a.triangles, kPositionBits};
-  std::optional<SkinnedChoice> choice;
-  SkinnedGofSearch search(context, a.frames, 0, settings, choice);
-  EXPECT_TRUE(search.needs_frames(20.0, 20.0));
-  search.encode(20.0, 20.0);
-  EXPECT_FALSE(search.needs_frames(22.0, 20.0));
-  const auto expected = search.encode(22.0, 20.0).units;
-  EXPECT_TRUE(search.needs_frames(26.0, 26.0));
-  EXPECT_TRUE(search.needs_frames(1e6, 20.0));  // no trajectories: the analysis is made anew
+  const SkinnedContext context = a.context(settings);
+  SkinnedGofCoder coder(context, a.frames);
+  EXPECT_TRUE(coder.needs_frames(20.0, 20.0));
+  coder.encode(20.0, 20.0);
+  EXPECT_FALSE(coder.needs_frames(22.0, 20.0));
+  const auto expected = coder.encode(22.0, 20.0).units;
+  EXPECT_TRUE(coder.needs_frames(26.0, 26.0));
+  EXPECT_TRUE(coder.needs_frames(1e6, 20.0));  // no trajectories: the analysis is made anew
   a.frames.xyz = {};
-  const auto units = search.encode(22.0, 20.0).units;
+  const auto units = coder.encode(22.0, 20.0).units;
   ASSERT_EQ(units.size(), expected.size());
   for (std::size_t i = 0; i < units.size(); ++i) {
     EXPECT_EQ(units[i].payload, expected[i].payload) << i;
   }
 }
 
-TEST(SkinnedGofSearch, CountsItsFactors) {
+TEST(SkinnedGofCoder, CountsItsFactors) {
   const Outcome outcome = encode(Animation(bending), 4.0, fast());
   const std::uint64_t bones = outcome.gof.clusters;
   const std::uint64_t trajectories = outcome.gof.components;

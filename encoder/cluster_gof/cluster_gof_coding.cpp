@@ -1,0 +1,105 @@
+#include "encoder/cluster_gof/cluster_gof_coding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "common/int_math.h"
+#include "encoder/math/det_math.h"
+#include "encoder/write/write_cluster_gof.h"
+
+namespace rlpc {
+namespace {
+
+// Seeds are coded this much finer than other values: their error turns whole clusters.
+constexpr double kSeedStepFactor = 0.18;
+// A component with less energy than this many squared steps costs more than it brings.
+constexpr double kMinEnergySteps = 1.2;
+
+}  // namespace
+
+MotionClusters ClusterGofCoding::motion() const {
+  return {frames_, mesh_.triangles, mesh_.header.position_bits};
+}
+
+Clustering ClusterGofCoding::cluster(MotionClusters& motion, std::uint32_t count) const {
+  const SeedMode mode = settings_.baseline.seed_mode;
+  const bool spread =
+      mode == SeedMode::kSpread || (mode == SeedMode::kAuto && settings_.baseline.qu == 0);
+  return spread ? motion.spread_clusters(count) : motion.clusters(count);
+}
+
+ClusterAnalysisSettings ClusterGofCoding::analysis_settings(double step, bool world) const {
+  const BaselineTools& tools = settings_.baseline;
+  ClusterAnalysisSettings a;
+  a.world = world;
+  a.max_components = kLevels.back().max_components;
+  const double seed_step =
+      tools.qdelta > 0 ? exact_exp2(std::max(mesh_.header.position_bits - tools.qdelta, 0))
+                       : step * kSeedStepFactor;
+  a.seed_step = static_cast<std::uint32_t>(
+      std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
+  if (settings_.components > 0) {
+    // With a budget, clusters share: some take more than their mean.
+    a.max_components = std::min<std::size_t>(
+        a.max_components,
+        tools.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
+  } else if (tools.qu == 0) {
+    a.min_energy = kMinEnergySteps * step * step;
+  }
+  return a;
+}
+
+ClusterCodingSettings ClusterGofCoding::coding_settings(double step) const {
+  const BaselineTools& tools = settings_.baseline;
+  ClusterCodingSettings c;
+  c.step = step;
+  c.components = settings_.components;
+  if (tools.qu > 0) {
+    c.steps = ClusterCodingSettings::Steps::kRanges;
+    c.qu = tools.qu;
+    c.qc = tools.qc;
+    c.dead_zone = 0.0;
+  }
+  if (!tools.rdo) {
+    c.allocation = ClusterCodingSettings::Allocation::kFixed;
+  } else if (settings_.components > 0) {
+    c.allocation = tools.rate_in_vectors ? ClusterCodingSettings::Allocation::kVectorBudget
+                                         : ClusterCodingSettings::Allocation::kBitBudget;
+  }
+  return c;
+}
+
+ClusterGofAnalysis ClusterGofCoding::analyse(double step, bool world,
+                                             const Clustering& clustering) const {
+  return analyse_cluster_gof(mesh_, frames_, clustering, analysis_settings(step, world));
+}
+
+EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analysis) const {
+  const ClusterGof gof = code_cluster_gof(frames_, analysis, coding_settings(step));
+  EncodedGof encoded;
+  encoded.units.push_back({UnitType::kGof, write_cluster_gof(gof, mesh_.header, mesh_.topology)});
+  const auto recon = std::make_shared<ClusterRecon>(mesh_.header, mesh_.topology, gof);
+  encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
+    recon->frame(f, positions);
+  };
+  encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
+  encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
+  for (const Cluster& cluster : gof.clusters) {
+    const auto components = static_cast<std::uint32_t>(cluster.components.size());
+    encoded.components += components;
+    encoded.most_components = std::max(encoded.most_components, components);
+    for (const Component& component : cluster.components) {
+      encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
+    }
+  }
+  return encoded;
+}
+
+EncodedGof ClusterGofCoding::encode(double step, const ClusterChoice& choice,
+                                    MotionClusters& motion) const {
+  return encode(step, analyse(step, choice.world, cluster(motion, choice.clusters)));
+}
+
+}  // namespace rlpc

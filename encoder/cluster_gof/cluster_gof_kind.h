@@ -1,0 +1,13 @@
+// GOFs of clusters (clauses 6.5 and 8.4 to 8.6).
+#pragma once
+
+#include <memory>
+
+#include "encoder/gof/gof_kind.h"
+
+namespace rlpc {
+
+std::unique_ptr<GofKind> make_cluster_gof_kind(const SequenceMesh& mesh,
+                                               const EncoderSettings& settings);
+
+}  // namespace rlpc

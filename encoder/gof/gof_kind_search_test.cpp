@@ -1,0 +1,138 @@
+#include "encoder/gof/gof_kind_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+// How often kinds were asked for something.
+struct Calls {
+  int estimates = 0;
+  int encodings = 0;
+  int released = 0;
+};
+
+// A GOF of so many bytes, without error.
+class FakeCoder : public GofCoder {
+ public:
+  FakeCoder(std::size_t bytes, Calls& calls) : bytes_(bytes), calls_(calls) {}
+  bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
+  EncodedGof encode(double /*step*/, double /*analysis_step*/) override {
+    ++calls_.encodings;
+    EncodedGof encoded;
+    encoded.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(bytes_)});
+    encoded.frame = [](std::uint32_t, std::span<std::int32_t>) {};
+    return encoded;
+  }
+  void release_analysis() override { ++calls_.released; }
+
+ private:
+  std::size_t bytes_;
+  Calls& calls_;
+};
+
+class FakeKind : public GofKind {
+ public:
+  // expected: relative to the best cost before.
+  FakeKind(std::size_t bytes, std::optional<double> expected, Calls& calls)
+      : bytes_(bytes), expected_(expected), calls_(calls) {}
+  std::unique_ptr<GofCoder> make_coder(const GofFrames& /*frames*/) const override {
+    return std::make_unique<FakeCoder>(bytes_, calls_);
+  }
+  std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
+                                      double step) const override {
+    ++calls_.estimates;
+    if (!expected_) return std::nullopt;
+    return *expected_ * lagrangian_cost(best, frames, step);
+  }
+
+ private:
+  std::size_t bytes_;
+  std::optional<double> expected_;
+  Calls& calls_;
+};
+
+struct Fixture {
+  void add(std::size_t bytes, std::optional<double> expected) {
+    calls.push_back(std::make_unique<Calls>());
+    kinds.push_back(std::make_unique<FakeKind>(bytes, expected, *calls.back()));
+  }
+  static std::size_t bytes(GofCoder& search, double step) {
+    return search.encode(step, step).units.front().payload.size();
+  }
+
+  GofFrames frames{.num_vertices = 1, .num_frames = 1, .xyz = {0.0, 0.0, 0.0}};
+  GofKinds kinds;
+  std::vector<std::unique_ptr<Calls>> calls;
+};
+
+TEST(GofKindSearch, TakesTheCheapestKind) {
+  Fixture f;
+  f.add(100, std::nullopt);
+  f.add(80, 1.0);
+  f.add(90, 1.0);
+  GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
+  // Near that step the choice stands.
+  EXPECT_EQ(Fixture::bytes(search, 11.0), 80U);
+  EXPECT_EQ(f.calls[0]->encodings, 1);
+  EXPECT_EQ(f.calls[1]->encodings, 2);
+  EXPECT_EQ(f.calls[2]->encodings, 1);
+}
+
+TEST(GofKindSearch, EncodesOnlyKindsThatMayWin) {
+  Fixture f;
+  f.add(100, std::nullopt);
+  f.add(50, 1.12);
+  f.add(50, std::nullopt);
+  GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 100U);
+  EXPECT_EQ(f.calls[1]->estimates, 1);
+  EXPECT_EQ(f.calls[1]->encodings, 0);
+  EXPECT_EQ(f.calls[2]->estimates, 1);
+  EXPECT_EQ(f.calls[2]->encodings, 0);
+}
+
+TEST(GofKindSearch, SlowEncodesAllWithoutAsking) {
+  Fixture f;
+  f.add(100, std::nullopt);
+  f.add(50, 9.0);
+  GofKindSearch search(f.kinds, f.frames, Preset::kSlow);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 50U);
+  EXPECT_EQ(f.calls[1]->estimates, 0);
+}
+
+TEST(GofKindSearch, ComparesAgainFarAwayUnlessItIsSettled) {
+  for (const double expected : {1.12, 1.2}) {
+    Fixture f;
+    f.add(100, std::nullopt);
+    f.add(50, expected);
+    GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
+    Fixture::bytes(search, 10.0);
+    EXPECT_EQ(search.needs_frames(20.0, 20.0), expected < 1.15);
+    Fixture::bytes(search, 20.0);
+    EXPECT_EQ(f.calls[1]->estimates, expected < 1.15 ? 2 : 1);
+  }
+}
+
+TEST(GofKindSearch, ReleasesTheAnalysesOfItsCoders) {
+  Fixture f;
+  f.add(100, std::nullopt);
+  f.add(80, 1.0);
+  GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
+  search.release_analysis();
+  EXPECT_EQ(f.calls[0]->released, 1);
+  Fixture::bytes(search, 10.0);
+  search.release_analysis();
+  EXPECT_EQ(f.calls[0]->released, 2);
+  EXPECT_EQ(f.calls[1]->released, 1);
+}
+
+}  // namespace
+}  // namespace rlpc

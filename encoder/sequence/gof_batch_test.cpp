@@ -1,0 +1,116 @@
+#include "encoder/sequence/gof_batch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "encoder/sequence/grid_choice.h"
+
+namespace rlpc {
+namespace {
+
+// A strip of squares that waves.
+class WavingStrip final : public FrameSource {
+ public:
+  static constexpr std::uint32_t kColumns = 30;
+
+  explicit WavingStrip(std::uint32_t num_frames)
+      : FrameSource({2 * kColumns, num_frames, {}, squares()}) {}
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    ++reads;
+    for (std::uint32_t v = 0; v < num_vertices(); ++v) {
+      const double along = v >> 1;
+      xyz[3 * v] = static_cast<float>(along);
+      xyz[3 * v + 1] = static_cast<float>(v % 2);
+      xyz[3 * v + 2] = static_cast<float>(4.0 * std::sin(0.4 * frame + 0.3 * along) +
+                                          std::sin(0.9 * frame * along));
+    }
+    return std::nullopt;
+  }
+
+  int reads = 0;
+
+ private:
+  static std::vector<Triangle> squares() {
+    std::vector<Triangle> list;
+    for (std::uint32_t i = 0; i + 1 < kColumns; ++i) {
+      list.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+      list.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+    }
+    return list;
+  }
+};
+
+SequenceHeader header_of(FrameSource& source, const EncoderSettings& settings) {
+  SequenceHeader header;
+  header.profile_idc = settings.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
+  header.num_vertices = source.num_vertices();
+  header.num_triangles = static_cast<std::uint32_t>(source.triangles().size());
+  header.num_frames = source.num_frames();
+  set_grid(header, choose_grid(*measure_extent(source), 0.0));
+  return header;
+}
+
+// What analyses keep from one step to the next saves time, and nothing else.
+TEST(GofBatch, GivesTheSameBytesWhetherItKeepsAnalyses) {
+  for (const Profile profile : {Profile::kBaseline, Profile::kMain}) {
+    EncoderSettings settings;
+    settings.profile = profile;
+    WavingStrip source(24);
+    const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
+    const std::vector<GofSpan> spans{{0, 12}, {12, 12}};
+    GofBatch keeping(coding, source, spans, {.keep_analyses = true});
+    GofBatch releasing(coding, source, spans, {.keep_analyses = false});
+    EXPECT_EQ(keeping.num_frames(), 24U);
+    for (const double step : {900.0, 1000.0, 2500.0, 600.0}) {
+      const double analysis_step = step == 1000.0 ? 900.0 : step;
+      const auto kept = keeping.encode(step, analysis_step, {});
+      const auto released = releasing.encode(step, analysis_step, {});
+      ASSERT_TRUE(kept && released);
+      EXPECT_EQ(kept->gof_bytes, released->gof_bytes);
+      for (std::size_t g = 0; g < spans.size(); ++g) {
+        EXPECT_EQ(kept->gofs[g].bytes.units, released->gofs[g].bytes.units) << step;
+        EXPECT_FALSE(kept->gofs[g].frame);
+      }
+    }
+    EXPECT_FALSE(releasing.expected_error());
+  }
+}
+
+TEST(GofBatch, ExpectsTheErrorOfAllGofsOnceTheyAreAnalysed) {
+  EncoderSettings settings;
+  settings.preset = Preset::kFast;
+  WavingStrip source(24);
+  const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
+  GofBatch both(coding, source, {{0, 12}, {12, 12}}, {});
+  GofBatch first(coding, source, {{0, 12}}, {});
+  GofBatch second(coding, source, {{12, 12}}, {});
+  EXPECT_FALSE(both.expected_error());
+  for (GofBatch* batch : {&both, &first, &second}) ASSERT_FALSE(batch->analyse(1000.0));
+  const auto sum = both.expected_error();
+  ASSERT_TRUE(sum);
+  EXPECT_GT(sum(1000.0), 0.0);
+  EXPECT_DOUBLE_EQ(sum(1000.0),
+                   first.expected_error()(1000.0) + second.expected_error()(1000.0));
+}
+
+// The stream numbers frames on where a batch is not the first.
+TEST(GofBatch, NumbersFramesFromItsFirst) {
+  EncoderSettings settings;
+  settings.preset = Preset::kFast;
+  WavingStrip source(8);
+  const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
+  GofBatch plain(coding, source, {{0, 8}}, {});
+  GofBatch later(coding, source, {{0, 8}}, {.first_frame = 6, .keep_decoded = true});
+  const auto a = plain.encode(1000.0, 1000.0, {});
+  const auto b = later.encode(1000.0, 1000.0, {});
+  ASSERT_TRUE(a && b);
+  EXPECT_NE(a->gofs[0].bytes.units, b->gofs[0].bytes.units);
+  EXPECT_EQ(a->metrics.kg_error_percent, b->metrics.kg_error_percent);
+  EXPECT_TRUE(b->gofs[0].frame);
+}
+
+}  // namespace
+}  // namespace rlpc

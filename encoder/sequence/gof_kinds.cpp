@@ -1,0 +1,25 @@
+#include "encoder/sequence/gof_kinds.h"
+
+#include <array>
+#include <utility>
+
+#include "encoder/cluster_gof/cluster_gof_kind.h"
+#include "encoder/skinned_gof/skinned_gof_kind.h"
+
+namespace rlpc {
+namespace {
+
+// A new kind needs its factory here, and its folder in encoder/CMakeLists.txt.
+constexpr std::array<MakeGofKind, 2> kFactories{make_skinned_gof_kind, make_cluster_gof_kind};
+
+}  // namespace
+
+GofKinds make_gof_kinds(const SequenceMesh& mesh, const EncoderSettings& settings) {
+  GofKinds kinds;
+  for (const MakeGofKind make : kFactories) {
+    if (auto kind = make(mesh, settings)) kinds.push_back(std::move(kind));
+  }
+  return kinds;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,41 @@
+#include "encoder/skinned_gof/search/tool_search.h"
+
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
+
+}  // namespace
+
+// Geometry weights cost more than they bring where rest positions tell little, and
+// parallelograms predict regular meshes of few vertices better. Where bones leave little to
+// predict, rest positions cost less without layers.
+SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
+                          SkinnedTrial best) {
+  const MainTools& tools = context.settings.main;
+  const auto try_other = [&](auto SkinnedSettings::*member, auto value) {
+    SkinnedSettings other = best.candidate.settings;
+    if (other.*member == value) return;
+    other.*member = value;
+    best = trials.with_settings(std::move(best), other);
+  };
+  const bool thorough =
+      context.settings.preset == Preset::kSlow || context.header.num_vertices <= kSmallMesh;
+  if (best.candidate.settings.prediction == Prediction::kLayers) {
+    if (tools.geometry_weights) try_other(&SkinnedSettings::damping_log2, 0);
+    if (tools.layer_steps && thorough) try_other(&SkinnedSettings::layer_steps, false);
+  }
+  const bool any_prediction = !tools.prediction && tools.layer_groups <= 1;
+  if (any_prediction && best.candidate.rig.bones.size() > 1) {
+    try_other(&SkinnedSettings::prediction, Prediction::kNone);
+  }
+  if (any_prediction && thorough) {
+    try_other(&SkinnedSettings::prediction, Prediction::kParallelogram);
+    try_other(&SkinnedSettings::prediction, Prediction::kParallelograms);
+  }
+  return best;
+}
+
+}  // namespace rlpc
