@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "common/skinned_gof/skinned_gof.h"
+#include "encoder/math/small_system.h"
 
 namespace rlpc {
 namespace {
@@ -70,27 +71,15 @@ class SparseBlend {
   // Minimises w^T gram w at sum 1: proportional to the inverse of gram times ones.
   void unconstrained(Blend& blend) const {
     const std::size_t n = blend.size;
-    std::array<std::array<double, kMost>, kMost> a{};
-    std::array<double, kMost> x{};
+    SmallSystem<kMost> m;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) a[i][j] = at(blend.chosen[i], blend.chosen[j]);
-      a[i][i] += regular_;
-      x[i] = 1.0;
+      for (std::size_t j = 0; j < n; ++j) m.a[i][j] = at(blend.chosen[i], blend.chosen[j]);
+      m.a[i][i] += regular_;
+      m.b[i] = 1.0;
     }
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!(a[k][k] > 0.0)) continue;
-      for (std::size_t i = k + 1; i < n; ++i) {
-        const double factor = a[i][k] / a[k][k];
-        for (std::size_t j = k; j < n; ++j) a[i][j] -= factor * a[k][j];
-        x[i] -= factor * x[k];
-      }
-    }
+    const auto x = solve_small(m, n).x;
     double sum = 0.0;
-    for (std::size_t k = n; k-- > 0;) {
-      for (std::size_t j = k + 1; j < n; ++j) x[k] -= a[k][j] * x[j];
-      x[k] = a[k][k] > 0.0 ? x[k] / a[k][k] : 0.0;
-      sum += x[k];
-    }
+    for (std::size_t k = n; k-- > 0;) sum += x[k];
     for (std::size_t k = 0; k < n; ++k) {
       blend.weight[k] = sum > 0.0 ? x[k] / sum : 1.0 / static_cast<double>(n);
     }

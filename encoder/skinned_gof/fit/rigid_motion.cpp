@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "encoder/math/elimination.h"
+#include "encoder/math/small_system.h"
 
 namespace rlpc {
 
@@ -54,20 +54,20 @@ Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d
     // Newton's step for trace(R^T h), as a turn x after R: (trace(k) I - k) x = curl of k.
     const Eigen::Matrix3d k = h * r.transpose();
     const double trace = k(0, 0) + k(1, 1) + k(2, 2);
-    Equations3 m{};
+    SmallSystem<3> m;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto row = static_cast<Eigen::Index>(a);
       const auto next = static_cast<Eigen::Index>((a + 1) % 3);
       const auto last = static_cast<Eigen::Index>((a + 2) % 3);
       for (std::size_t b = 0; b < 3; ++b) {
         const auto col = static_cast<Eigen::Index>(b);
-        m[a][b] = (a == b ? trace : 0.0) - 0.5 * (k(row, col) + k(col, row));
+        m.a[a][b] = (a == b ? trace : 0.0) - 0.5 * (k(row, col) + k(col, row));
       }
-      m[a][3] = k(last, next) - k(next, last);
+      m.b[a] = k(last, next) - k(next, last);
     }
-    const auto x = solve3(m, 3, kFlat * trace);
-    if (!x) return rotation_matrix(nearest_rotation(h));
-    const auto [x0, x1, x2] = *x;
+    const auto turn = solve_small(m, 3, kFlat * trace);
+    if (!turn.is_unique) return rotation_matrix(nearest_rotation(h));
+    const auto [x0, x1, x2] = turn.x;
     const double size2 = x2 * x2 + x1 * x1 + x0 * x0;
     if (!(size2 < kFar * kFar)) return rotation_matrix(nearest_rotation(h));
     r = rotation_matrix(normalised({1.0, 0.5 * x0, 0.5 * x1, 0.5 * x2})) * r;

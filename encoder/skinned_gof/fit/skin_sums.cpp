@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "encoder/math/elimination.h"
+#include "encoder/math/small_system.h"
 #include "encoder/math/matrix_products.h"
 
 namespace rlpc {
@@ -226,15 +226,15 @@ Vec3d SkinSums::fit_rest(std::size_t vertex, const Vec3d& before,
     for (const RigWeight& b : weights) sum += a.weight * b.weight * product(a.bone, b.bone);
   }
   const double pull = kPull * static_cast<double>(num_frames_);
-  Equations3 m{};
+  SmallSystem<3> m;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t k = 0; k < 3; ++k) m[i][k] = sum(row, static_cast<Eigen::Index>(k));
-    m[i][i] += pull;
-    m[i][3] = wanted(row) - sum(row, 3) + pull * before(row);
+    for (std::size_t k = 0; k < 3; ++k) m.a[i][k] = sum(row, static_cast<Eigen::Index>(k));
+    m.a[i][i] += pull;
+    m.b[i] = wanted(row) - sum(row, 3) + pull * before(row);
   }
-  const auto x = solve3(m);
-  return x ? Vec3d((*x)[0], (*x)[1], (*x)[2]) : before;
+  const auto rest = solve_small(m);
+  return rest.is_unique ? Vec3d(rest.x[0], rest.x[1], rest.x[2]) : before;
 }
 
 }  // namespace rlpc

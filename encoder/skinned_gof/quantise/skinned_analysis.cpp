@@ -8,7 +8,7 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/math/det_math.h"
-#include "encoder/math/elimination.h"
+#include "encoder/math/small_system.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
 
 namespace rlpc {
@@ -193,18 +193,19 @@ class SkinnedAnalyser {
   // The rest position that suits the decoded bones best.
   Point fit_rest(std::uint32_t v) {
     find_mean_motion(v);
-    Equations3 m{};
+    SmallSystem<3> m;
     for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
       const MeanMotion& motion = mean_[f];
       const double* x = frames_.at(f, v);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-          for (std::size_t k = 0; k < 3; ++k) m[i][k] += motion.turn[i][c] * motion.turn[k][c];
-          m[i][3] += motion.turn[i][c] * (x[c] - motion.shift[c]);
+          for (std::size_t k = 0; k < 3; ++k) m.a[i][k] += motion.turn[i][c] * motion.turn[k][c];
+          m.b[i] += motion.turn[i][c] * (x[c] - motion.shift[c]);
         }
       }
     }
-    return solve3(m).value_or(rig_.rest[v]);
+    const auto rest = solve_small(m);
+    return rest.is_unique ? rest.x : rig_.rest[v];
   }
 
   void code_rest() {

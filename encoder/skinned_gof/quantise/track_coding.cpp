@@ -11,7 +11,7 @@
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
-#include "encoder/math/elimination.h"
+#include "encoder/math/small_system.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 
@@ -29,27 +29,27 @@ constexpr double kWorthOfBit = 0.1;
 // Weights of the `count` values before that predict the series best, in least squares.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
                  std::array<std::int16_t, kMaxTemporalWeights>& weights) {
-  Equations3 m{};  // normal equations
+  SmallSystem<kMaxTemporalWeights> m;  // normal equations
   const auto n = static_cast<std::size_t>(count);
   for (std::size_t f = n; f < values.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < n; ++k) {
-          m[i][k] += values[f - 1 - i][c] * values[f - 1 - k][c];
+          m.a[i][k] += values[f - 1 - i][c] * values[f - 1 - k][c];
         }
-        m[i][3] += values[f - 1 - i][c] * values[f][c];
+        m.b[i] += values[f - 1 - i][c] * values[f][c];
       }
     }
   }
   // What is predicted from has quantisation errors.
   for (std::size_t i = 0; i < n; ++i) {
-    m[i][i] += 0.25 * step * step * static_cast<double>(values.size());
+    m.a[i][i] += 0.25 * step * step * static_cast<double>(values.size());
   }
-  const auto solution = solve3(m, n);
-  if (!solution) return false;
+  const auto solution = solve_small(m, n);
+  if (!solution.is_unique) return false;
   for (std::size_t i = 0; i < n; ++i) {
     weights[i] = static_cast<std::int16_t>(
-        round_to_int(std::clamp((*solution)[i] * kWeightScale, -kMaxWeight, kMaxWeight)));
+        round_to_int(std::clamp(solution.x[i] * kWeightScale, -kMaxWeight, kMaxWeight)));
   }
   return true;
 }
