@@ -10,6 +10,7 @@
 #include "common/int_math.h"
 #include "encoder/cluster_gof/local_motion.h"
 #include "encoder/cluster_gof/rate_allocation.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 
 namespace rlpc {
@@ -304,7 +305,7 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
   }
   std::vector<std::size_t> chosen(count);
   if (settings.allocation == Allocation::kSlope) {
-    const double lambda = kClusterErrorPerBit * settings.step * settings.step;
+    const double lambda = kLambdaOfClusters * settings.step * settings.step;
     for (std::size_t i = 0; i < count; ++i) chosen[i] = allocate_by_slope(curves[i], lambda);
   } else if (settings.allocation == Allocation::kFixed) {
     for (std::size_t i = 0; i < count; ++i) chosen[i] = components[i].size();

@@ -16,9 +16,6 @@
 
 namespace rlpc {
 
-// What a bit must save, in squared steps.
-inline constexpr double kClusterErrorPerBit = 0.18;
-
 // What the analysis of a GOF depends on.
 struct ClusterAnalysisSettings {
   bool world = false;               // analyse in world coordinates, not in frames of seeds

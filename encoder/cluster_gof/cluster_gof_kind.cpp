@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "encoder/cluster_gof/cluster_gof_search.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/gof/step_cache.h"
 
 namespace rlpc {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "encoder/gof/lagrangian.h"
+
 namespace rlpc {
 namespace {
 
@@ -26,7 +28,7 @@ class ClusterSearch {
     const EncodedGof encoded = coding_.encode(step_, choice, motion_);
     const double error = squared_error(coding_.frames(), encoded.frame);
     const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
-    return error + kClusterErrorPerBit * step_ * step_ * bits;
+    return error + kLambdaOfClusters * step_ * step_ * bits;
   }
 
   // Climbs from a middling number of clusters while the cost falls.

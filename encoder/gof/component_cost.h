@@ -3,13 +3,12 @@
 
 #include <algorithm>
 
-#include "encoder/gof/gof_coder.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 
 namespace rlpc {
 
-// Squared error, with bits at their worth (kErrorPerBit): of coding the component, or of
-// leaving it out where that is cheaper.
+// Lagrangian cost of coding the component, or of leaving it out where that is cheaper.
 //
 //   energy         of the component, in squared grid steps
 //   vertices       of the GOF, each with one spatial factor
@@ -23,7 +22,7 @@ inline double expected_component_cost(double energy, double vertices, double val
   const double error = step * step / 12.0;  // of a coded value
   const double bits = 0.5 * vertices * det_log2(1.0 + spatial_left / error) +
                       0.5 * values * det_log2(1.0 + kTemporalLeft * energy / (values * error));
-  return std::min(energy, error * (vertices + values) + kErrorPerBit * step * step * bits);
+  return std::min(energy, error * (vertices + values) + lambda(step) * bits);
 }
 
 }  // namespace rlpc

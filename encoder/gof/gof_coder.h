@@ -9,13 +9,8 @@
 #include <vector>
 
 #include "common/syntax/stream_format.h"
-#include "encoder/gof/gof_frames.h"
 
 namespace rlpc {
-
-// At the operating point, a bit is worth this many squared steps of error: the slope of the
-// rate of a uniform quantiser, 1 / (2 ln 2 D) bits with D = step^2 / 12.
-inline constexpr double kErrorPerBit = 0.1155;
 
 // Sets the decoded positions of frame f of a GOF, as a decoder has them; [num_vertices][3].
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
@@ -33,13 +28,6 @@ struct EncodedGof {
   std::uint32_t components = 0;       // or trajectories
   std::uint32_t most_components = 0;  // of a cluster; all trajectories
 };
-
-// Squared error, with bits at their worth for a step.
-inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
-  double bits = 0.0;
-  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
-  return squared_error(frames, encoded.frame) + kErrorPerBit * step * step * bits;
-}
 
 // Encodes one GOF. What is chosen for it stands as long as the coder does; the analysis of the
 // last step, which is large, can be released, and is then made again when it is needed.

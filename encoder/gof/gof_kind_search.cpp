@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "encoder/gof/lagrangian.h"
+
 namespace rlpc {
 namespace {
 

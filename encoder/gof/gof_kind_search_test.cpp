@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/gof/lagrangian.h"
+
 namespace rlpc {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "common/bitstream/residual_models.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/slice_models.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 
@@ -23,10 +24,9 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
-// wanted is in steps. worth_of_bit: squared steps, at most 0.1155 (kErrorPerBit), less where
-// what follows is predicted from the value: a coarser one predicts worse.
+// wanted is in steps. lambda: squared steps per bit, at most kLambda.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
-                                     double wanted, double worth_of_bit) {
+                                     double wanted, double lambda) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
   constexpr double kNearlyUp = 0.95;
   const double steps = std::min(std::abs(wanted), kMost);
@@ -41,7 +41,7 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
     ++magnitude;
   } else if (part >= 0.5) {
     const double more_error = part * part - (1.0 - part) * (1.0 - part);
-    if (worth_of_bit * (bits(magnitude + 1) - bits(magnitude)) < more_error) ++magnitude;
+    if (lambda * (bits(magnitude + 1) - bits(magnitude)) < more_error) ++magnitude;
   }
   return wanted < 0.0 ? -magnitude : magnitude;
 }
@@ -55,10 +55,9 @@ class VertexResidualChoice {
   void start(std::uint32_t v) { contexts_.start(v); }
   // Of the next factor; wanted, in steps.
   std::int32_t next(double wanted) {
-    constexpr double kWorthOfBit = 0.06;
     ResidualModels& models = (*models_)[contexts_.activity()];
     const std::uint32_t expected = contexts_.expected();
-    const std::int32_t residual = cheaper_residual(models, expected, wanted, kWorthOfBit);
+    const std::int32_t residual = cheaper_residual(models, expected, wanted, kLambdaOfFactors);
     BitCost cost;  // adapts the models
     write_residual(cost, models, expected, residual);
     contexts_.update(residual);

@@ -31,7 +31,7 @@ TEST(CheaperResidual, IsNeverAStepOff) {
   ResidualModels models = quiet_models();
   for (int i = -300; i < 300; ++i) {
     const double wanted = 0.171875 * i;
-    const std::int32_t residual = cheaper_residual(models, 0, wanted, kErrorPerBit);
+    const std::int32_t residual = cheaper_residual(models, 0, wanted, kLambda);
     EXPECT_LT(std::abs(wanted - residual), 1.0) << wanted;
   }
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
-#include "encoder/gof/gof_coder.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/math/principal_components.h"
 
 namespace rlpc {
@@ -50,7 +50,7 @@ class GofCosts {
     }
   }
 
-  // Squared error, with bits at their worth (kErrorPerBit).
+  // Lagrangian cost.
   double of(const GofSpan& span) {
     const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
     if (is_new) place->second = expected(span);
@@ -93,7 +93,7 @@ class GofCosts {
     const double values = 3.0 * span.count;
     const double of_all =
         vertices * values / static_cast<double>(matrix.num_values * matrix.num_frames);
-    double cost = kErrorPerBit * step_ * step_ * kRestBits * vertices;
+    double cost = lambda(step_) * kRestBits * vertices;
     for (const double sampled : principal_components(matrix, 0, 0.0).energy) {
       const double energy = of_all * sampled;
       cost += expected_component_cost(energy, vertices, values,

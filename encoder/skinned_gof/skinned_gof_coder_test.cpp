@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/gof/lagrangian.h"
+
 namespace rlpc {
 namespace {
 
@@ -233,7 +235,7 @@ TEST(SkinnedGofCoder, ChoosesThePredictionThatCostsLeast) {
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
     const Outcome o = encode(a, step, settings);
     return o.rms_error * o.rms_error * static_cast<double>(a.frames.xyz.size()) +
-           kErrorPerBit * step * step * 8.0 * static_cast<double>(o.bytes);
+           lambda(step) * 8.0 * static_cast<double>(o.bytes);
   };
   bool differs = false;
   for (const Move& move : {Move(bending), Move(rigid)}) {

@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Squared error, with bits at their worth (kErrorPerBit), of the whole GOF.
+// Lagrangian cost of the whole GOF.
 //
 //   residuals               [vertex of the sample][3 * frame of the sample], grid units
 //   num_vertices, num_frames  of the GOF

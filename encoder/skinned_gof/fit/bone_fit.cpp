@@ -5,8 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "encoder/gof/gof_coder.h"
-#include "encoder/skinned_gof/fit/bone_estimate.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"
 
@@ -164,13 +163,11 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   return sample;
 }
 
-// Where a bit saves this much, all parts of a stream are in balance.
-double BoneFit::error_per_bit() const { return kErrorPerBit * options_.step * options_.step; }
-
 // What a free bone costs, as an error of all frames.
 double BoneFit::cost_of_bone() const {
   if (options_.step == 0.0) return 0.0;  // no error is small
-  return error_per_bit() * expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
+  return lambda(options_.step) *
+         expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
 }
 
 double BoneFit::expected_cost() const {
@@ -178,7 +175,7 @@ double BoneFit::expected_cost() const {
   return rlpc::expected_cost(sample_, solver_.residuals(), frames_.num_vertices,
                              frames_.num_frames, options_.step) +
          static_cast<double>(num_bones()) * cost_of_bone() +
-         error_per_bit() * kInfluenceBits * n * solver_.mean_influences();
+         lambda(options_.step) * kInfluenceBits * n * solver_.mean_influences();
 }
 
 double BoneFit::expected_translation_cost() const {
@@ -218,7 +215,7 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
   constexpr std::uint32_t kTogether = 256;
   constexpr int kRounds = 3;
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
-  const double per_influence = kInfluenceBits * error_per_bit() * part;
+  const double per_influence = kInfluenceBits * lambda(options_.step) * part;
   std::vector<Vec3d> positions;
   SkinSums sums(positions, solver.motions());
   for (std::uint32_t first = 0; first < frames_.num_vertices; first += kTogether) {

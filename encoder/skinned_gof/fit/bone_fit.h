@@ -53,7 +53,6 @@ class BoneFit {
   Rig rig(std::size_t max_influences) const;
 
  private:
-  double error_per_bit() const;
   double cost_of_bone() const;
   Vec3d centred(std::uint32_t frame, std::uint32_t vertex) const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;

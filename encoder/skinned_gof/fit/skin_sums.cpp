@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "encoder/math/small_system.h"
 #include "encoder/math/matrix_products.h"
+#include "encoder/math/small_system.h"
 
 namespace rlpc {
 namespace {

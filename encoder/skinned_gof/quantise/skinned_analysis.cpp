@@ -199,7 +199,8 @@ class SkinnedAnalyser {
       const double* x = frames_.at(f, v);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-          for (std::size_t k = 0; k < 3; ++k) m.a[i][k] += motion.turn[i][c] * motion.turn[k][c];
+          for (std::size_t k = 0; k < 3; ++k)
+            m.a[i][k] += motion.turn[i][c] * motion.turn[k][c];
           m.b[i] += motion.turn[i][c] * (x[c] - motion.shift[c]);
         }
       }

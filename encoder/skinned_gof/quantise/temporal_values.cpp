@@ -8,7 +8,7 @@
 
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
-#include "encoder/gof/gof_coder.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
 
@@ -110,8 +110,7 @@ class TemporalCoder {
   // factors cost and leave.
   double least_worth(double bits) const {
     const double of_vertex = has_bones() ? kSpatialCostOfBones : kSpatialCost;
-    return step_ * step_ *
-           (kErrorPerBit * bits + of_vertex * static_cast<double>(num_vertices_));
+    return step_ * step_ * (kLambda * bits + of_vertex * static_cast<double>(num_vertices_));
   }
 
   bool has_bones() const { return analysis_.gof.bones.size() > 1; }

@@ -9,6 +9,7 @@
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/cluster_gof/cluster_models.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
@@ -23,8 +24,6 @@ constexpr double kMaxWeight = 255.0;
 constexpr int kWeightBits = 9;
 // The smallest real part of a residual rotation that its vector part is divided by.
 constexpr double kMinRealPart = 0.1;
-// What a bit is worth, in squared steps.
-constexpr double kWorthOfBit = 0.1;
 
 // Weights of the `count` values before that predict the series best, in least squares.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
@@ -69,7 +68,7 @@ class ResidualChoice {
       const std::uint32_t expected = context_.expected(frame_, c);
       residual[c] = nearest_
                         ? rounded_residual(wanted[c], 0.5)
-                        : cheaper_residual(state_.models, expected, wanted[c], kWorthOfBit);
+                        : cheaper_residual(state_.models, expected, wanted[c], kLambdaOfTracks);
       const double error = wanted[c] - residual[c];
       error_ += error * error;
       write_residual(bits_, state_.models, expected, residual[c]);
@@ -90,7 +89,9 @@ class ResidualChoice {
   double error_ = 0.0;
 };
 
-double worth(const TrackCost& cost) { return cost.error + kWorthOfBit * cost.bits; }
+double lagrangian_cost(const TrackCost& cost) {
+  return cost.error + kLambdaOfTracks * cost.bits;
+}
 
 // Nothing as soon as they cost no less than another coding.
 std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,
@@ -100,7 +101,7 @@ std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>
   std::vector<Vec3i> coded;
   coded.reserve(values.size());
   for (const auto& value : values) {
-    if (worth(choice.cost()) >= worth(other)) return std::nullopt;
+    if (lagrangian_cost(choice.cost()) >= lagrangian_cost(other)) return std::nullopt;
     const Vec3l prediction = predict_trajectory(trajectory, coded);
     std::array<double, 3> wanted{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -198,7 +199,7 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
     tried.residual = std::move(*residuals);
     TrackCost cost = choice.cost();
     if (count > 0) cost.bits += kWeightBits * count;
-    if (worth(cost) >= worth(best)) continue;
+    if (lagrangian_cost(cost) >= lagrangian_cost(best)) continue;
     best = cost;
     trajectory = tried;
     best_state = choice.take_state();
@@ -217,7 +218,7 @@ BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* paren
       ResidualChoice rotation(rotations, nearest);
       ResidualChoice origin(origins, nearest);
       track_bone(wanted, parent, bone, rotation, origin);
-      const double now = worth((of_rotations ? rotation : origin).cost());
+      const double now = lagrangian_cost((of_rotations ? rotation : origin).cost());
       if (now >= best) continue;
       best = now;
       best_order = order;

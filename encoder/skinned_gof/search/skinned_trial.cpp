@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
 #include "encoder/write/write_skinned_gof.h"
 
