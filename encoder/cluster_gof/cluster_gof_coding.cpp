@@ -79,7 +79,8 @@ ClusterGofAnalysis ClusterGofCoding::analyse(double step, bool world,
 EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analysis) const {
   const ClusterGof gof = code_cluster_gof(frames_, analysis, coding_settings(step));
   EncodedGof encoded;
-  encoded.units.push_back({UnitType::kGof, write_cluster_gof(gof, mesh_.header, mesh_.topology)});
+  encoded.units.push_back(
+      {UnitType::kGof, write_cluster_gof(gof, mesh_.header, mesh_.topology)});
   const auto recon = std::make_shared<ClusterRecon>(mesh_.header, mesh_.topology, gof);
   encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);

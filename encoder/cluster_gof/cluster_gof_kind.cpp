@@ -40,7 +40,7 @@ class ClusterGofCoder : public GofCoder {
   StepCache<ClusterGofAnalysis> analysis_;
 };
 
-class ClusterGofKind : public GofKind {
+class ClusterGofKind : public GofEncoder {
  public:
   ClusterGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
       : mesh_(mesh),
@@ -78,8 +78,8 @@ class ClusterGofKind : public GofKind {
 // In the Main profile, only where there is time to compare. Costs do not tell which kind has
 // the smaller largest error; usually, it is bones. What is asked for of these is not asked for
 // of clusters.
-std::unique_ptr<GofKind> make_cluster_gof_kind(const SequenceMesh& mesh,
-                                               const EncoderSettings& settings) {
+std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
+                                                  const EncoderSettings& settings) {
   const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&
                           settings.target.kind != Target::kMaxError;
   if (settings.profile == Profile::kMain && !suits_main) return nullptr;

@@ -12,9 +12,9 @@
 
 namespace rlpc {
 
-class GofKind {
+class GofEncoder {
  public:
-  virtual ~GofKind() = default;
+  virtual ~GofEncoder() = default;
   // Frames are kept by reference.
   virtual std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const = 0;
   // Lagrangian cost that a coder of this kind is expected to come to, from a quick look. best:
@@ -23,11 +23,11 @@ class GofKind {
                                               double step) const = 0;
 };
 
-using GofKinds = std::vector<std::unique_ptr<GofKind>>;
+using GofKinds = std::vector<std::unique_ptr<GofEncoder>>;
 
 // Null where the profile or the settings do not allow for the kind. Mesh and settings are kept
 // by reference.
-using MakeGofKind = std::unique_ptr<GofKind> (*)(const SequenceMesh& mesh,
-                                                 const EncoderSettings& settings);
+using MakeGofKind = std::unique_ptr<GofEncoder> (*)(const SequenceMesh& mesh,
+                                                    const EncoderSettings& settings);
 
 }  // namespace rlpc

@@ -44,7 +44,7 @@ EncodedGof GofKindSearch::encode(double step, double analysis_step) {
                                : coders_[chosen_]->encode(step, analysis_step);
 }
 
-bool GofKindSearch::may_win(const GofKind& kind, const EncodedGof& best, double step) {
+bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, double step) {
   if (preset_ == Preset::kSlow) {
     compared_.is_settled = false;
     return true;

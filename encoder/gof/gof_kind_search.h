@@ -32,7 +32,7 @@ class GofKindSearch : public GofCoder {
   };
 
   bool is_far(double step) const;
-  bool may_win(const GofKind& kind, const EncodedGof& best, double step);
+  bool may_win(const GofEncoder& kind, const EncodedGof& best, double step);
   EncodedGof compare(double step, double analysis_step);
 
   const GofKinds& kinds_;

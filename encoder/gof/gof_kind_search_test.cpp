@@ -39,7 +39,7 @@ class FakeCoder : public GofCoder {
   Calls& calls_;
 };
 
-class FakeKind : public GofKind {
+class FakeKind : public GofEncoder {
  public:
   // expected: relative to the best cost before.
   FakeKind(std::size_t bytes, std::optional<double> expected, Calls& calls)

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-class SkinnedGofKind : public GofKind {
+class SkinnedGofKind : public GofEncoder {
  public:
   SkinnedGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
       : layers_(make_layers(mesh.header.num_vertices, mesh.triangles)),
@@ -35,8 +35,8 @@ class SkinnedGofKind : public GofKind {
 
 }  // namespace
 
-std::unique_ptr<GofKind> make_skinned_gof_kind(const SequenceMesh& mesh,
-                                               const EncoderSettings& settings) {
+std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
+                                                  const EncoderSettings& settings) {
   if (settings.profile != Profile::kMain) return nullptr;
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }

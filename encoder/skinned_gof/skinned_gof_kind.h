@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-std::unique_ptr<GofKind> make_skinned_gof_kind(const SequenceMesh& mesh,
-                                               const EncoderSettings& settings);
+std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
+                                                  const EncoderSettings& settings);
 
 }  // namespace rlpc

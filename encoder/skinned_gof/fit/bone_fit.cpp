@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/gof/lagrangian.h"
+#include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"
 
