@@ -114,16 +114,15 @@ class Output:
             self._file.close()
 
 
-def program_of(options):
-    if options.cache is None:
-        return spec_program.Program(options.spec)
-    return program_cache.CachedProgram(options.spec, options.cache)
+def program_of(folder, cache=None):
+    if cache is None:
+        return spec_program.Program(folder)
+    return program_cache.CachedProgram(folder, cache)
 
 
-def describe(options):
+def describe(folder, cache=None):
     """The answer to --rlpc-conformance, all of it from the specification."""
-    folder = options.spec
-    variables = program_of(options).compile(
+    variables = program_of(folder, cache).compile(
         {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
          "output_bytes": None})
     text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
@@ -150,7 +149,7 @@ def decode(options):
     except OSError as error:
         print(f"specdec: {error}", file=sys.stderr)
         return IO
-    program = program_of(options)
+    program = program_of(options.spec, options.cache)
     if options.max_mem is not None:
         limit_memory(options.max_mem)
     output = Output(options.output)
@@ -207,7 +206,7 @@ def main(argv=None):
     options = arguments(argv)
     try:
         if options.rlpc_conformance:
-            print(json.dumps(describe(options)))
+            print(json.dumps(describe(options.spec, options.cache)))
             return DONE
         return decode(options)
     except spec_program.SpecError as error:

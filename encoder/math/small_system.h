@@ -21,7 +21,8 @@ struct SmallSolution {
 
 // Eliminates the first n unknowns in turn; the others are 0. Pivots are above least_pivot.
 template <std::size_t N>
-SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N, double least_pivot = 0.0) {
+SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N,
+                             double least_pivot = 0.0) {
   auto& [a, b] = system;
   SmallSolution<N> solution;
   for (std::size_t k = 0; k < n; ++k) {
