@@ -42,17 +42,19 @@ inline GateContexts gate_contexts(const CutBorder& border) {
   const std::uint32_t gate = border.gate();
   const std::uint32_t to = border.next(gate);
   const std::uint32_t before = border.previous(gate);
-  const auto level = [&](std::uint32_t node, std::uint32_t lo, std::uint32_t hi) {
+  const auto clipped_degree = [&](std::uint32_t node, std::uint32_t lo, std::uint32_t hi) {
     return std::size_t{std::clamp(border.degree(node), lo, hi) - lo};
   };
   const auto bit = [](bool b) { return b ? std::size_t{1} : std::size_t{0}; };
   GateContexts ctx;
   ctx.boundary_flag = bit(border.is_boundary(to)) + 2 * bit(border.is_boundary(before)) +
-                      4 * level(gate, 2, 3) + 8 * level(to, 2, 3);
-  ctx.close_flag = level(gate, 2, 5);
-  ctx.new_vertex_flag = level(gate, 2, 8) + 7 * level(to, 2, 6) + 35 * level(before, 2, 4);
-  ctx.glue_previous_flag = level(gate, 2, 7) + 6 * level(before, 2, 6) + 30 * level(to, 2, 6);
-  ctx.glue_next_flag = level(to, 2, 7);
+                      4 * clipped_degree(gate, 2, 3) + 8 * clipped_degree(to, 2, 3);
+  ctx.close_flag = clipped_degree(gate, 2, 5);
+  ctx.new_vertex_flag = clipped_degree(gate, 2, 8) + 7 * clipped_degree(to, 2, 6) +
+                        35 * clipped_degree(before, 2, 4);
+  ctx.glue_previous_flag = clipped_degree(gate, 2, 7) + 6 * clipped_degree(before, 2, 6) +
+                           30 * clipped_degree(to, 2, 6);
+  ctx.glue_next_flag = clipped_degree(to, 2, 7);
   return ctx;
 }
 

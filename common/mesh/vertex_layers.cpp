@@ -53,8 +53,7 @@ struct TriangulationList {
   std::array<Triangulation, 42> items{};
 };
 
-// 8.9.4 Triangulations of a polygon: [n] are those of n corners. Triangulate( i, j ) of the
-// clause depends on j - i only.
+// 8.9.4 Triangulations of a polygon: [n] are those of n corners.
 constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
   std::array<TriangulationList, kMaxRing + 1> all{};
   all[2].size = 1;

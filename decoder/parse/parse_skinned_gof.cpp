@@ -159,7 +159,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   return true;
 }
 
-// 8.14.1 MayFollow( group, layers )
+// 8.14.1 MayFollow( group, index )
 bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
   if (group < last_group_ || layers != gof_.slice_layers[group]) return false;
   return group == 0 || gof_.slice_layers[group - 1] > layers;

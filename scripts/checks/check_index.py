@@ -3,7 +3,7 @@
 
 They list each function with the clause that defines it; each syntax element with the clauses of its
 syntax, and those of its semantics, where it is in bold; and each other variable with the clauses
-that assign to it, to an element of it, or append to it.
+that assign to it, to an element of it, or append to it, and with those that read it.
 
   --write    brings the tables up to date
 """
@@ -25,7 +25,7 @@ ANNEX = pathlib.Path("spec", "annex-d-index.md")
 _SEMANTICS = "7."
 
 
-def _variable(node):
+def variable(node):
     """The variable of the whole process that a target such as Ring[v] belongs to, or None."""
     while isinstance(node, ast.Subscript):
         node = node.value
@@ -33,16 +33,32 @@ def _variable(node):
     return node.id if known else None
 
 
-def _set_in(tree):
+def set_in(tree):
     """(variable, whether a descriptor reads it) of each assignment and append."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
             call = node.value
-            yield _variable(node.targets[0]), (
+            yield variable(node.targets[0]), (
                 isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
                 and spec_program.is_descriptor(call.func.id))
         elif isinstance(node, ast.Attribute):
-            yield _variable(node.value), False
+            yield variable(node.value), False
+
+
+def read_in(tree):
+    """The variables of the whole process that a block reads."""
+    changed = set()  # nodes that name what is assigned or appended to
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Assign, ast.Attribute)):
+            node = node.targets[0] if isinstance(node, ast.Assign) else node.value
+            while isinstance(node, ast.Subscript):
+                node = node.value
+            changed.add(node)
+    called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and spec_program.is_global(node.id):
+            if node not in changed and node not in called:
+                yield node.id
 
 
 def _explained_in(spec, element):
@@ -61,13 +77,16 @@ def _table(columns, rows):
 def tables(root):
     """{name: text} of the tables."""
     functions, clauses_of = {}, {False: {}, True: {}}  # read by a descriptor: {name: clauses}
+    readers = {}
     for _, _, clause, text in spec_program.blocks(root / "spec"):
         tree = ast.parse(text)
         functions.update((node.name, clause) for node in tree.body
                          if isinstance(node, ast.FunctionDef))
-        for name, read in _set_in(tree):
+        for name, read in set_in(tree):
             if name is not None:
                 clauses_of[read].setdefault(name, {})[clause] = None  # each once, in order
+        for name in read_in(tree):
+            readers.setdefault(name, {})[clause] = None
     spec = check_clauses.Spec(root)
     elements = clauses_of[True]
     variables = {name: found for name, found in clauses_of[False].items() if name not in elements}
@@ -77,8 +96,9 @@ def tables(root):
         "elements": _table(["syntax element", "syntax", "semantics"],
                            [[name, ", ".join(found), ", ".join(_explained_in(spec, name))]
                             for name, found in elements.items()]),
-        "variables": _table(["variable", "set in"],
-                            [[name, ", ".join(found)] for name, found in variables.items()]),
+        "variables": _table(["variable", "set in", "read in"],
+                            [[name, ", ".join(found), ", ".join(readers.get(name, ()))]
+                             for name, found in variables.items()]),
     }
 
 
