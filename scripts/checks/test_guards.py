@@ -15,6 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_clauses  # noqa: E402
 import check_float  # noqa: E402
+import check_headers_first  # noqa: E402
 import check_layers  # noqa: E402
 import check_rules  # noqa: E402
 import cpp_source  # noqa: E402
@@ -200,6 +201,16 @@ class Float(RealTree):
         with self.without("decoder/stream"):
             found = check_float.check(self.root)[0]
         self.assertEqual(found, ["decoder/stream/ has no sources"])
+
+
+class HeadersFirst(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_headers_first.check(self.root)[0], [])
+
+    def test_another_include_before_it(self):
+        self.complaint(check_headers_first.check, "encoder/write/write_stream.cpp",
+                       lambda text: "#include <vector>\n" + text,
+                       "encoder/write/write_stream.cpp", '"encoder/write/write_stream.h"')
 
 
 class Specification(RealTree):
