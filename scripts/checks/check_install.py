@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Installs a build into a temporary prefix, and uses it from outside: builds the programs of
 consumer/ against it, with find_package(rlpc), and with pkg-config where there is one, and runs
-them on an animation of streams/inputs."""
+them on an animation of streams/inputs. Also: what is installed is what scripts/quickstart builds."""
 
 import argparse
 import array
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -16,6 +17,8 @@ import tempfile
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
 CLIP = CONSUMER.parents[2] / "streams" / "inputs" / "elephant.obj"
 PC2_HEADER_BYTES = 32
+QUICKSTART = CONSUMER.parents[1] / "quickstart"
+TARGET = "installed_files"
 PAGES = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
 # Program: its source, and the module of pkg-config.
 PROGRAMS = {
@@ -35,6 +38,23 @@ def run(*command, **kwargs):
 def require(condition, complaint):
     if not condition:
         raise Wrong(complaint)
+
+
+def check_quickstart(build):
+    """After scripts/quickstart, which builds one target and no tests, `cmake --install` finds what
+    it looks for."""
+    require(f"--target {TARGET}\n" in QUICKSTART.read_text(encoding="utf-8"),
+            f"scripts/quickstart does not build {TARGET}")
+    script = (build / "cmake_install.cmake").read_text(encoding="utf-8")
+    looked_for = set(re.findall(rf'"{re.escape(str(build))}/([^"$]+)"', script))
+
+    def ninja(*words):
+        return run("ninja", "-C", build, "-t", *words, stdout=subprocess.PIPE, text=True).stdout
+    built = looked_for & {line.partition(":")[0] for line in ninja("targets", "all").splitlines()}
+    require(len(built) > 2 * len(PAGES), f"only {sorted(built)} are built, of what is installed")
+    commands = ninja("commands", TARGET)
+    missing = sorted(path for path in built if path not in commands)
+    require(not missing, f"{TARGET} does not build {missing}")
 
 
 class Clip:
@@ -130,6 +150,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         try:
+            if (args.build / "build.ninja").exists():
+                check_quickstart(args.build.resolve())
             run(args.cmake, "--install", args.build, "--prefix", work / "installed",
                 stdout=subprocess.DEVNULL)
             # The package must not depend on the place it was installed to.

@@ -2,6 +2,15 @@
 # The parts of the project that do not exist are left out.
 include(CMakePackageConfigHelpers)
 
+# Builds all that is installed, and no more: scripts/quickstart does.
+add_custom_target(installed_files)
+foreach(target rlpc rlpc_common rlpc_decoder rlpc_encoder rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval
+               man_pages)
+  if(TARGET ${target})
+    add_dependencies(installed_files ${target})
+  endif()
+endforeach()
+
 set(public_headers "")
 foreach(header decoder/rlpc_decoder.h decoder/describe_error.h encoder/rlpc_encoder.h
                encoder/frame_encoder.h)
