@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Every test has one label that says what it tests, so that `ctest -L` and `scripts/test --fast`
-leave none out unseen. The labels are those of scripts/cmake/tests.cmake.
+leave none out unseen. The labels are those of scripts/cmake/tests.cmake. And every test that a
+preset names is there.
 
   check_labels.py BUILD
 """
@@ -14,6 +15,7 @@ import sys
 
 import cpp_source
 
+PRESETS = "CMakePresets.json"
 LIST = pathlib.Path("scripts/cmake/tests.cmake")
 _LINE = re.compile(r"^#   (\w+) {2,}\S", re.MULTILINE)
 MORE = {"slow", "pure"}
@@ -37,19 +39,37 @@ def complaints_of(tests, known):
     return found
 
 
+def unknown_names(presets, tests):
+    """Presets choose tests by `^(name|name...)`."""
+    for preset in presets["testPresets"]:
+        chosen = preset.get("filter", {}).get("include", {}).get("name")
+        if chosen is None:
+            continue
+        names = re.fullmatch(r"\^\(([\w.|]+)\)", chosen)
+        if not names:
+            yield f"{PRESETS}: {preset['name']}: expected ^(name|name...), not {chosen}"
+            continue
+        for name in names.group(1).split("|"):
+            if not any(test.startswith(name) for test in tests):
+                yield f"{PRESETS}: {preset['name']}: no test's name begins with {name}"
+
+
 def labels_of(build):
     done = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"],
                           capture_output=True, text=True, check=True)
     return {test["name"]: {label for p in test["properties"] if p["name"] == "LABELS"
                            for label in p["value"]}
-            for test in json.loads(done.stdout)["tests"]}
+            for test in json.loads(done.stdout)["tests"]
+            if not test["name"].endswith("_NOT_BUILT")}  # which fails by itself
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     tests = labels_of(parser.parse_args().build)
-    complaints = complaints_of(tests, kinds(cpp_source.repository_root()))
+    root = cpp_source.repository_root()
+    complaints = complaints_of(tests, kinds(root))
+    complaints += unknown_names(json.loads((root / PRESETS).read_text(encoding="utf-8")), tests)
     return cpp_source.report("labels", complaints, f"{len(tests)} tests have their label")
 
 

@@ -128,6 +128,17 @@ class Labels(unittest.TestCase):
         self.assertEqual(check_labels.complaints_of({"a": {"unit"}}, self.KNOWN),
                          ["scripts/cmake/tests.cmake: no test is labelled cli"])
 
+    def test_presets_name_tests_that_are_there(self):
+        def found(name):
+            preset = {"name": "p", "filter": {"include": {"name": name}}}
+            presets = {"testPresets": [{"name": "q"}, preset]}
+            return list(check_labels.unknown_names(presets, {"a_test.X.Y", "b.C"}))
+
+        self.assertEqual(found("^(a_test|b.C)"), [])
+        self.assertEqual(found("^(a_test|b.D)"),
+                         ["CMakePresets.json: p: no test's name begins with b.D"])
+        self.assertIn("expected", found("a_test")[0])
+
     def test_the_list_is_that_of_the_project(self):
         self.assertLessEqual({"unit", "cli", "suite", "browser"},
                              check_labels.kinds(cpp_source.repository_root()))

@@ -1,4 +1,4 @@
-# Toolchain of the presets `sanitize` and `fuzz`: the clang that the project is tested with, else
+# Toolchain of the presets `sanitize`, `tsan` and `fuzz`: the clang that the project is tested with, else
 # whichever there is. `cmake --preset sanitize -DCMAKE_CXX_COMPILER=g++` still overrides it.
 if(NOT CMAKE_CXX_COMPILER)
   find_program(RLPC_CLANG NAMES clang++-14 clang++ REQUIRED)
