@@ -79,7 +79,7 @@ class Commands(rlpccov_test.FolderTest):
             code, _, errors = self.run_tool(self.streams / f"{name}.rlpc", "--update")
             self.assertEqual((code, errors), (0, ""))
         merged = self.run_tool("--merge", self.folder / "low.json", self.folder / "top.json",
-                               self.streams / "bad.json", self.streams / "mid.json")[1]
+                               self.streams / "MEASURED.json")[1]
         self.assertEqual(direct, merged)
 
     def test_minimum_keeps_all_goals_with_fewer_streams(self):
@@ -97,9 +97,10 @@ class Commands(rlpccov_test.FolderTest):
         path = self.sidecar("low", expect="accept")
         self.assertIn("other than measured now", self.run_tool(self.streams, "--check")[1])
         self.run_tool(self.streams / "low.rlpc", "--update")
-        self.assertNotIn("low.json", self.run_tool(self.streams, "--check")[1])
+        self.assertNotIn("low", self.run_tool(self.streams, "--check")[1])
+        content = json.loads((self.streams / "MEASURED.json").read_text())
+        self.assertEqual(content["streams"]["low"]["elements"], {"q_value": [0, 0]})
         content = json.loads(path.read_text())
-        self.assertEqual(content["measured"]["elements"], {"q_value": [0, 0]})
         path.write_text(json.dumps({**content, "rule": "R-QQQ-01", "rules": ["R-BIT-01"]}))
         self.assertIn("but the specification gives None", self.run_tool(self.streams, "--check")[1])
         (self.streams / "none.rlpc").write_bytes(b"")
@@ -107,6 +108,29 @@ class Commands(rlpccov_test.FolderTest):
         self.run_tool(self.streams / "none.rlpc", "--update")
         self.assertIn("none.json: names R-QQQ-01, which the stream never comes to",
                       self.run_tool(self.streams, "--check")[1])
+
+    def test_measurements_are_kept_by_suite_as_of_the_release(self):
+        area = self.streams / "accept" / "LOW"
+        area.mkdir(parents=True)
+        (self.streams / "low.rlpc").rename(area / "low.rlpc")
+        self.sidecar("low").rename(area / "low.json")
+        (self.streams / "SUITE.json").write_text("{}")
+        self.run_tool(area / "low.rlpc", "--update")
+        measured = (self.streams / "MEASURED.json").read_text()
+        self.assertEqual(list(json.loads(measured)["streams"]), ["low"])
+        self.goals(("6 Syntax", "def stream():\n    Next = 0\n    q_value = u(8)"))
+        changed = "low: other than measured now"
+        self.assertIn(changed, self.run_tool(self.streams, "--check")[1])
+        (area / "low.json").write_text('{"id": "low", "released": "2026-11-21"}')
+        self.assertNotIn(changed, self.run_tool(self.streams, "--check")[1])
+        self.run_tool(area / "low.rlpc", "--update")
+        self.assertEqual((self.streams / "MEASURED.json").read_text(), measured)
+        for name, listed in (("top", ["low", "top"]), ("mid", ["low", "mid"])):
+            self.sidecar(name)
+            self.run_tool(self.streams / f"{name}.rlpc", "--update")
+            kept = json.loads((self.streams / "MEASURED.json").read_text())["streams"]
+            self.assertEqual(list(kept), listed)
+            (self.streams / f"{name}.rlpc").unlink()
 
     def test_pages(self):
         self.sidecar("low", expect="accept")

@@ -76,7 +76,7 @@ def _expect(recipe, found, place):
 
 
 def sidecar_of(recipe, data, folder, program):
-    """The sidecar of a stream, but for what is measured."""
+    """The sidecar of a stream."""
     place = recipe.path
     if not _ID.match(recipe.path.stem):
         raise StreamsError(f"{place}: an id is an area, a number and a revision, GOF-0004a; one "
@@ -146,13 +146,10 @@ def sidecar_text(sidecar):
 
 
 def write_stream(place, data, sidecar):
-    """Writes both files; keeps what was measured if the stream is the same."""
+    """Writes both files; a date of release stays."""
     old = place.with_suffix(".json")
     if old.is_file():
-        before = json.loads(old.read_text(encoding="utf-8"))
-        if before.get("sha256") == sidecar["sha256"] and "measured" in before:
-            sidecar = {**sidecar, "measured": before["measured"]}
-        sidecar["released"] = before.get("released")
+        sidecar["released"] = json.loads(old.read_text(encoding="utf-8")).get("released")
     place.parent.mkdir(parents=True, exist_ok=True)
     suite.write_file(place, data)
     suite.write_file(old, sidecar_text(sidecar))
@@ -182,7 +179,7 @@ def strays(folder, places):
 
 
 def sums(folder):
-    """The text of SHA256SUMS: what a release freezes. Sidecars may gain measurements."""
+    """The text of SHA256SUMS: what a release freezes. Sidecars may say more later."""
     folder = pathlib.Path(folder)
     paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes*/*/*.recipe"))
     paths += [folder / name for name in (suite.INDEX, STRESS) if (folder / name).is_file()]
