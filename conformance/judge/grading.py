@@ -130,8 +130,13 @@ class Grader:
             cells["full"] = self._float_cell(stream, judgement, state)
         else:
             cells["strict"] = state
-            cells["diagnostic"] = _rule_cell(stream, judgement, run) if state == PASS else state
+            cells["diagnostic"] = self._rule_cell(stream, judgement, run) if state == PASS else state
         judgement.cells = cells
+
+    def _rule_cell(self, stream, judgement, run):
+        if run.finished.code == UNSUPPORTED and not self._decoder.declares(stream):
+            return NOT_SUPPORTED  # for its level, say, before what is unsupported by all
+        return _rule_cell(stream, judgement, run)
 
     def _float_cell(self, stream, judgement, state):
         if not self._floats:
