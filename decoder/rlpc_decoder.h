@@ -28,10 +28,11 @@
 #include <vector>
 
 #include "common/bitstream/trace.h"
+#include "common/io/float_position.h"
 #include "common/mesh/mesh.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
-#include "decoder/float_position.h"
+#include "decoder/file_source.h"
 #include "decoder/slice_cut.h"
 #include "decoder/stream/byte_source.h"
 

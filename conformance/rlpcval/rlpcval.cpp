@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/progress_bar.h"
+#include "common/io/standard_output.h"
 #include "conformance/rlpcval/rlpcval_report.h"
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
 #include "decoder/tools/exit_code.h"
-#include "decoder/tools/standard_output.h"
-#include "encoder/tools/progress_bar.h"
 
 namespace {
 
@@ -132,7 +132,7 @@ int main(int argc, char** argv) try {
     return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
   if (!options.explain.empty()) {
-    return rlpc::after_standard_output("rlpcval", explain(options.explain));
+    return rlpc::after_standard_output("rlpcval", explain(options.explain), rlpc::kExitIo);
   }
   if (options.inputs.empty()) {
     std::cerr << "rlpcval: give a stream to validate, or --help\n";
@@ -148,7 +148,7 @@ int main(int argc, char** argv) try {
     constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in paths
     std::cout << json.dump(2, ' ', false, kReplace) << "\n";
   }
-  return rlpc::after_standard_output("rlpcval", code);
+  return rlpc::after_standard_output("rlpcval", code, rlpc::kExitIo);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcval: out of memory\n");
   return rlpc::kExitLimit;

@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "decoder/float_position.h"
+#include "common/io/float_position.h"
 #include "decoder/output/frame_sink.h"
 #include "encoder/input/frame_source.h"
-#include "encoder/input/grid_value.h"
 
 namespace rlpc {
 namespace {
@@ -40,7 +39,7 @@ TEST(GridValue, IsTheSameOnBothSides) {
     for (const std::int32_t origin : {0, 1, -12345, kMin, kMax}) {
       const Grid grid{log2_step, {origin, origin, origin}};
       for (std::size_t i = 0; i < positions.size(); ++i) {
-        ASSERT_EQ(std::bit_cast<std::uint32_t>(grid_value(grid, i % 3, positions[i])),
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(float_position(grid, i % 3, positions[i])),
                   std::bit_cast<std::uint32_t>(float_position(grid, i % 3, positions[i])))
             << positions[i] << " + " << origin << ", step 2^" << log2_step;
       }

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/float_position.h"
 #include "decoder/describe_error.h"
-#include "decoder/float_position.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"

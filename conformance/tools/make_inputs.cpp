@@ -1,18 +1,15 @@
 // make_inputs FOLDER: writes the animations of streams/inputs.
 #include "conformance/tools/make_inputs.h"
 
-#include <bit>
 #include <charconv>
 #include <fstream>
 #include <iostream>
 #include <utility>
 
+#include "common/io/binary_numbers.h"
+
 namespace rlpc::inputs {
 namespace {
-
-void append_u32(std::string& bytes, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
-}
 
 std::array<float, 3> to_floats(Vec3 p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
@@ -43,13 +40,12 @@ std::string pc2_bytes(const Animation& animation) {
   std::string bytes("POINTCACHE2\0", 12);
   append_u32(bytes, 1);
   append_u32(bytes, static_cast<std::uint32_t>(animation.frames[0].size()));
-  append_u32(bytes, std::bit_cast<std::uint32_t>(0.0F));  // start
-  append_u32(bytes, std::bit_cast<std::uint32_t>(1.0F));  // frames per sample
+  append_f32(bytes, 0.0F);  // start
+  append_f32(bytes, 1.0F);  // frames per sample
   append_u32(bytes, static_cast<std::uint32_t>(animation.frames.size()));
   for (const auto& frame : animation.frames) {
     for (const Vec3& p : frame) {
-      for (const float value : to_floats(p))
-        append_u32(bytes, std::bit_cast<std::uint32_t>(value));
+      for (const float value : to_floats(p)) append_f32(bytes, value);
     }
   }
   return bytes;

@@ -2,7 +2,6 @@
 // for measurements of time and memory. One frame is held at a time.
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/binary_numbers.h"
 #include "conformance/tools/make_inputs.h"
 
 namespace rlpc::inputs {
@@ -64,11 +64,6 @@ std::vector<Vec3> frame_of(const Size& size, std::uint32_t frame) {
   return out;
 }
 
-void append_f32(std::string& bytes, double value) {
-  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift);
-}
-
 bool write_obj(const std::string& path, const Size& size) {
   std::ofstream file(path);
   file.precision(9);
@@ -89,17 +84,16 @@ bool write_obj(const std::string& path, const Size& size) {
 bool write_pc2(const std::string& path, const Size& size) {
   std::ofstream file(path, std::ios::binary);
   std::string bytes("POINTCACHE2\0", 12);
-  const auto append_u32 = [&](std::uint32_t value) {
-    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift);
-  };
-  append_u32(1);
-  append_u32(size.rings * size.around);
-  append_f32(bytes, 0.0);
-  append_f32(bytes, 1.0);
-  append_u32(size.frames);
+  append_u32(bytes, 1);
+  append_u32(bytes, size.rings * size.around);
+  append_f32(bytes, 0.0F);
+  append_f32(bytes, 1.0F);
+  append_u32(bytes, size.frames);
   for (std::uint32_t f = 0; f < size.frames && file; ++f) {
     for (const Vec3& p : frame_of(size, f)) {
-      for (const double value : {p.x, p.y, p.z}) append_f32(bytes, value);
+      for (const double value : {p.x, p.y, p.z}) {
+        append_f32(bytes, static_cast<float>(value));
+      }
     }
     file << bytes;
     bytes.clear();

@@ -13,17 +13,16 @@
 #include <string>
 #include <vector>
 
+#include "common/io/output_file.h"
+#include "common/io/progress_bar.h"
+#include "common/io/standard_output.h"
 #include "conformance/tools/comparison_input.h"
 #include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
-#include "decoder/output/output_file.h"
 #include "decoder/report/mesh_view.h"
-#include "decoder/tools/standard_output.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/metrics/surface_metrics.h"
-#include "encoder/tools/progress_bar.h"
 #include "encoder/tools/report_json.h"
-#include "encoder/tools/stream_file.h"
 
 namespace {
 
@@ -166,7 +165,7 @@ std::string digits(double value) {
   return {text, ec == std::errc() ? end : text};
 }
 
-std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::Distortion& d) {
+std::optional<rlpc::OutputError> write_csv(const std::string& path, const rlpc::Distortion& d) {
   std::string text =
       "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db,sted_spatial,"
       "sted_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
@@ -179,9 +178,9 @@ std::optional<rlpc::InputError> write_csv(const std::string& path, const rlpc::D
             digits(surface.sted_spatial) + "," + digits(surface.sted_temporal) + "," +
             digits(surface.mean_normal_angle) + "," + digits(surface.max_normal_angle) + "\n";
   }
-  rlpc::StreamFile file(path);
-  file.write(text);
-  return file.commit();
+  auto file = rlpc::OutputFile::create(path);
+  if (!file) return file.error();
+  return rlpc::write_and_commit(*file, text);
 }
 
 struct Rate {

@@ -8,18 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "common/io/output_file.h"
 #include "common/mesh/mesh.h"
-#include "common/result.h"
 
 namespace rlpc {
-
-// One line for the user: path, what failed, and the system's reason.
-struct OutputError {
-  std::string message;
-  bool is_usage = false;  // what was asked for cannot be; no file is at fault
-};
-template <class T>
-using OutputResult = Result<T, OutputError>;
 
 // Takes the frames in order. Everything is written beside its place under a temporary name and
 // moved there by finish(); a sink destroyed without a successful finish() removes what it wrote

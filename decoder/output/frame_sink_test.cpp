@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "decoder/float_position.h"
+#include "common/io/float_position.h"
 
 namespace rlpc {
 namespace {

@@ -13,10 +13,11 @@
 #include <limits>
 #include <utility>
 
-#include "decoder/float_position.h"
+#include "common/io/binary_numbers.h"
+#include "common/io/float_position.h"
+#include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
-#include "decoder/output/output_file.h"
 
 namespace rlpc {
 

@@ -4,8 +4,9 @@
 #include <cassert>
 #include <charconv>
 
-#include "decoder/float_position.h"
-#include "decoder/output/output_file.h"
+#include "common/io/binary_numbers.h"
+#include "common/io/float_position.h"
+#include "common/io/output_file.h"
 
 namespace rlpc {
 

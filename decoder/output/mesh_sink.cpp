@@ -4,9 +4,9 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
-#include "decoder/output/output_file.h"
 
 namespace rlpc {
 

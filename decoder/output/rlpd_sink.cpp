@@ -2,8 +2,9 @@
 #include <cassert>
 #include <utility>
 
+#include "common/io/binary_numbers.h"
+#include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
-#include "decoder/output/output_file.h"
 
 namespace rlpc {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "decoder/float_position.h"
+#include "common/io/float_position.h"
 #include "decoder/player/stream_player.h"
 
 namespace rlpc {

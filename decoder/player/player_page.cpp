@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/output_file.h"
 #include "decoder/output/base64.h"
-#include "decoder/output/output_file.h"
 
 namespace rlpc {
 namespace {

@@ -4,10 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
-
-#include "common/result.h"
 
 namespace rlpc {
 
@@ -25,18 +22,5 @@ class ByteSource {
 
 // Keeps a copy of the bytes.
 std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
-
-// Reads from a file as needed; a pipe is read whole. Error: Errc::kIo, the element says why.
-Result<std::unique_ptr<ByteSource>> file_source(const std::string& path);
-// Reads standard input whole.
-Result<std::unique_ptr<ByteSource>> standard_input_source();
-// For messages.
-inline std::string name_of_input(const std::string& path) {
-  return path == "-" ? "standard input" : path;
-}
-// The one or, for "-", the other.
-inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path) {
-  return path == "-" ? standard_input_source() : file_source(path);
-}
 
 }  // namespace rlpc

@@ -14,10 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/binary_numbers.h"
+#include "common/io/output_file.h"
 #include "common/syntax/stream_format.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
-#include "decoder/output/output_file.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/exit_code.h"
 

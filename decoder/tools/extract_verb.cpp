@@ -9,9 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "common/io/messages.h"
+#include "common/io/output_file.h"
 #include "decoder/describe_error.h"
 #include "decoder/extract/sub_stream_extractor.h"
-#include "decoder/output/output_file.h"
 #include "decoder/tools/exit_code.h"
 
 namespace rlpc {

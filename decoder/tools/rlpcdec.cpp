@@ -18,14 +18,15 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/messages.h"
+#include "common/io/output_file.h"
+#include "common/io/standard_output.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
-#include "decoder/output/output_file.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/conformance_verbs.h"
 #include "decoder/tools/exit_code.h"
-#include "decoder/tools/standard_output.h"
 
 namespace {
 
@@ -354,7 +355,7 @@ int main(int argc, char** argv) try {
   options.decoder.verify_hashes = !options.no_hashes;
   const int code = decode(options);
   if (interrupt != 0) return std::raise(interrupt);
-  return rlpc::after_standard_output("rlpcdec", code);
+  return rlpc::after_standard_output("rlpcdec", code, rlpc::kExitIo);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcdec: out of memory\n");
   return rlpc::kExitLimit;

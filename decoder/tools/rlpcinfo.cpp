@@ -14,8 +14,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/messages.h"
+#include "common/io/output_file.h"
+#include "common/io/standard_output.h"
 #include "decoder/describe_error.h"
-#include "decoder/output/output_file.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
@@ -24,7 +26,6 @@
 #include "decoder/stream/stream_reader.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/extract_verb.h"
-#include "decoder/tools/standard_output.h"
 
 namespace {
 
@@ -403,7 +404,8 @@ int main(int argc, char** argv) try {
     std::cerr << "rlpcinfo: --json and another output cannot both go to standard output\n";
     return rlpc::kExitUsage;
   }
-  if (extract->count() == 0) return rlpc::after_standard_output("rlpcinfo", inform(options));
+  if (extract->count() == 0)
+    return rlpc::after_standard_output("rlpcinfo", inform(options), rlpc::kExitIo);
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {
     std::cerr << "rlpcinfo: --extract: expected components=K, layers=L, or both; K is at "
@@ -414,7 +416,8 @@ int main(int argc, char** argv) try {
   rlpc::DecodeLimits limits;
   limits.max_memory_bytes = options.max_memory_bytes;
   return rlpc::after_standard_output(
-      "rlpcinfo", rlpc::extract({options.input, options.output, *cut, limits, options.json}));
+      "rlpcinfo", rlpc::extract({options.input, options.output, *cut, limits, options.json}),
+      rlpc::kExitIo);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcinfo: out of memory\n");
   return rlpc::kExitLimit;

@@ -22,10 +22,6 @@ const std::string& standard_input() {
 
 }  // namespace
 
-std::string name_of_input(const std::string& path) {
-  return path == "-" ? "standard input" : path;
-}
-
 InputResult<InputFile> InputFile::open(const std::string& path) {
   InputFile file;
   file.path_ = name_of_input(path);

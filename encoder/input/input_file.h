@@ -1,7 +1,6 @@
 // A regular file, or standard input as "-", that is read at offsets; every failure names it.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/io/messages.h"
 #include "encoder/input/frame_source.h"
 
 namespace rlpc {
@@ -31,9 +31,6 @@ class InputFile {
   std::unique_ptr<std::ifstream> stream_;  // none: standard input
 };
 
-// The path, or "standard input" for "-".
-std::string name_of_input(const std::string& path);
-
 // Without white space at its start.
 inline std::string_view after_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -48,32 +45,6 @@ InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::u
 
 // The whole file. Refuses an empty one.
 InputResult<std::string> read_whole_file(const std::string& path);
-
-// Little-endian numbers of a binary file; the caller has checked the length.
-inline std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) {
-    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
-  }
-  return value;
-}
-inline std::int32_t load_i32(std::span<const char> bytes, std::size_t offset) {
-  return static_cast<std::int32_t>(load_u32(bytes, offset));
-}
-inline float load_f32(std::span<const char> bytes, std::size_t offset) {
-  return std::bit_cast<float>(load_u32(bytes, offset));
-}
-// Big-endian ones.
-inline std::uint32_t load_u32_be(std::span<const char> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = (value << 8) | static_cast<unsigned char>(bytes[offset + i]);
-  }
-  return value;
-}
-inline float load_f32_be(std::span<const char> bytes, std::size_t offset) {
-  return std::bit_cast<float>(load_u32_be(bytes, offset));
-}
 
 // Error for the first value of a frame that is NaN or infinite.
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "common/io/float_position.h"
 #include "common/syntax/sequence_header.h"
-#include "encoder/input/grid_value.h"
 
 namespace rlpc {
 namespace {
@@ -58,7 +58,7 @@ void expect_covered(const Extent& extent, const GridChoice& choice) {
       const double position = std::round(x / step) - choice.grid.origin[c];
       ASSERT_GE(position, -half) << x;
       ASSERT_LE(position, half - 1) << x;
-      const float value = grid_value(choice.grid, c, static_cast<std::int32_t>(position));
+      const float value = float_position(choice.grid, c, static_cast<std::int32_t>(position));
       EXPECT_LE(std::abs(value - x), 0.5 * step + std::abs(x) * 0x1p-24) << x;
     }
   }

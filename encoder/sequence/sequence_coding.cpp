@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "common/bitstream/crc32.h"
+#include "common/io/float_position.h"
 #include "encoder/gof/gof_kind_search.h"
-#include "encoder/input/grid_value.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/gof_kinds.h"
 
@@ -68,7 +68,7 @@ InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& s
     for (std::size_t v = 0; v < header_.num_vertices; ++v) {
       const std::size_t to = 3 * std::size_t{connectivity_.input_vertex[v]};
       for (std::size_t c = 0; c < 3; ++c) {
-        decoded[to + c] = grid_value(header_.grid, c, positions[3 * v + c]);
+        decoded[to + c] = float_position(header_.grid, c, positions[3 * v + c]);
       }
     }
     metrics.add_frame(original, decoded);

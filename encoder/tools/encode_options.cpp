@@ -11,9 +11,9 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/output_file.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/quality.h"
-#include "encoder/tools/stream_file.h"
 
 namespace rlpc {
 namespace {
@@ -321,11 +321,11 @@ std::optional<std::string> check_places(const CommandLine& line) {
   const std::array<std::string, 3> read{o.input.path, o.input.points, line.metadata_path};
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& other : read) {
-      if (!StreamFile::is_same_file(written, other)) continue;
+      if (!OutputFile::is_same_file(written, other)) continue;
       return written + ": is read, too, and would be written over; give another name";
     }
   }
-  if (StreamFile::is_same_file(o.output, o.order_map)) {
+  if (OutputFile::is_same_file(o.output, o.order_map)) {
     return o.output + ": is given for the stream and for --order-map; give two names";
   }
   return std::nullopt;

@@ -1,7 +1,6 @@
 // rlpcenc: animations to .rlpc streams.
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -20,6 +19,9 @@
 #include <malloc.h>
 #endif
 
+#include "common/io/output_file.h"
+#include "common/io/progress_bar.h"
+#include "common/io/standard_output.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
@@ -27,9 +29,7 @@
 #include "encoder/sequence/dry_run.h"
 #include "encoder/sequence/quality.h"
 #include "encoder/tools/encode_options.h"
-#include "encoder/tools/progress_bar.h"
 #include "encoder/tools/report_json.h"
-#include "encoder/tools/stream_file.h"
 
 namespace rlpc {
 namespace {
@@ -167,33 +167,45 @@ void catch_interrupts() {
 
 struct Interrupted {};  // thrown, so that unfinished files go
 
+std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& report) {
+  for (const std::uint32_t v : report.input_vertex) {
+    if (auto error = map.write(std::to_string(v) + "\n")) return error;
+  }
+  return map.close();
+}
+
 // Encodes to the file, and writes the order of vertices where it is asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
   catch_interrupts();
-  StreamFile stream(o.output);
-  if (!stream.good()) return *stream.commit();
-  std::optional<StreamFile> map;
-  if (!o.order_map.empty()) map.emplace(o.order_map);
-  if (map && !map->good()) return *map->commit();
+  auto stream = OutputFile::create(o.output);
+  if (!stream) return InputError{stream.error().message};
+  std::optional<OutputFile> map;
+  if (!o.order_map.empty()) {
+    auto created = OutputFile::create(o.order_map);
+    if (!created) return InputError{created.error().message};
+    map.emplace(std::move(*created));
+  }
+  std::optional<OutputError> failure;
   InputResult<EncodeReport> report = InputError{};
   {
     ProgressBar bar("encoding", !o.quiet);
     report = encode(
         source, o.settings,
-        [&](std::span<const std::uint8_t> bytes) { return stream.write(bytes); },
+        [&](std::span<const std::uint8_t> bytes) {
+          failure = stream->write(bytes);
+          return !failure;
+        },
         [&](double fraction) {
           if (interrupt != 0) throw Interrupted{};
           bar.show(fraction);
         });
   }
-  if (!stream.good()) return *stream.commit();
-  if (!report) return report;
-  if (map) {
-    for (const std::uint32_t v : report->input_vertex) map->write(std::to_string(v) + "\n");
-    if (!map->good()) return *map->commit();
-  }
-  if (auto error = stream.commit()) return *error;
-  if (auto error = map ? map->commit() : std::nullopt) return *error;
+  if (!failure && !report) return report;
+  if (!failure) failure = stream->close();
+  if (!failure && map) failure = write_order(*map, *report);
+  if (!failure) failure = stream->commit();
+  if (!failure && map) failure = map->commit();
+  if (failure) return InputError{failure->message};
   return report;
 }
 
@@ -214,7 +226,7 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
 std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& read : source.files()) {
-      if (StreamFile::is_same_file(written, read)) return written;
+      if (OutputFile::is_same_file(written, read)) return written;
     }
   }
   return std::nullopt;
@@ -240,15 +252,6 @@ int run(const EncodeOptions& o) {
   return tell(o, **source, {std::move(*report), frames});
 }
 
-// `code`, or that of failure if not all of standard output could be written.
-int after_standard_output(int code) {
-  errno = 0;
-  const bool good = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (good || code != kEncoded) return code;
-  return complain("cannot write to standard output: " +
-                  std::generic_category().message(errno == 0 ? EIO : errno));
-}
-
 // Blocks as large as a GOF's go back to the system when they are freed. glibc would keep them,
 // and a second one grow beside the first.
 void return_large_blocks() {
@@ -265,7 +268,7 @@ int main(int argc, char** argv) try {
   rlpc::return_large_blocks();
   rlpc::EncodeOptions options;
   if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
-  return rlpc::after_standard_output(rlpc::run(options));
+  return rlpc::after_standard_output("rlpcenc", rlpc::run(options), rlpc::kFailed);
 } catch (const rlpc::Interrupted&) {
   return std::raise(rlpc::interrupt);
 } catch (const std::bad_alloc&) {

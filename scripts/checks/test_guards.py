@@ -111,6 +111,21 @@ class Layers(RealTree):
         self.include("decoder/output/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
 
+    def test_only_one_folder_of_common_works_with_files(self):
+        header = '#include "common/io/output_file.h"'
+        for name in ("common/mesh/topology.cpp", "common/skinned_gof/recon/skinned_recon.h",
+                     "decoder/parse/parse_gof_header.cpp", "decoder/recon/hash_check.cpp",
+                     "decoder/stream/stream_reader.cpp"):
+            with self.subTest(name=name):
+                self.include(name, header, "must not include")
+        self.include("common/io/output_file.h", '#include "decoder/slice_cut.h"',
+                     "must not include")
+        for name in ("decoder/parse/access_unit_parser.cpp", "decoder/recon/hash_check.cpp",
+                     "decoder/stream/stream_reader.cpp"):
+            with self.subTest(name=name):
+                self.complaint(check_layers.check, name, lambda text: text + (
+                    "void f() { float_position(grid, 0, 1); }\n"), name, "must not call")
+
     def test_other_libraries_stay_where_they_are(self):
         self.include("decoder/recon/prefetch.cpp", "#include <Eigen/Dense>",
                      "decoder/ must not use <Eigen/Dense>")
@@ -193,6 +208,7 @@ class Float(RealTree):
         for name, line in (("common/mesh/topology.h", "// a double, 0.5"),
                            ("common/mesh/topology.cpp", 'const char* s = "float 1.5";'),
                            ("common/mesh/topology_test.cpp", "double x;"),
+                           ("common/io/output_file.cpp", "double x;"),
                            ("decoder/output/mesh_sink.cpp", "float y;")):
             with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
                 self.assertEqual(check_float.check(self.root)[0], [])

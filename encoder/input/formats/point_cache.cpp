@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/binary_numbers.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
 

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "encoder/input/grid_value.h"
+#include "common/io/binary_numbers.h"
+#include "common/io/float_position.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {
@@ -122,7 +123,7 @@ class RlpdSource : public FrameSource {
         header_.bytes_before_frames() + frame * header_.overhead_bytes();
     if (auto error = file_.read(offset, bytes_)) return error;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
-      xyz[i] = grid_value(header_.grid, i % 3, load_i32(bytes_, 4 * i));
+      xyz[i] = float_position(header_.grid, i % 3, load_i32(bytes_, 4 * i));
     }
     return check_finite(file_.path(), frame, xyz);
   }

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/io/binary_numbers.h"
+
 namespace rlpc {
 
 namespace {

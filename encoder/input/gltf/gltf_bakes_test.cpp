@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/binary_numbers.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "common/io/binary_numbers.h"
+
 namespace rlpc {
 
 namespace {

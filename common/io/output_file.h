@@ -9,9 +9,17 @@
 #include <string_view>
 #include <utility>
 
-#include "decoder/output/frame_sink.h"
+#include "common/result.h"
 
 namespace rlpc {
+
+// One line for the user: path, what failed, and the system's reason.
+struct OutputError {
+  std::string message;
+  bool is_usage = false;  // what was asked for cannot be; no file is at fault
+};
+template <class T>
+using OutputResult = Result<T, OutputError>;
 
 class OutputFile {
  public:
@@ -24,6 +32,7 @@ class OutputFile {
   ~OutputFile();  // removes the file unless commit() succeeded
 
   std::optional<OutputError> write(std::string_view bytes);
+  std::optional<OutputError> write(std::span<const std::uint8_t> bytes);
   // Flushes, and closes all but standard output: from here on nothing but the name can fail.
   std::optional<OutputError> close();
   // After close(): gives the file its name.
@@ -42,7 +51,7 @@ class OutputFile {
         file_(file) {}
 
   std::string path_;
-  std::string target_;
+  std::string target_;     // where links lead to
   std::string temporary_;  // empty: written directly, or committed
   std::FILE* file_ = nullptr;
 };
@@ -55,13 +64,5 @@ OutputResult<std::string> create_temporary_folder(const std::string& path);
 
 // "PATH: cannot WHAT: REASON" with the reason of `code`, an errno value.
 OutputError output_error(const std::string& path, const std::string& what, int code);
-
-// Little-endian numbers of a binary file.
-void append_u32(std::string& bytes, std::uint32_t value);
-void append_i32(std::string& bytes, std::int32_t value);
-void append_f32(std::string& bytes, float value);
-// Big-endian ones.
-void append_u32_be(std::string& bytes, std::uint32_t value);
-void append_f32_be(std::string& bytes, float value);
 
 }  // namespace rlpc

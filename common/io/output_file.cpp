@@ -1,7 +1,5 @@
-#include "decoder/output/output_file.h"
+#include "common/io/output_file.h"
 
-#include <array>
-#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <filesystem>
@@ -84,6 +82,10 @@ std::optional<OutputError> OutputFile::write(std::string_view bytes) {
   return output_error(path_, "write", errno);
 }
 
+std::optional<OutputError> OutputFile::write(std::span<const std::uint8_t> bytes) {
+  return write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 std::optional<OutputError> OutputFile::close() {
   errno = 0;
   std::FILE* const file = std::exchange(file_, nullptr);
@@ -117,30 +119,6 @@ OutputResult<std::string> create_temporary_folder(const std::string& path) {
     if (ec && ec != std::errc::file_exists) return output_error(path, "create", ec.value());
   }
   return OutputError{path + ": too many unfinished folders; remove " + base + ".partial*"};
-}
-
-void append_u32(std::string& bytes, std::uint32_t value) {
-  std::array<char, 4> of_value{};
-  for (std::size_t i = 0; i < 4; ++i)
-    of_value[i] = static_cast<char>((value >> (8 * i)) & 0xFF);
-  bytes.append(of_value.data(), of_value.size());
-}
-
-void append_i32(std::string& bytes, std::int32_t value) {
-  append_u32(bytes, static_cast<std::uint32_t>(value));
-}
-
-void append_f32(std::string& bytes, float value) {
-  append_u32(bytes, std::bit_cast<std::uint32_t>(value));
-}
-
-void append_u32_be(std::string& bytes, std::uint32_t value) {
-  const std::uint32_t halves = (value >> 16) | (value << 16);
-  append_u32(bytes, ((halves & 0x00FF00FF) << 8) | ((halves >> 8) & 0x00FF00FF));
-}
-
-void append_f32_be(std::string& bytes, float value) {
-  append_u32_be(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
 }  // namespace rlpc
