@@ -1,10 +1,17 @@
 #include "common/io/output_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cassert>
 #include <cerrno>
+#include <climits>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "common/io/interrupts.h"
 
 namespace rlpc {
 
@@ -14,9 +21,65 @@ namespace {
 
 constexpr int kMaxTemporaries = 1000;
 
-// "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...
-std::string temporary_name(const std::string& path, int attempt) {
-  return path + ".partial" + (attempt == 0 ? "" : std::to_string(attempt));
+std::size_t longest_name(const fs::path& folder) {
+  const long longest = pathconf(folder.empty() ? "." : folder.c_str(), _PC_NAME_MAX);
+  return longest > 0 ? static_cast<std::size_t>(longest) : NAME_MAX;
+}
+
+// "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...; of a long name, the beginning.
+std::string temporary_name(const fs::path& path, int attempt) {
+  const std::string end = ".partial" + (attempt == 0 ? "" : std::to_string(attempt));
+  std::string name = path.filename().string();
+  const std::size_t most = longest_name(path.parent_path()) - end.size();
+  if (name.size() > most) {
+    std::size_t size = most;
+    while (size > 0 && (name[size] & 0xC0) == 0x80) --size;  // whole characters of UTF-8
+    name.resize(size);
+  }
+  return (path.parent_path() / (name + end)).string();
+}
+
+// What a name leads to, whether it is there or not.
+OutputResult<std::string> end_of_links(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  fs::path at = path;
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code ec;
+    if (!fs::is_symlink(at, ec)) return at.string();
+    const fs::path to = fs::read_symlink(at, ec);
+    if (ec) return output_error(path, "follow the link", ec.value());
+    at = at.parent_path() / to;  // `to` itself if it is absolute
+  }
+  return output_error(path, "follow the link", ELOOP);
+}
+
+// What replaces a file is for the same people.
+void take_permissions(int file, const struct stat& replaced) {
+  mode_t mode = replaced.st_mode & 0777;
+  // Of another group, those permissions would be for others.
+  if (fchown(file, replaced.st_uid, replaced.st_gid) != 0 &&
+      fchown(file, static_cast<uid_t>(-1), replaced.st_gid) != 0) {
+    mode &= 0707;
+  }
+  // File systems without permissions refuse, and then nobody is kept out by any.
+  if (fchmod(file, mode) != 0) return;
+}
+
+// On the disk, so that a crash of the system leaves what was there or what is there now. Not
+// all file systems and files can tell.
+std::optional<OutputError> sync(const std::string& path, int file) {
+  if (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) {
+    return std::nullopt;
+  }
+  return output_error(path, "write", errno);
+}
+
+void sync_folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  const int file = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  fsync(file);
+  close(file);
 }
 
 }  // namespace
@@ -27,40 +90,55 @@ OutputError output_error(const std::string& path, const std::string& what, int c
 
 OutputResult<OutputFile> OutputFile::create(const std::string& path) {
   if (path == "-") return OutputFile("standard output", "", "", stdout);
-  std::error_code ec;
-  const auto type = fs::status(path, ec).type();
-  if (type == fs::file_type::directory) {
+  struct stat there {};
+  const bool exists = stat(path.c_str(), &there) == 0;
+  if (exists && S_ISDIR(there.st_mode)) {
     return OutputError{path + ": is a folder; give the name of a file"};
   }
-  if (fs::exists(path, ec) && type != fs::file_type::regular) {
+  if (exists && !S_ISREG(there.st_mode)) {
     std::FILE* const file = std::fopen(path.c_str(), "wb");
     if (file == nullptr) return output_error(path, "open", errno);
     return OutputFile(path, path, "", file);
   }
-  std::string target = path;
-  if (fs::is_symlink(path, ec)) {
-    target = fs::weakly_canonical(path, ec).string();
-    if (ec) return output_error(path, "follow the link", ec.value());
-  }
+  auto target = end_of_links(path);
+  if (!target) return target.error();
   for (int attempt = 0; attempt < kMaxTemporaries; ++attempt) {
-    std::string temporary = temporary_name(target, attempt);
-    std::FILE* const file = std::fopen(temporary.c_str(), "wbx");
-    if (file != nullptr) return OutputFile(path, std::move(target), std::move(temporary), file);
+    std::string temporary = temporary_name(*target, attempt);
+    const HoldInterrupts hold;
+    const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                          exists ? mode_t{0600} : mode_t{0666});
+    if (file >= 0) {
+      add_unfinished(temporary);
+      if (exists) take_permissions(file, there);
+      OutputFile created(path, std::move(*target), std::move(temporary), fdopen(file, "wb"));
+      if (created.file_ != nullptr) return created;
+      ::close(file);
+      return output_error(path, "create", ENOMEM);
+    }
     if (errno == ENOENT) {
       return OutputError{path + ": there is no folder " +
-                         fs::path(target).parent_path().string() + "; make it first"};
+                         fs::path(*target).parent_path().string() + "; make it first"};
     }
     if (errno != EEXIST) return output_error(path, "create", errno);
   }
-  return OutputError{path + ": too many unfinished files; remove " + target + ".partial*"};
+  return OutputError{path + ": too many unfinished files; remove " + *target + ".partial*"};
+}
+
+OutputResult<OutputFile> OutputFile::create_within(const std::string& path) {
+  std::FILE* const file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr) return output_error(path, "create", errno);
+  return OutputFile(path, path, "", file);
 }
 
 bool OutputFile::is_same_file(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty() || a == "-" || b == "-") return false;
   std::error_code ignored;
   if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
-  return fs::equivalent(a, b, ignored) ||
-         fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+  if (fs::equivalent(a, b, ignored)) return true;
+  const auto end_of_a = end_of_links(a);
+  const auto end_of_b = end_of_links(b);
+  return end_of_a && end_of_b &&
+         fs::weakly_canonical(*end_of_a, ignored) == fs::weakly_canonical(*end_of_b, ignored);
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -71,8 +149,11 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+  if (temporary_.empty()) return;
+  const HoldInterrupts hold;
   std::error_code ec;
-  if (!temporary_.empty()) fs::remove(temporary_, ec);
+  fs::remove(temporary_, ec);
+  remove_unfinished(temporary_);
 }
 
 std::optional<OutputError> OutputFile::write(std::string_view bytes) {
@@ -89,17 +170,24 @@ std::optional<OutputError> OutputFile::write(std::span<const std::uint8_t> bytes
 std::optional<OutputError> OutputFile::close() {
   errno = 0;
   std::FILE* const file = std::exchange(file_, nullptr);
-  if ((file == stdout ? std::fflush(file) : std::fclose(file)) == 0) return std::nullopt;
-  return output_error(path_, "write", errno);
+  std::optional<OutputError> failure;
+  if (std::fflush(file) != 0) failure = output_error(path_, "write", errno);
+  if (!failure && !temporary_.empty()) failure = sync(path_, fileno(file));
+  if (file == stdout) return failure;
+  if (std::fclose(file) != 0 && !failure) failure = output_error(path_, "write", errno);
+  return failure;
 }
 
 std::optional<OutputError> OutputFile::commit() {
   assert(file_ == nullptr);
   if (temporary_.empty()) return std::nullopt;
+  const HoldInterrupts hold;
   std::error_code ec;
   fs::rename(temporary_, target_, ec);
   if (ec) return output_error(path_, "give the finished file its name", ec.value());
+  remove_unfinished(temporary_);
   temporary_.clear();
+  sync_folder_of(target_);
   return std::nullopt;
 }
 
@@ -109,16 +197,76 @@ std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view b
   return file.commit();
 }
 
-OutputResult<std::string> create_temporary_folder(const std::string& path) {
+OutputResult<TemporaryFolder> TemporaryFolder::create(const std::string& path) {
   std::error_code ec;
   const bool inside = fs::is_directory(path, ec);
-  const std::string base = inside ? (fs::path(path) / "frames").string() : path;
+  const fs::path base = inside ? fs::path(path) / "frames" : fs::path(path);
   for (int attempt = 0; attempt < kMaxTemporaries; ++attempt) {
     std::string folder = temporary_name(base, attempt);
-    if (fs::create_directory(folder, ec)) return folder;
+    const HoldInterrupts hold;
+    if (fs::create_directory(folder, ec)) {
+      add_unfinished(folder);
+      // Its files may replace others, which not everybody may read.
+      if (inside) fs::permissions(folder, fs::perms::owner_all, ec);
+      return TemporaryFolder(std::move(folder));
+    }
     if (ec && ec != std::errc::file_exists) return output_error(path, "create", ec.value());
   }
-  return OutputError{path + ": too many unfinished folders; remove " + base + ".partial*"};
+  return OutputError{path + ": too many unfinished folders; remove " + base.string() +
+                     ".partial*"};
+}
+
+TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
+    : path_(std::exchange(other.path_, {})) {}
+
+TemporaryFolder::~TemporaryFolder() {
+  if (path_.empty()) return;
+  const HoldInterrupts hold;
+  std::error_code ec;
+  fs::remove_all(path_, ec);
+  remove_unfinished(path_);
+}
+
+std::optional<OutputError> TemporaryFolder::sync() const {
+  const int folder = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (folder < 0) return output_error(path_, "write", errno);
+#ifdef __linux__
+  const bool good = syncfs(folder) == 0;  // at once, where fsync() would wait for each file
+#else
+  const bool good = fsync(folder) == 0;
+#endif
+  const int reason = errno;
+  close(folder);
+  return good ? std::nullopt : std::optional(output_error(path_, "write", reason));
+}
+
+std::optional<OutputError> TemporaryFolder::commit(const std::string& path) {
+  const HoldInterrupts hold;
+  std::error_code ec;
+  fs::rename(path_, path, ec);
+  if (ec) return output_error(path, "name the finished folder", ec.value());
+  remove_unfinished(path_);
+  path_.clear();
+  sync_folder_of(path);
+  return std::nullopt;
+}
+
+std::optional<OutputError> TemporaryFolder::commit_file(const std::string& name,
+                                                        const std::string& path) const {
+  auto target = end_of_links(path);
+  if (!target) return target.error();
+  const std::string temporary = (fs::path(path_) / name).string();
+  struct stat there {};
+  if (stat(target->c_str(), &there) == 0) {
+    const int file = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) return output_error(path, "replace", errno);
+    take_permissions(file, there);
+    close(file);
+  }
+  std::error_code ec;
+  fs::rename(temporary, *target, ec);
+  if (ec) return output_error(path, "name the finished file", ec.value());
+  return std::nullopt;
 }
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// A file that takes its name only once it is complete.
+// Files that take their names only once they are complete.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,12 @@ using OutputResult = Result<T, OutputError>;
 
 class OutputFile {
  public:
-  // Creates a temporary file beside `path`. A path that exists and is not a regular file (a
-  // device, a pipe) is opened directly; a symbolic link is followed; "-" is standard output.
+  // Creates a temporary file beside `path`, with the permissions of the file that it is to
+  // replace. A path that exists and is not a regular file (a device, a pipe) is opened
+  // directly; a symbolic link is followed, also where nothing is yet; "-" is standard output.
   static OutputResult<OutputFile> create(const std::string& path);
+  // In a TemporaryFolder, under its own name.
+  static OutputResult<OutputFile> create_within(const std::string& path);
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -33,7 +36,8 @@ class OutputFile {
 
   std::optional<OutputError> write(std::string_view bytes);
   std::optional<OutputError> write(std::span<const std::uint8_t> bytes);
-  // Flushes, and closes all but standard output: from here on nothing but the name can fail.
+  // Flushes, to the disk, and closes all but standard output: from here on nothing but the name
+  // can fail.
   std::optional<OutputError> close();
   // After close(): gives the file its name.
   std::optional<OutputError> commit();
@@ -59,8 +63,30 @@ class OutputFile {
 // All that is to be in the file; it takes its name.
 std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes);
 
-// A folder beside `path` with a name that did not exist, or inside it if `path` is a folder.
-OutputResult<std::string> create_temporary_folder(const std::string& path);
+// A folder for files that are to take their names together.
+class TemporaryFolder {
+ public:
+  // Beside `path` with a name that did not exist, or inside it if `path` is a folder.
+  static OutputResult<TemporaryFolder> create(const std::string& path);
+
+  TemporaryFolder(TemporaryFolder&& other) noexcept;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();  // removes it with what is in it, unless commit() succeeded
+
+  const std::string& path() const { return path_; }
+  // To the disk, with all that is in it.
+  std::optional<OutputError> sync() const;
+  // Gives the folder its name, which nothing has.
+  std::optional<OutputError> commit(const std::string& path);
+  // Moves a file of it to `path`, where it may replace one, as OutputFile does.
+  std::optional<OutputError> commit_file(const std::string& name,
+                                         const std::string& path) const;
+
+ private:
+  explicit TemporaryFolder(std::string path) : path_(std::move(path)) {}
+
+  std::string path_;  // empty: committed
+};
 
 // "PATH: cannot WHAT: REASON" with the reason of `code`, an errno value.
 OutputError output_error(const std::string& path, const std::string& what, int code);

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/interrupts.h"
 #include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
@@ -49,42 +50,33 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
 class MeshSink : public FrameSink {
  public:
   MeshSink(SinkFormat format, SinkOptions options, fs::path folder, NumberedName name,
-           fs::path temporary)
+           TemporaryFolder temporary)
       : mesh_(format, options),
         options_(std::move(options)),
         folder_(std::move(folder)),
         name_(std::move(name)),
         temporary_(std::move(temporary)) {}
 
-  ~MeshSink() override {
-    std::error_code ec;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ec);
-  }
-
   std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
-    auto file = OutputFile::create((temporary_ / file_name(written_)).string());
+    const fs::path path = fs::path(temporary_.path()) / file_name(written_);
+    auto file = OutputFile::create_within(path.string());
     if (!file) return file.error();
     ++written_;
     if (auto error = file->write(mesh_.frame(positions))) return error;
-    if (auto error = file->close()) return error;
-    return file->commit();
+    return file->close();
   }
 
   std::optional<OutputError> finish() override {
     assert(written_ == options_.num_frames);
+    if (auto error = temporary_.sync()) return error;
     std::error_code ec;
-    if (!fs::exists(folder_, ec)) {
-      fs::rename(temporary_, folder_, ec);
-      if (ec) return output_error(folder_.string(), "name the finished folder", ec.value());
-      temporary_.clear();
-      return std::nullopt;
-    }
+    if (!fs::exists(folder_, ec)) return temporary_.commit(folder_.string());
+    const HoldInterrupts hold;  // all frames are replaced, or none
     for (std::uint32_t i = 0; i < written_; ++i) {
-      const fs::path target = folder_ / file_name(i);
-      fs::rename(temporary_ / file_name(i), target, ec);
-      if (ec) return output_error(target.string(), "name the finished file", ec.value());
+      const std::string name = file_name(i);
+      if (auto error = temporary_.commit_file(name, (folder_ / name).string())) return error;
     }
     return std::nullopt;
   }
@@ -98,7 +90,7 @@ class MeshSink : public FrameSink {
   SinkOptions options_;
   fs::path folder_;
   NumberedName name_;
-  fs::path temporary_;  // empty once it has become folder_
+  TemporaryFolder temporary_;
   std::uint32_t written_ = 0;
 };
 
@@ -150,7 +142,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& patte
   if (fs::exists(folder, ec) && !fs::is_directory(folder, ec)) {
     return OutputError{folder.string() + ": is a file; a folder of files cannot go there"};
   }
-  auto temporary = create_temporary_folder(folder.string());
+  auto temporary = TemporaryFolder::create(folder.string());
   if (!temporary) return temporary.error();
   return std::unique_ptr<FrameSink>(std::make_unique<MeshSink>(
       format, std::move(options), std::move(folder), std::move(*name), std::move(*temporary)));

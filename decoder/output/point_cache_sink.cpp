@@ -7,6 +7,7 @@
 
 #include "common/io/binary_numbers.h"
 #include "common/io/float_position.h"
+#include "common/io/interrupts.h"
 #include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
@@ -57,6 +58,7 @@ class PointCacheSink : public FrameSink {
     for (OutputFile* file : {&points_, &mesh_}) {
       if (auto error = file->close()) return error;
     }
+    const HoldInterrupts hold;
     for (OutputFile* file : {&mesh_, &points_}) {
       if (auto error = file->commit()) return error;
     }
