@@ -7,11 +7,9 @@
 import json
 import math
 import os
-import signal
 import struct
 import subprocess
 import sys
-import time
 import zlib
 
 from tools_testing import INPUTS, ROOT, Tools, ToolsTest, limited, main, run, write_pc2
@@ -249,118 +247,6 @@ class BadOutput(ToolsTest):
                                       stderr=subprocess.PIPE, text=True, check=False)
             self.assertEqual(done.returncode, code, command)
             self.assertIn("standard output: No space left", done.stderr, command)
-
-
-class Interrupts(ToolsTest):
-    """Nothing is left of what was not finished."""
-
-    def interrupted(self, by, code, started, tool, *arguments, **options):
-        with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
-                              stderr=subprocess.DEVNULL, **options) as running:
-            while not started.exists() and running.poll() is None:
-                time.sleep(0.001)
-            running.send_signal(by)
-            self.assertEqual(running.wait(100), code)
-
-    def test_while_encoding_and_decoding(self):
-        _, frames = self.clip(60)
-        write_pc2(self.path("clip.pc2"), frames * 20)
-        before = ["clip.obj", "clip.pc2"]
-        mesh = [self.path("clip.obj"), "--points", self.path("clip.pc2")]
-        term = [signal.SIGTERM, -signal.SIGTERM]
-        encode = [self.path("x.rlpc.partial"), "rlpcenc", *mesh, "-o", self.path("x.rlpc"),
-                  "--gof", 20]
-        self.interrupted(*term, *encode)
-        self.assertEqual(self.files(), before)
-        ignored = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
-        self.interrupted(signal.SIGHUP, 0, *encode, "--preset", "fast", **ignored)  # nohup
-        self.ok("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
-        self.interrupted(*term, self.path("out.partial"), "rlpcdec", self.path("x.rlpc"), "-o",
-                         self.path("out"))
-        self.assertEqual(self.files(), [*before, "x.rlpc"])
-
-
-class SamePlaces(ToolsTest):
-    """Nothing is written over what is read, or over another output."""
-
-    def setUp(self):
-        super().setUp()
-        self.clip(4)
-        self.encode(self.path("a.rlpc"))
-        self.before = {name: self.path(name).read_bytes() for name in self.files()}
-
-    def refused(self, words, tool, *arguments, code=64):
-        self.fails(code, words, tool, *arguments)
-        self.assertEqual({name: self.path(name).read_bytes() for name in self.files()},
-                         self.before)
-
-    def test_of_the_encoder(self):
-        obj, pc2, out = self.path("clip.obj"), self.path("clip.pc2"), self.path("x.rlpc")
-        (self.path("linked.obj")).symlink_to(obj)
-        self.before["linked.obj"] = self.before["clip.obj"]
-        for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
-            self.refused("is read, too", "rlpcenc", obj, "-o", output)
-        self.refused("is read, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
-        self.refused("is read, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
-        self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
-        for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
-                        ["-o", out, "--order-map", "-", "--json"]):
-            self.refused("cannot both", "rlpcenc", obj, *options)
-
-    def test_of_files_that_the_input_points_to(self):
-        self.path("frames").mkdir()
-        for f in range(3):
-            frame = self.path(f"frames/w_{f}.obj")
-            frame.write_bytes(self.path("clip.obj").read_bytes())
-        last, frames = frame.read_bytes(), self.path("frames")
-        out = self.path("x.rlpc")
-        for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
-            self.fails(64, "is read, too", "rlpcenc", source, "-o", frame)
-            self.fails(64, "is read, too", "rlpcenc", source, "-o", out, "--order-map", frame)
-            self.fails(64, "written over", "rlpccmp", source, source, "--csv", frame)
-        self.assertEqual(frame.read_bytes(), last)
-        self.assertFalse(out.exists())
-        # The mesh beside the cache, which nobody named.
-        self.fails(64, "written over", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
-                   "--csv", self.path("clip.obj"))
-        buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
-        self.path("data.bin").write_bytes(buffer)
-        self.path("a.gltf").write_text(json.dumps({
-            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-            "nodes": [{"mesh": 0}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-                          {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
-            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
-                            {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
-            "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
-        self.fails(64, "is read, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
-        self.assertEqual(self.path("data.bin").read_bytes(), buffer)
-        self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
-
-    def test_of_the_decoder(self):
-        stream = self.path("a.rlpc")
-        self.refused("is read, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
-        self.refused("is read, too", "rlpcdec", stream, "--html", stream)
-        self.refused("is the input itself", "rlpcinfo", stream, "--html", stream)
-        # The mesh that nobody named.
-        self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
-                     code=4)
-        self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
-                     "pc2", code=4)
-        for _ in range(2):  # its own mesh is replaced
-            self.ok("rlpcdec", stream, "-o", self.path("b.mdd"))
-
-    def test_of_the_comparison(self):
-        obj, pc2, stream = self.path("clip.obj"), self.path("clip.pc2"), self.path("a.rlpc")
-        pair = [obj, "--points-a", pc2, obj, "--points-b", pc2]
-        for option in ("--csv", "--html"):
-            self.refused("written over", "rlpccmp", *pair, option, obj)
-            self.refused("written over", "rlpccmp", *pair, option, pc2)
-            self.refused("written over", "rlpccmp", *pair, "--stream", stream, option, stream)
-        self.refused("written over", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
-                     self.path("x"))
-        self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")
 
 
 class BadStreams(ToolsTest):

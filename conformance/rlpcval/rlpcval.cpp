@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/interrupts.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "conformance/rlpcval/rlpcval_report.h"
@@ -122,6 +123,7 @@ int explain(const std::string& id) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  rlpc::handle_interrupts();
   CLI::App app("Finds everything that is wrong with .rlpc streams.", "rlpcval");
   app.set_version_flag("--version", "rlpcval " RLPC_VERSION);
   Options options;

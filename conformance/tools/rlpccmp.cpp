@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/interrupts.h"
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
@@ -321,6 +322,7 @@ int run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  rlpc::handle_interrupts();
   CLI::App app("Compares a decoded animation with its original.", "rlpccmp");
   app.set_version_flag("--version", "rlpccmp " RLPC_VERSION);
   Options options;

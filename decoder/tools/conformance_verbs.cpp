@@ -1,7 +1,6 @@
 #include "decoder/tools/conformance_verbs.h"
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdint>
 #include <iostream>
 #include <limits>
@@ -119,7 +118,6 @@ void print_verdict(const Error& error, std::uint32_t frames) {
 }
 
 int decode(const Request& request) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   const Outcome outcome = decode_frames(request);
   if (outcome.output_error) {
     std::cerr << "rlpcdec: " << outcome.output_error->message << "\n";

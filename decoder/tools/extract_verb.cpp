@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cinttypes>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -137,7 +136,6 @@ std::optional<SliceCut> parse_slice_cut(const std::string& text) {
 }
 
 int extract(const ExtractOptions& o) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = file_or_standard_input(o.input);
   if (!source) return complain(o, source.error());
   if (OutputFile::is_same_file(o.output, o.input)) {

@@ -1,11 +1,8 @@
 // rlpcdec: .rlpc streams to animations.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -18,8 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/interrupts.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
+#include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
@@ -108,25 +107,6 @@ std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num
   return span;
 }
 
-// Frames as they are decoded; for people who wait at a terminal.
-class FrameCounter {
- public:
-  FrameCounter(std::uint32_t total, bool wanted)
-      : total_(total), shown_(wanted && isatty(fileno(stderr)) != 0) {}
-  FrameCounter(const FrameCounter&) = delete;
-  FrameCounter& operator=(const FrameCounter&) = delete;
-  ~FrameCounter() {
-    if (shown_) std::fprintf(stderr, "\r\033[K");
-  }
-  void show(std::uint32_t done) const {
-    if (shown_ && done % 16 == 0) std::fprintf(stderr, "\rframe %u of %u", done, total_);
-  }
-
- private:
-  std::uint32_t total_;
-  bool shown_;
-};
-
 // How many frames were decoded, and how many of them compared with a hash.
 struct FrameCounts {
   std::uint32_t decoded = 0;
@@ -174,23 +154,7 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
   return rlpc::write_html(request, source);
 }
 
-// The signal that asks to end, if one did. A second one ends at once.
-volatile std::sig_atomic_t interrupt = 0;
-
-extern "C" void on_interrupt(int signal) {
-  interrupt = signal;
-  std::signal(signal, SIG_DFL);
-}
-
-// While files are unfinished. What is ignored, as under nohup, stays so.
-void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
-  }
-}
-
 int decode(const Options& o) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
   auto source = rlpc::file_or_standard_input(o.input);
   if (!source) return complain(o, source.error());
   if (!o.html.output.empty()) return write_html(o, **source);
@@ -218,7 +182,6 @@ int decode(const Options& o) {
     options.first_number = span->first;
     options.format = o.format;
     options.ascii = o.ascii;
-    catch_interrupts();
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {
       return complain(opened.error().message,
@@ -232,9 +195,8 @@ int decode(const Options& o) {
   std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
   FrameCounts frames;
   {
-    const FrameCounter counter(count, !o.quiet);
+    rlpc::ProgressBar bar("decoding", !o.quiet);
     while (frames.decoded < count) {
-      if (interrupt != 0) return 128 + interrupt;
       const auto more = decoder->next_frame(positions);
       if (!more) return complain(o, more.error());
       if (sink) {
@@ -243,7 +205,7 @@ int decode(const Options& o) {
         }
       }
       frames.compared += decoder->compared_frames();
-      counter.show(++frames.decoded);
+      bar.show(static_cast<double>(++frames.decoded) / count);
     }
   }
   if (o.frames.empty()) {
@@ -317,6 +279,7 @@ void add_options(CLI::App& app, Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  rlpc::handle_interrupts();
   if (const auto code = rlpc::run_conformance_verb(argc, argv)) return *code;
   CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
   app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
@@ -353,9 +316,7 @@ int main(int argc, char** argv) try {
                     rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
-  const int code = decode(options);
-  if (interrupt != 0) return std::raise(interrupt);
-  return rlpc::after_standard_output("rlpcdec", code, rlpc::kExitIo);
+  return rlpc::after_standard_output("rlpcdec", decode(options), rlpc::kExitIo);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcdec: out of memory\n");
   return rlpc::kExitLimit;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/interrupts.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/io/standard_output.h"
@@ -373,6 +374,7 @@ int inform(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  rlpc::handle_interrupts();
   CLI::App app("Tells what is in an .rlpc stream.", "rlpcinfo");
   app.set_version_flag("--version", "rlpcinfo " RLPC_VERSION);
   Options options;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -19,6 +18,7 @@
 #include <malloc.h>
 #endif
 
+#include "common/io/interrupts.h"
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
@@ -150,23 +150,6 @@ int run_dry(const EncodeOptions& o, FrameSource& source) {
   return tell(o, source, *expected);
 }
 
-// The signal that asks to end, if one did. A second one ends at once.
-volatile std::sig_atomic_t interrupt = 0;
-
-extern "C" void on_interrupt(int signal) {
-  interrupt = signal;
-  std::signal(signal, SIG_DFL);
-}
-
-// While files are unfinished. What is ignored, as under nohup, stays so.
-void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
-  }
-}
-
-struct Interrupted {};  // thrown, so that unfinished files go
-
 std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& report) {
   for (const std::uint32_t v : report.input_vertex) {
     if (auto error = map.write(std::to_string(v) + "\n")) return error;
@@ -176,7 +159,6 @@ std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& repo
 
 // Encodes to the file, and writes the order of vertices where it is asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
-  catch_interrupts();
   auto stream = OutputFile::create(o.output);
   if (!stream) return InputError{stream.error().message};
   std::optional<OutputFile> map;
@@ -195,14 +177,12 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
           failure = stream->write(bytes);
           return !failure;
         },
-        [&](double fraction) {
-          if (interrupt != 0) throw Interrupted{};
-          bar.show(fraction);
-        });
+        [&](double fraction) { bar.show(fraction); });
   }
   if (!failure && !report) return report;
   if (!failure) failure = stream->close();
   if (!failure && map) failure = write_order(*map, *report);
+  const HoldInterrupts hold;  // both files are there, or none
   if (!failure) failure = stream->commit();
   if (!failure && map) failure = map->commit();
   if (failure) return InputError{failure->message};
@@ -264,13 +244,11 @@ void return_large_blocks() {
 }  // namespace rlpc
 
 int main(int argc, char** argv) try {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of write(), as a full disk is
+  rlpc::handle_interrupts();
   rlpc::return_large_blocks();
   rlpc::EncodeOptions options;
   if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
   return rlpc::after_standard_output("rlpcenc", rlpc::run(options), rlpc::kFailed);
-} catch (const rlpc::Interrupted&) {
-  return std::raise(rlpc::interrupt);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcenc: out of memory; a shorter --gof needs less\n");
   return rlpc::kFailed;

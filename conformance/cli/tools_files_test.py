@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""The tools and files: what they write over, what they leave behind, where it goes.
+
+    tools_files_test.py --bin BUILD/bin [unittest arguments, such as Interrupts]
+"""
+
+import json
+import os
+import signal
+import struct
+import subprocess
+import time
+
+from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_pc2
+
+
+class Interrupts(ToolsTest):
+    """Nothing is left of what was not finished, a moment after the signal."""
+
+    def interrupted(self, by, started, tool, *arguments, **options):
+        """Sends the signal as soon as the file `started` is there."""
+        with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              **options) as running:
+            while not self.path(started).exists() and running.poll() is None:
+                time.sleep(0.001)
+            sent = time.monotonic()
+            running.send_signal(by)
+            code = running.wait(100)
+        self.assertLess(time.monotonic() - sent, 1, tool)
+        self.assertEqual(code, -by, tool)
+
+    def long_clip(self):
+        _, frames = self.clip(60)
+        write_pc2(self.path("clip.pc2"), frames * 20)
+        return [self.path("clip.obj"), "--points", self.path("clip.pc2")]
+
+    def test_while_encoding_and_decoding(self):
+        mesh = self.long_clip()
+        encode = [*mesh, "-o", self.path("x.rlpc"), "--order-map", self.path("x.map")]
+        for by in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            self.interrupted(by, "x.map.partial", "rlpcenc", *encode)
+            self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+        self.ok("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
+        before = self.files()
+        for started, output in (("out.partial", "out"), ("out.pc2.partial", "out.pc2"),
+                                ("out.glb.partial", "out.glb")):
+            self.interrupted(signal.SIGTERM, started, "rlpcdec", self.path("x.rlpc"), "-o",
+                             self.path(output))
+            self.assertEqual(self.files(), before)
+
+    def test_while_a_page_is_made(self):
+        mesh = self.long_clip()
+        page = ["--html", self.path("page.html")]
+        pair = [mesh[0], mesh[0], "--points-a", mesh[2], "--points-b", mesh[2]]
+        self.interrupted(signal.SIGINT, "page.html.partial", "rlpccmp", *pair, *page)
+        self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+        with subprocess.Popen(["sleep", "100"], stdout=subprocess.PIPE) as silent:
+            self.interrupted(signal.SIGINT, "page.html.partial", "rlpcinfo", "-", *page,
+                             stdin=silent.stdout)
+            silent.kill()
+        self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+
+    def test_signals_that_are_ignored(self):
+        """As under nohup."""
+        self.clip(20)
+        ignored = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
+        with subprocess.Popen([Tools.folder / "rlpcenc", self.path("clip.obj"), "--points",
+                               self.path("clip.pc2"), "-o", self.path("x.rlpc"), "-q"],
+                              **ignored) as running:
+            while not self.path("x.rlpc.partial").exists():
+                time.sleep(0.001)
+            running.send_signal(signal.SIGHUP)
+            self.assertEqual(running.wait(100), 0)
+        self.assertEqual(self.files(), ["clip.obj", "clip.pc2", "x.rlpc"])
+
+
+class SamePlaces(ToolsTest):
+    """Nothing is written over what is read, or over another output."""
+
+    def setUp(self):
+        super().setUp()
+        self.clip(4)
+        self.encode(self.path("a.rlpc"))
+        self.before = {name: self.path(name).read_bytes() for name in self.files()}
+
+    def refused(self, words, tool, *arguments, code=64):
+        self.fails(code, words, tool, *arguments)
+        self.assertEqual({name: self.path(name).read_bytes() for name in self.files()},
+                         self.before)
+
+    def test_of_the_encoder(self):
+        obj, pc2, out = self.path("clip.obj"), self.path("clip.pc2"), self.path("x.rlpc")
+        (self.path("linked.obj")).symlink_to(obj)
+        self.before["linked.obj"] = self.before["clip.obj"]
+        for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
+            self.refused("is read, too", "rlpcenc", obj, "-o", output)
+        self.refused("is read, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
+        self.refused("is read, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
+        self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
+        for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
+                        ["-o", out, "--order-map", "-", "--json"]):
+            self.refused("cannot both", "rlpcenc", obj, *options)
+
+    def test_of_files_that_the_input_points_to(self):
+        self.path("frames").mkdir()
+        for f in range(3):
+            frame = self.path(f"frames/w_{f}.obj")
+            frame.write_bytes(self.path("clip.obj").read_bytes())
+        last, frames = frame.read_bytes(), self.path("frames")
+        out = self.path("x.rlpc")
+        for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", frame)
+            self.fails(64, "is read, too", "rlpcenc", source, "-o", out, "--order-map", frame)
+            self.fails(64, "written over", "rlpccmp", source, source, "--csv", frame)
+        self.assertEqual(frame.read_bytes(), last)
+        self.assertFalse(out.exists())
+        # The mesh beside the cache, which nobody named.
+        self.fails(64, "written over", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
+                   "--csv", self.path("clip.obj"))
+        buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+        self.path("data.bin").write_bytes(buffer)
+        self.path("a.gltf").write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+            "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
+        self.fails(64, "is read, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
+        self.assertEqual(self.path("data.bin").read_bytes(), buffer)
+        self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
+
+    def test_of_the_decoder(self):
+        stream = self.path("a.rlpc")
+        self.refused("is read, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
+        self.refused("is read, too", "rlpcdec", stream, "--html", stream)
+        self.refused("is the input itself", "rlpcinfo", stream, "--html", stream)
+        # The mesh that nobody named.
+        self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
+                     code=4)
+        self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
+                     "pc2", code=4)
+        for _ in range(2):  # its own mesh is replaced
+            self.ok("rlpcdec", stream, "-o", self.path("b.mdd"))
+
+    def test_of_the_comparison(self):
+        obj, pc2, stream = self.path("clip.obj"), self.path("clip.pc2"), self.path("a.rlpc")
+        pair = [obj, "--points-a", pc2, obj, "--points-b", pc2]
+        for option in ("--csv", "--html"):
+            self.refused("written over", "rlpccmp", *pair, option, obj)
+            self.refused("written over", "rlpccmp", *pair, option, pc2)
+            self.refused("written over", "rlpccmp", *pair, "--stream", stream, option, stream)
+        self.refused("written over", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
+                     self.path("x"))
+        self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")
+
+
+class Places(ToolsTest):
+    """Where files go, and who may read them."""
+
+    def setUp(self):
+        super().setUp()
+        self.clip(4)
+        self.encode(self.path("a.rlpc"), "--kg", 1)
+        self.path("p.obj").write_text("# frame_rate 30/1\n")
+        self.path("out").mkdir()
+
+    def writers(self):
+        """Commands, and the file that each writes."""
+        stream, obj = self.path("a.rlpc"), self.path("clip.obj")
+        encode = ["rlpcenc", obj, "-q", "--preset", "fast"]
+        yield ["rlpcdec", stream, "-o", self.path("p.pc2")], "p.pc2"
+        yield ["rlpcdec", stream, "-o", self.path("p.pc2")], "p.obj"
+        yield ["rlpcdec", stream, "-o", self.path("p.rlpd")], "p.rlpd"
+        yield ["rlpcdec", stream, "-o", self.path("p.glb")], "p.glb"
+        yield ["rlpcdec", stream, "-o", self.path("out")], "out/frame_0001.obj"
+        yield [*encode, "-o", self.path("p.rlpc")], "p.rlpc"
+        yield [*encode, "-o", self.path("q.rlpc"), "--order-map", self.path("p.map")], "p.map"
+        yield ["rlpccmp", obj, obj, "--csv", self.path("p.csv"), "-q"], "p.csv"
+        yield ["rlpccmp", obj, obj, "--html", self.path("p.html"), "-q"], "p.html"
+        yield ["rlpcinfo", stream, "--html", self.path("i.html")], "i.html"
+        yield ["rlpcinfo", stream, "--extract", "components=0", "-o", self.path("e.rlpc")], "e.rlpc"
+
+    def test_permissions_are_kept(self):
+        for command, name in self.writers():
+            for mode in (0o600, 0o664):
+                if not self.path(name).exists():
+                    self.path(name).touch()
+                self.path(name).chmod(mode)
+                self.ok(*command)
+                self.assertEqual(self.path(name).stat().st_mode & 0o777, mode, command)
+            self.path(name).unlink()
+
+    def test_links_are_followed(self):
+        self.path("far").mkdir()
+        for command, name in self.writers():
+            target = self.path("far") / self.path(name).name
+            self.path(name).unlink(missing_ok=True)
+            self.path(name).symlink_to(target)
+            for _ in range(2):  # nothing is there; and then, something
+                self.ok(*command)
+                self.assertTrue(self.path(name).is_symlink(), command)
+                self.assertGreater(target.stat().st_size, 0, command)
+            self.path(name).unlink()
+
+    def test_long_names(self):
+        longest = os.pathconf(self.folder, "PC_NAME_MAX")
+        for size in (longest - 8, longest):
+            name = "n" * (size - 5)
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path(name + ".rlpd"))
+            self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path(name + ".rlpc"), "-q")
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("n" * size))  # a folder
+        self.assertEqual([name for name in self.files() if "partial" in name], [])
+
+
+if __name__ == "__main__":
+    main()
