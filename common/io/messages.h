@@ -1,13 +1,34 @@
-// What programs say of files.
+// What programs say on a terminal, of names and texts that others chose.
 #pragma once
 
+#include <iostream>
 #include <string>
+#include <string_view>
 
 namespace rlpc {
 
 // The path, or "standard input" for "-".
 inline std::string name_of_input(const std::string& path) {
   return path == "-" ? "standard input" : path;
+}
+
+// Text as UTF-8 that does nothing to a terminal: control characters, those that turn the
+// direction of writing, and bytes that are no UTF-8 are shown as \x1B. A text of one line:
+std::string printable(std::string_view text);
+// Line ends and tabs stay.
+std::string printable_lines(std::string_view text);
+
+// "TOOL: MESSAGE" in a line of standard error, printable.
+void print_message(std::string_view tool, std::string_view message);
+
+// What CLI11 has to say about a command line: help on standard output, or what is wrong, on
+// standard error. Its exit code, 0 for help.
+template <class App, class ParseError>
+int exit_of_parse(const App& app, const ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  print_message(app.get_name(), error.what());
+  std::cerr << "Run with --help for more information.\n";
+  return error.get_exit_code();
 }
 
 }  // namespace rlpc

@@ -216,5 +216,71 @@ class Places(ToolsTest):
         self.assertEqual([name for name in self.files() if "partial" in name], [])
 
 
+class Names(ToolsTest):
+    """Names that would do something to a terminal, and such as are no UTF-8."""
+
+    BAD = ("e\x1b[31m\x07", "line\nrlpcdec: all is well", "csi\udc9b31m", "bidi\u202egpj",
+           "del\x7f", "nel\u0085")
+
+    def setUp(self):
+        super().setUp()
+        self.clip(2)
+        self.encode(self.path("a.rlpc"), "--kg", 1)
+
+    def shown(self, code, tool, *arguments):
+        """What is on standard output and error is printable, a line at a time."""
+        done = subprocess.run([Tools.folder / tool, *arguments], capture_output=True, check=False)
+        self.assertEqual(done.returncode, code, done.stderr)
+        text = (done.stdout + done.stderr).decode()  # UTF-8
+        for line in text.split("\n"):
+            self.assertTrue(line.replace("\t", "").isprintable(), repr(line))
+            self.assertFalse(line.startswith("rlpcdec: all is well"), repr(text))
+        return text
+
+    def test_that_are_not_there(self):
+        for bad in self.BAD:
+            none, out = self.path(bad), self.path("out")
+            for code, *command in (
+                    (4, "rlpcdec", none, "--verify"), (4, "rlpcdec", "decode", none, out),
+                    (4, "rlpcdec", none, "--html", out), (4, "rlpcinfo", none),
+                    (4, "rlpcinfo", none, "--extract", "layers=1", "-o", out),
+                    (4, "rlpcval", none), (1, "rlpcenc", none, "-o", out),
+                    (1, "rlpcenc", self.path("clip.obj"), "--points", none, "-o", out),
+                    (2, "rlpccmp", none, none),
+                    (4, "rlpcdec", self.path("a.rlpc"), "-o", none / "a.rlpd"),
+                    (64, "rlpcdec", self.path("a.rlpc"), "--frames", bad, "--verify"),
+                    (64, "rlpcenc", none, none, "-o", out), (64, "rlpcenc", none, "--kg", bad),
+                    (64, "rlpcenc", none, "-o", out, "--gof", bad),
+                    (64, "rlpcinfo", none, "--extract", bad, "-o", out),
+                    (64, "rlpcval", "--explain", bad), (64, "rlpccmp", none, none, bad)):
+                self.shown(code, *command)
+
+    def test_that_are_there(self):
+        for bad in self.BAD:
+            stream, mesh = self.path(bad + ".rlpc"), self.path(bad + ".obj")
+            stream.write_bytes(self.path("a.rlpc").read_bytes())
+            mesh.write_bytes(self.path("clip.obj").read_bytes())
+            out = self.path("o" + bad + ".rlpc")
+            for command in (
+                    ("rlpcdec", stream, "--verify"), ("rlpcinfo", stream), ("rlpcval", stream),
+                    ("rlpcinfo", stream, "--extract", "components=0", "-o", out),
+                    ("rlpccmp", mesh, mesh), ("rlpccmp", stream, stream),
+                    ("rlpcenc", mesh, "-o", out), ("rlpcenc", mesh, "--dry-run")):
+                self.assertIn("\\x", self.shown(0, *command))
+
+    def test_json(self):
+        for bad in self.BAD:
+            stream, out = self.path(bad + ".rlpc"), self.path("o" + bad + ".rlpc")
+            stream.write_bytes(self.path("a.rlpc").read_bytes())
+            name = bad.replace("\udc9b", "\ufffd")
+            told = self.ok("rlpccmp", stream, stream, "--json").json()
+            self.assertTrue(told["a"].endswith(name + ".rlpc"), told["a"])
+            told = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", out,
+                           "--json").json()
+            self.assertTrue(told["output"].endswith(name + ".rlpc"), told["output"])
+            told = self.ok("rlpcval", stream, "--json").json()
+            self.assertTrue(told["streams"][0]["file"].endswith(name + ".rlpc"))
+
+
 if __name__ == "__main__":
     main()

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/io/interrupts.h"
+#include "common/io/messages.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "conformance/rlpcval/rlpcval_report.h"
@@ -99,7 +100,7 @@ rlpc::ExitCode validate(const Options& o, const std::string& path,
   }
   const bool unreadable = report.stopped && report.stopped->code == rlpc::Errc::kIo;
   if (unreadable) {
-    std::cerr << "rlpcval: " << path << ": " << rlpc::describe_error(*report.stopped) << "\n";
+    rlpc::print_message("rlpcval", path + ": " + rlpc::describe_error(*report.stopped));
   }
   if (o.json) {
     streams.push_back(rlpc::json_of(path, report));
@@ -112,7 +113,7 @@ rlpc::ExitCode validate(const Options& o, const std::string& path,
 int explain(const std::string& id) {
   const rlpc::RuleExplanation* e = rlpc::explain(id);
   if (e == nullptr) {
-    std::cerr << "rlpcval: --explain: there is no rule or warning `" << id << "`\n";
+    rlpc::print_message("rlpcval", "--explain: there is no rule or warning `" + id + "`");
     return rlpc::kExitUsage;
   }
   std::printf("%s (clause %s)\n  %s\n  Likely cause: %s\n  What to do: %s\n", e->id, e->clause,
@@ -131,13 +132,13 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
   if (!options.explain.empty()) {
     return rlpc::after_standard_output("rlpcval", explain(options.explain), rlpc::kExitIo);
   }
   if (options.inputs.empty()) {
-    std::cerr << "rlpcval: give a stream to validate, or --help\n";
+    rlpc::print_message("rlpcval", "give a stream to validate, or --help");
     return rlpc::kExitUsage;
   }
   nlohmann::ordered_json streams = nlohmann::ordered_json::array();
@@ -155,6 +156,6 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "rlpcval: out of memory\n");
   return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcval: %s\n", error.what());
+  rlpc::print_message("rlpcval", error.what());
   return rlpc::kExitLimit;
 }

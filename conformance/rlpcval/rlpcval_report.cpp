@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <string_view>
 
+#include "common/io/messages.h"
 #include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/rule_explanations.h"
 
@@ -152,7 +153,8 @@ const char* name_of(Verdict verdict) {
 }
 
 void print_report(std::FILE* out, const std::string& path, const ValidationReport& report) {
-  std::fprintf(out, "%s: %s; %s, %s, %s\n", path.c_str(), name_of(verdict_of(report)),
+  std::fprintf(out, "%s: %s; %s, %s, %s\n", printable(path).c_str(),
+               name_of(verdict_of(report)),
                counted(report.count(Severity::kError), "error").c_str(),
                counted(report.count(Severity::kUnsupported), "unsupported feature").c_str(),
                counted(report.count(Severity::kWarning), "warning").c_str());

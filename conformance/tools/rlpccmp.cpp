@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/io/interrupts.h"
+#include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
@@ -125,7 +126,7 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 int complain(const std::string& message) {
-  std::cerr << "rlpccmp: " << message << "\n";
+  rlpc::print_message("rlpccmp", message);
   return kFailed;
 }
 
@@ -200,14 +201,16 @@ void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::
   }
   json["metrics"] = rlpc::metrics_json(d.metrics);
   json["surface"] = rlpc::surface_json(d.surface);
-  std::cout << json.dump(2) << "\n";
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in names
+  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
 void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
                   const rlpc::Distortion& d) {
   const rlpc::Metrics& m = d.metrics;
-  std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", pair.a.name.c_str(),
-              pair.b.name.c_str(), pair.a.frames->num_vertices(), pair.a.frames->num_frames());
+  std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", rlpc::printable(pair.a.name).c_str(),
+              rlpc::printable(pair.b.name).c_str(), pair.a.frames->num_vertices(),
+              pair.a.frames->num_frames());
   if (rate.bytes > 0) {
     std::printf("  rate      %.4f bits per vertex and frame (%llu bytes)\n", rate.bpvf,
                 static_cast<unsigned long long>(rate.bytes));
@@ -330,13 +333,13 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kCompared : kUsage;
+    return rlpc::exit_of_parse(app, error) == 0 ? kCompared : kUsage;
   }
   return rlpc::after_standard_output("rlpccmp", run(options), kFailed);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpccmp: out of memory\n");
   return kFailed;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpccmp: %s\n", error.what());
+  rlpc::print_message("rlpccmp", error.what());
   return kFailed;
 }

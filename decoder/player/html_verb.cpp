@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <utility>
 #include <vector>
 
+#include "common/io/messages.h"
 #include "decoder/describe_error.h"
 #include "decoder/player/player_page.h"
 #include "decoder/tools/exit_code.h"
@@ -15,7 +15,7 @@ namespace rlpc {
 namespace {
 
 int complain(const std::string& message, int code) {
-  std::cerr << "rlpcdec: " << message << "\n";
+  print_message("rlpcdec", message);
   return code;
 }
 
@@ -92,7 +92,7 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
   }
   if (!request.quiet) {
     std::fprintf(stderr, "%s: plays %u frames of %u vertices; open it in a browser\n",
-                 request.output.c_str(), decoder->header().num_frames,
+                 printable(request.output).c_str(), decoder->header().num_frames,
                  decoder->header().num_vertices);
   }
   return check_whole(request.input, *decoder);

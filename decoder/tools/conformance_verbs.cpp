@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/io/binary_numbers.h"
+#include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/syntax/stream_format.h"
 #include "decoder/describe_error.h"
@@ -120,11 +121,11 @@ void print_verdict(const Error& error, std::uint32_t frames) {
 int decode(const Request& request) {
   const Outcome outcome = decode_frames(request);
   if (outcome.output_error) {
-    std::cerr << "rlpcdec: " << outcome.output_error->message << "\n";
+    print_message("rlpcdec", outcome.output_error->message);
     return kExitIo;
   }
   if (!outcome.error) return kExitDone;
-  std::cerr << "rlpcdec: " << request.input << ": " << describe_error(*outcome.error) << "\n";
+  print_message("rlpcdec", request.input + ": " + describe_error(*outcome.error));
   const ExitCode code = exit_code(outcome.error->code);
   if (code != kExitIo) print_verdict(*outcome.error, outcome.frames);
   return code;
@@ -167,7 +168,7 @@ std::optional<int> run_conformance_verb(int argc, char** argv) {
   try {
     app.parse(argc - 1, argv + 1);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+    return exit_of_parse(app, error) == 0 ? kExitDone : kExitUsage;
   }
   return decode(request);
 }

@@ -26,7 +26,7 @@ std::optional<std::uint32_t> parse_count(std::string_view text) {
 }
 
 int complain(const std::string& message, int code) {
-  std::cerr << "rlpcinfo: " << message << "\n";
+  print_message("rlpcinfo", message);
   return code;
 }
 
@@ -74,14 +74,15 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                                        {"before", size_json(cutter, cutter.size())},
                                        {"after", size_json(cutter, bytes)},
                                        {"gofs", std::move(gofs)}};
-  std::cout << json.dump(2) << "\n";
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in the name
+  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
 void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
                 std::uint64_t bytes) {
-  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", name_of_input(o.input).c_str(),
+  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", printable(name_of_input(o.input)).c_str(),
               cutter.size(), bpvf(cutter, cutter.size()));
-  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", o.output.c_str(), bytes,
+  std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", printable(o.output).c_str(), bytes,
               bpvf(cutter, bytes));
   for (const GofSummary& gof : cutter.gofs()) {
     if (!gof.has_bones()) {

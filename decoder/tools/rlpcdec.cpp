@@ -77,7 +77,7 @@ struct FrameSpan {
 };
 
 int complain(const std::string& message, int code) {
-  std::cerr << "rlpcdec: " << message << "\n";
+  rlpc::print_message("rlpcdec", message);
   return code;
 }
 
@@ -140,9 +140,10 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
     std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s\n",
-                 rlpc::name_of_input(o.input).c_str(), frames.decoded, plural(frames.decoded),
-                 h.num_vertices, h.num_vertices == 1 ? "ex" : "ices", h.num_triangles,
-                 plural(h.num_triangles), hashes_text(o, decoder, frames).c_str());
+                 rlpc::printable(rlpc::name_of_input(o.input)).c_str(), frames.decoded,
+                 plural(frames.decoded), h.num_vertices, h.num_vertices == 1 ? "ex" : "ices",
+                 h.num_triangles, plural(h.num_triangles),
+                 hashes_text(o, decoder, frames).c_str());
   }
 }
 
@@ -289,7 +290,7 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
   if (options.output.empty() && options.html.output.empty() && !options.verify_only) {
     return complain("give -o OUT, --html OUT, or --verify to write nothing", rlpc::kExitUsage);
@@ -321,6 +322,6 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "rlpcdec: out of memory\n");
   return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcdec: %s\n", error.what());
+  rlpc::print_message("rlpcdec", error.what());
   return rlpc::kExitLimit;
 }

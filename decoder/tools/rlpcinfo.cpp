@@ -60,16 +60,17 @@ struct Options {
   std::uint64_t max_memory_bytes = rlpc::DecodeLimits().max_memory_bytes;
 };
 
-int complain(const Options& o, const rlpc::Error& error) {
-  std::cerr << "rlpcinfo: " << rlpc::name_of_input(o.input) << ": "
-            << rlpc::describe_error(error) << "\n";
-  return rlpc::exit_code(error.code);
+int complain(const std::string& message, int code) {
+  rlpc::print_message("rlpcinfo", message);
+  return code;
 }
 
-int complain(const rlpc::OutputError& error) {
-  std::cerr << "rlpcinfo: " << error.message << "\n";
-  return rlpc::kExitIo;
+int complain(const Options& o, const rlpc::Error& error) {
+  return complain(rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error),
+                  rlpc::exit_code(error.code));
 }
+
+int complain(const rlpc::OutputError& error) { return complain(error.message, rlpc::kExitIo); }
 
 struct Summary {
   const rlpc::SequenceHeader& header;
@@ -140,15 +141,6 @@ nlohmann::ordered_json metadata_json(const std::string& text) {
   auto json = nlohmann::ordered_json::parse(text, look, false);
   if (too_deep || json.is_discarded()) return text;
   return json;
-}
-
-// With "?" for what would do something to a terminal.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) c = '?';
-  }
-  return text;
 }
 
 void print_json(const Summary& s) {
@@ -276,7 +268,8 @@ void print_gof(const rlpc::GofSummary& gof) {
 void print_table(const Options& o, const Summary& s) {
   const rlpc::SequenceHeader& h = s.header;
   const double total = 8.0 * static_cast<double>(s.bytes);
-  std::printf("%s: %s profile, level %u\n", rlpc::name_of_input(o.input).c_str(),
+  std::printf("%s: %s profile, level %u\n",
+              rlpc::printable(rlpc::name_of_input(o.input)).c_str(),
               h.profile_idc == rlpc::kProfileMain ? "Main" : "Baseline", h.level_idc);
   std::printf("  %s, %s, %s at %u/%u per second, %s\n",
               counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
@@ -297,7 +290,8 @@ void print_table(const Options& o, const Summary& s) {
                 bpvf(s, bits));
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
-  if (!s.metadata.empty()) std::printf("\n  metadata: %s\n", printable(s.metadata).c_str());
+  if (!s.metadata.empty())
+    std::printf("\n  metadata: %s\n", rlpc::printable_lines(s.metadata).c_str());
   if (o.gofs) {
     for (const rlpc::GofSummary& gof : s.gofs) print_gof(gof);
   }
@@ -396,24 +390,26 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
+    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
   }
   if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
-    std::cerr << "rlpcinfo: " << options.html << ": is the input itself; give another name\n";
-    return rlpc::kExitUsage;
+    return complain(options.html + ": is the input itself; give another name",
+                    rlpc::kExitUsage);
   }
   if (options.json && (options.html == "-" || options.output == "-")) {
-    std::cerr << "rlpcinfo: --json and another output cannot both go to standard output\n";
-    return rlpc::kExitUsage;
+    return complain("--json and another output cannot both go to standard output",
+                    rlpc::kExitUsage);
   }
   if (extract->count() == 0)
     return rlpc::after_standard_output("rlpcinfo", inform(options), rlpc::kExitIo);
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {
-    std::cerr << "rlpcinfo: --extract: expected components=K, layers=L, or both; K is at "
-                 "least 0 and L at least 1, at most 4294967294; got `"
-              << options.extract << "`\n";
-    return rlpc::kExitUsage;
+    return complain(
+        "--extract: expected components=K, layers=L, or both; K is at least 0 and L at least "
+        "1, "
+        "at most 4294967294; got `" +
+            options.extract + "`",
+        rlpc::kExitUsage);
   }
   rlpc::DecodeLimits limits;
   limits.max_memory_bytes = options.max_memory_bytes;
@@ -424,6 +420,6 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "rlpcinfo: out of memory\n");
   return rlpc::kExitLimit;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcinfo: %s\n", error.what());
+  rlpc::print_message("rlpcinfo", error.what());
   return rlpc::kExitLimit;
 }

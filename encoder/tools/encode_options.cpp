@@ -11,6 +11,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/quality.h"
@@ -356,7 +357,7 @@ std::optional<InputError> read_metadata(const CommandLine& line) {
 }  // namespace
 
 int complain(const std::string& message, EncodeExitCode code) {
-  std::cerr << "rlpcenc: " << message << "\n";
+  print_message("rlpcenc", message);
   return code;
 }
 
@@ -368,12 +369,12 @@ std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& opt
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
-    return complain("more than one input, or an unknown option: " +
-                        CLI::detail::join(app.remaining(), " ") +
-                        "\nPut patterns in quotes, as in 'walk_*.obj'; see rlpcenc --help",
-                    kUsage);
+    complain("more than one input, or an unknown option: " +
+             CLI::detail::join(app.remaining(), " "));
+    std::cerr << "Put patterns in quotes, as in 'walk_*.obj'; see rlpcenc --help\n";
+    return kUsage;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kEncoded : kUsage;
+    return exit_of_parse(app, error) == 0 ? kEncoded : kUsage;
   }
   if (const auto wrong = check_places(line)) return complain(*wrong, kUsage);
   if (const auto wrong = finish_settings(line)) return complain(*wrong, kUsage);

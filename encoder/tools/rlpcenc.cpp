@@ -39,7 +39,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   const Metrics& m = r.metrics;
   const auto s = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
   const std::string name = o.dry_run ? o.input.path + " (nothing is written)" : o.output;
-  std::printf("%s: %u vert%s, %u triangle%s, %u frame%s, level %u\n", name.c_str(),
+  std::printf("%s: %u vert%s, %u triangle%s, %u frame%s, level %u\n", printable(name).c_str(),
               r.header.num_vertices, r.header.num_vertices == 1 ? "ex" : "ices",
               r.header.num_triangles, s(r.header.num_triangles), r.header.num_frames,
               s(r.header.num_frames), r.header.level_idc);
@@ -75,15 +75,15 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
   constexpr double kNoError = 0.002;  // per cent: about what the finest grid leaves
   const bool is_exact = report.metrics.kg_error_percent < kNoError;
   if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
-    std::cerr << "rlpcenc: fewer bits than --bpvf allows: "
-              << (is_exact ? "this is as exact as it gets\n"
-                           : "no encoding was found that comes closer\n");
+    complain(
+        std::string("fewer bits than --bpvf allows: ") +
+        (is_exact ? "this is as exact as it gets" : "no encoding was found that comes closer"));
   }
   const double error = target.kind == Target::kMaxError ? report.metrics.max_error
                                                         : report.metrics.kg_error_percent;
   if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
-    std::cerr << "rlpcenc: a smaller error than asked for: no encoding was found that saves by "
-                 "coming closer\n";
+    complain(
+        "a smaller error than asked for: no encoding was found that saves by coming closer");
   }
 }
 
@@ -107,9 +107,9 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
     }
     return kEncoded;
   }
-  std::cerr << "rlpcenc: the target is out of reach; this is the closest found. "
-            << advice(o, report) << ".\n";
-  return kTargetMissed;
+  return complain(
+      "the target is out of reach; this is the closest found. " + advice(o, report) + ".",
+      kTargetMissed);
 }
 
 // Who asks for a preview, or more than there is, knows.
@@ -223,7 +223,7 @@ int run(const EncodeOptions& o) {
   std::vector<std::string> notes = (*source)->notes();
   for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
   for (const std::string& note : notes) {
-    if (!o.quiet) std::cerr << "rlpcenc: " << name << ": " << note << "\n";
+    if (!o.quiet) complain(name + ": " + note);
   }
   if (o.dry_run) return run_dry(o, **source);
   auto report = encode_to_files(o, **source);
@@ -253,6 +253,6 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "rlpcenc: out of memory; a shorter --gof needs less\n");
   return rlpc::kFailed;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "rlpcenc: %s\n", error.what());
+  rlpc::print_message("rlpcenc", error.what());
   return rlpc::kFailed;
 }
