@@ -175,7 +175,10 @@ Result<std::uint32_t> Decoder::Impl::parse_rest() {
 
 Result<Decoder> Decoder::open(std::unique_ptr<ByteSource> source,
                               const DecoderOptions& options) {
-  auto impl = std::make_unique<Impl>(std::move(source), options);
+  DecoderOptions for_rest = options;
+  std::uint64_t& left = for_rest.limits.max_memory_bytes;
+  left -= std::min(left, source->memory_bytes());
+  auto impl = std::make_unique<Impl>(std::move(source), for_rest);
   if (const auto ok = impl->open(); !ok) return ok.error();
   return Decoder(std::move(impl));
 }

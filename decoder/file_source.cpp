@@ -2,10 +2,14 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <span>
 #include <utility>
-#include <vector>
+
+#include "common/io/bounded_input.h"
+#include "common/syntax/stream_format.h"
 
 namespace rlpc {
 namespace {
@@ -30,6 +34,21 @@ class FileSource final : public ByteSource {
   std::uint64_t size_;
 };
 
+class PipedSource final : public ByteSource {
+ public:
+  explicit PipedSource(PipedInput input) : input_(std::move(input)) {}
+  std::uint64_t size() const override { return input_.size(); }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    if (offset > size() || out.size() > size() - offset) return false;
+    input_.copy(offset, out);
+    return true;
+  }
+  std::uint64_t memory_bytes() const override { return input_.size(); }
+
+ private:
+  PipedInput input_;
+};
+
 Error cannot_open(int code) {
   const char* const why = code == ENOENT   ? "no such file"
                           : code == EACCES ? "no permission to read it"
@@ -38,29 +57,45 @@ Error cannot_open(int code) {
   return Error{Errc::kIo, "", why, 0};
 }
 
-Result<std::unique_ptr<ByteSource>> read_whole(std::FILE* file) {
-  std::vector<std::uint8_t> bytes;
-  for (int byte = std::getc(file); byte != EOF; byte = std::getc(file)) {
-    bytes.push_back(static_cast<std::uint8_t>(byte));
+// A stream, though a transfer may have damaged it: half of the signature is there.
+bool begins_like_stream(std::span<const std::uint8_t> bytes) {
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < std::min(bytes.size(), kSignature.size()); ++i) {
+    right += bytes[i] == kSignature[i] ? 1 : 0;
   }
-  if (std::ferror(file) != 0) return Error{Errc::kIo, "", "reading it failed", 0};
-  return memory_source(std::move(bytes));
+  return 2 * right >= kSignature.size();
+}
+
+Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file,
+                                                 std::uint64_t max_memory_bytes) {
+  PipedInput input(file);
+  if (begins_like_stream(input.beginning())) input.read_rest(max_memory_bytes);
+  if (input.state() == PipedInput::State::kFailed) {
+    return Error{Errc::kIo, "", "reading it failed", 0};
+  }
+  if (input.state() == PipedInput::State::kTooLarge) {
+    return Error{Errc::kLimitExceeded, "", "stream", 0};
+  }
+  return {std::make_unique<PipedSource>(std::move(input))};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ByteSource>> file_source(const std::string& path) {
+Result<std::unique_ptr<ByteSource>> file_source(const std::string& path,
+                                                std::uint64_t max_memory_bytes) {
   File file(std::fopen(path.c_str(), "rb"));
   if (!file) return cannot_open(errno);
   struct stat about {};
   if (fstat(fileno(file.get()), &about) != 0) return cannot_open(errno);
   if (S_ISDIR(about.st_mode)) return cannot_open(EISDIR);
-  if (!S_ISREG(about.st_mode)) return read_whole(file.get());
+  if (!S_ISREG(about.st_mode)) return piped_source(file.get(), max_memory_bytes);
   std::unique_ptr<ByteSource> source =
       std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(about.st_size));
   return source;
 }
 
-Result<std::unique_ptr<ByteSource>> standard_input_source() { return read_whole(stdin); }
+Result<std::unique_ptr<ByteSource>> standard_input_source(std::uint64_t max_memory_bytes) {
+  return piped_source(stdin, max_memory_bytes);
+}
 
 }  // namespace rlpc

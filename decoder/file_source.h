@@ -1,6 +1,7 @@
 // Streams in files, and from standard input.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -9,13 +10,22 @@
 
 namespace rlpc {
 
-// Reads from a file as needed; a pipe is read whole. Error: Errc::kIo, the element says why.
-Result<std::unique_ptr<ByteSource>> file_source(const std::string& path);
-// Reads standard input whole.
-Result<std::unique_ptr<ByteSource>> standard_input_source();
+// That of DecodeLimits, if nobody says otherwise.
+inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
+
+// Reads from a file as needed. A pipe or a device is read whole, and kept, unless it does not
+// begin like a stream: then nothing behind that is read. Errors: Errc::kIo, the element says
+// why; Errc::kLimitExceeded: there is more to keep than max_memory_bytes.
+Result<std::unique_ptr<ByteSource>> file_source(
+    const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes);
+// Standard input, likewise.
+Result<std::unique_ptr<ByteSource>> standard_input_source(
+    std::uint64_t max_memory_bytes = kUsualMemoryBytes);
 // The one or, for "-", the other.
-inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(const std::string& path) {
-  return path == "-" ? standard_input_source() : file_source(path);
+inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(
+    const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes) {
+  return path == "-" ? standard_input_source(max_memory_bytes)
+                     : file_source(path, max_memory_bytes);
 }
 
 }  // namespace rlpc

@@ -43,7 +43,8 @@ struct DecodeLimits {
   std::uint32_t max_vertices = 1U << 23;
   std::uint32_t max_triangles = 1U << 24;
   std::uint32_t max_frames = kMaxFrames;
-  std::uint64_t max_memory_bytes = std::uint64_t{1} << 32;  // estimated
+  // Estimated; with what the source keeps, where it is a pipe.
+  std::uint64_t max_memory_bytes = kUsualMemoryBytes;
 };
 
 struct DecoderOptions {

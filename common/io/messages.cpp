@@ -63,6 +63,18 @@ std::string escaped(std::string_view text, std::string_view kept) {
 std::string printable(std::string_view text) { return escaped(text, ""); }
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
 
+std::string size_text(std::uint64_t bytes) {
+  constexpr std::array<const char*, 3> kUnits{" KiB", " MiB", " GiB"};
+  std::uint64_t count = bytes;
+  const char* unit = " bytes";
+  for (const char* larger : kUnits) {
+    if (count == 0 || count % 1024 != 0) break;
+    count /= 1024;
+    unit = larger;
+  }
+  return std::to_string(count) + unit;
+}
+
 void print_message(std::string_view tool, std::string_view message) {
   std::cerr << tool << ": " << printable(message) << "\n";
 }

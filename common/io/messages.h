@@ -1,6 +1,7 @@
 // What programs say on a terminal, of names and texts that others chose.
 #pragma once
 
+#include <cstdint>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ inline std::string name_of_input(const std::string& path) {
 std::string printable(std::string_view text);
 // Line ends and tabs stay.
 std::string printable_lines(std::string_view text);
+
+// "500 MiB" where it is as round as that, else "123456 bytes".
+std::string size_text(std::uint64_t bytes);
 
 // "TOOL: MESSAGE" in a line of standard error, printable.
 void print_message(std::string_view tool, std::string_view message);

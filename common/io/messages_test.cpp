@@ -42,5 +42,14 @@ TEST(Messages, LinesStayWhereTheyAreWanted) {
   EXPECT_EQ(printable_lines("a\n\tb\r\n"), "a\n\tb\\x0D\n");
 }
 
+TEST(Messages, SizesAreRoundIfTheyAre) {
+  EXPECT_EQ(size_text(0), "0 bytes");
+  EXPECT_EQ(size_text(1023), "1023 bytes");
+  EXPECT_EQ(size_text(1024), "1 KiB");
+  EXPECT_EQ(size_text(500 << 20), "500 MiB");
+  EXPECT_EQ(size_text((500 << 20) + 1), "524288001 bytes");
+  EXPECT_EQ(size_text(std::uint64_t{5} << 40), "5120 GiB");
+}
+
 }  // namespace
 }  // namespace rlpc

@@ -89,9 +89,11 @@ rlpc::ExitCode worse(rlpc::ExitCode a, rlpc::ExitCode b) {
 rlpc::ExitCode validate(const Options& o, const std::string& path,
                         nlohmann::ordered_json& streams) {
   rlpc::ValidationReport report;
-  if (const auto source = rlpc::file_or_standard_input(path)) {
+  rlpc::ValidationOptions options = o.validation;
+  std::uint64_t& max_memory_bytes = options.limits.max_memory_bytes;
+  if (const auto source = rlpc::file_or_standard_input(path, max_memory_bytes)) {
+    max_memory_bytes -= (*source)->memory_bytes();
     rlpc::ProgressBar bar("validating", !o.quiet);
-    rlpc::ValidationOptions options = o.validation;
     options.progress = [&](double fraction) { bar.show(fraction); };
     report = rlpc::validate(**source, options);
   } else {

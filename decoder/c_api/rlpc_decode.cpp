@@ -95,7 +95,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   return options;
 }
 
-// make_source() gives a Result<std::unique_ptr<ByteSource>>.
+// make_source(limits) gives a Result<std::unique_ptr<ByteSource>>.
 template <class MakeSource>
 rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
                  const MakeSource& make_source) {
@@ -107,12 +107,13 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
   }
   *decoder = handle;
   return guarded(handle, [&] {
-    Result<std::unique_ptr<ByteSource>> source = make_source();
+    const DecoderOptions ours = decoder_options(options);
+    Result<std::unique_ptr<ByteSource>> source = make_source(ours.limits);
     if (!source) {
       const rlpc_status status = status_of(source.error().code);
       return handle->error.break_handle(status, describe_error(source.error()));
     }
-    auto opened = Decoder::open(std::move(*source), decoder_options(options));
+    auto opened = Decoder::open(std::move(*source), ours);
     if (!opened) {
       const rlpc_status status = status_of(opened.error().code);
       return handle->error.break_handle(status, describe_error(opened.error()));
@@ -157,9 +158,11 @@ rlpc_status rlpc_decoder_open_memory(const void* bytes, size_t num_bytes,
   if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
   *decoder = nullptr;
   if (bytes == nullptr && num_bytes > 0) return RLPC_BAD_ARGUMENT;
-  return rlpc::open(options, decoder, [&]() -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
-    return {std::make_unique<rlpc::CallersMemory>(bytes, num_bytes)};
-  });
+  return rlpc::open(
+      options, decoder,
+      [&](const rlpc::DecodeLimits&) -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
+        return {std::make_unique<rlpc::CallersMemory>(bytes, num_bytes)};
+      });
 }
 
 rlpc_status rlpc_decoder_open_file(const char* path, const rlpc_decode_options* options,
@@ -167,7 +170,9 @@ rlpc_status rlpc_decoder_open_file(const char* path, const rlpc_decode_options* 
   if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
   *decoder = nullptr;
   if (path == nullptr) return RLPC_BAD_ARGUMENT;
-  return rlpc::open(options, decoder, [&] { return rlpc::file_source(path); });
+  return rlpc::open(options, decoder, [&](const rlpc::DecodeLimits& limits) {
+    return rlpc::file_source(path, limits.max_memory_bytes);
+  });
 }
 
 rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
@@ -176,9 +181,11 @@ rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
   if (decoder == nullptr) return RLPC_BAD_ARGUMENT;
   *decoder = nullptr;
   if (source == nullptr || source->read == nullptr) return RLPC_BAD_ARGUMENT;
-  return rlpc::open(options, decoder, [&]() -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
-    return {std::make_unique<rlpc::CallersSource>(*source)};
-  });
+  return rlpc::open(
+      options, decoder,
+      [&](const rlpc::DecodeLimits&) -> rlpc::Result<std::unique_ptr<rlpc::ByteSource>> {
+        return {std::make_unique<rlpc::CallersSource>(*source)};
+      });
 }
 
 void rlpc_decoder_close(rlpc_decoder* decoder) { rlpc::close_handle(decoder); }

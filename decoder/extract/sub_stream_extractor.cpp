@@ -18,6 +18,7 @@ class SharedSource final : public ByteSource {
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
     return source_->read(offset, out);
   }
+  std::uint64_t memory_bytes() const override { return source_->memory_bytes(); }
 
  private:
   std::shared_ptr<ByteSource> source_;

@@ -1,8 +1,10 @@
 // Point cache with its mesh: X.pc2 or X.mdd, and X.obj.
+#include <array>
 #include <cassert>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "common/io/binary_numbers.h"
@@ -87,9 +89,11 @@ class PointCacheSink : public FrameSink {
 
 // Nobody asked for this file by its name. What MeshBytes writes begins in the same way.
 bool may_replace_mesh(const std::string& path) {
+  constexpr std::string_view kOurs = "# frame_rate ";
+  std::array<char, kOurs.size()> begin{};
   std::ifstream file(path);
-  std::string line;
-  return !std::getline(file, line) || line.starts_with("# frame_rate ");
+  file.read(begin.data(), begin.size());
+  return file.gcount() == 0 || std::string_view(begin.data(), begin.size()) == kOurs;
 }
 
 }  // namespace

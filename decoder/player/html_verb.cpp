@@ -31,6 +31,7 @@ class Borrowed final : public ByteSource {
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
     return source_.read(offset, out);
   }
+  std::uint64_t memory_bytes() const override { return source_.memory_bytes(); }
 
  private:
   ByteSource& source_;
@@ -73,7 +74,7 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
   if (!decoder) return complain(request.input, decoder.error());
   std::unique_ptr<ByteSource> reference;
   if (!request.reference.empty()) {
-    auto opened = file_source(request.reference);
+    auto opened = file_source(request.reference, request.decoder.limits.max_memory_bytes);
     if (!opened) return complain(request.reference, opened.error());
     reference = std::move(*opened);
     const auto other = look_at(*reference, request.decoder);

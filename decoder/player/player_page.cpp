@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "common/io/bounded_input.h"
 #include "common/io/output_file.h"
 #include "decoder/output/base64.h"
 
@@ -20,6 +19,8 @@ namespace fs = std::filesystem;
 
 // Where the player has room for streams.
 constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
+// The player has less than one.
+constexpr std::size_t kMostPlayerBytes = std::size_t{64} << 20;
 // An element for each, as strings of browsers have limits; a multiple of 3, so that only the
 // last one is padded.
 constexpr std::size_t kPartBytes = std::size_t{3} << 20;
@@ -61,10 +62,9 @@ OutputResult<std::string> read_player(const std::string& path) {
   std::vector<fs::path> places{path};
   if (path.empty()) places = places_of_player();
   for (const fs::path& place : places) {
-    std::ifstream file(place, std::ios::binary);
-    if (!file) continue;
-    std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (text.find(kPlace) != std::string::npos) return text;
+    auto text = read_small_file(place.string(), kMostPlayerBytes);
+    if (!text) continue;
+    if (text->find(kPlace) != std::string::npos) return std::move(*text);
     return OutputError{place.string() + ": not the page that scripts/player builds"};
   }
   if (!path.empty()) return OutputError{path + ": cannot read the player"};

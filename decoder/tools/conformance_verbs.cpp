@@ -88,7 +88,7 @@ Outcome decode_frames(const Request& request) {
   // The sink outlives what throws: frames before the memory ran out are kept.
   std::unique_ptr<FrameSink> sink;
   try {
-    auto source = file_source(request.input);
+    auto source = file_source(request.input, request.decoder.limits.max_memory_bytes);
     if (!source) return {source.error(), {}, 0};
     auto decoder = Decoder::open(std::move(*source), request.decoder);
     if (!decoder) return {decoder.error(), {}, 0};

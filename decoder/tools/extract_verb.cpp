@@ -137,7 +137,7 @@ std::optional<SliceCut> parse_slice_cut(const std::string& text) {
 }
 
 int extract(const ExtractOptions& o) {
-  auto source = file_or_standard_input(o.input);
+  auto source = file_or_standard_input(o.input, o.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
   if (OutputFile::is_same_file(o.output, o.input)) {
     return complain(o.output + ": is the input itself; give another name", kExitUsage);

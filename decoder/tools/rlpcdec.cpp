@@ -156,7 +156,7 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
 }
 
 int decode(const Options& o) {
-  auto source = rlpc::file_or_standard_input(o.input);
+  auto source = rlpc::file_or_standard_input(o.input, o.decoder.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
   if (!o.html.output.empty()) return write_html(o, **source);
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);

@@ -340,7 +340,7 @@ int inform(const Options& o) {
     page.emplace(std::move(*file));
   }
   rlpc::BitCounter counter(o.trace);
-  auto source = rlpc::file_or_standard_input(o.input);
+  auto source = rlpc::file_or_standard_input(o.input, o.max_memory_bytes);
   if (!source) return complain(o, source.error());
   const std::uint64_t bytes = (*source)->size();
   rlpc::DecoderOptions options;
