@@ -3,7 +3,8 @@
 
 Each folder includes what scripts/checks/rooms.py allows: common neither side, encoder and decoder
 never each other, parsing nothing that reconstructs, readers and writers of mesh files nothing of
-coding. Eigen stays in the encoder; the specification interpreter and the judge are plain Python.
+coding. Eigen stays in the encoder; common and decoder neither throw nor catch; the specification
+interpreter and the judge are plain Python.
 """
 
 import argparse
@@ -80,6 +81,19 @@ def check_file(root, path):
             complaint = f"an include that cannot be followed: {included}"
         if complaint:
             yield f"{relative}:{line}: {complaint}"
+
+
+def check_exceptions(root, path):
+    """Errors are results (common/result.h); what `new` throws passes through."""
+    relative = path.relative_to(root)
+    if relative.parts[0] not in rooms.NEITHER_THROW_NOR_CATCH or cpp_source.is_test(path):
+        return
+    if rooms.MAY_CATCH & {relative.as_posix(), relative.parent.as_posix()}:
+        return
+    text = path.read_text(encoding="utf-8")
+    for match in re.finditer(r"\b(throw|try|catch)\b", cpp_source.code_only(text)):
+        yield (f"{relative}:{cpp_source.line_of(text, match.start())}: "
+               f"{relative.parts[0]}/ must neither throw nor catch (`{match.group(1)}`)")
 
 
 def check_public_header(root, header):
@@ -178,6 +192,7 @@ def check(root):
     known = [path for path in paths if path.parent.relative_to(root).as_posix() in rooms.ROOMS
              or path.relative_to(root).parts[0] == rooms.BOTH_SIDES]
     complaints += [c for path in known for c in check_file(root, path)]
+    complaints += [c for path in known for c in check_exceptions(root, path)]
     for folder, places in rooms.NOT_CALLED.items():
         complaints += check_calls(root, folder, places)
     for header in PUBLIC_HEADERS:

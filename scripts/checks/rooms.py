@@ -87,6 +87,10 @@ NOT_CALLED = {"decoder/parse": ("common/cluster_gof/recon", "common/skinned_gof/
 # Sees both sides; nothing includes it.
 BOTH_SIDES = "conformance"
 
+# Layers that neither throw nor catch, but for the interface in C, programs, and threads.
+NEITHER_THROW_NOR_CATCH = {"common", "decoder"}
+MAY_CATCH = {"common/c_api", "decoder/c_api", "decoder/tools", "decoder/recon/async.cpp"}
+
 # Folders in which all is an integer, folders in them included; but for one.
 INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
                    "decoder/extract")

@@ -154,6 +154,20 @@ class Layers(RealTree):
                        lambda text: text + "#include <CLI/CLI.hpp>\n",
                        "decoder/slice_cut.h", "reaches <CLI/CLI.hpp>")
 
+    def test_common_and_decoder_neither_throw_nor_catch(self):
+        for name, line in (("common/mesh/topology.cpp", "void f() { throw 1; }"),
+                           ("decoder/stream/unit_reader.cpp", "void f() try {} ALL"),
+                           ("decoder/recon/prefetch.cpp", "catch (...) {}")):
+            with self.subTest(name=name):
+                self.complaint(check_layers.check, name, lambda t, l=line: l + "\n" + t,
+                               f"{name}:1", "must neither throw nor catch")
+        for name, line in (("common/mesh/topology.cpp", "// throw"),
+                           ("common/mesh/topology_test.cpp", "void f() { throw 1; }"),
+                           ("decoder/c_api/rlpc_decode.cpp", "void f() { throw 1; }"),
+                           ("encoder/c_api/rlpc_encode.cpp", "void f() { throw 1; }")):
+            with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
+                self.assertEqual(check_layers.check(self.root)[0], [])
+
     def test_folders_are_rooms_and_rooms_are_folders(self):
         self.complaint(check_layers.check, "decoder/attic/a.h", lambda _: "#pragma once\n",
                        "decoder/attic/ has sources, but is no room")
