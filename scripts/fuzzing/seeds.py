@@ -4,6 +4,7 @@ import base64
 import hashlib
 import itertools
 import json
+import random
 import struct
 import subprocess
 import sys
@@ -269,6 +270,26 @@ def gltf_seeds(root):
             yield bytes([settings]) + json.dumps(document, separators=(",", ":")).encode()
 
 
+def encoder_seeds():
+    """Of conformance/fuzz/encoder_case.cpp: each profile, preset and target over shapes and ways to
+    move, with few and with many tools."""
+    numbers = random.Random(1)
+    for profile, preset, target in itertools.product(range(2), range(3), range(3)):
+        for shape, motion in itertools.product(range(4), range(8)):
+            whole = numbers.randrange(2)
+            flags = whole | 2 * numbers.randrange(8) | 32 * (numbers.randrange(8) == 0)
+            value = (27000, 36000, 24000)[target] + numbers.randrange(6000)
+            vertices, triangles, frames = 12 + 7 * shape, 20, 10
+            options = struct.pack("<4BH7B", flags, profile, preset, target, value,
+                                  numbers.choice([0, 0, 5, 8, 255]), numbers.choice([0, 0, 1, 4]),
+                                  numbers.randrange(3), 0, 255, 29, 1)
+            tools = bytes(numbers.choice([0, 0, numbers.randrange(24)]) for _ in range(13))
+            mesh = bytes([vertices, shape, numbers.randrange(4), triangles, shape,
+                          numbers.choice([0, 0, 3, 250]), numbers.choice([0, 0, 140]), frames])
+            yield options + tools + mesh + b"".join(
+                bytes([motion if f else 0, 9 * f]) for f in range(frames))
+
+
 def seeds_of(target, streams, root):
     """What a target begins with; of a target that is not known here: streams."""
     if target == "obj_fuzz":
@@ -279,6 +300,8 @@ def seeds_of(target, streams, root):
         return [bytes([len(p) - 1]) + mdd_bytes(p, f) for p, _, f in small_animations()]
     if target == "pc2_fuzz":
         return [bytes([len(p) - 1]) + pc2_bytes(p, f) for p, _, f in small_animations()]
+    if target == "encoder_fuzz":
+        return encoder_seeds()
     if target == "gltf_fuzz":
         return gltf_seeds(root)
     if target == "rlpd_fuzz":

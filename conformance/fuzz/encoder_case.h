@@ -1,0 +1,46 @@
+// Animations and settings for the encoder, made of any bytes: what is legal, what is not, and
+// what is at the edge.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+#include "encoder/c_api/rlpc_encode.h"
+#include "encoder/rlpc_encoder.h"
+
+namespace rlpc {
+
+struct EncoderCase {
+  std::uint32_t num_vertices = 0;
+  std::vector<std::uint32_t> indices;      // three a triangle
+  std::vector<std::vector<float>> frames;  // 3 * num_vertices values each
+  std::uint32_t num_frames = 0;            // announced
+  FrameRate frame_rate;
+  std::array<float, 3> box_min{};
+  std::array<float, 3> box_max{};
+
+  // By the interface in C, frame by frame; without the members that are pointers.
+  rlpc_encode_options options{};
+  std::string metadata;
+  bool placed = false;
+  std::uint32_t failing_write = 0;  // the call that fails, from 1; 0: none
+  // In place of the options: settings for the sequence as a whole, of rlpc_encoder.h.
+  std::optional<EncoderSettings> settings;
+  bool twice = false;  // to compare the bytes
+
+  // By what the headers say.
+  bool has_known_options() const;
+  bool is_legal() const;  // all but the frames
+  bool is_legal_frame(std::size_t frame) const;
+};
+
+// Flags, then 26 bytes of settings, the mesh, the frames; what is missing is 0.
+EncoderCase make_encoder_case(std::span<const std::uint8_t> bytes);
+
+}  // namespace rlpc
