@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "common/bitstream/bit_writer.h"
-#include "common/bitstream/range_encoder.h"
 #include "common/cluster_gof/cluster_models.h"
+#include "common/testing/element_names.h"
+#include "common/testing/section_recipe.h"
 #include "decoder/parse/parse_gof_header.h"
 
 namespace rlpc {
@@ -53,25 +54,11 @@ void expect_invalid(const Result<ClusterGof>& gof, const std::string& rule,
   EXPECT_EQ(gof.error().element, element);
 }
 
-class Names : public Trace {
- public:
-  void begin(const char*, std::uint64_t) override {}
-  void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override {
-    if (name != last) text += std::string(text.empty() ? "" : "\n") + name;
-    last = name;
-    text += " " + std::to_string(value);
-    EXPECT_GE(bit_pos, before);
-    before = bit_pos;
-  }
-  std::string text;
-  std::string last;
-  std::uint64_t before = 0;
-};
-
 TEST(ParseGof, GivesTheElements) {
-  Names names;
+  ElementNames names;
   const auto gof = parse_legal(kLegal, &names);
   ASSERT_TRUE(gof);
+  EXPECT_TRUE(names.in_order);
   EXPECT_EQ(names.text,
             "first_frame 2\nnum_gof_frames_minus1 1\nnum_clusters_minus1 1\nfraction_bits 3\n"
             "seed_step_minus1 3\nseed_predictor 2\nseed_coupling_flag 1\n"
@@ -150,7 +137,7 @@ TEST(ParseGof, FactorsStayWithinTheMemoryOfTheCaller) {
 }
 
 // A payload bin by bin. Without triangles, every cluster_predicted_flag has context 0.
-class Recipe {
+class Recipe : public SectionRecipe {
  public:
   std::uint32_t first_frame = 0;
   std::uint32_t num_gof_frames_minus1 = 0;
@@ -160,7 +147,6 @@ class Recipe {
   std::uint32_t seed_predictor = 1;
   int vertex_bits = 3;  // for 5 to 8 vertices
   ClusterModels models;
-  RangeEncoder section;
 
   void lcf_flag(bool value) { section.bin(models.lcf_flag, value); }
   void seeds(std::initializer_list<std::uint32_t> vertices) {
@@ -168,31 +154,8 @@ class Recipe {
     for (const std::uint32_t v : vertices) section.bypass(vertex_bits, v);
   }
   void header_delta(HeaderField field, std::int32_t delta) {
-    std::uint32_t& mean = models.header_mean[static_cast<std::size_t>(field)];
-    residual(models.header, mean >> 4, delta);
-    mean = update_mean(mean, magnitude_of(delta), 2);
-  }
-  // 9.5.1
-  void residual(ResidualModels& m, std::uint32_t expected, std::int32_t value) {
-    const ResidualContext ctx = residual_context(expected);
-    const auto index = static_cast<std::size_t>(ctx.index);
-    const std::uint32_t high = magnitude_of(value) >> ctx.shift;
-    const std::uint32_t prefix = std::min<std::uint32_t>(high, kResidualPrefix);
-    for (std::uint32_t i = 0; i < prefix; ++i) section.bin(m.prefix[index][i], true);
-    if (prefix < kResidualPrefix) {
-      section.bin(m.prefix[index][prefix], false);
-    } else {
-      const std::uint32_t escape = high - kResidualPrefix + 1;
-      for (int i = 0; i < floor_log2(escape); ++i) section.bypass(1, 1);
-      section.bypass(1, 0);
-      section.bypass(floor_log2(escape), escape - (1U << floor_log2(escape)));
-    }
-    if (ctx.shift > 0) {
-      const std::uint32_t low = magnitude_of(value) & ((1U << ctx.shift) - 1);
-      section.bin(m.low[index][std::min(prefix, 2U)], (low >> (ctx.shift - 1)) != 0);
-      section.bypass(ctx.shift - 1, low & ((1U << (ctx.shift - 1)) - 1));
-    }
-    if (value != 0) section.bypass(1, value < 0 ? 1 : 0);
+    SectionRecipe::header_delta(models.header,
+                                models.header_mean[static_cast<std::size_t>(field)], delta);
   }
   Bytes payload() {
     BitWriter w;
