@@ -12,10 +12,11 @@
 namespace rlpc {
 namespace {
 
-// Seeds are coded this much finer than other values: their error turns whole clusters.
-constexpr double kSeedStepFactor = 0.18;
-// A component with less energy than this many squared steps costs more than it brings.
-constexpr double kMinEnergySteps = 1.2;
+constexpr double kSeedStep =
+    0.18;  // tuned (off: 1): of seeds, whose error turns whole clusters
+constexpr double kMinEnergy =
+    1.2;                           // tuned (off: 0): squared steps below which a component goes
+constexpr std::size_t kShare = 4;  // tuned: most components of a cluster, per mean
 
 }  // namespace
 
@@ -37,16 +38,15 @@ ClusterAnalysisSettings ClusterGofCoding::analysis_settings(double step, bool wo
   a.max_components = kLevels.back().max_components;
   const double seed_step =
       tools.qdelta > 0 ? exact_exp2(std::max(mesh_.header.position_bits - tools.qdelta, 0))
-                       : step * kSeedStepFactor;
+                       : step * kSeedStep;
   a.seed_step = static_cast<std::uint32_t>(
       std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
   if (settings_.components > 0) {
     // With a budget, clusters share: some take more than their mean.
     a.max_components = std::min<std::size_t>(
-        a.max_components,
-        tools.rdo ? 4 * std::size_t{settings_.components} : settings_.components);
+        a.max_components, tools.rdo ? kShare * settings_.components : settings_.components);
   } else if (tools.qu == 0) {
-    a.min_energy = kMinEnergySteps * step * step;
+    a.min_energy = kMinEnergy * step * step;
   }
   return a;
 }

@@ -38,7 +38,9 @@ struct ClusterCodingSettings {
   int qc = 12;
   Allocation allocation = Allocation::kSlope;
   std::uint32_t components = 0;  // per cluster: all but kSlope
-  double dead_zone = 0.06;
+  double dead_zone = kDeadZone;
+
+  static constexpr double kDeadZone = 0.06;  // tuned (off: 0): of components, in steps
 };
 
 struct ClusterAnalysis {

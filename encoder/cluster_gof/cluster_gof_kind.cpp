@@ -10,12 +10,14 @@
 namespace rlpc {
 namespace {
 
-// Steps of clusters that leave about the error of bones at a step of 1.
-constexpr double kStepOfClusters = 0.8;
+constexpr double kStepOfClusters = 0.8;  // tuned (off: 1): leaves about the error of bones
 // One PCA of all vertices does well unless it needs this part of all trajectories that can be.
-constexpr double kHighRank = 0.4;
-constexpr std::uint32_t kVerticesOfCluster = 56;
-constexpr std::uint32_t kSmallMesh = 1000;  // that one cluster, in world coordinates, may suit
+constexpr double kHighRank = 0.4;  // tuned (off: 0): below, clusters are not tried
+constexpr std::uint32_t kVerticesOfCluster = 56;  // tuned: of many small ones, as a sample
+constexpr std::uint32_t kFewestClusters = 2;      // fixed: of many
+constexpr std::uint32_t kMostClusters = 96;       // fixed: the most that are searched
+constexpr std::uint32_t kSmallMesh =
+    1000;  // tuned (off: 0): vertices that one cluster may suit
 
 class ClusterGofCoder : public GofCoder {
  public:
@@ -62,7 +64,9 @@ class ClusterGofKind : public GofEncoder {
       MotionClusters motion = coding.motion();
       return lagrangian_cost(coding.encode(step_factor_ * step, choice, motion), frames, step);
     };
-    double least = cost({std::clamp(frames.num_vertices / kVerticesOfCluster, 2U, 96U), false});
+    double least = cost(
+        {std::clamp(frames.num_vertices / kVerticesOfCluster, kFewestClusters, kMostClusters),
+         false});
     if (frames.num_vertices <= kSmallMesh) least = std::min(least, cost({1, true}));
     return least;
   }

@@ -10,8 +10,12 @@ namespace rlpc {
 namespace {
 
 // Numbers of clusters worth comparing; finer ones gain little.
-constexpr std::array<std::uint32_t, 13> kCounts{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
-constexpr std::uint32_t kVerticesPerCluster = 8;  // fewer are not worth a frame of their own
+constexpr std::array<std::uint32_t, 13> kCounts{1,  2,  3,  4,  6,  8, 12,
+                                                16, 24, 32, 48, 64, 96};  // tuned: of clusters
+constexpr std::size_t kFirstCount = 5;  // tuned (off: 0): of these, where a climb begins
+constexpr std::uint32_t kVerticesPerCluster = 8;  // tuned (off: 1): fewer do not make a cluster
+constexpr double kFastDivisor = 3.0;     // tuned: root of the vertices per cluster, fast
+constexpr std::uint32_t kMostFast = 32;  // tuned: clusters, fast
 
 class ClusterSearch {
  public:
@@ -43,7 +47,7 @@ class ClusterSearch {
       if (known[i] == 0.0) known[i] = cost({kCounts[i], world});
       return known[i];
     };
-    std::size_t best = std::min<std::size_t>(last, world ? 0 : 5);
+    std::size_t best = std::min<std::size_t>(last, world ? 0 : kFirstCount);
     const std::size_t stride = coding_.settings().preset == Preset::kSlow ? 1 : 2;
     for (const bool up : {true, false}) {
       for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
@@ -62,8 +66,9 @@ class ClusterSearch {
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, asked_world};
     if (coding_.settings().preset == Preset::kFast) {
       const auto wanted =
-          static_cast<std::uint32_t>(std::sqrt(coding_.frames().num_vertices) / 3.0);
-      return {tools.clusters > 0 ? tools.clusters : std::clamp(wanted, 1U, 32U), asked_world};
+          static_cast<std::uint32_t>(std::sqrt(coding_.frames().num_vertices) / kFastDivisor);
+      return {tools.clusters > 0 ? tools.clusters : std::clamp(wanted, 1U, kMostFast),
+              asked_world};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};

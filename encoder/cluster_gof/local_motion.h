@@ -23,7 +23,7 @@ struct LocalFrame {
     return q;
   }
 
-  static constexpr double kAxisUnit = 1.0 / (1 << kAxisFractionBits);
+  static constexpr double kAxisUnit = 1.0 / (1 << kAxisFractionBits);  // fixed: format
   std::array<double, 3> origin{};
   std::array<std::array<double, 3>, 3> axis{};  // in units of kAxisUnit
 };

@@ -61,13 +61,14 @@ int norm_shift(const QuantisedComponent& c) {
 }  // namespace
 
 StepPair make_steps(double spatial_step, double temporal_step) {
-  constexpr double kLocalUnit = 1 << kLocalFractionBits;
+  constexpr double kLocalUnit = 1 << kLocalFractionBits;  // fixed: format
   StepPair steps{spatial_step, temporal_step, 0};
   const double eighths = 8.0 * det_log2(spatial_step * temporal_step * kLocalUnit);
   steps.product_eighths = static_cast<int>(round_to_int(eighths));
   const int octave = floor_octave(steps.product_eighths);
   const auto index = static_cast<std::size_t>(steps.product_eighths - 8 * octave);
-  const double product = kScaleMantissa[index] / 32768.0 * exact_exp2(octave);
+  constexpr double kMantissaUnit = 32768.0;  // fixed: format
+  const double product = kScaleMantissa[index] / kMantissaUnit * exact_exp2(octave);
   steps.spatial = product / (kLocalUnit * temporal_step);
   return steps;
 }
@@ -85,12 +86,13 @@ std::vector<std::int32_t> quantise(const std::vector<double>& values, double ste
 }
 
 double estimate_bits(const std::vector<std::int32_t>& residuals) {
+  constexpr double kZeroBits = 0.02;  // fixed: of a value where all are zero
   if (residuals.empty()) return 0.0;
   std::uint64_t sum = 0;
   for (const std::int32_t r : residuals) sum += magnitude_of(r);
   const auto count = static_cast<double>(residuals.size());
   const double mean = static_cast<double>(sum) / count;
-  if (sum == 0) return 0.02 * count;
+  if (sum == 0) return kZeroBits * count;
   // P(0) = (1 - r) / (1 + r), P(+-k) = P(0) r^k with mean magnitude 2 r / (1 - r^2).
   const double r = (std::sqrt(1.0 + mean * mean) - 1.0) / mean;
   const double p0 = (1.0 - r) / (1.0 + r);
@@ -114,14 +116,14 @@ void choose_predictors(QuantisedComponent& component, const SpatialPrediction& p
     best_spatial = bits;
     component.spatial_predictor = predictor;
   }
-  constexpr double kHeaderBits = 8.0;
+  constexpr double kHeaderBits = 8.0;  // fixed: of a component
   component.bits = best_temporal + best_spatial + kHeaderBits;
 }
 
 int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clusters) {
   // A temporal step should span at least 4 units of the factor, so that rounding the factor
   // adds little to the error; but the factor must fit its width.
-  constexpr int kTemporalUnitEighths = 16;
+  constexpr int kTemporalUnitEighths = 16;  // fixed: two octaves
   int wanted = 0;
   int allowed = kMaxFractionBits;
   for (const auto& components : clusters) {
@@ -137,7 +139,7 @@ int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clu
 
 Component make_component(const QuantisedComponent& c, const SpatialPrediction& prediction,
                          int fraction_bits) {
-  constexpr int kUnitScaleIdx = 32;  // scale 1, as 8.5.2 shifts by 19 - scale_idx / 8
+  constexpr int kUnitScaleIdx = 32;  // fixed: scale 1, as 8.5.2 shifts by 19 - scale_idx / 8
   Component component;
   component.scale_idx =
       std::clamp(c.steps.product_eighths + 8 * (fraction_bits - norm_shift(c)) + kUnitScaleIdx,

@@ -17,8 +17,8 @@ namespace rlpc {
 //   step           of the quantisers, in grid steps
 inline double expected_component_cost(double energy, double vertices, double values,
                                       double spatial_left, double step) {
-  // Temporal prediction leaves about this part of the energy of a temporal vector.
-  constexpr double kTemporalLeft = 0.25;
+  constexpr double kTemporalLeft =
+      0.25;  // tuned (off: 1): energy that temporal prediction leaves
   const double error = step * step / 12.0;  // of a coded value
   const double bits = 0.5 * vertices * det_log2(1.0 + spatial_left / error) +
                       0.5 * values * det_log2(1.0 + kTemporalLeft * energy / (values * error));

@@ -7,10 +7,10 @@
 namespace rlpc {
 namespace {
 
-// A coder is worth its time if its expected cost is below this many times the least so far;
-// above the second, other steps will change nothing.
-constexpr double kTryFactor = 1.1;
-constexpr double kHopeless = 1.15;
+// Expected costs relative to the least so far.
+constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): up to here, a kind is encoded
+constexpr double kHopelessMargin =
+    0.15;  // tuned (off: 1e9): beyond, kinds are never compared again
 
 }  // namespace
 
@@ -21,8 +21,8 @@ GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Pre
 
 // Whether kinds should be compared for a step.
 bool GofKindSearch::is_far(double step) const {
-  constexpr double kFar = 1.25;
-  constexpr int kMostTimes = 4;
+  constexpr double kFar = 1.25;  // tuned (off: 1e9): step at which kinds are compared again
+  constexpr int kMostTimes = 4;  // tuned (off: 1): comparisons of one GOF
   if (kinds_.size() == 1) return false;
   if (compared_.times == 0) return true;
   if (compared_.is_settled || compared_.times == kMostTimes) return false;
@@ -51,8 +51,8 @@ bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, doub
   }
   const auto expected = kind.estimate_cost(frames_, best, step);
   const double cost = expected ? lagrangian_cost(best, frames_, step) : 0.0;
-  if (!expected || *expected <= kHopeless * cost) compared_.is_settled = false;
-  return expected && *expected < kTryFactor * cost;
+  if (!expected || *expected <= (1.0 + kHopelessMargin) * cost) compared_.is_settled = false;
+  return expected && *expected < (1.0 + kTryMargin) * cost;
 }
 
 EncodedGof GofKindSearch::compare(double step, double analysis_step) {

@@ -9,13 +9,14 @@ namespace rlpc {
 // In squared steps per bit. At high rate a uniform quantiser of a step s adds the squared error
 // D = s^2 / 12 to a value, whose rate then falls by 1 / (2 ln 2 D) bits per unit of D. Error
 // and rate are in balance where a bit costs as much error as it saves: 2 ln 2 D = 0.1155 s^2.
-inline constexpr double kLambda = 0.1155;
+inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 
 // Multiples for values from which others are predicted: a coarser one predicts worse.
-inline constexpr double kLambdaOfTracks = 0.1;
-inline constexpr double kLambdaOfFactors = 0.06;
+inline constexpr double kLambdaOfTracks = 0.1;    // tuned (off: 0.1155): residuals of tracks
+inline constexpr double kLambdaOfFactors = 0.06;  // tuned (off: 0.1155): residuals of vertices
 // The choice of clusters and of their components.
-inline constexpr double kLambdaOfClusters = 0.18;
+inline constexpr double kLambdaOfClusters =
+    0.18;  // tuned (off: 0.1155): clusters and their components
 
 // Squared error that is worth a bit.
 inline double lambda(double step) { return kLambda * step * step; }

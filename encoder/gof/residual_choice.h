@@ -18,7 +18,7 @@ namespace rlpc {
 
 // To the next magnitude from 1 - round_up above the last; wanted is in steps.
 inline std::int32_t rounded_residual(double wanted, double round_up) {
-  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
+  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
   const auto magnitude =
       static_cast<std::int32_t>(std::min(std::abs(wanted), kMost) + round_up);
   return wanted < 0.0 ? -magnitude : magnitude;
@@ -27,8 +27,8 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
 // wanted is in steps. lambda: squared steps per bit, at most kLambda.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
                                      double wanted, double lambda) {
-  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;
-  constexpr double kNearlyUp = 0.95;
+  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
+  constexpr double kNearlyUp = 0.95;  // tuned (off: 1): above, rates are not compared
   const double steps = std::min(std::abs(wanted), kMost);
   auto magnitude = static_cast<std::int32_t>(steps);
   const double part = steps - magnitude;

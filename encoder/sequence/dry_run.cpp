@@ -8,8 +8,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kStretches = 8;
-constexpr std::uint64_t kStretchFrames = 128;
+constexpr std::uint32_t kStretches = 8;        // fixed: of a dry run
+constexpr std::uint64_t kStretchFrames = 128;  // fixed: of a dry run
 
 // Some stretches of a sequence, one after the other.
 class StretchSource final : public FrameSource {

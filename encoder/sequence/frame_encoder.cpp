@@ -60,7 +60,7 @@ std::optional<InputError> check_format(const FrameFormat& format) {
     }
   }
   for (std::size_t c = 0; c < 3; ++c) {
-    constexpr float kMost = 0x1p100F;
+    constexpr float kMost = 0x1p100F;  // fixed: largest coordinate
     const float low = format.box_min[c];
     const float high = format.box_max[c];
     if (low <= high && low >= -kMost && high <= kMost) continue;
@@ -72,7 +72,7 @@ std::optional<InputError> check_format(const FrameFormat& format) {
 
 // Later GOFs may need errors this much smaller than the first one, by which the grid is chosen.
 // Steps stay far below their largest size.
-constexpr double kReserve = 16.0;
+constexpr double kReserve = 16.0;  // fixed: four bits of the grid
 
 }  // namespace
 
@@ -149,12 +149,14 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
 // Of all that is no GOF, with an index as large as it gets with GOFs that meet a target in
 // bits.
 double FrameEncoder::Impl::fixed_bits_per_frame() const {
+  constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
   std::uint64_t bytes = stream_->overhead_bytes();
   if (settings_.target.kind == Target::kBpvf) {
     std::vector<GofEntry> largest;
     for (const GofSpan& span : spans_) {
       const double bits = settings_.target.value * format_.num_vertices * span.count;
-      largest.push_back({span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, 0x1p31))});
+      largest.push_back(
+          {span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
     }
     bytes += stream_->index_bytes(largest);
   }

@@ -14,13 +14,13 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;
-constexpr std::uint32_t kSampleVertices = 160;
-constexpr std::uint32_t kLeastVertices = 8;  // that tell anything
-constexpr std::uint32_t kMostFrames = kMaxSampleValues / (std::uint64_t{3} * kLeastVertices);
-constexpr std::uint32_t kSampleFrames = 16;  // of a GOF
-// GOFs of equal lengths stay unless others are expected to cost less than this part.
-constexpr double kClearlyLess = 0.97;
+constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;  // fixed: memory
+constexpr std::uint32_t kLeastVertices = 8;                         // fixed: that tell anything
+constexpr std::uint32_t kMostFrames = kMaxSampleValues / (3 * kLeastVertices);  // fixed: memory
+constexpr std::uint32_t kSampleVertices = 160;  // tuned: of which costs are estimated
+constexpr std::uint32_t kSampleFrames = 16;     // tuned: of a GOF, likewise
+constexpr double kLeastGain =
+    0.03;  // tuned (off: 1): expected of GOFs that are not of equal length
 
 // What GOFs are expected to cost, from a sample of the vertices.
 class GofCosts {
@@ -86,8 +86,9 @@ class GofCosts {
   }
 
   double expected(const GofSpan& span) const {
-    constexpr double kSpatialLeft = 0.1;  // of the energy, by spatial prediction
-    constexpr double kRestBits = 15.0;    // of a rest position
+    constexpr double kSpatialLeft =
+        0.1;                            // tuned (off: 1): energy that spatial prediction leaves
+    constexpr double kRestBits = 15.0;  // tuned (off: 0): of a rest position
     const TrajectoryMatrix matrix = displacements(span);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
@@ -177,7 +178,8 @@ std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest)
 
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
                                                 double step) {
-  constexpr std::uint32_t kUnitsOfLongest = 8;
+  constexpr std::uint32_t kUnitsOfLongest =
+      8;  // tuned (off: 1): places of cuts, before refinement
   const std::uint32_t num_frames = source.num_frames();
   std::vector<GofSpan> equal = equal_gofs(num_frames, longest);
   const std::uint32_t unit = longest / kUnitsOfLongest;
@@ -192,7 +194,7 @@ InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32
   for (std::size_t i = 1; i < spans.size(); ++i) {
     refine(costs, longest, unit, spans[i - 1], spans[i]);
   }
-  const bool better = cost(costs, spans) < kClearlyLess * cost(costs, equal);
+  const bool better = cost(costs, spans) < (1.0 - kLeastGain) * cost(costs, equal);
   return better ? std::move(spans) : std::move(equal);
 }
 

@@ -13,13 +13,11 @@
 namespace rlpc {
 namespace {
 
-constexpr double kMaxCoordinate = 0x1p100;
-constexpr int kDefaultPositionBits = 20;
-// Grid steps in the smallest error that matters: rounding to the grid then adds next to
-// nothing.
-constexpr double kStepsPerError = 32.0;
-// Room beyond the bounding box, so that decoded positions are hardly ever clipped.
-constexpr double kMargin = 1.02;
+constexpr double kMaxCoordinate = 0x1p100;  // fixed: larger ones overflow squares
+constexpr int kDefaultPositionBits = 20;    // fixed: a grid that is never too coarse
+constexpr double kStepsPerError = 32.0;  // tuned: grid steps in the smallest error that matters
+constexpr double kMargin =
+    1.02;  // fixed: room, so that decoded positions are hardly ever clipped
 
 // Smallest n with 2^n >= x; x > 0.
 int ceil_exponent(double x) {
@@ -80,7 +78,9 @@ GridChoice choose_grid(const Extent& extent, double finest_error) {
   const double reach = half * kMargin;
   int bits = kDefaultPositionBits;
   if (finest_error > 0.0 && reach > 0.0) {
-    const double steps = std::clamp(2.0 * reach * kStepsPerError / finest_error, 1.0, 0x1p40);
+    constexpr double kMostSteps = 0x1p40;  // fixed: beyond all grids
+    const double steps =
+        std::clamp(2.0 * reach * kStepsPerError / finest_error, 1.0, kMostSteps);
     bits = std::clamp(ceil_exponent(steps), kDefaultPositionBits, kMaxPositionBits);
   }
   int log2_step = kMinGridLog2Step;

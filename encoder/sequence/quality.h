@@ -20,7 +20,7 @@ struct NamedQuality {
   const char* word;
   double kg_error_percent;
 };
-inline constexpr std::array<NamedQuality, 4> kQualities{
+inline constexpr std::array<NamedQuality, 4> kQualities{  // fixed: see above
     {{"preview", 1.0}, {"good", 0.1}, {"fine", 0.03}, {"visually-lossless", 0.01}}};
 static_assert(Target{}.value == kQualities[1].kg_error_percent);  // the default is `good`
 
@@ -28,7 +28,7 @@ static_assert(Target{}.value == kQualities[1].kg_error_percent);  // the default
 // by about e / l. On the animations above, an RMS error of 1 % of the median edge turned
 // triangles by 0.2 to 0.65 degrees in the mean, so that 3 % are about one degree.
 struct Visibility {
-  static constexpr double kVisiblePercent = 3.0;
+  static constexpr double kVisiblePercent = 3.0;  // fixed: see above
 
   double median_edge = 0.0;    // of the first frame, in units
   double error_percent = 0.0;  // RMS, of median_edge

@@ -19,7 +19,7 @@
 
 namespace rlpc {
 
-inline constexpr std::uint32_t kDefaultGofFrames = 128;
+inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
 
 // The longest GOF that the settings allow.
 std::uint32_t longest_gof(const EncoderSettings& settings);

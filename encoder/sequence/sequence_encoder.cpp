@@ -18,7 +18,7 @@ namespace rlpc {
 namespace {
 
 // Analyses of all GOFs are kept if the frames take no more than this many bytes.
-constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;  // fixed: memory
 
 class SequenceEncoder {
  public:

@@ -63,8 +63,9 @@ class Bracket {
   double coarse_step() const { return coarse_.step; }
   // Where the value is `aim` if it is linear between the two.
   double interpolate(double aim) const {
+    constexpr double kEnd = 0.02;  // fixed: never at an end that is known
     const double share = (aim - fine_.value) / (coarse_.value - fine_.value);
-    return fine_.step + (coarse_.step - fine_.step) * std::clamp(share, 0.02, 0.98);
+    return fine_.step + (coarse_.step - fine_.step) * std::clamp(share, kEnd, 1.0 - kEnd);
   }
   double middle() const { return std::sqrt(fine_.step * coarse_.step); }
 

@@ -6,9 +6,8 @@
 namespace rlpc {
 namespace {
 
-// Below this number of GOFs, an index saves nothing.
-constexpr std::size_t kMinIndexedGofs = 16;
-constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // of index_gof_bytes
+constexpr std::size_t kMinIndexedGofs = 16;  // fixed: below, an index saves a reader nothing
+constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // fixed: of index_gof_bytes
 
 Bytes header_unit(const SequenceHeader& header) {
   return write_unit(UnitType::kSequenceHeader, write_sequence_header(header));

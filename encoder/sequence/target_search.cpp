@@ -8,22 +8,25 @@
 namespace rlpc {
 namespace {
 
-constexpr int kMaxTrials = 18;
-constexpr double kTolerance = 0.02;  // of the target, below it
-constexpr double kFinestStep = 0.5;  // grid steps
-constexpr double kCoarsestStep = 0x1p24;
-constexpr double kFarthest = 50.0;  // from one step to the next, as a factor
-// Slopes that are believed, relative to the usual one.
-constexpr double kFlattest = 0.5;
-constexpr double kSteepest = 2.0;
+constexpr int kMaxTrials = 18;            // fixed: a search ends
+constexpr double kTolerance = 0.02;       // fixed: of the target, below it; promised to users
+constexpr double kFinestStep = 0.5;       // fixed: grid steps
+constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
+constexpr double kFarthest = 50.0;        // fixed: from one step to the next, as a factor
+// Exponents of the power law that are believed, relative to the usual one.
+constexpr double kFlattest = 0.5;  // tuned (off: 0.01): least exponent
+constexpr double kSteepest = 2.0;  // tuned (off: 100): largest exponent
 // Largest errors jump from step to step. Where they do, a narrower bracket tells nothing: some
 // steps beyond it are tried instead, as one of them may do as well by chance.
-constexpr double kNarrow = 1.006;
-constexpr int kSamples = 8;
-constexpr double kBetweenSamples = 0.006;  // relative
+constexpr double kNarrow = 1.006;          // tuned (off: 1): bracket of steps that is narrow
+constexpr int kSamples = 8;                // tuned (off: 0): steps tried beyond
+constexpr double kBetweenSamples = 0.006;  // tuned: from one to the next
+
+constexpr double kErrorExponent = 0.85;  // tuned (off: 1): errors are this power of the step
+constexpr double kRateExponent = -0.5;   // tuned (off: -1): rates are this power of the step
 
 double usual_exponent(const Target& target) {
-  return target.kind == Target::kBpvf ? -0.5 : 0.85;
+  return target.kind == Target::kBpvf ? kRateExponent : kErrorExponent;
 }
 
 }  // namespace
@@ -34,15 +37,17 @@ TargetSearch::TargetSearch(const Target& target, double spread, double steps_per
       range_(analysis_range),
       best_(target),
       power_law_(usual_exponent(target)) {
-  double first = 64.0;
+  constexpr double kWithoutTarget = 64.0;  // fixed: grid steps
+  constexpr double kRateFactor = 0.02;     // tuned: first step of a search for a rate
+  double first = kWithoutTarget;
   if (target.kind == Target::kKg) first = step_of_error * spread * target.value / 100.0;
   if (target.kind == Target::kMaxError) first = target.value * steps_per_unit;
-  if (target.kind == Target::kBpvf) first = 0.02 * spread / target.value;
+  if (target.kind == Target::kBpvf) first = kRateFactor * spread / target.value;
   step_ = std::clamp(first, kFinestStep, kCoarsestStep);
 }
 
 void TargetSearch::begin_at(const Expected& expected) {
-  constexpr double kFar = 2.5;  // expectations that are farther off are not believed
+  constexpr double kFar = 2.5;  // tuned (off: 1): how far expectations are believed
   if (target_.kind == Target::kNone) return;
   frozen_ = analysis_step();
   step_ = std::clamp(step_for(target_.value, expected), step_ / kFar, step_ * kFar);
@@ -82,7 +87,7 @@ bool TargetSearch::is_near(double measured) const {
 
 // Where such a value is expected: for errors, which rise with the step.
 double TargetSearch::step_for(double value, const Expected& expected) const {
-  constexpr int kHalvings = 20;
+  constexpr int kHalvings = 20;  // fixed: rounding
   double low = step_ / kFarthest;
   double high = step_ * kFarthest;
   for (int i = 0; i < kHalvings; ++i) {
@@ -100,9 +105,10 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   const bool jumps =
       target_.kind == Target::kMaxError && bracket_.closed() && bracket_.within(kNarrow);
   if (jumps || sampled_from_ > 0.0) return sample_beyond_jump();
-  const double aim = target_.value * (1.0 - 0.4 * kTolerance);  // a little inside the target
+  constexpr double kInside = 0.4;  // tuned (off: 0.5): of the tolerance, where a step aims
+  const double aim = target_.value * (1.0 - kInside * kTolerance);
   if (bracket_.closed()) return narrow_bracket(aim);
-  constexpr double kBeyond = 1e9;  // more, or less, does not matter
+  constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
   power_law_.add(step_, value, kFlattest, kSteepest);
   const double factor = std::clamp(factor_to(aim, value, expected), 1.0 / kFarthest, kFarthest);
@@ -120,20 +126,20 @@ void TargetSearch::sample_beyond_jump() {
 
 // By interpolation; every third step halves the bracket whatever the values say.
 void TargetSearch::narrow_bracket(double aim) {
-  constexpr double kAsOne = 1.0002;
+  constexpr double kAsOne = 1.0002;  // fixed: two ends of a bracket
   if (bracket_.within(kAsOne)) {
     finished_ = true;
     return;
   }
-  step_ = trials_ % 3 == 0 ? bracket_.middle() : bracket_.interpolate(aim);
+  constexpr int kHalving = 3;  // fixed: keeps interpolation from stalling
+  step_ = trials_ % kHalving == 0 ? bracket_.middle() : bracket_.interpolate(aim);
 }
 
 // From this step to the one whose value is `aim`.
 double TargetSearch::factor_to(double aim, double value, const Expected& expected) const {
   const double rise = det_log2(aim / value);
   if (!expected || !(expected(step_) > 0.0)) return det_exp2(rise / power_law_.exponent());
-  // Errors rise a little less than expected.
-  constexpr double kMore = 1.08;
+  constexpr double kMore = 1.08;  // tuned (off: 1): expected rise per real one
   const double usual = power_law_.usual_exponent();
   const double flat = det_exp2(rise / (kFlattest * usual));
   const double steep = det_exp2(rise / (kSteepest * usual));

@@ -11,9 +11,9 @@ namespace rlpc {
 
 // Steps relative to that of an analysis: it is made for one that serves those in between.
 struct AnalysisRange {
-  double finest = 1.0 / 1.2;
-  double made_for = 1.0;
-  double coarsest = 1.2;
+  double finest;
+  double made_for;
+  double coarsest;
 };
 
 // Ask step(), encode, tell report() what was measured; again until finished().
@@ -25,8 +25,8 @@ class TargetSearch {
   // spread: root mean square of the coordinates about their frame's mean; steps_per_unit: of
   // the grid. step_of_error: typical ratio of the step to the error of a coordinate, to start
   // with. Steps are in grid steps.
-  TargetSearch(const Target& target, double spread, double steps_per_unit,
-               double step_of_error = 6.0, const AnalysisRange& analysis_range = {});
+  TargetSearch(const Target& target, double spread, double steps_per_unit, double step_of_error,
+               const AnalysisRange& analysis_range);
 
   // Before the first encoding: the step to try first, where a target is searched for.
   void begin_at(double step) {

@@ -13,6 +13,8 @@ namespace rlpc {
 namespace {
 
 constexpr int kEnough = 100;  // no search may take so many trials
+constexpr double kStepOfError = 6.0;
+constexpr AnalysisRange kRange{.finest = 1.0 / 1.2, .made_for = 1.0, .coarsest = 1.2};
 
 struct Outcome {
   double best = 0.0;  // measured for the encoding that was called the best
@@ -28,7 +30,7 @@ std::uint64_t bytes_with(double step) { return static_cast<std::uint64_t>(1e12 /
 // measure(step) stands for an encoding.
 Outcome search(const Target& target, const std::function<double(double)>& measure,
                double spread = 10000.0, double steps_per_unit = 1000.0) {
-  TargetSearch s(target, spread, steps_per_unit);
+  TargetSearch s(target, spread, steps_per_unit, kStepOfError, kRange);
   Outcome outcome;
   while (!s.finished() && outcome.trials < kEnough) {
     const double step = s.step();
@@ -137,7 +139,7 @@ TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
 
 TEST(TargetSearch, OfErrorsWithinTheTargetTheClosestIsBestUnlessBytesAreSaved) {
   for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
-    TargetSearch search({kind, 1.0}, 10000.0, 1000.0);
+    TargetSearch search({kind, 1.0}, 10000.0, 1000.0, kStepOfError, kRange);
     EXPECT_TRUE(search.report(3.0, 10));
     EXPECT_FALSE(search.report(4.0, 5));
     EXPECT_TRUE(search.report(2.0, 20));
@@ -153,7 +155,7 @@ TEST(TargetSearch, OfErrorsWithinTheTargetTheClosestIsBestUnlessBytesAreSaved) {
 }
 
 TEST(TargetSearch, OfRatesWithinTheTargetTheHighestIsBest) {
-  TargetSearch search({Target::kBpvf, 1.0}, 10000.0, 1000.0);
+  TargetSearch search({Target::kBpvf, 1.0}, 10000.0, 1000.0, kStepOfError, kRange);
   EXPECT_TRUE(search.report(2.0, 2000));
   EXPECT_TRUE(search.report(0.5, 500));
   EXPECT_FALSE(search.report(0.4, 400));
@@ -174,7 +176,7 @@ double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step 
 
 int trials_with(const TargetSearch::Expected& expected, double value, double factor) {
   const Target target{Target::kKg, value};
-  TargetSearch search(target, 10000.0, 1000.0);
+  TargetSearch search(target, 10000.0, 1000.0, kStepOfError, kRange);
   search.begin_at(expected);
   Outcome outcome;
   while (!search.finished() && outcome.trials < kEnough) {
@@ -213,7 +215,7 @@ TEST(TargetSearch, FindsItsTargetDespiteWrongExpectations) {
 TEST(TargetSearch, KeepsTheAnalysisOfStepsThatItServes) {
   const AnalysisRange range{.finest = 0.9, .made_for = 1.25, .coarsest = 1.6};
   const auto analysis_for = [&](double factor) {
-    TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, 6.0, range);
+    TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, kStepOfError, range);
     const double made = search.analysis_step();
     EXPECT_DOUBLE_EQ(made, search.step() / 1.25);
     const double target = 0.5;

@@ -10,8 +10,8 @@ namespace rlpc {
 
 // Whether bones and tools should be chosen for a step.
 bool SkinnedGofCoder::must_choose(double analysis_step) const {
-  constexpr double kFar = 1.6;
-  constexpr int kMostTimes = 3;
+  constexpr double kFar = 1.6;   // tuned (off: 1e9): step at which bones are chosen again
+  constexpr int kMostTimes = 3;  // tuned (off: 1): choices for one GOF
   if (choice_.times == 0) return true;
   if (choice_.times >= kMostTimes) return false;
   return analysis_step > kFar * choice_.step || analysis_step * kFar < choice_.step;
@@ -44,7 +44,8 @@ const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
 
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
 bool SkinnedGofCoder::follows(double step) const {
-  constexpr std::size_t kEnough = 4;
+  constexpr std::size_t kEnough =
+      4;  // tuned (off: 0): trajectories, for errors to follow steps
   return has_trajectories(kEnough, *analysis_.last(), choice_.candidate.settings, step);
 }
 

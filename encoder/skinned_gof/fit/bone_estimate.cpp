@@ -56,7 +56,7 @@ double expected_cost(const BoneSample& sample, std::vector<double> residuals,
 }
 
 std::vector<double> unsteadiness(const GofFrames& frames) {
-  constexpr std::uint32_t kVertices = 40;
+  constexpr std::uint32_t kVertices = 40;  // tuned: that tell how unsteady motion is
   const std::uint32_t stride = (frames.num_vertices + kVertices - 1) / kVertices;
   std::vector<double> result;
   for (std::uint32_t f = 1; f < frames.num_frames; ++f) {
@@ -78,9 +78,9 @@ std::vector<double> unsteadiness(const GofFrames& frames) {
 // The more vertices follow a bone, the finer its steps are. Factors as measured.
 double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
                           std::size_t num_bones, double step) {
-  constexpr double kPivotAndFirstPose = 60.0;
-  constexpr double kBits = 2.6;
-  constexpr double kFineness = 10.0;
+  constexpr double kPivotAndFirstPose = 60.0;  // tuned (off: 0): bits of a bone
+  constexpr double kBits = 2.6;                // tuned (off: 0): bits of a pose, per doubling
+  constexpr double kFineness = 10.0;           // tuned: steps of a bone are this much finer
   if (unsteady.empty()) return kPivotAndFirstPose;
   const double followers = frames.num_vertices / static_cast<double>(num_bones);
   const double scale = kFineness * std::sqrt(followers) / step;

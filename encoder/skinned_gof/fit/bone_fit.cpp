@@ -13,9 +13,9 @@
 namespace rlpc {
 namespace {
 
-// What a stream spends, roughly, on a weight, and on a pinned bone as a part of a free one.
-constexpr double kInfluenceBits = 7.0;
-constexpr double kPinnedPart = 0.5;
+constexpr double kInfluenceBits = 7.0;  // tuned (off: 0): of a weight
+constexpr double kPinnedPart =
+    0.5;  // tuned (off: 1): bits of a pinned bone, of those of a free one
 
 // Evenly spaced, from the first to the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
@@ -60,8 +60,8 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
 
 // A vertex, then those around it; two rings where one is small.
 std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
-  constexpr std::size_t kSmall = 6;
-  constexpr std::size_t kLargest = 24;
+  constexpr std::size_t kSmall = 6;     // tuned (off: 1): vertices of a patch of one ring
+  constexpr std::size_t kLargest = 24;  // tuned: vertices of a patch
   std::vector<std::uint32_t> patch{vertex};
   const auto add = [&](std::uint32_t v) {
     if (patch.size() < kLargest && std::find(patch.begin(), patch.end(), v) == patch.end()) {
@@ -138,7 +138,7 @@ void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) co
 
 // All vertices, or if they are many the patches around some.
 BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
-  constexpr std::uint32_t kPatchSize = 7;
+  constexpr std::uint32_t kPatchSize = 7;  // fixed: vertices of a regular one
   const std::uint32_t n = frames_.num_vertices;
   const std::uint32_t seeds =
       n <= options_.sample_vertices ? n : options_.sample_vertices / kPatchSize;
@@ -213,8 +213,8 @@ double BoneFit::translation_error() const {
 // Weights and rest positions of all vertices, given the bones.
 void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
                            Rig& rig) const {
-  constexpr std::uint32_t kTogether = 256;
-  constexpr int kRounds = 3;
+  constexpr std::uint32_t kTogether = 256;  // fixed: memory
+  constexpr int kRounds = 3;                // tuned (off: 1): of weights and rest positions
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * lambda(options_.step) * part;
   std::vector<Vec3d> positions;
@@ -246,9 +246,9 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
 // The motions of all frames, each starting from the nearest of the chosen ones.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
-  constexpr std::uint32_t kTogether = 64;
-  constexpr int kSweeps = 3;
-  constexpr int kSteps = 3;
+  constexpr std::uint32_t kTogether = 64;  // fixed: memory
+  constexpr int kSweeps = 3;               // tuned (off: 0): over the bones of a frame
+  constexpr int kSteps = 3;                // tuned (off: 0): of all bones of a frame at once
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   std::vector<Motion> now(n);

@@ -18,9 +18,13 @@ namespace rlpc {
 struct BoneFitOptions {
   std::size_t max_influences = 3;  // of a vertex while bones are looked for, 1 to 4
   double step = 1.0;  // of the quantisers, grid units: smaller errors do not matter
-  std::uint32_t sample_frames = 64;      // at most so many are looked at together,
-  std::uint32_t sample_vertices = 3000;  // and so many vertices
-  int exchanges = 6;                     // of bones, each time these settle
+  std::uint32_t sample_frames = kSampleFrames;
+  std::uint32_t sample_vertices = kSampleVertices;
+  int exchanges = kExchanges;  // of bones, each time these settle
+
+  static constexpr std::uint32_t kSampleFrames = 64;  // tuned: at most so many are looked at
+  static constexpr std::uint32_t kSampleVertices = 3000;  // tuned: of so many vertices
+  static constexpr int kExchanges = 6;                    // tuned (off: 0): of bones
 };
 
 // Finds bones, weights, rest positions, tree and pivots of at least one vertex in at least one

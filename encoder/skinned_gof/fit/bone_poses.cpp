@@ -113,7 +113,7 @@ Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen
 
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions) {
-  constexpr double kDamping = 1e-3;  // of the diagonal
+  constexpr double kDamping = 1e-3;  // fixed: of the diagonal
   const std::size_t n = motions.size();
   std::vector<double> a(36 * n * n, 0.0);
   std::vector<double> x(6 * n, 0.0);

@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kRounds = 6;  // of improvement, after bones have come in
+constexpr int kRounds = 6;  // tuned (off: 1): of improvement, after bones have come in
 
 }  // namespace
 
@@ -28,7 +28,7 @@ BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
   }
   double extent2 = 0.0;
   for (const Vec3d& p : rest_) extent2 += (p - mean).squaredNorm() / static_cast<double>(n);
-  constexpr double kNegligible = 1e-10;
+  constexpr double kNegligible = 1e-10;  // fixed: rounding
   negligible_ = kNegligible * extent2 * static_cast<double>(sample.num_frames);
   std::vector<std::uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0U);
@@ -51,7 +51,7 @@ bool BoneSolver::grow(std::size_t num_bones) {
 }
 
 void BoneSolver::exchange_bones(int times) {
-  constexpr std::size_t kExchangedPart = 8;
+  constexpr std::size_t kExchangedPart = 8;  // tuned: one bone in so many is exchanged
   std::size_t count = 1 + motions_.size() / kExchangedPart;
   SkinSums sums(sample_.positions, motions_);
   for (int i = 0; i < times && count > 0; ++i) {
@@ -90,7 +90,7 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   std::size_t added = 0;
   for (; added < count; ++added) {
     auto [best, most] = best_new_bone(error);
-    constexpr double kLeastPart = 1e-9;
+    constexpr double kLeastPart = 1e-9;  // fixed: rounding
     const double sum = std::accumulate(error.begin(), error.end(), 0.0);
     const double negligible = negligible_ * static_cast<double>(error.size());
     if (most <= std::max(kLeastPart * sum, negligible)) break;
@@ -106,8 +106,9 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
 // own would leave little.
 std::vector<std::size_t> BoneSolver::ill_explained_patches(
     std::span<const double> error) const {
-  constexpr std::size_t kTried = 12;
-  constexpr double kRigid = 1e-3;  // part of the error that may be left
+  constexpr std::size_t kTried = 12;  // tuned (off: 1): patches, for each new bone
+  constexpr double kRigid =
+      1e-3;  // tuned (off: 1e9): part of the error that a rigid one leaves
   std::vector<double> score(sample_.patches.size());
   for (std::size_t i = 0; i < score.size(); ++i) {
     const auto& patch = sample_.patches[i];
@@ -136,7 +137,8 @@ std::vector<std::size_t> BoneSolver::ill_explained_patches(
 // does.
 std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     std::span<const std::size_t> patches) const {
-  constexpr int kFits = 3;
+  constexpr int kFits = 3;        // tuned (off: 1): of the motion of a patch
+  constexpr double kClose = 4.0;  // tuned: errors of a patch, of vertices that follow it
   std::vector<PatchMotion> result;
   if (patches.empty()) return result;
   std::vector<std::vector<std::uint32_t>> cores;
@@ -158,7 +160,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     for (std::size_t t = 0; t < cores.size(); ++t) {
       const auto& patch = sample_.patches[patches[t]];
       const double tolerance = std::max(
-          4.0 * patch_error_[patches[t]] / static_cast<double>(patch.size()), negligible_);
+          kClose * patch_error_[patches[t]] / static_cast<double>(patch.size()), negligible_);
       std::vector<std::uint32_t> close;
       for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
         const double alone = sums->rigid_error(v, t, rest_[v]);
@@ -232,7 +234,7 @@ void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
 }
 
 void BoneSolver::improve(int rounds, SkinSums& sums) {
-  constexpr int kKeepCandidates = 3;
+  constexpr int kKeepCandidates = 3;  // tuned (off: 1): rounds with the same candidates
   for (int i = 0; i < rounds; ++i) {
     fit_all_weights(i % kKeepCandidates == 0, sums);
     improve_motions();
@@ -242,14 +244,14 @@ void BoneSolver::improve(int rounds, SkinSums& sums) {
 }
 
 void BoneSolver::settle() {
-  constexpr int kSettlingRounds = 10;
+  constexpr int kSettlingRounds = 10;  // tuned (off: 1): of improvement, with rest positions
   rests_move_ = true;
   SkinSums sums(sample_.positions, motions_);
   improve(kSettlingRounds, sums);
 }
 
 void BoneSolver::improve_motions() {
-  constexpr int kSweeps = 2;
+  constexpr int kSweeps = 2;  // tuned (off: 1): over the bones of a frame
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);

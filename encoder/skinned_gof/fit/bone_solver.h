@@ -15,8 +15,8 @@ namespace rlpc {
 // Some vertices in some frames.
 struct BoneSample {
   std::size_t num_frames = 0;
-  std::vector<Vec3d> positions;  // [vertex][frame]
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<Vec3d> positions;                       // [vertex][frame]
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  // fixed: no index
   std::vector<std::uint32_t> place;  // [num_vertices of the GOF] in the sample, or kNone
   // Small patches, each the vertices around one: bones are looked for where one moves rigidly.
   std::vector<std::vector<std::uint32_t>> patches;

@@ -26,8 +26,8 @@ Vec3d common_point(const Motions& parent, const Motions& child, const Vec3d& exp
     h += gap.leftCols<3>().transpose() * gap.leftCols<3>();
     g -= gap.leftCols<3>().transpose() * moved(gap, expected);
   }
-  constexpr double kPull = 1e-5;
-  constexpr double kStill = 1e-8;  // bones that turn less together share all points
+  constexpr double kPull = 1e-5;   // fixed: where frames leave a choice
+  constexpr double kStill = 1e-8;  // fixed: bones that turn less together share all points
   const double pull = kPull * h.trace() + kStill * static_cast<double>(child.size());
   h += pull * Eigen::Matrix3d::Identity();
   std::vector<double> a(h.data(), h.data() + 9);
@@ -39,7 +39,7 @@ Vec3d common_point(const Motions& parent, const Motions& child, const Vec3d& exp
 Joint joint_between(const SkinMoments& moments, const std::vector<Motions>& motions,
                     std::size_t parent, std::size_t child) {
   const Eigen::Matrix4d& overlap = moments.block(parent, child);
-  constexpr double kOverlap = 1e-3;
+  constexpr double kOverlap = 1e-3;  // fixed: weights that count
   const Vec3d expected = overlap(3, 3) > kOverlap
                              ? Vec3d(overlap.block<3, 1>(0, 3) / overlap(3, 3))
                              : moments.centre(child);

@@ -33,7 +33,7 @@ class SparseBlend {
       : gram_(gram), stride_(stride), count_(count) {
     double trace = 0.0;
     for (std::size_t i = 0; i < count; ++i) trace += at(i, i);
-    constexpr double kRegular = 1e-9;  // where candidates move alike, share the weight
+    constexpr double kRegular = 1e-9;  // fixed: candidates that move alike share the weight
     regular_ = kRegular * trace / static_cast<double>(count) + kSmallest;
   }
 
@@ -64,7 +64,7 @@ class SparseBlend {
   }
 
  private:
-  static constexpr double kSmallest = 1e-200;
+  static constexpr double kSmallest = 1e-200;  // fixed: above zero
 
   double at(std::size_t i, std::size_t j) const { return gram_[i * stride_ + j]; }
 
@@ -107,7 +107,7 @@ BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std
       problem.solve(blend);
       if (blend.has(j) && (best.size == 0 || blend.error < best.error)) best = blend;
     }
-    constexpr double kWorthwhile = 1.0 - 1e-9;  // else rounding could go round in circles
+    constexpr double kWorthwhile = 1.0 - 1e-9;  // fixed: rounding
     if (best.size == 0) break;
     const double more = (static_cast<double>(best.size) - static_cast<double>(current.size)) *
                         error_per_influence;

@@ -37,7 +37,7 @@ UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h) {
   n(1, 2) = n(2, 1) = s(0, 1) + s(1, 0);
   n(1, 3) = n(3, 1) = s(0, 2) + s(2, 0);
   n(2, 3) = n(3, 2) = s(1, 2) + s(2, 1);
-  constexpr double kTurnLeast = 1e-12;
+  constexpr double kTurnLeast = 1e-12;  // fixed: rounding
   n(0, 0) += kTurnLeast;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(n);
   const Eigen::Vector4d v = solver.eigenvectors().col(3);
@@ -46,9 +46,9 @@ UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h) {
 }
 
 Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d& start) {
-  constexpr int kSteps = 2;
-  constexpr double kFar = 0.2;    // radians
-  constexpr double kFlat = 1e-6;  // of the trace: the turn about an axis is hardly determined
+  constexpr int kSteps = 2;       // fixed: of Newton, which then has converged
+  constexpr double kFar = 0.2;    // fixed: radians, where it converges
+  constexpr double kFlat = 1e-6;  // fixed: of the trace: a turn that is hardly determined
   Eigen::Matrix3d r = start;
   for (int i = 0; i < kSteps; ++i) {
     // Newton's step for trace(R^T h), as a turn x after R: (trace(k) I - k) x = curl of k.

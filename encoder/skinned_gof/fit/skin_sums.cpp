@@ -14,7 +14,7 @@ namespace {
 
 Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 
-constexpr std::size_t kColumns = 4;  // of a motion
+constexpr std::size_t kColumns = 4;  // fixed: of a motion
 
 // The motions of some bones side by side: [frame][3][bone][4].
 std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motions) {
@@ -218,7 +218,7 @@ SkinSums::Gram SkinSums::gram(std::size_t vertex, std::span<const std::size_t> b
 
 Vec3d SkinSums::fit_rest(std::size_t vertex, const Vec3d& before,
                          std::span<const RigWeight> weights) const {
-  constexpr double kPull = 1e-4;
+  constexpr double kPull = 1e-4;  // fixed: where frames leave a choice
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
   for (const RigWeight& a : weights) {

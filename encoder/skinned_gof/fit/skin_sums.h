@@ -36,7 +36,7 @@ class SkinSums {
 
   // Squared error of a vertex at `rest` for all pairs of some bones, as the Gram matrix of
   // their errors; [kMaxCandidates * kMaxCandidates].
-  static constexpr std::size_t kMaxCandidates = 8;
+  static constexpr std::size_t kMaxCandidates = 8;  // fixed: size of arrays
   using Gram = std::array<double, kMaxCandidates * kMaxCandidates>;
   Gram gram(std::size_t vertex, std::span<const std::size_t> bones, const Vec3d& rest) const;
 

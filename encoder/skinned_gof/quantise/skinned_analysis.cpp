@@ -14,9 +14,9 @@
 namespace rlpc {
 namespace {
 
-constexpr double kPointScale = 16.0;  // 1 << kPointFractionBits
+constexpr double kPointScale = 16.0;  // fixed: 1 << kPointFractionBits
 // Steps of the layers before the finest, in sixteenths: 0.9^n, not below 0.4.
-constexpr std::array<int, 10> kLayerSteps{16, 14, 13, 12, 10, 9, 9, 8, 7, 6};
+constexpr std::array<int, 10> kLayerSteps{16, 14, 13, 12, 10, 9, 9, 8, 7, 6};  // tuned: steps
 
 std::uint32_t step_idx(double step) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
@@ -107,7 +107,7 @@ class SkinnedAnalyser {
     }
     code_rest();
     // Steps that are tried later may be finer (AnalysisRange).
-    constexpr double kReserve = 0.69;
+    constexpr double kReserve = 0.69;  // tuned (off: 1): energy that components may lack
     const double least = kReserve * least_energy(step_, gof, frames_.num_vertices);
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);
@@ -148,11 +148,14 @@ class SkinnedAnalyser {
       }
       bone.rotation_flag = from.turns;
       bone.origin_flag = !from.pinned;
+      constexpr double kLeastMass = 1e-3;  // fixed: above zero
       const auto [mass, moment] = reach(b);
       // A turn by a quaternion's vector part x moves a point at distance r by 2 x r, across.
-      const double turn_step = step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, 1e-3)));
+      const double turn_step =
+          step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, kLeastMass)));
       bone.rotation_step_idx = step_idx(turn_step * exact_exp2(kQuaternionFractionBits));
-      bone.origin_step_idx = step_idx(step_ / std::sqrt(std::max(mass, 1e-3)) * kPointScale);
+      bone.origin_step_idx =
+          step_idx(step_ / std::sqrt(std::max(mass, kLeastMass)) * kPointScale);
       std::vector<WantedPose> wanted(frames_.num_frames);
       for (std::size_t f = 0; f < wanted.size(); ++f) {
         wanted[f].rotation = from.poses[f].rotation;
@@ -226,7 +229,7 @@ class SkinnedAnalyser {
       const double unit = static_cast<double>(gof.rest_step) * layer_step / kMaxLayerStep;
       const Point rest = fit_rest(v);
       for (std::size_t c = 0; c < 3; ++c) {
-        constexpr auto kMost = static_cast<double>(kMaxResidual);
+        constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
         const double steps = (rest[c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
             static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
@@ -285,12 +288,13 @@ class SkinnedAnalyser {
 }  // namespace
 
 double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices) {
-  constexpr double kLeast = 0.4;  // squared errors of a coded value, per vertex
+  // In squared errors of a coded value, per vertex.
+  constexpr double kLeast = 0.4;  // tuned (off: 0): energy of a component, at least
   // One bone leaves trajectories of all vertices, of which many are worth their bits: those of
   // long vectors need more.
-  constexpr double kOfSpatial = 0.25;
-  constexpr double kOfTemporal = 12.0;
-  constexpr double kMost = 1.2;
+  constexpr double kOfSpatial = 0.25;   // tuned (off: 0): energy, for a vertex, without bones
+  constexpr double kOfTemporal = 12.0;  // tuned (off: 0): energy, for a frame, without bones
+  constexpr double kMost = 1.2;         // tuned (off: 1e9): energy of a component, at most
   const double share = static_cast<double>(gof.num_frames) / num_vertices;
   const double values = gof.bones.size() > 1
                             ? kLeast

@@ -24,10 +24,10 @@ enum class Rounding : std::uint8_t {
 
 struct SkinnedSettings {
   Prediction prediction = Prediction::kLayers;
-  int weight_bits = 6;
-  int damping_log2 = 8;
-  int outer_weight = 3;
-  int outer_scale = 3;
+  int weight_bits = kWeightBits;
+  int damping_log2 = kDampingLog2;
+  int outer_weight = kOuterWeight;
+  int outer_scale = kOuterScale;
   bool layer_steps = true;       // finer steps in coarser layers
   bool temporal_weights = true;  // not only the orders of 8.2.2
   Rounding rounding = Rounding::kCheapest;
@@ -35,6 +35,11 @@ struct SkinnedSettings {
   std::uint32_t component_groups = 0;  // 0: as many as suit
   std::uint32_t layer_groups = 0;
   std::size_t max_trajectories = 1024;
+
+  static constexpr int kWeightBits = 6;   // tuned: of an influence
+  static constexpr int kDampingLog2 = 8;  // tuned (off: 0): of geometry weights
+  static constexpr int kOuterWeight = 3;  // tuned (off: 0): of the outer ring
+  static constexpr int kOuterScale = 3;   // tuned (off: 0): of the outer ring
 };
 
 // Bones, influences and rest positions of a GOF, quantised, and the principal components of

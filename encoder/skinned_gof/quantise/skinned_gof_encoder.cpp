@@ -15,7 +15,7 @@ namespace rlpc {
 namespace {
 
 // Temporal values are scaled so that their step is 2^3 units of the sums, if that can be.
-constexpr int kWantedScaleIdx = 56;
+constexpr int kWantedScaleIdx = 56;  // fixed: format
 
 // Bits of a signed number with such a magnitude.
 int signed_width(std::int64_t magnitude) {
@@ -71,7 +71,7 @@ std::vector<std::int32_t> code_trajectories(const CodedMesh& mesh,
                                             const SkinnedAnalysis& analysis,
                                             const SkinnedSettings& settings, double step,
                                             SkinnedGof& gof) {
-  constexpr double kReserve = 1.02;
+  constexpr double kReserve = 1.02;  // fixed: the next try fits
   TemporalLimits limits{kLevels.back().max_components};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
@@ -100,7 +100,8 @@ bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
 }
 
 double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
-  constexpr double kOfCoded = 0.52;  // of what uniform quantisation adds to each value
+  constexpr double kOfCoded =
+      0.52;  // tuned (off: 1): of what uniform quantisation adds to each value
   const double num_values = static_cast<double>(analysis.rest[0].size()) +
                             3.0 * kTemporalError * analysis.gof.num_frames;
   const double quantised = kOfCoded * step * step / 12.0 * num_values;

@@ -15,7 +15,8 @@ namespace rlpc {
 namespace {
 
 // Wanted values up to this one fit their width, whatever they are rounded to.
-constexpr double kMostSpatial = (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;
+constexpr double kMostSpatial =
+    (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;  // fixed: format
 
 // Cholesky decomposition of a matrix, [n][n], in place; only the lower triangle counts. Vectors
 // that vanished in quantisation get no factor: a root of 0.
@@ -23,7 +24,8 @@ void decompose(std::vector<double>& g, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     double d = g[j * n + j];
     for (std::size_t k = 0; k < j; ++k) d -= g[j * n + k] * g[j * n + k];
-    const double root = d > 1e-9 * g[j * n + j] ? std::sqrt(d) : 0.0;
+    constexpr double kVanished = 1e-9;  // fixed: rounding
+    const double root = d > kVanished * g[j * n + j] ? std::sqrt(d) : 0.0;
     g[j * n + j] = root;
     for (std::size_t i = j + 1; i < n; ++i) {
       double x = g[i * n + j];
@@ -115,7 +117,8 @@ class ResidualRounding {
   }
 
  private:
-  static constexpr double kRoundUpOfDeadZone = 0.42;
+  static constexpr double kRoundUpOfDeadZone =
+      0.42;  // tuned (off: 0.5): rounding of factors, fast
 
   double round_up_;
   std::optional<VertexResidualChoice> choice_;
@@ -127,7 +130,7 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal, Rounding rounding,
                                   double step) {
-  constexpr std::size_t kTogether = 16;  // vertices whose factors are found at a time
+  constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
   const std::size_t count = temporal.size();
   std::optional<GeometryWeights> weights;
   if (gof.prediction == Prediction::kLayers) {

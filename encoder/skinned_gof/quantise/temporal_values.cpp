@@ -16,15 +16,15 @@ namespace rlpc {
 namespace {
 
 // What bones leave is in few places, where neighbours tell little about it.
-constexpr double kTemporalErrorOfBones = 2.0;
-// What a vertex costs at least for a trajectory, in squared steps.
-constexpr double kSpatialCost = 0.02;
-constexpr double kSpatialCostOfBones = 0.06;
+constexpr double kTemporalErrorOfBones = 2.0;  // tuned (off: 1): of temporal values, with bones
+// Of a vertex for a trajectory, at least, in squared steps.
+constexpr double kSpatialCost = 0.02;         // tuned (off: 0): cost of a vertex, without bones
+constexpr double kSpatialCostOfBones = 0.06;  // tuned (off: 0): cost of a vertex, with bones
 
 // Products of steps, in eighths of an octave, have a scale_idx up to this one.
-constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;
+constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
 // Wanted values up to this one fit their width, whatever they are rounded to.
-constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);
+constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
 
 double largest_magnitude(const std::vector<double>& values) {
   double most = 0.0;
@@ -33,9 +33,10 @@ double largest_magnitude(const std::vector<double>& values) {
 }
 
 double power_of_eighths(int eighths) {
+  constexpr double kMantissaUnit = 32768.0;  // fixed: format
   const int whole = eighths >= 0 ? eighths / 8 : -((7 - eighths) / 8);
   const auto part = static_cast<std::size_t>(eighths - 8 * whole);
-  return static_cast<double>(kScaleMantissa[part]) / 32768.0 * exact_exp2(whole);
+  return static_cast<double>(kScaleMantissa[part]) / kMantissaUnit * exact_exp2(whole);
 }
 
 class TemporalCoder {
@@ -48,7 +49,7 @@ class TemporalCoder {
         state_(analysis.gof.num_frames) {}
 
   TemporalValues code(const TemporalLimits& limits) {
-    constexpr int kMostInVain = 4;  // of the next ones, none will do better
+    constexpr int kMostInVain = 4;  // tuned (off: 1): components that are not worth their bits
     TemporalValues values;
     const std::vector<double>& energy = analysis_.pc.energy;
     const double least =
@@ -118,13 +119,14 @@ class TemporalCoder {
   // How much an error of a temporal value weighs: its sum of squared spatial factors, or as in
   // Vasa and Skala 2009, (18) and (19), the square of their summed magnitudes.
   double importance(std::size_t l) const {
+    constexpr double kSmallest = 1e-12;  // fixed: above zero
     if (!settings_.cobra_steps) return analysis_.pc.energy[l];
     double sum = 0.0;
     const std::size_t width = analysis_.pc.temporal.size();
     for (std::size_t v = 0; v < num_vertices_; ++v) {
       sum += std::abs(double{analysis_.pc.spatial[v * width + l]});
     }
-    return std::max(sum * sum / static_cast<double>(num_vertices_), 1e-12);
+    return std::max(sum * sum / static_cast<double>(num_vertices_), kSmallest);
   }
 
   const SkinnedAnalysis& analysis_;

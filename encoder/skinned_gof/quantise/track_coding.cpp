@@ -19,11 +19,11 @@
 namespace rlpc {
 namespace {
 
-constexpr double kWeightScale = 64.0;  // of temporal_weight
-constexpr double kMaxWeight = 255.0;
-constexpr int kWeightBits = 9;
+constexpr double kWeightScale = 64.0;  // fixed: of temporal_weight
+constexpr double kMaxWeight = 255.0;   // fixed: format
+constexpr int kWeightBits = 9;         // fixed: format
 // The smallest real part of a residual rotation that its vector part is divided by.
-constexpr double kMinRealPart = 0.1;
+constexpr double kMinRealPart = 0.1;  // fixed: turns of nearly half a circle
 
 // Weights of the `count` values before that predict the series best, in least squares.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
@@ -41,8 +41,10 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
     }
   }
   // What is predicted from has quantisation errors.
+  constexpr double kNoise =
+      0.25;  // tuned (off: 0): squared steps of noise in weights of tracks
   for (std::size_t i = 0; i < n; ++i) {
-    m.a[i][i] += 0.25 * step * step * static_cast<double>(values.size());
+    m.a[i][i] += kNoise * step * step * static_cast<double>(values.size());
   }
   const auto solution = solve_small(m, n);
   if (!solution.is_unique) return false;

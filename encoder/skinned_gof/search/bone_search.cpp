@@ -8,42 +8,45 @@ namespace rlpc {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kMinVerticesOfBone = 8;
-constexpr std::uint32_t kUsualInfluences = 4;
-constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
-// Bones are looked for with vertices that follow one, and with vertices that follow two: with
-// more, bones overlap, and neither they nor weights are smooth.
-constexpr std::uint32_t kSearchInfluences = 2;
-// Parts of the error of one bone that does not turn which one that turns leaves: below the
-// first, that is chosen unseen; above the second, the one which does not turn.
-constexpr double kRigidPart = 0.5;
-constexpr double kFlexiblePart = 1.0;
+constexpr std::uint32_t kMinVerticesOfBone = 8;  // tuned (off: 1): fewer do not make a bone
+constexpr std::uint32_t kUsualInfluences = 4;    // tuned (off: 1): bones of a vertex
+// With more than two, bones overlap, and neither they nor weights are smooth.
+constexpr std::uint32_t kSearchInfluences = 2;  // tuned (off: 1): likewise, of a search
+// Parts of the error of one bone that does not turn which one that turns leaves.
+constexpr double kRigidPart = 0.5;     // tuned (off: 1): below, one bone turns
+constexpr double kFlexiblePart = 1.0;  // tuned: above, one bone does not turn
 // Expected costs at which bones are looked for: relative to those expected without bones, to
-// the real ones without, and to the real ones once the first bones are there. If the first are
-// very low, nothing else is tried.
-constexpr double kTryFactor = 0.72;
-constexpr double kTryFactorOfReal = 0.85;
-constexpr double kTryFactorUnsettled = 0.93;
-constexpr double kTryFactorSettled = 0.9;
-constexpr double kSure = 0.3;
-// Below this part of the cost expected without bones, expected costs are trusted more than the
-// real one: what makes that low, such as vertices at rest, is there with bones, too.
-constexpr double kStrongEstimate = 0.5;
+// the real ones without, and to the real ones once the first bones are there.
+constexpr double kTryFactor = 0.72;           // tuned (off: 1e9): expected, to expected without
+constexpr double kTryFactorOfReal = 0.85;     // tuned (off: 1e9): expected, to real without
+constexpr double kTryFactorUnsettled = 0.93;  // tuned (off: 1e9): with the first bones
+constexpr double kTryFactorSettled = 0.9;     // tuned (off: 1e9): once these have settled
+constexpr double kSure = 0.3;                 // tuned (off: 0): below, one bone is not tried
+// What makes the real cost without bones low, such as vertices at rest, is there with bones,
+// too.
+constexpr double kStrongEstimate = 0.5;  // tuned (off: 0): below, estimates beat real costs
 // Thresholds are so much higher where a trial takes little time.
-constexpr double kHopeOfSmallMesh = 1.35;
-constexpr double kHopeOfFewValues = 1.07;
-constexpr std::uint64_t kFewValues = 200'000;  // vertices times frames
-// Expected costs, relative to the least, of numbers of bones to be tried.
-constexpr double kNearLeast = 1.06;
-constexpr double kWorthACost = 1.2;
-constexpr double kFarAbove = 1.1;  // real costs that rise here will not fall again
-// So many bones tell whether more are worth looking at: not above this expected cost.
-constexpr std::uint32_t kEnoughBones = 20;
-constexpr double kHopeless = 0.92;
+constexpr std::uint32_t kSmallMesh = 1000;     // tuned (off: 0): vertices
+constexpr double kHopeOfSmallMesh = 1.35;      // tuned (off: 1): thresholds, of a small mesh
+constexpr double kHopeOfFewValues = 1.07;      // tuned (off: 1): thresholds, of few values
+constexpr std::uint64_t kFewValues = 200'000;  // tuned (off: 0): vertices times frames
+// Numbers of bones to be tried, by expected costs relative to the least.
+constexpr double kNearLeast = 0.06;   // tuned (off: 1e9): of influences that are tried
+constexpr double kWorthATrial = 0.2;  // tuned (off: 1e9): of a number that is tried
+constexpr double kFarAbove = 0.1;     // tuned (off: 1e9): real costs that will not fall again
+// So many bones tell whether more are worth looking at.
+constexpr std::uint32_t kEnoughBones = 20;  // tuned (off: 1000000): bones in a sample
+constexpr double kHopeless = 0.92;          // tuned (off: 1e9): expected of these, to stop
 
 // Numbers of bones worth comparing.
-constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
-constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
+constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};  // tuned: bones
+constexpr std::array<std::uint32_t, 9> kManyBones{5,  10, 15, 20, 24,
+                                                  28, 36, 48, 64};  // tuned: slow
+
+// Of a small sample, for estimates.
+constexpr std::uint32_t kQuickFrames = 24;     // tuned: frames
+constexpr std::uint32_t kQuickVertices = 700;  // tuned: vertices
+constexpr int kQuickExchanges = 2;             // tuned (off: 0): of bones
 
 double threshold_factor_of(const GofFrames& frames) {
   if (frames.num_vertices <= kSmallMesh) return kHopeOfSmallMesh;
@@ -103,9 +106,9 @@ BoneFit BoneSearch::quick_fit(std::size_t influences) const {
           context_.triangles,
           {.max_influences = influences,
            .step = trials_.step(),
-           .sample_frames = 24,
-           .sample_vertices = 700,
-           .exchanges = 2}};
+           .sample_frames = kQuickFrames,
+           .sample_vertices = kQuickVertices,
+           .exchanges = kQuickExchanges}};
 }
 
 bool BoneSearch::can_have(std::uint32_t count) const {
@@ -172,8 +175,8 @@ BoneSearch::Estimates BoneSearch::estimates() const {
   for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
     Estimate of = estimate(influences);
     result.translation = of.translation;
-    if (of.cost >
-        std::min(threshold_factor_ * kTryFactor * of.translation, kNearLeast * result.least)) {
+    if (of.cost > std::min(threshold_factor_ * kTryFactor * of.translation,
+                           (1.0 + kNearLeast) * result.least)) {
       break;
     }
     result.least = std::min(result.least, of.cost);
@@ -196,8 +199,8 @@ SkinnedTrial BoneSearch::search() const {
     const Estimate& of = expected.of_influences[influences - 1];
     const bool strong = of.cost < kStrongEstimate * of.translation;
     const double against = strong ? std::max(without, of.translation) : without;
-    if (of.cost <=
-        std::min(kNearLeast * expected.least, threshold_factor_ * kTryFactorOfReal * against)) {
+    if (of.cost <= std::min((1.0 + kNearLeast) * expected.least,
+                            threshold_factor_ * kTryFactorOfReal * against)) {
       best = try_estimated(std::move(best), influences, of, against);
     }
     if (slow) {
@@ -253,12 +256,12 @@ BestTrial BoneSearch::try_counts(BestTrial best, BoneFit& full, std::uint32_t in
     if (count != counts.front() && !grow(full, count)) break;
     const double now = full.expected_cost();
     expected = std::min(expected, now);
-    if (now > threshold_factor_ * kWorthACost * expected) continue;
+    if (now > threshold_factor_ * (1.0 + kWorthATrial) * expected) continue;
     SkinnedTrial trial =
         run(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
     const double real = trial.cost;
     best = cheaper(std::move(best), std::move(trial));
-    if (real > before && (count >= likely || real > kFarAbove * best->cost)) break;
+    if (real > before && (count >= likely || real > (1.0 + kFarAbove) * best->cost)) break;
     before = real;
   }
   return best;

@@ -5,7 +5,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kSmallMesh = 1000;  // of which everything is tried
+constexpr std::uint32_t kSmallMesh = 1000;  // tuned (off: 0): vertices; all tools are tried
 
 }  // namespace
 
