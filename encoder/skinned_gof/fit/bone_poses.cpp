@@ -1,9 +1,10 @@
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "encoder/math/matrix_products.h"
-#include "encoder/math/symmetric_solve.h"
+#include "encoder/math/symmetric_system.h"
 
 namespace rlpc {
 namespace {
@@ -140,7 +141,7 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
     }
   }
   for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;
-  solve_symmetric(a, x);
+  SymmetricSystem(std::move(a), 6 * n).solve(x);
   for (std::size_t b = 0; b < n; ++b) {
     if (!(moments.mass(b) > 0.0)) continue;
     const Vec3d turn{x[6 * b], x[6 * b + 1], x[6 * b + 2]};

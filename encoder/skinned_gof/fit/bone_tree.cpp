@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "encoder/math/symmetric_solve.h"
+#include "encoder/math/symmetric_system.h"
 
 namespace rlpc {
 namespace {
@@ -30,9 +30,8 @@ Vec3d common_point(const Motions& parent, const Motions& child, const Vec3d& exp
   constexpr double kStill = 1e-8;  // fixed: bones that turn less together share all points
   const double pull = kPull * h.trace() + kStill * static_cast<double>(child.size());
   h += pull * Eigen::Matrix3d::Identity();
-  std::vector<double> a(h.data(), h.data() + 9);
   std::vector<double> x(g.data(), g.data() + 3);
-  solve_symmetric(a, x);
+  SymmetricSystem({h.data(), h.data() + 9}, 3).solve(x);
   return expected + Vec3d(x[0], x[1], x[2]);
 }
 
