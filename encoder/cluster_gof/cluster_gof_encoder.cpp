@@ -1,6 +1,5 @@
 #include "encoder/cluster_gof/cluster_gof_encoder.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "encoder/cluster_gof/rate_allocation.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
+#include "encoder/math/symmetric_system.h"
 
 namespace rlpc {
 namespace {
@@ -206,8 +206,6 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
   const TrajectoryMatrix matrix = local_trajectories(frames, cluster);
   const std::size_t num_frames = matrix.num_frames;
   const std::size_t num_values = matrix.num_values;
-  Eigen::MatrixXd gram =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   std::vector<double> s(num_values * count);  // [num_values][count]
   for (std::size_t l = 0; l < count; ++l) {
     for (std::size_t i = 0; i < num_values; ++i) {
@@ -223,26 +221,15 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
       if (si[l] == 0.0) continue;
       double* p = &projected[l * num_frames];
       for (std::size_t f = 0; f < num_frames; ++f) p[f] += si[l] * a[f];
-      for (std::size_t k = 0; k <= l; ++k) g[l * count + k] += si[l] * si[k];
+      for (std::size_t k = l; k < count; ++k) g[l * count + k] += si[l] * si[k];
     }
   }
+  const SymmetricSystem gram(std::move(g), count);
+  if (!gram.is_unique()) return;  // some vector was quantised away: keep the projection
+  gram.solve(projected, num_frames);
   for (std::size_t l = 0; l < count; ++l) {
-    for (std::size_t k = 0; k <= l; ++k) {
-      gram(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(k)) = g[l * count + k];
-    }
-  }
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(gram);
-  if (llt.info() != Eigen::Success)
-    return;  // some vector was quantised away: keep the projection
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
-      b(projected.data(), static_cast<Eigen::Index>(count),
-        static_cast<Eigen::Index>(num_frames));
-  const Eigen::MatrixXd fitted = llt.solve(b);
-  for (std::size_t l = 0; l < count; ++l) {
-    std::vector<double> t(num_frames);
-    for (std::size_t f = 0; f < num_frames; ++f) {
-      t[f] = fitted(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(f));
-    }
+    const auto row = projected.begin() + static_cast<std::ptrdiff_t>(l * num_frames);
+    const std::vector<double> t(row, row + static_cast<std::ptrdiff_t>(num_frames));
     components[l].temporal = quantise(t, components[l].steps.temporal, dead_zone);
     choose_predictors(components[l], *cluster.prediction);
   }

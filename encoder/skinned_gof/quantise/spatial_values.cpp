@@ -10,6 +10,7 @@
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/matrix_products.h"
+#include "encoder/math/symmetric_system.h"
 
 namespace rlpc {
 namespace {
@@ -17,28 +18,6 @@ namespace {
 // Wanted values up to this one fit their width, whatever they are rounded to.
 constexpr double kMostSpatial =
     (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;  // fixed: format
-
-// Cholesky decomposition of a matrix, [n][n], in place; only the lower triangle counts. Vectors
-// that vanished in quantisation get no factor: a root of 0.
-void decompose(std::vector<double>& g, std::size_t n) {
-  for (std::size_t j = 0; j < n; ++j) {
-    double d = g[j * n + j];
-    for (std::size_t k = 0; k < j; ++k) d -= g[j * n + k] * g[j * n + k];
-    constexpr double kVanished = 1e-9;  // fixed: rounding
-    const double root = d > kVanished * g[j * n + j] ? std::sqrt(d) : 0.0;
-    g[j * n + j] = root;
-    for (std::size_t i = j + 1; i < n; ++i) {
-      double x = g[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) x -= g[i * n + k] * g[j * n + k];
-      g[i * n + j] = root > 0.0 ? x / root : 0.0;
-    }
-  }
-}
-
-// 0 where there is no factor.
-void divide(std::vector<double>& values, double root) {
-  for (double& x : values) x = root > 0.0 ? x / root : 0.0;
-}
 
 // Spatial factors in grid units, by least squares against the decoded temporal vectors. The
 // matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in those. So the
@@ -64,35 +43,29 @@ class SpatialFactors {
   }
 
  private:
-  // [component][trajectory]
+  // [component][trajectory]. Vectors that vanished in quantisation get no factor.
   std::vector<double> find_mixing(const TemporalValues& temporal) const {
+    constexpr double kVanished = 1e-9;  // fixed: rounding
     const std::size_t width = temporal.decoded.front().size();
-    const std::vector<double> decoded = as_columns(temporal.decoded, width);
-    std::vector<double> g;
-    for (const auto& vector : temporal.decoded) {
-      const std::vector<double> row = ordered_product(vector, decoded, count_);
-      g.insert(g.end(), row.begin(), row.end());
-    }
-    decompose(g, count_);
-    const auto tried = std::span(pc_.temporal).first(num_tried_);
-    const std::vector<double> components = as_columns(tried, width);
-    std::vector<std::vector<double>> mixing;  // [trajectory][component]
-    for (const auto& vector : temporal.decoded) {
-      mixing.push_back(ordered_product(vector, components, num_tried_));
-    }
+    const auto products = [&](std::span<const std::vector<double>> vectors) {
+      const std::vector<double> columns = as_columns(vectors, width);
+      std::vector<double> rows;  // [trajectory][vector]
+      for (const auto& vector : temporal.decoded) {
+        const std::vector<double> row = ordered_product(vector, columns, vectors.size());
+        rows.insert(rows.end(), row.begin(), row.end());
+      }
+      return rows;
+    };
+    const SymmetricSystem gram(products(temporal.decoded), count_, kVanished);
+    std::vector<double> mixing = products(std::span(pc_.temporal).first(num_tried_));
+    gram.solve(mixing, num_tried_);
+    std::vector<double> transposed(mixing.size());
     for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t k = 0; k < i; ++k) {
-        subtract_multiple(g[i * count_ + k], mixing[k], mixing[i]);
+      for (std::size_t k = 0; k < num_tried_; ++k) {
+        transposed[k * count_ + i] = mixing[i * num_tried_ + k];
       }
-      divide(mixing[i], g[i * count_ + i]);
     }
-    for (std::size_t i = count_; i-- > 0;) {
-      for (std::size_t k = i + 1; k < count_; ++k) {
-        subtract_multiple(g[k * count_ + i], mixing[k], mixing[i]);
-      }
-      divide(mixing[i], g[i * count_ + i]);
-    }
-    return as_columns(mixing, num_tried_);
+    return transposed;
   }
 
   const ComponentsByRow& pc_;
