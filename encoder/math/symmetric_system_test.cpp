@@ -29,7 +29,8 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
   std::vector<double> b(n * width);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t k = 0; k < width; ++k) b[i * width + k] += a[i * n + j] * x[j * width + k];
+      for (std::size_t k = 0; k < width; ++k)
+        b[i * width + k] += a[i * n + j] * x[j * width + k];
     }
   }
   return b;

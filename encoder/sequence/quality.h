@@ -20,7 +20,8 @@ struct NamedQuality {
   const char* word;
   double kg_error_percent;
 };
-inline constexpr std::array<NamedQuality, 4> kQualities{  // fixed: see above
+inline constexpr std::array<NamedQuality, 4> kQualities{
+    // fixed: see above
     {{"preview", 1.0}, {"good", 0.1}, {"fine", 0.03}, {"visually-lossless", 0.01}}};
 static_assert(Target{}.value == kQualities[1].kg_error_percent);  // the default is `good`
 
