@@ -1,0 +1,162 @@
+// Units of a GOF of bones element by element, also such as no writer makes: for tests of
+// parsers. Residuals are 0.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/bit_writer.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/slice_models.h"
+#include "common/testing/section_recipe.h"
+
+namespace rlpc {
+
+struct BoneRecipe {
+  std::uint32_t bone_parent_plus1 = 0;
+  std::array<std::uint32_t, 3> bone_pivot{};
+  bool rotation_flag = false;
+  bool origin_flag = false;
+  std::uint32_t rotation_step_idx = 0;
+  std::uint32_t rotation_order_minus1 = 0;
+  std::uint32_t origin_step_idx = 0;
+  std::uint32_t origin_order = 0;
+};
+
+// 6.5 and 6.11, of a GOF that begins with frame 0.
+struct SkinnedGofRecipe {
+  std::uint32_t num_gof_frames_minus1 = 0;
+  std::uint32_t fraction_bits = 0;
+  std::uint32_t weight_bits = 0;
+  std::uint32_t rest_step_minus1 = 0;
+  std::uint32_t num_component_groups = 0;
+  std::uint32_t prediction_idc = 0;
+  std::uint32_t damping_log2 = 0;
+  std::uint32_t outer_weight = 0;
+  std::uint32_t outer_scale = 0;
+  std::uint32_t num_layer_groups_minus1 = 0;
+  std::vector<std::uint32_t> layer_group_layers_minus1;
+  std::vector<std::uint32_t> layer_step_minus1;
+  std::vector<BoneRecipe> bones{1};
+  int position_bits = 12;
+
+  std::vector<std::uint8_t> payload() const {
+    BitWriter w;
+    w.ue(0);
+    w.ue(num_gof_frames_minus1);
+    w.flag(true);
+    w.ue(static_cast<std::uint32_t>(bones.size()) - 1);
+    w.u(5, fraction_bits);
+    w.u(3, weight_bits);
+    w.ue(rest_step_minus1);
+    w.ue(num_component_groups);
+    w.u(2, prediction_idc);
+    if (prediction_idc == 3) {
+      w.u(4, damping_log2);
+      w.u(4, outer_weight);
+      w.u(4, outer_scale);
+      w.ue(num_layer_groups_minus1);
+      for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
+      for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
+    }
+    w.byte_alignment();
+    w.append(bone_section());
+    return w.take();
+  }
+
+ private:
+  std::vector<std::uint8_t> bone_section() const {
+    SectionRecipe r;
+    BoneModels models;
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      const BoneRecipe& bone = bones[b];
+      if (b > 0) r.section.bypass(ceil_log2(b + 1), bone.bone_parent_plus1);
+      for (const std::uint32_t x : bone.bone_pivot) r.section.bypass(position_bits + 5, x);
+      r.section.bin(models.rotation_flag, bone.rotation_flag);
+      r.section.bin(models.origin_flag, bone.origin_flag);
+      if (bone.rotation_flag) {
+        r.section.bypass(8, bone.rotation_step_idx);
+        r.truncated_unary(models.rotation_order, bone.rotation_order_minus1);
+        track(r, models.rotation);
+      }
+      if (bone.origin_flag) {
+        r.section.bypass(8, bone.origin_step_idx);
+        r.truncated_unary(models.origin_order, bone.origin_order);
+        track(r, models.origin);
+      }
+    }
+    return r.section.finish();
+  }
+  void track(SectionRecipe& r, ResidualModels& models) const {
+    for (std::uint32_t i = 0; i < 3 * (num_gof_frames_minus1 + 1); ++i) {
+      r.residual(models, 0, 0);
+    }
+  }
+};
+
+// 6.12: the first slice of component group 0 or 1.
+class SliceRecipe : public SectionRecipe {
+ public:
+  SliceRecipe(std::uint32_t component_group_idx, std::uint32_t layer_group_idx)
+      : component_group_idx_(component_group_idx), layer_group_idx_(layer_group_idx) {}
+
+  SliceModels models;
+
+  void num_group_components_minus1(std::int32_t value) {
+    field(HeaderField::kNumComponents, value);
+  }
+  void trajectory(std::int32_t scale_idx_delta, std::int32_t spatial_bits_delta,
+                  std::int32_t temporal_bits_delta, std::uint32_t temporal_predictor,
+                  std::uint32_t temporal_weight, std::uint32_t num_frames) {
+    field(HeaderField::kScaleIdx, scale_idx_delta);
+    field(HeaderField::kSpatialBits, spatial_bits_delta);
+    field(HeaderField::kTemporalBits, temporal_bits_delta);
+    truncated_unary(models.temporal_predictor, temporal_predictor);
+    for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
+    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
+  }
+  // Of the first vertex: bones and weights less 1, of so many bits each.
+  void extra_bones(std::span<const std::pair<std::uint32_t, std::uint32_t>> bones,
+                   int bone_bits, int weight_bits) {
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+      section.bin(models.extra_bone_flag[i], true);
+      section.bypass(bone_bits, bones[i].first);
+      section.bypass(weight_bits, bones[i].second);
+    }
+  }
+  void vertex_residuals(const CodedMesh& mesh, std::span<const std::uint32_t> vertices,
+                        std::size_t num_factors) {
+    VertexContexts contexts(mesh, num_factors);
+    VertexModels vertex_models;
+    for (const std::uint32_t v : vertices) {
+      contexts.start(v);
+      for (std::size_t l = 0; l < num_factors; ++l) {
+        residual(vertex_models[contexts.activity()], contexts.expected(), 0);
+        contexts.update(0);
+      }
+    }
+  }
+
+  std::vector<std::uint8_t> payload() {
+    BitWriter w;
+    w.ue(component_group_idx_);
+    w.ue(layer_group_idx_);
+    w.byte_alignment();
+    w.append(section.finish());
+    return w.take();
+  }
+
+ private:
+  void field(HeaderField which, std::int32_t delta) {
+    header_delta(models.header, models.header_mean[static_cast<std::size_t>(which)], delta);
+  }
+
+  std::uint32_t component_group_idx_;
+  std::uint32_t layer_group_idx_;
+};
+
+}  // namespace rlpc
