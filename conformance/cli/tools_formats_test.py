@@ -7,7 +7,7 @@
 import struct
 import subprocess
 
-from tools_testing import Tools, ToolsTest, main, read_rlpd
+from tools_testing import INPUTS, Tools, ToolsTest, main, read_pc2, read_rlpd
 
 OUTPUTS = ("a.rlpd", "a.pc2", "a.mdd", "a.glb", "obj", "ply/f%d.ply", "text/f_%04d.ply")
 ENCODE = ["--preset", "fast", "--kg", 0.5, "--quiet"]
@@ -78,6 +78,19 @@ class FormatsIn(ToolsTest):
         for data in (off(xyz, polygon), ply(xyz, polygon, "ascii"),
                      ply(xyz, polygon, "binary_big_endian"), self.path("a.obj").read_bytes()):
             self.assertEqual(self.stream("-", input=data), wanted)
+
+    def test_clusters_of_a_point_cloud(self):
+        self.path("cloud").mkdir()
+        for f, xyz in enumerate(read_pc2(INPUTS / "robot_arm.pc2")):
+            (self.path("cloud") / f"f{f:02d}.ply").write_bytes(ply(xyz, [], "binary_little_endian"))
+
+        def size(*options):
+            report = self.ok("rlpcenc", self.path("cloud"), "-o", self.path("cloud.rlpc"), "--kg",
+                             0.3, "--profile", "baseline", "--json", *options).json()
+            self.ok("rlpcval", self.path("cloud.rlpc"))
+            return report["bytes"]
+        self.assertLess(size("--clusters", 6, "--frame", "lcf"),
+                        0.5 * size("--clusters", 1, "--frame", "world"))
 
     def test_a_long_header_is_read_in_time(self):
         names = "".join(f"property float p{i}\n" for i in range(500000))

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "encoder/cluster_gof/local_motion.h"
 
 namespace rlpc {
 namespace {
+
+constexpr std::size_t kNeighbours = 6;  // of a point, to find a triangle among
 
 double distance2(const double* a, const double* b) {
   double sum = 0.0;
@@ -48,6 +51,21 @@ std::vector<std::vector<std::uint32_t>> incident_triangles(
   return incident;
 }
 
+// The nearest points that are elsewhere, in frame 0.
+std::vector<std::uint32_t> nearest_points(const GofFrames& frames, std::uint32_t v) {
+  std::vector<std::pair<double, std::uint32_t>> others;
+  for (std::uint32_t u = 0; u < frames.num_vertices; ++u) {
+    const double distance = distance2(frames.at(0, u), frames.at(0, v));
+    if (distance > 0.0) others.emplace_back(distance, u);
+  }
+  const std::size_t count = std::min(kNeighbours, others.size());
+  const auto end = others.begin() + static_cast<std::ptrdiff_t>(count);
+  std::partial_sort(others.begin(), end, others.end());
+  std::vector<std::uint32_t> nearest;
+  for (auto it = others.begin(); it != end; ++it) nearest.push_back(it->second);
+  return nearest;
+}
+
 // The x axis runs along the longest edge of frame 0, where noise turns it least.
 Seed rotate_to_longest_edge(const GofFrames& frames, const Triangle& t) {
   std::size_t best = 0;
@@ -77,9 +95,22 @@ MotionClusters::MotionClusters(const GofFrames& frames, std::span<const Triangle
     for (std::size_t c = 0; c < 3; ++c) centre[c] += frames.at(0, v)[c];
   }
   for (double& c : centre) c /= n;
-  for (std::uint32_t v = 0; v < n; ++v) {  // a vertex without triangle cannot bring a seed
-    distance_[v] = incident_[v].empty() ? -1.0 : distance2(frames.at(0, v), centre.data());
+  for (std::uint32_t v = 0; v < n; ++v) {  // a loose vertex of a mesh cannot bring a seed
+    const bool loose = incident_[v].empty() && !triangles_.empty();
+    distance_[v] = loose ? -1.0 : distance2(frames.at(0, v), centre.data());
   }
+}
+
+// What may become the seed at a vertex.
+std::vector<Triangle> MotionClusters::triangles_at(std::uint32_t v) const {
+  std::vector<Triangle> found;
+  for (const std::uint32_t t : incident_[v]) found.push_back(triangles_[t]);
+  if (!triangles_.empty()) return found;
+  const std::vector<std::uint32_t> near = nearest_points(frames_, v);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (std::size_t j = i + 1; j < near.size(); ++j) found.push_back({v, near[i], near[j]});
+  }
+  return found;
 }
 
 // False when every vertex is a seed or was passed over.
@@ -90,9 +121,9 @@ bool MotionClusters::add_seed() {
     const auto v = static_cast<std::uint32_t>(farthest - distance_.begin());
     *farthest = -1.0;
     double best_quality = 0.0;
-    std::uint32_t best = 0;
-    for (const std::uint32_t t : incident_[v]) {
-      const double quality = triangle_quality(frames_, triangles_[t], position_bits_);
+    Triangle best{};
+    for (const Triangle& t : triangles_at(v)) {
+      const double quality = triangle_quality(frames_, t, position_bits_);
       if (quality > best_quality) {
         best_quality = quality;
         best = t;
@@ -105,7 +136,7 @@ bool MotionClusters::add_seed() {
     for (std::uint32_t u = 0; u < frames_.num_vertices; ++u) {
       distance_[u] = std::min(distance_[u], distance2(frames_.at(0, u), frames_.at(0, v)));
     }
-    seeds_.push_back(rotate_to_longest_edge(frames_, triangles_[best]));
+    seeds_.push_back(rotate_to_longest_edge(frames_, best));
     return true;
   }
 }

@@ -119,6 +119,42 @@ TEST(MotionClusters, SeedTrianglesAreThoseOfTheMeshTurnedToTheirLongestEdge) {
   }
 }
 
+TEST(MotionClusters, OfAPointCloudHaveSeedsOfNearPoints) {
+  Scene scene = two_boxes();
+  scene.triangles.clear();
+  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  const Clustering clustering = motion.clusters(2);
+  expect_boxes_apart(clustering);
+  for (const Seed& s : clustering.seeds) {
+    EXPECT_EQ(std::set<std::uint32_t>(s.begin(), s.end()).size(), 3U);
+  }
+  expect_boxes_apart(motion.spread_clusters(2));
+}
+
+TEST(MotionClusters, OfPointsOnALineOrInOnePlaceHaveNoSeed) {
+  for (const double step : {0.0, 50.0}) {
+    Scene scene;
+    std::vector<Point> points;
+    for (int i = 0; i < 9; ++i) points.push_back({step * i, 0, 0});
+    scene.add_frame(points);
+    MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+    for (const bool spread : {false, true}) {
+      const Clustering clustering = spread ? motion.spread_clusters(3) : motion.clusters(3);
+      EXPECT_TRUE(clustering.seeds.empty()) << step;
+      EXPECT_EQ(clustering.cluster_of_vertex, std::vector<std::uint16_t>(9, 0));
+    }
+  }
+}
+
+TEST(MotionClusters, LooseVerticesOfAMeshBringNoSeed) {
+  Scene scene = two_boxes();
+  scene.triangles.resize(scene.triangles.size() / 2);  // those of the first box
+  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  for (const Seed& s : motion.clusters(8).seeds) {
+    for (const std::uint32_t v : s) EXPECT_LT(v, 8U);
+  }
+}
+
 // A strip of squares along x: column i has the vertices 2 i and 2 i + 1.
 Scene strip(int columns, const std::vector<double>& heights) {
   Scene scene;
@@ -198,17 +234,6 @@ TEST(MotionClusters, TrianglesThatDegenerateInAFrameAreNoSeeds) {
       const auto [low, high] = std::minmax_element(s.begin(), s.end());
       EXPECT_FALSE(*high < 4 || *low >= 14) << kind;
     }
-  }
-}
-
-TEST(MotionClusters, OfAPointCloudHaveNoSeeds) {
-  Scene scene = strip(9, {0, 10});
-  scene.triangles.clear();
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
-  for (const bool spread : {false, true}) {
-    const Clustering clustering = spread ? motion.spread_clusters(4) : motion.clusters(4);
-    EXPECT_TRUE(clustering.seeds.empty());
-    EXPECT_EQ(clustering.cluster_of_vertex, std::vector<std::uint16_t>(18, 0));
   }
 }
 
