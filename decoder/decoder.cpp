@@ -14,7 +14,6 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kMaxThreads = 256;
 static_assert(kBandFrames == kFramesHeld);
 
 }  // namespace

@@ -47,13 +47,16 @@ struct DecodeLimits {
   std::uint64_t max_memory_bytes = kUsualMemoryBytes;
 };
 
+inline constexpr std::uint32_t kMaxThreads = 256;
+
 struct DecoderOptions {
   DecodeLimits limits;
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
   // With more than one, GOFs are parsed ahead and frames reconstructed side by side; positions
   // and errors are the same. Each further thread may take memory for a GOF, of up to
-  // max_memory_bytes / threads, and for four frames.
+  // max_memory_bytes / threads, and for four frames. Beyond 1 to kMaxThreads: the nearest of
+  // these.
   std::uint32_t threads = 1;
   // Decodes as if the slices that it leaves out were not in the stream, which saves their
   // time: of them, CRC and indices alone are checked. The hashes of their GOFs do not fit, and

@@ -30,6 +30,11 @@ class BadInput(ToolsTest):
         self.assertFalse(self.path("out.rlpc").exists())
         self.assertEqual([name for name in self.files() if "partial" in name], [])
 
+    def test_threads(self):
+        for threads in (0, 257, -1, "all"):
+            self.fails(64, ("--threads", "1 to 256"), "rlpcdec", "in.rlpc", "--verify",
+                       "--threads", threads)
+
     def accepted(self, *arguments):
         """Encodes, decodes, compares; the report."""
         report = self.ok("rlpcenc", *arguments, "-o", self.path("out.rlpc"), "--keep-order",

@@ -250,6 +250,16 @@ static void test_options(const buffer* stream) {
   CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
   check_frames(decoder);
   rlpc_decoder_close(decoder);
+  options.threads = 256;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
+  rlpc_decoder_close(decoder);
+  for (uint32_t threads = 0; threads <= 257; threads += 257) {
+    options.threads = threads;
+    CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) ==
+          RLPC_BAD_ARGUMENT);
+    CHECK_TEXT(rlpc_decoder_error_text(decoder), "is not in the range of 1 to 256");
+    rlpc_decoder_close(decoder);
+  }
   options.threads = 1;
 
   options.max_vertices = VERTICES - 1;

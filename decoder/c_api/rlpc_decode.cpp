@@ -107,6 +107,11 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
   }
   *decoder = handle;
   return guarded(handle, [&] {
+    if (options.threads < 1 || options.threads > kMaxThreads) {
+      return handle->error.break_handle(
+          RLPC_BAD_ARGUMENT, "threads: " + std::to_string(options.threads) +
+                                 " is not in the range of 1 to " + std::to_string(kMaxThreads));
+    }
     const DecoderOptions ours = decoder_options(options);
     Result<std::unique_ptr<ByteSource>> source = make_source(ours.limits);
     if (!source) {
