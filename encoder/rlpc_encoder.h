@@ -99,6 +99,9 @@ struct EncoderSettings {
   bool keep_order = false;       // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
   std::string metadata;  // JSON text for a metadata unit; empty: none
+  // What needs more is an error before it is begun. Estimated, for animations that compress
+  // badly; with what the source keeps.
+  std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };
 
 // Bits of the stream by what they are for.

@@ -269,6 +269,11 @@ static void test_options(const buffer* stream) {
   rlpc_decoder_close(decoder);
   options.max_vertices = VERTICES;
 
+  // A device without an end: no stream, which its first bytes show.
+  CHECK(rlpc_decoder_open_file("/dev/zero", &options, &decoder) == RLPC_BAD_STREAM);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "R-STR-01");
+  rlpc_decoder_close(decoder);
+
   // In memory of the caller, if there is enough of it.
   void* place = malloc(rlpc_decoder_bytes());
   options.place = place;
@@ -411,6 +416,10 @@ static void test_encoder_arguments(void) {
     CHECK(create_with(&format, &options, text) == RLPC_BAD_ARGUMENT);
     CHECK_TEXT(text, "unknown value");
   }
+  options = small_gofs();
+  options.max_memory_bytes = 1 << 20;
+  CHECK(create_with(&format, &options, text) == RLPC_LIMIT_EXCEEDED);
+  CHECK_TEXT(text, "the limit is 1 MiB");
   options = small_gofs();
   options.profile = RLPC_BASELINE;
   options.preset = RLPC_FAST;

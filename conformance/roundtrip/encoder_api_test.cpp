@@ -207,6 +207,20 @@ TEST(Encoder, RefusesWhatNoLevelAllows) {
   EXPECT_NE(error_of(source, settings).find("smaller --gof"), std::string::npos);
 }
 
+TEST(Encoder, RefusesWhatMayNeedMoreMemoryThanThereIs) {
+  EncoderSettings settings;
+  settings.max_memory_bytes = std::uint64_t{20} << 20;
+  MemoryFrames small = bending_tube(4, 4);
+  EXPECT_TRUE(encode(small, settings, discard));
+  MemoryFrames large = bending_tube(300, 200);
+  settings.gof_frames = EncoderSettings::kWholeSequence;
+  const auto report = encode(large, settings, discard);
+  ASSERT_FALSE(report);
+  EXPECT_TRUE(report.error().is_limit);
+  EXPECT_NE(report.error().message.find("the limit is 20 MiB (--max-memory)"),
+            std::string::npos);
+}
+
 TEST(Encoder, ASinkThatFailsEndsIt) {
   for (int calls = 0; calls < 3; ++calls) {
     MemoryFrames source = bending_tube(4, 4);

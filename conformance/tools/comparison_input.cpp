@@ -49,13 +49,17 @@ class StreamSource final : public FrameSource {
   std::vector<std::int32_t> positions_;
 };
 
-InputResult<ComparisonInput> open_stream(const std::string& path) {
-  auto bytes = file_source(path);
+InputResult<ComparisonInput> open_stream(const std::string& path,
+                                         std::uint64_t max_memory_bytes) {
+  DecoderOptions options;
+  std::uint64_t& most = options.limits.max_memory_bytes;
+  if (max_memory_bytes != kUsualEncoderBytes) most = max_memory_bytes;
+  auto bytes = file_source(path, most);
   if (!bytes) return InputError{path + ": " + describe_error(bytes.error())};
   ComparisonInput input;
   input.name = path;
   input.stream_bytes = (*bytes)->size();
-  auto decoder = Decoder::open(std::move(*bytes));
+  auto decoder = Decoder::open(std::move(*bytes), options);
   if (!decoder) return InputError{path + ": " + describe_error(decoder.error())};
   input.traversal_order = !decoder->has_vertex_order();
   FrameSource::Shape shape;
@@ -76,7 +80,9 @@ InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions
   }
   const std::string cache = sibling_of(options.path, InputFormat::Holds::kPoints);
   if (cache.empty()) return input;
-  return open_comparison_input({options.path, cache, std::nullopt});
+  InputOptions with_cache = options;
+  with_cache.points = cache;
+  return open_comparison_input(with_cache);
 }
 
 }  // namespace
@@ -85,7 +91,7 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
   const std::string extension = lower_extension(given.path);
   if (extension == ".rlpc") {
     if (auto error = check_gltf_options(given)) return *error;
-    if (given.points.empty()) return open_stream(given.path);
+    if (given.points.empty()) return open_stream(given.path, given.max_memory_bytes);
     return InputError{given.path + ": a stream has its own positions; leave out " +
                       given.points};
   }

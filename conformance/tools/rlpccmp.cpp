@@ -120,6 +120,11 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--max-error", o.max_error,
                  "Exit code 1 if a vertex is further off, in units of A")
       ->check(kBound);
+  app.add_option(
+         "--max-memory", o.a.max_memory_bytes,
+         "Give up on input that needs more, for example 500MB (default: 32GB, of streams "
+         "4GB)")
+      ->transform(CLI::AsSizeValue(false));
   app.add_flag("--json", o.json, "Report as JSON on standard output");
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
   app.footer(kExamples);
@@ -273,6 +278,7 @@ int run(Options& o) {
     if (!rate) return complain("--fps: " + rate.error().message), kUsage;
     o.a.frame_rate = o.b.frame_rate = *rate;
   }
+  o.b.max_memory_bytes = o.a.max_memory_bytes;
   const auto pair = rlpc::open_comparison_pair(o.a, o.b);
   if (!pair) return complain(pair.error().message);
   for (const auto* side : {&pair->a, &pair->b}) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <numeric>
 #include <optional>
+#include <sstream>
+
+#include "common/io/bounded_input.h"
 
 namespace rlpc {
 namespace {
@@ -12,8 +14,13 @@ namespace {
 // One index a line, each below num_vertices once.
 InputResult<std::vector<std::uint32_t>> read_order_map(const std::string& path,
                                                        std::uint32_t num_vertices) {
-  std::ifstream in(path);
-  if (!in) return InputError{path + ": cannot be read"};
+  constexpr std::size_t kMostLineBytes = 32;
+  const auto text = read_small_file(path, kMostLineBytes * (std::size_t{num_vertices} + 1));
+  if (!text) {
+    return InputError{path + ": cannot be read, or is too long for " +
+                      std::to_string(num_vertices) + " vertices"};
+  }
+  std::istringstream in(*text);
   std::vector<std::uint32_t> map;
   std::vector<bool> taken(num_vertices, false);
   for (std::string line; std::getline(in, line);) {

@@ -48,8 +48,8 @@ typedef struct rlpc_decode_options {
   uint32_t max_triangles;
   uint32_t max_frames;
   uint32_t verify_hashes;  // 1: compare decoded positions with the hashes of the stream; or 0
-    uint64_t max_memory_bytes;  // 4 GiB by default; with what is kept of a pipe or a device
-    uint32_t threads;           // 1 to 256, else RLPC_BAD_ARGUMENT; positions are the same
+  uint64_t max_memory_bytes;  // 4 GiB by default; with what is kept of a pipe or a device
+  uint32_t threads;           // 1 to 256, else RLPC_BAD_ARGUMENT; positions are the same
   // Less detail in less time (Main profile): as many groups of trajectories, and of vertex
   // layers, as have no more than these together. RLPC_ALL: all.
   uint32_t max_components;

@@ -35,6 +35,7 @@ rlpc_encode_options default_options() {
   options.target_value = usual.target.value;
   options.hash_mode = RLPC_HASH_GOF;
   options.least_level = 1;
+  options.max_memory_bytes = usual.max_memory_bytes;
   return options;
 }
 
@@ -103,6 +104,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   settings.components = options.components;
   settings.keep_order = options.keep_order != 0;
   if (options.metadata != nullptr) settings.metadata = options.metadata;
+  settings.max_memory_bytes = options.max_memory_bytes;
   return settings;
 }
 
@@ -137,7 +139,11 @@ rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
   }
   auto encoder =
       FrameEncoder::create(format_of(format, options.least_level), *settings, sink_of(handle));
-  if (!encoder) return handle.error.break_handle(RLPC_BAD_INPUT, encoder.error().message);
+  if (!encoder) {
+    const InputError& error = encoder.error();
+    return handle.error.break_handle(error.is_limit ? RLPC_LIMIT_EXCEEDED : RLPC_BAD_INPUT,
+                                     error.message);
+  }
   handle.encoder = std::move(*encoder);
   handle.num_values = 3 * std::size_t{format.num_vertices};
   return RLPC_OK;

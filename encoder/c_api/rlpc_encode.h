@@ -85,6 +85,7 @@ typedef struct rlpc_encode_options {
   // must stay until the handle is closed. Null: it is allocated.
   void* place;
   size_t place_bytes;
+  uint64_t max_memory_bytes;  // beyond it: RLPC_LIMIT_EXCEEDED. 32 GiB by default; estimated
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
@@ -112,7 +113,8 @@ RLPC_API size_t rlpc_encoder_bytes(void);
 
 // Begins a stream. options may be null. *encoder is a handle also if that fails, for its error
 // text, and is to be closed; it is null if an argument is null or wrong, or without memory for
-// a handle. RLPC_BAD_INPUT: no such stream can be.
+// a handle. RLPC_BAD_INPUT: no such stream can be; RLPC_LIMIT_EXCEEDED: encoding it may need
+// more than max_memory_bytes.
 RLPC_API rlpc_status rlpc_encoder_create(const rlpc_frame_format* format,
                                          const rlpc_encode_options* options,
                                          rlpc_write_function write, void* user,

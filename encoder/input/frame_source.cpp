@@ -59,7 +59,7 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
 InputResult<std::unique_ptr<FrameSource>> open_listed(
     InputResult<std::vector<std::string>> paths, const InputOptions& options) {
   if (!paths) return paths.error();
-  return open_mesh_sequence(std::move(*paths), options.frame_rate);
+  return open_mesh_sequence(std::move(*paths), options.frame_rate, options.max_memory_bytes);
 }
 
 bool is_stream(const std::string& path) {
@@ -90,7 +90,7 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
                         ": a point cache has no triangles; give its mesh as the input and the "
                         "cache with --points"};
     default:
-      return open_mesh_sequence({path}, options.frame_rate);
+      return open_mesh_sequence({path}, options.frame_rate, options.max_memory_bytes);
   }
 }
 
@@ -118,8 +118,8 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
   if (!options.points.empty()) {
     const InputFormat* const format = format_of(options.points);
     const bool known = format != nullptr && format->open_points != nullptr;
-    return (known ? format->open_points : open_point_cache)(path, options.points,
-                                                            options.frame_rate);
+    return (known ? format->open_points : open_point_cache)(
+        path, options.points, options.frame_rate, options.max_memory_bytes);
   }
   if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
   // A file of exactly this name comes first, whatever characters are in it.

@@ -19,6 +19,7 @@ namespace rlpc {
 // do about it.
 struct InputError {
   std::string message;
+  bool is_limit = false;  // nothing is wrong but that a limit of the caller is lower
 };
 template <class T>
 using InputResult = Result<T, InputError>;
@@ -33,6 +34,7 @@ class FrameSource {
     std::vector<Triangle> triangles;
     std::vector<std::string> notes{};
     std::vector<std::string> files{};
+    std::uint64_t memory_bytes = 0;
   };
 
   FrameSource(const FrameSource&) = delete;
@@ -49,6 +51,9 @@ class FrameSource {
   // All that is read, also what the input only points to.
   const std::vector<std::string>& files() const { return shape_.files; }
 
+  // What the source keeps in memory, about.
+  std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
+
   // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
   // success. frame < num_frames(), in any order.
   virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
@@ -61,6 +66,9 @@ class FrameSource {
  private:
   Shape shape_;
 };
+
+// The limit of memory, if nobody says otherwise.
+inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 
 // What to read:
 //   path                points  meaning
@@ -88,6 +96,8 @@ struct InputOptions {
   std::optional<FrameRate> frame_rate;
   std::string animation{};  // of glTF: a name, an index from 0, or "all"; empty: the first
   bool weld = true;         // of glTF: join vertices that coincide in every frame
+  // What needs more is an error; estimated. Files may claim much more than they have.
+  std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };
 
 // Checks what can be checked without reading every frame; read_frame() checks the rest.

@@ -5,27 +5,45 @@
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
-#include <iterator>
 #include <system_error>
+
+#include "common/io/bounded_input.h"
 
 namespace rlpc {
 
 namespace {
 
-const std::string& standard_input() {
-  static const std::string kBytes{std::istreambuf_iterator<char>(std::cin), {}};
-  return kBytes;
+PipedInput& standard_input() {
+  static PipedInput input(stdin);
+  return input;
+}
+
+std::span<std::uint8_t> as_bytes(std::span<char> text) {
+  return {reinterpret_cast<std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace
 
-InputResult<InputFile> InputFile::open(const std::string& path) {
+std::string memory_problem(std::uint64_t max_memory_bytes) {
+  return "needs more memory than the limit of " + size_text(max_memory_bytes) +
+         " (--max-memory)";
+}
+
+InputResult<InputFile> InputFile::open(const std::string& path,
+                                       std::uint64_t max_memory_bytes) {
   InputFile file;
   file.path_ = name_of_input(path);
   if (path == "-") {
+    const PipedInput::State state = standard_input().read_rest(max_memory_bytes);
+    if (state == PipedInput::State::kTooLarge) {
+      return InputError{file.path_ + ": " + memory_problem(max_memory_bytes)};
+    }
+    if (state == PipedInput::State::kFailed) {
+      return InputError{file.path_ + ": reading it failed"};
+    }
     file.size_ = standard_input().size();
     return file;
   }
@@ -50,8 +68,7 @@ InputResult<InputFile> InputFile::open(const std::string& path) {
 std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> bytes) {
   assert(offset <= size_ && bytes.size() <= size_ - offset);
   if (!stream_) {
-    std::copy_n(standard_input().begin() + static_cast<std::ptrdiff_t>(offset), bytes.size(),
-                bytes.begin());
+    standard_input().copy(offset, as_bytes(bytes));
     return std::nullopt;
   }
   stream_->clear();
@@ -63,6 +80,10 @@ std::optional<InputError> InputFile::read(std::uint64_t offset, std::span<char> 
 }
 
 std::string beginning_of(const std::string& path) {
+  if (path == "-") {
+    const auto bytes = standard_input().beginning();
+    return {bytes.begin(), bytes.end()};
+  }
   auto file = InputFile::open(path);
   if (!file) return {};
   constexpr std::uint64_t kEnough = 64;
@@ -82,10 +103,14 @@ InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::u
   return text;
 }
 
-InputResult<std::string> read_whole_file(const std::string& path) {
-  auto file = InputFile::open(path);
+InputResult<std::string> read_whole_file(const std::string& path,
+                                         std::uint64_t max_memory_bytes) {
+  auto file = InputFile::open(path, max_memory_bytes);
   if (!file) return file.error();
   if (file->size() == 0) return InputError{file->path() + ": the file is empty"};
+  if (file->size() + file->memory_bytes() > max_memory_bytes) {
+    return InputError{file->path() + ": " + memory_problem(max_memory_bytes)};
+  }
   return read_text(*file, 0, file->size());
 }
 

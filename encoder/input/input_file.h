@@ -17,11 +17,15 @@ namespace rlpc {
 
 class InputFile {
  public:
-  // Standard input is read whole when it is first opened, and may be opened again.
-  static InputResult<InputFile> open(const std::string& path);
+  // Standard input is read whole when it is first opened, up to max_memory_bytes, and may be
+  // opened again.
+  static InputResult<InputFile> open(const std::string& path,
+                                     std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
   const std::string& path() const { return path_; }  // as name_of_input() gives it
   std::uint64_t size() const { return size_; }
+  // What is kept of it in memory.
+  std::uint64_t memory_bytes() const { return stream_ ? 0 : size_; }
   // Fills `bytes`; offset + bytes.size() <= size().
   std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
 
@@ -37,14 +41,18 @@ inline std::string_view after_blanks(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first);
 }
 
-// The first bytes, 64 at most; none if it cannot be read.
+// The first bytes, 64 at most; none if it cannot be read. Of standard input, no more is read.
 std::string beginning_of(const std::string& path);
 
 // `size` bytes from `offset`, which lie in the file.
 InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size);
 
-// The whole file. Refuses an empty one.
-InputResult<std::string> read_whole_file(const std::string& path);
+// The whole file. Refuses an empty one, and one of more than max_memory_bytes.
+InputResult<std::string> read_whole_file(const std::string& path,
+                                         std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+
+// For messages: what takes more memory than there may be.
+std::string memory_problem(std::uint64_t max_memory_bytes);
 
 // Error for the first value of a frame that is NaN or infinite.
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,

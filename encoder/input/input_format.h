@@ -30,10 +30,11 @@ struct InputFormat {
 
   InputResult<std::unique_ptr<FrameSource>> (*open)(const InputOptions& options) = nullptr;
   // name: for error messages.
-  InputResult<SingleMesh> (*parse)(std::string_view text, const std::string& name) = nullptr;
+  InputResult<SingleMesh> (*parse)(std::string_view text, const std::string& name,
+                                   const MeshLimit& limit) = nullptr;
   InputResult<std::unique_ptr<FrameSource>> (*open_points)(
       const std::string& mesh_path, const std::string& points_path,
-      const std::optional<FrameRate>& frame_rate) = nullptr;
+      const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) = nullptr;
 };
 
 // Those that the beginning of a file tells most surely come first.

@@ -19,20 +19,26 @@ bool is_mesh_extension(const std::string& path) {
   return format != nullptr && format->holds == InputFormat::Holds::kMesh;
 }
 
-InputResult<SingleMesh> read_mesh(const std::string& path) {
-  const auto text = read_whole_file(path);
-  if (!text) return text.error();
+InputResult<SingleMesh> read_mesh(const std::string& path, std::uint64_t max_memory_bytes) {
   const std::string name = name_of_input(path);
   const InputFormat* const format = format_of(path);
-  if (format != nullptr && format->parse != nullptr) return format->parse(*text, name);
-  return InputError{name + ": not a mesh (" + extensions_text({InputFormat::Holds::kMesh}) +
-                    "), neither by name nor by contents"};
+  const bool known = format != nullptr && format->parse != nullptr;
+  const InputError unknown{name + ": not a mesh (" +
+                           extensions_text({InputFormat::Holds::kMesh}) +
+                           "), neither by name nor by contents"};
+  // Standard input is not read for that.
+  if (path == "-" && !known && !beginning_of(path).empty()) return unknown;
+  const auto text = read_whole_file(path, max_memory_bytes);
+  if (!text) return text.error();
+  if (!known) return unknown;
+  return format->parse(*text, name, {max_memory_bytes, max_memory_bytes - text->size()});
 }
 
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual) {
   FrameSource::Shape shape;
+  shape.memory_bytes = 12 * std::uint64_t{mesh.triangles.size()};
   shape.num_vertices = static_cast<std::uint32_t>(mesh.xyz.size() / 3);
   shape.num_frames = num_frames;
   shape.frame_rate = frame_rate.value_or(mesh.frame_rate.value_or(usual));

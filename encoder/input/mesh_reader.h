@@ -16,11 +16,30 @@ struct SingleMesh {
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
 };
 
+// What a mesh may take in memory, beside the text that it is read from.
+struct MeshLimit {
+  std::uint64_t of_all = kUsualEncoderBytes;  // for messages
+  std::uint64_t of_mesh = kUsualEncoderBytes;
+
+  // Whether a vector of the mesh can have one element more: it takes three times its memory
+  // while it grows.
+  template <class T>
+  bool leaves_room(const SingleMesh& mesh, const std::vector<T>& grows) const {
+    if (grows.size() < grows.capacity()) return true;
+    const auto bytes = [](const auto& all) {
+      return std::uint64_t{all.capacity()} * sizeof(all[0]);
+    };
+    return bytes(mesh.xyz) + bytes(mesh.triangles) + 2 * bytes(grows) <= of_mesh;
+  }
+};
+
 // Whether the extension of a path is that of a mesh format.
 bool is_mesh_extension(const std::string& path);
 
-// By the extension, otherwise by the contents.
-InputResult<SingleMesh> read_mesh(const std::string& path);
+// By the extension, otherwise by the contents. Error: more than max_memory_bytes for the file
+// and what is in it, or a bad file.
+InputResult<SingleMesh> read_mesh(const std::string& path,
+                                  std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
 // Of a source with the triangles of `mesh`. The frame rate: the one given, else that of the
 // mesh, else the usual one.

@@ -113,6 +113,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   }
   shape.notes = source->notes();
   shape.files = source->files();
+  shape.memory_bytes = source->memory_bytes();
   if (vertices.size() < welded.size()) {
     shape.notes.push_back(std::to_string(vertices.size()) + " of " +
                           std::to_string(welded.size()) +

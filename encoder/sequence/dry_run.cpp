@@ -15,8 +15,13 @@ constexpr std::uint64_t kStretchFrames = 128;  // fixed: of a dry run
 class StretchSource final : public FrameSource {
  public:
   StretchSource(FrameSource& source, std::uint32_t stretch)
-      : FrameSource({source.num_vertices(), kStretches * stretch, source.frame_rate(),
-                     source.triangles()}),
+      : FrameSource({source.num_vertices(),
+                     kStretches * stretch,
+                     source.frame_rate(),
+                     source.triangles(),
+                     {},
+                     {},
+                     source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}
 

@@ -138,6 +138,9 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   spans_ = equal_gofs(header.num_frames, longest_gof(settings_));
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
+  // Frames come as floats.
+  const std::uint64_t of_buffer = 12 * std::uint64_t{header.num_vertices} * longest;
+  if (auto error = check_memory(settings_, header, longest, 0, of_buffer)) return error;
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
   // GOFs that come later can have all that is asked for.
   if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;

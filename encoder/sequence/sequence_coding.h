@@ -24,6 +24,12 @@ inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a see
 // The longest GOF that the settings allow.
 std::uint32_t longest_gof(const EncoderSettings& settings);
 
+// Error: the settings do not allow the memory that encoding takes. kept_frames: those whose
+// analyses stay in memory; source_bytes: what the source keeps.
+std::optional<InputError> check_memory(const EncoderSettings& settings,
+                                       const SequenceHeader& header, std::uint32_t longest_gof,
+                                       std::uint32_t kept_frames, std::uint64_t source_bytes);
+
 class SequenceCoding {
  public:
   // Keeps a reference to the settings. Every index of the triangles is below num_vertices.

@@ -20,6 +20,11 @@ namespace {
 // Analyses of all GOFs are kept if the frames take no more than this many bytes.
 constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;  // fixed: memory
 
+bool keeps_analyses(const SequenceHeader& header) {
+  return std::uint64_t{header.num_vertices} * 3 * sizeof(double) * header.num_frames <=
+         kKeepBytes;
+}
+
 class SequenceEncoder {
  public:
   SequenceEncoder(FrameSource& source, const EncoderSettings& settings,
@@ -54,6 +59,11 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header.num_frames = source_.num_frames();
   header.frame_rate = source_.frame_rate();
+  const std::uint32_t kept = keeps_analyses(header) ? header.num_frames : 0;
+  const std::uint32_t largest_gof = std::min(longest_gof(settings_), header.num_frames);
+  if (auto error = check_memory(settings_, header, largest_gof, kept, source_.memory_bytes())) {
+    return error;
+  }
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;
@@ -104,9 +114,7 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
 
 InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
-  const std::uint64_t frame_bytes =
-      std::uint64_t{header.num_vertices} * 3 * sizeof(double) * header.num_frames;
-  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = frame_bytes <= kKeepBytes});
+  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = keeps_analyses(header)});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
                             .header = header,

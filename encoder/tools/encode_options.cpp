@@ -4,13 +4,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
+#include "common/io/bounded_input.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "encoder/sequence/check_settings.h"
@@ -251,6 +250,10 @@ void add_extra_options(CLI::App& app, CommandLine& line) {
   app.add_option("--metadata", line.metadata_path, "JSON file to carry along")
       ->check(CLI::ExistingFile)
       ->group(extras);
+  app.add_option("--max-memory", line.options.settings.max_memory_bytes,
+                 "Give up on input that may need more, for example 500MB (default: 32GB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->group(extras);
   app.add_flag("--json", line.options.json, "Report as JSON on standard output")->group(extras);
   app.add_flag("-q,--quiet", line.options.quiet, "No report, no progress")->group(extras);
 }
@@ -289,6 +292,7 @@ std::optional<std::string> finish_settings(const CommandLine& line) {
     if (!rate) return "--fps: " + rate.error().message;
     o.input.frame_rate = *rate;
   }
+  o.input.max_memory_bytes = s.max_memory_bytes;
   if (line.gof == "all") {
     s.gof_frames = EncoderSettings::kWholeSequence;
   } else {
@@ -334,16 +338,13 @@ std::optional<std::string> check_places(const CommandLine& line) {
 
 std::optional<InputError> read_metadata(const CommandLine& line) {
   if (line.metadata_path.empty()) return std::nullopt;
-  std::ifstream in(line.metadata_path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    return InputError{line.metadata_path + ": cannot be read, or is empty; expected JSON"};
+  auto text = read_small_file(line.metadata_path, kMaxMetadataBytes);
+  if (!text || text->empty()) {
+    return InputError{line.metadata_path +
+                      ": cannot be read, is empty, or has more than 1 MiB; expected JSON"};
   }
   std::string& metadata = line.options.settings.metadata;
-  metadata = text.str();
-  if (metadata.size() > kMaxMetadataBytes) {
-    return InputError{line.metadata_path + ": metadata may have at most 1 MiB"};
-  }
+  metadata = std::move(*text);
   if (metadata.starts_with("\xEF\xBB\xBF")) {
     return InputError{line.metadata_path + ": begins with a byte order mark; JSON has none"};
   }

@@ -141,12 +141,14 @@ std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
 
 class MeshSequence : public FrameSource {
  public:
-  MeshSequence(Shape shape, std::vector<std::string> paths)
-      : FrameSource(std::move(shape)), paths_(std::move(paths)) {}
+  MeshSequence(Shape shape, std::vector<std::string> paths, std::uint64_t max_memory_bytes)
+      : FrameSource(std::move(shape)),
+        paths_(std::move(paths)),
+        max_memory_bytes_(max_memory_bytes) {}
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    const auto mesh = read_mesh(paths_[frame]);
+    const auto mesh = read_mesh(paths_[frame], max_memory_bytes_);
     if (!mesh) return mesh.error();
     if (auto error = compare_with_first(frame, *mesh)) return error;
     std::copy(mesh->xyz.begin(), mesh->xyz.end(), xyz.begin());
@@ -187,6 +189,7 @@ class MeshSequence : public FrameSource {
   }
 
   std::vector<std::string> paths_;
+  std::uint64_t max_memory_bytes_;
 };
 
 }  // namespace
@@ -271,16 +274,17 @@ InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& patte
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
-    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate) {
+    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes) {
   assert(!paths.empty());
-  auto first = read_mesh(paths[0]);
+  auto first = read_mesh(paths[0], max_memory_bytes);
   if (!first) return first.error();
   auto shape =
       shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
   shape.notes = notes_on(paths);
   shape.files = paths;
   return std::unique_ptr<FrameSource>(
-      std::make_unique<MeshSequence>(std::move(shape), std::move(paths)));
+      std::make_unique<MeshSequence>(std::move(shape), std::move(paths), max_memory_bytes));
 }
 
 }  // namespace rlpc

@@ -1,6 +1,7 @@
 // Animations stored as one file per frame: OBJ, PLY, OFF.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ bool natural_less(std::string_view a, std::string_view b);
 // One file per frame, at least one. The first is read now, each other when its frame is asked
 // for; its vertex count and triangles must then equal those of the first.
 InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
-    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate);
+    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
 }  // namespace rlpc

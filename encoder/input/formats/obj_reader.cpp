@@ -16,7 +16,8 @@ namespace {
 
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const std::string& name) : words_(text), name_(name) {}
+  ObjParser(std::string_view text, const std::string& name, const MeshLimit& limit)
+      : words_(text), name_(name), limit_(limit) {}
 
   InputResult<SingleMesh> parse() {
     for (; !words_.at_end(); words_.next_line()) {
@@ -47,6 +48,8 @@ class ObjParser {
     if (!error_) error_ = InputError{name_ + ":" + std::to_string(line) + ": " + what};
   }
 
+  void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }
+
   std::string out_of_range(std::int64_t index) const {
     return "vertex index " + std::to_string(index) + " is out of range 1 to " +
            std::to_string(num_vertices()) + "; is the file complete?";
@@ -57,7 +60,10 @@ class ObjParser {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
     }
-    for (int axis = 0; axis < 3; ++axis) mesh_.xyz.push_back(read_float());
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!limit_.leaves_room(mesh_, mesh_.xyz)) return fail_for_memory();
+      mesh_.xyz.push_back(read_float());
+    }
   }
 
   float read_float() {
@@ -82,7 +88,9 @@ class ObjParser {
       if (corners >= 3) fan[1] = fan[2];
       fan[corners < 2 ? corners : 2] = vertex;
       ++corners;
-      if (corners >= 3) mesh_.triangles.push_back(fan);
+      if (corners < 3) continue;
+      if (!limit_.leaves_room(mesh_, mesh_.triangles)) return fail_for_memory();
+      mesh_.triangles.push_back(fan);
     }
     if (corners < 3) {
       fail(words_.line(),
@@ -139,6 +147,7 @@ class ObjParser {
 
   TextWords words_;
   const std::string& name_;
+  const MeshLimit& limit_;
   SingleMesh mesh_;
   std::optional<InputError> error_;
   std::int64_t highest_index_ = 0;
@@ -147,14 +156,15 @@ class ObjParser {
 
 }  // namespace
 
-InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name) {
+InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name,
+                                  const MeshLimit& limit) {
   constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
   if (text.substr(0, kUtf8Mark.size()) == kUtf8Mark) text.remove_prefix(kUtf8Mark.size());
   if (const std::size_t zero = text.find('\0'); zero != text.npos) {
     return InputError{name + ": a zero byte at byte " + std::to_string(zero) +
                       "; this is not a text file, so not an OBJ file"};
   }
-  return ObjParser(text, name).parse();
+  return ObjParser(text, name, limit).parse();
 }
 
 namespace {

@@ -6,6 +6,9 @@
 #include <limits>
 #include <string>
 
+#include "encoder/input/formats/off_reader.h"
+#include "encoder/input/formats/ply_reader.h"
+
 namespace rlpc {
 namespace {
 
@@ -159,6 +162,32 @@ TEST(ObjReader, SurvivesEveryPrefix) {
     if (mesh) {
       EXPECT_EQ(mesh->xyz.size() % 3, 0U);
     }
+  }
+}
+
+TEST(MeshReader, MemoryHasALimit) {
+  const std::string points = kThreeVertices + kThreeVertices;
+  const std::string obj = points + "f 1 2 3 4 5 6\nf 1 2 3 4 5 6\n";
+  const std::string off = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n5 0 1 2 0 1\n5 0 1 2 0 1\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 2\nproperty list uchar int vertex_index\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n5 0 1 2 0 1\n5 0 1 2 0 1\n";
+  const auto least = [](const auto& parse, const std::string& text) {
+    MeshLimit limit{1 << 20, 0};
+    while (true) {
+      const auto mesh = parse(text, "a", limit);
+      if (mesh) return limit.of_mesh;
+      EXPECT_NE(mesh.error().message.find("needs more memory than the limit of 1 MiB"),
+                std::string::npos)
+          << mesh.error().message;
+      ++limit.of_mesh;
+    }
+  };
+  for (const std::uint64_t bytes :
+       {least(parse_obj, obj), least(parse_off, off), least(parse_ply, ply)}) {
+    EXPECT_GE(bytes, 9 * sizeof(float) + 6 * sizeof(Triangle));
+    EXPECT_LE(bytes, 1000);
   }
 }
 

@@ -18,8 +18,8 @@ using std::to_string;
 
 class OffParser {
  public:
-  OffParser(std::string_view text, const std::string& name)
-      : words_(text), bytes_(text.size()), name_(name) {}
+  OffParser(std::string_view text, const std::string& name, const MeshLimit& limit)
+      : words_(text), bytes_(text.size()), name_(name), limit_(limit) {}
 
   InputResult<SingleMesh> parse() {
     check_keyword(words_.next_of_any_line());
@@ -84,6 +84,8 @@ class OffParser {
       if (word.empty()) {
         problem = words_.at_end() ? "the file ends before the last vertex; is it complete?"
                                   : "a vertex needs three coordinates";
+      } else if (!limit_.leaves_room(mesh_, mesh_.xyz)) {
+        problem = memory_problem(limit_.of_all);
       } else {
         mesh_.xyz.push_back(parse_coordinate(word, problem));
       }
@@ -106,13 +108,18 @@ class OffParser {
       }
       if (i >= 3) fan[1] = fan[2];
       fan[i < 2 ? i : 2] = vertex;
-      if (i >= 2) mesh_.triangles.push_back(fan);
+      if (i < 2) continue;
+      if (!limit_.leaves_room(mesh_, mesh_.triangles)) {
+        return fail(memory_problem(limit_.of_all));
+      }
+      mesh_.triangles.push_back(fan);
     }
   }
 
   TextWords words_;
   std::size_t bytes_;
   const std::string& name_;
+  const MeshLimit& limit_;
   SingleMesh mesh_;
   std::optional<InputError> error_;
 };
@@ -128,8 +135,9 @@ bool looks_like_off(std::string_view text) {
   return text.size() == 3 || text.find_first_of(" \t\r\n#") == 3;
 }
 
-InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name) {
-  return OffParser(text, name).parse();
+InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name,
+                                  const MeshLimit& limit) {
+  return OffParser(text, name, limit).parse();
 }
 
 namespace {

@@ -14,7 +14,8 @@ namespace rlpc {
 bool looks_like_off(std::string_view text);
 
 // `name` stands in error messages.
-InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name);
+InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name,
+                                  const MeshLimit& limit = {});
 
 extern const InputFormat kOffFormat;
 

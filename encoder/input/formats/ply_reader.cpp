@@ -11,6 +11,7 @@
 
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/formats/ply_header.h"
+#include "encoder/input/input_file.h"
 
 namespace rlpc {
 
@@ -157,8 +158,9 @@ class BinaryBody {
 template <class Body>
 class PlyReader {
  public:
-  PlyReader(std::string_view text, const std::string& name, const PlyHeader& header)
-      : body_(text, header), name_(name), header_(header) {}
+  PlyReader(std::string_view text, const std::string& name, const PlyHeader& header,
+            const MeshLimit& limit)
+      : body_(text, header), name_(name), header_(header), limit_(limit) {}
 
   InputResult<SingleMesh> read() {
     mesh_.frame_rate = header_.frame_rate;
@@ -206,6 +208,9 @@ class PlyReader {
                         " are left in the file; is it complete?"};
     }
     if (element.name == "vertex") {
+      if (std::uint64_t{element.count} * 12 > limit_.of_mesh) {
+        return InputError{name_ + ": " + memory_problem(limit_.of_all)};
+      }
       for (const char* axis : {"x", "y", "z"}) {
         if (is_scalar(element, axis)) continue;
         return InputError{name_ + ": element \"vertex\" has no number " + axis};
@@ -262,7 +267,12 @@ class PlyReader {
       if (failed()) return;
       if (i >= 3) fan[1] = fan[2];
       fan[i < 2 ? static_cast<std::size_t>(i) : 2] = vertex;
-      if (i >= 2) mesh_.triangles.push_back(fan);
+      if (i < 2) continue;
+      if (!limit_.leaves_room(mesh_, mesh_.triangles)) {
+        problem_ = memory_problem(limit_.of_all);
+        return;
+      }
+      mesh_.triangles.push_back(fan);
     }
   }
 
@@ -284,6 +294,7 @@ class PlyReader {
   Body body_;
   const std::string& name_;
   const PlyHeader& header_;
+  const MeshLimit& limit_;
   std::int64_t num_vertices_ = 0;
   SingleMesh mesh_;
   std::optional<std::string> problem_;
@@ -291,13 +302,14 @@ class PlyReader {
 
 }  // namespace
 
-InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name) {
+InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name,
+                                  const MeshLimit& limit) {
   const auto header = parse_ply_header(text, name);
   if (!header) return header.error();
   if (header->encoding == PlyEncoding::kText) {
-    return PlyReader<TextBody>(text, name, *header).read();
+    return PlyReader<TextBody>(text, name, *header, limit).read();
   }
-  return PlyReader<BinaryBody>(text, name, *header).read();
+  return PlyReader<BinaryBody>(text, name, *header, limit).read();
 }
 
 namespace {

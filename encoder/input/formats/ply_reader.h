@@ -14,7 +14,8 @@
 namespace rlpc {
 
 // `name` stands in error messages.
-InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name);
+InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name,
+                                  const MeshLimit& limit = {});
 
 extern const InputFormat kPlyFormat;
 

@@ -92,6 +92,15 @@ std::optional<InputError> check_layout(const InputFile& file, const Layout& layo
   return std::nullopt;
 }
 
+InputError is_no_cache(const std::string& name, const std::string& mesh_path,
+                       std::uint32_t num_vertices) {
+  return InputError{name +
+                    ": does not begin with POINTCACHE2, so it is no PC2 point cache; nor does "
+                    "it fit " +
+                    name_of_input(mesh_path) + ", of " + to_string(num_vertices) +
+                    " vertices, as MDD"};
+}
+
 InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
                                 std::uint32_t num_vertices) {
   std::array<char, kPc2Magic.size()> magic{};
@@ -105,17 +114,23 @@ InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
   if (extension == ".mdd") return layout;
   // Nothing tells MDD but that the numbers fit.
   if (layout && !check_layout(file, *layout, mesh_path, num_vertices)) return layout;
-  return InputError{file.path() +
-                    ": does not begin with POINTCACHE2, so it is no PC2 point cache; nor does "
-                    "it fit " +
-                    name_of_input(mesh_path) + ", of " + to_string(num_vertices) +
-                    " vertices, as MDD"};
+  return is_no_cache(file.path(), mesh_path, num_vertices);
+}
+
+// Standard input, of which no more has been read: it is PC2, or may be MDD.
+bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
+  if (begin.starts_with(kPc2Magic)) return true;
+  return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
 }
 
 // Frames per second, where the times of an MDD file tell: seconds, evenly spaced. Others are
 // numbers of frames, or not meant.
-InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layout& layout) {
+InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layout& layout,
+                                                    std::uint64_t max_memory_bytes) {
   const auto count = static_cast<std::size_t>(layout.frames);
+  if (std::uint64_t{count} * (4 + sizeof(double)) > max_memory_bytes) {
+    return InputError{file.path() + ": " + memory_problem(max_memory_bytes)};
+  }
   std::vector<char> bytes(4 * count);
   if (auto error = file.read(kMddHeaderBytes, bytes)) return *error;
   std::vector<double> times(count);
@@ -160,27 +175,31 @@ class PointCache : public FrameSource {
 
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
-    const std::optional<FrameRate>& frame_rate) {
+    const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) {
   if (mesh_path == "-" && points_path == "-") {
     return InputError{"standard input: cannot be both the mesh and its point cache"};
   }
-  auto mesh = read_mesh(mesh_path);
+  auto mesh = read_mesh(mesh_path, max_memory_bytes);
   if (!mesh) return mesh.error();
-  auto file = InputFile::open(points_path);
-  if (!file) return file.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
+  if (points_path == "-" && !may_begin_cache(beginning_of("-"), num_vertices)) {
+    return is_no_cache(name_of_input(points_path), mesh_path, num_vertices);
+  }
+  auto file = InputFile::open(points_path, max_memory_bytes);
+  if (!file) return file.error();
   const auto layout = read_header(*file, mesh_path, num_vertices);
   if (!layout) return layout.error();
   if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
   FrameRate usual;
   if (layout->big_endian) {
-    const auto rate = rate_of_times(*file, *layout);
+    const auto rate = rate_of_times(*file, *layout, max_memory_bytes);
     if (!rate) return rate.error();
     usual = rate->value_or(usual);
   }
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
   shape.files = {mesh_path, points_path};
+  shape.memory_bytes += file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
 }

@@ -7,6 +7,7 @@
 // Start, sample rate and times are not used (see InputOptions).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +21,8 @@ namespace rlpc {
 // input) is MDD if its header fits the mesh and its length.
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
-    const std::optional<FrameRate>& frame_rate);
+    const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
 extern const InputFormat kPc2Format;
 extern const InputFormat kMddFormat;

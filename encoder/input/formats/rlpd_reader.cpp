@@ -138,19 +138,26 @@ class RlpdSource : public FrameSource {
 
 }  // namespace
 
-InputResult<std::unique_ptr<FrameSource>> open_rlpd(
-    const std::string& path, const std::optional<FrameRate>& frame_rate) {
-  auto file = InputFile::open(path);
+InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
+                                                    const std::optional<FrameRate>& frame_rate,
+                                                    std::uint64_t max_memory_bytes) {
+  auto file = InputFile::open(path, max_memory_bytes);
   if (!file) return file.error();
   const auto header = read_header(*file);
   if (!header) return header.error();
   const auto frames = count_frames(*file, *header);
   if (!frames) return frames.error();
+  // As bytes and as triangles.
+  const std::uint64_t of_mesh = 24 * std::uint64_t{header->num_triangles};
+  if (of_mesh + file->memory_bytes() > max_memory_bytes) {
+    return InputError{file->path() + ": " + memory_problem(max_memory_bytes)};
+  }
   auto triangles = read_triangles(*file, *header);
   if (!triangles) return triangles.error();
   FrameSource::Shape shape{header->num_vertices, *frames,
                            frame_rate.value_or(header->frame_rate), std::move(*triangles)};
   shape.files = {path};
+  shape.memory_bytes = of_mesh / 2 + file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
 }
@@ -166,7 +173,9 @@ const InputFormat kRlpdFormat{
     .extensions = kRlpdExtensions,
     .begins = [](std::string_view beginning) { return beginning.starts_with("RLPD"); },
     .open =
-        [](const InputOptions& options) { return open_rlpd(options.path, options.frame_rate); },
+        [](const InputOptions& options) {
+          return open_rlpd(options.path, options.frame_rate, options.max_memory_bytes);
+        },
 };
 
 }  // namespace rlpc

@@ -1,6 +1,7 @@
 // Decoder output (Annex A) as input.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,9 @@
 namespace rlpc {
 
 // Reads the frames that are present, which may be fewer than the header announces.
-InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
-                                                    const std::optional<FrameRate>& frame_rate);
+InputResult<std::unique_ptr<FrameSource>> open_rlpd(
+    const std::string& path, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
 extern const InputFormat kRlpdFormat;
 

@@ -73,6 +73,20 @@ InputResult<Chunks> find_chunks(InputFile& file) {
   return chunks;
 }
 
+// Values of JSON stand behind brackets, commas and colons; each takes no more than this, in an
+// array or map that has room to grow. An object is at most a node of the scene.
+std::uint64_t bytes_of_document(std::string_view text) {
+  constexpr std::uint64_t kOfValue = 112;
+  constexpr std::uint64_t kOfObject = 1200;
+  constexpr std::uint64_t kOfCharacter = 3;  // in the text, the JSON, and names or data of it
+  std::uint64_t bytes = kOfCharacter * text.size();
+  for (const char c : text) {
+    if (c == '[' || c == ',' || c == ':') bytes += kOfValue;
+    if (c == '{') bytes += kOfObject;
+  }
+  return bytes;
+}
+
 // Without the name of the library's class and number at the front of its messages.
 std::string message_of(const nlohmann::json::exception& error) {
   const std::string_view text = error.what();
@@ -82,8 +96,8 @@ std::string message_of(const nlohmann::json::exception& error) {
 
 }  // namespace
 
-InputResult<GltfFile> open_gltf_file(const std::string& path) {
-  auto file = InputFile::open(path);
+InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes) {
+  auto file = InputFile::open(path, max_memory_bytes);
   if (!file) return file.error();
   if (file->size() == 0) return InputError{file->path() + ": the file is empty"};
   const auto binary = is_binary(*file);
@@ -94,13 +108,17 @@ InputResult<GltfFile> open_gltf_file(const std::string& path) {
     if (!found) return found.error();
     chunks = *found;
   }
+  const std::string name = file->path();
+  const InputError too_large{name + ": " + memory_problem(max_memory_bytes)};
+  if (chunks.json.size > max_memory_bytes - file->memory_bytes()) return too_large;
   auto text = read_text(*file, chunks.json.offset, chunks.json.size);
   if (!text) return text.error();
-  const std::string name = file->path();
+  const std::uint64_t document_bytes = bytes_of_document(*text);
+  if (document_bytes > max_memory_bytes - file->memory_bytes()) return too_large;
   // Parsing and destruction keep their own stacks: no depth of nesting can exhaust ours.
   try {
     auto json = std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text));
-    return GltfFile{std::move(*file), std::move(json), chunks.binary};
+    return GltfFile{std::move(*file), std::move(json), chunks.binary, document_bytes};
   } catch (const nlohmann::json::exception& error) {
     return InputError{name + ": not a glTF document: " + message_of(error)};
   }

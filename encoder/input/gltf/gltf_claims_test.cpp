@@ -147,6 +147,33 @@ TEST_F(GltfClaimsTest, ProductsOfCounts) {
   EXPECT_EQ(error_of(builder), "");
 }
 
+// Whatever the limit of memory is, it ends in an error or in a source that says what it takes.
+TEST_F(GltfClaimsTest, MemoryHasALimit) {
+  GltfBuilder builder = moving_triangle();
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["JOINTS_0"] = builder.add("VEC4", std::vector<std::uint8_t>(12));
+  primitive["attributes"]["WEIGHTS_0"] = builder.add("VEC4", std::vector<float>(12, 1));
+  primitive["targets"] = {{{"POSITION", 0}}};
+  builder.push("skins", {{"joints", {0}}});
+  builder.json["nodes"][0]["skin"] = 0;
+  for (int n = 0; n < 9; ++n) builder.add_root({{"mesh", 0}});
+  InputOptions options;
+  options.path = put("a.glb", builder.glb());
+  options.max_memory_bytes = 0;
+  std::uint64_t refused = 0;
+  for (;; options.max_memory_bytes += 1 + options.max_memory_bytes / 64) {
+    const auto source = open_gltf(options);
+    if (source) {
+      EXPECT_LE((*source)->memory_bytes(), options.max_memory_bytes);
+      EXPECT_GT((*source)->memory_bytes(), 30 * 128);
+      break;
+    }
+    expect_text(source.error().message, "needs more memory than the limit of");
+    ++refused;
+  }
+  EXPECT_GT(refused, 100);
+}
+
 TEST_F(GltfClaimsTest, TimesWithoutEnd) {
   GltfBuilder builder = moving_triangle();
   const auto last = [&](float time) {

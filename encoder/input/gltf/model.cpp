@@ -13,12 +13,13 @@ using std::to_string;
 class ModelReader {
  public:
   ModelReader(GltfDocument document, GltfFile& file, const GltfLimits& limits,
-              GltfErrors& errors)
+              GltfMemory& memory, GltfErrors& errors)
       : document_(std::move(document)),
         limits_(limits),
+        memory_(memory),
         errors_(errors),
         buffers_(std::move(document_.buffers), file, errors),
-        values_(document_.accessors, buffers_, limits.spare_values, errors) {}
+        values_(document_.accessors, buffers_, limits.spare_values, memory, errors) {}
 
   GltfModel read(const std::string& animation) {
     model_.scene = read_gltf_scene(document_, errors_);
@@ -104,9 +105,21 @@ class ModelReader {
                          "at most " + to_string(limits_.max_triangles) + " in the whole scene");
         return;
       }
+      if (!takes_instance(primitive, count, geometry)) return;
       model_.instances.push_back({node, skin, geometry, model_.num_vertices});
       model_.num_vertices += count;
     }
+  }
+
+  // With what the source and the welding take for each of its vertices and triangles.
+  bool takes_instance(const GltfPrimitive& primitive, std::uint64_t num_vertices,
+                      std::size_t geometry) {
+    constexpr std::uint64_t kOfVertex = 128;
+    constexpr std::uint64_t kOfTriangle = 60;
+    const std::uint64_t num_triangles = model_.geometries[geometry].triangles.size();
+    return memory_.take(primitive.path, 3 * sizeof(GltfModel::Instance) +
+                                            kOfVertex * num_vertices +
+                                            kOfTriangle * num_triangles);
   }
 
   // Nodes that show the same share it.
@@ -122,6 +135,7 @@ class ModelReader {
 
   GltfDocument document_;
   const GltfLimits& limits_;
+  GltfMemory& memory_;
   GltfErrors& errors_;
   GltfBuffers buffers_;
   GltfValues values_;
@@ -149,16 +163,22 @@ std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
 }  // namespace
 
 InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
-                                       const GltfLimits& limits) {
-  auto file = open_gltf_file(path);
+                                       const GltfLimits& limits,
+                                       std::uint64_t max_memory_bytes) {
+  auto file = open_gltf_file(path, max_memory_bytes);
   if (!file) return file.error();
   GltfErrors errors(file->file.path());
+  GltfMemory memory(max_memory_bytes - file->file.memory_bytes(), errors);
+  memory.take("", file->document_bytes);
   GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
   if (errors) return errors.first();
   const auto frame_rate = frame_rate_of(*file->json);
   file->json.reset();
-  GltfModel model = ModelReader(std::move(document), *file, limits, errors).read(animation);
+  GltfModel model =
+      ModelReader(std::move(document), *file, limits, memory, errors).read(animation);
   if (errors) return errors.first();
+  memory.give_back(file->document_bytes);
+  model.memory_bytes = memory.taken() + file->file.memory_bytes();
   model.frame_rate = frame_rate;
   return model;
 }

@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// What a document may ask for. A few bytes of it can stand for any number of frames, zeros or
-// instances, so that its size bounds nothing.
+// What a document may ask for, beside memory. A few bytes of it can stand for any number of
+// frames, zeros or instances, so that its size bounds nothing.
 struct GltfLimits {
   std::uint64_t max_vertices = 3 * std::uint64_t{kLevels.back().max_triangles};  // not welded
   std::uint64_t max_triangles = 3 * std::uint64_t{kLevels.back().max_triangles};
@@ -50,10 +50,12 @@ struct GltfModel {
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer does
   std::vector<std::string> notes;       // as FrameSource has them
   std::vector<std::string> files;       // likewise
+  std::uint64_t memory_bytes = 0;       // of it and of the source that it becomes, about
 };
 
 // `animation` as in InputOptions.
 InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
-                                       const GltfLimits& limits);
+                                       const GltfLimits& limits,
+                                       std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ class GeometryReader {
     geometry.base = values_.floats(primitive_.positions, "VEC3", GltfValues::Integers::kToo);
     for (std::size_t t = 0; t < primitive_.targets.size(); ++t) {
       const std::optional<std::uint32_t> target = primitive_.targets[t];
-      if (!target || !has_count(*target)) continue;
+      if (!target || !has_count(*target) || !takes_deltas(*target)) continue;
       std::vector<GltfDelta> deltas = values_.deltas(*target);
       if (!deltas.empty()) geometry.targets.push_back({t, std::move(deltas)});
     }
@@ -42,7 +42,17 @@ class GeometryReader {
     return false;
   }
 
+  // Vectors take three times their memory while they grow, here and below.
+  bool takes_deltas(std::uint32_t accessor) {
+    const GltfAccessor& a = values_.accessor(accessor);
+    const std::uint64_t count = a.base ? a.count : a.sparse ? a.sparse->count : 0;
+    return values_.memory().take(primitive_.path, 3 * sizeof(GltfDelta) * count);
+  }
+
   void read_influences(std::size_t num_joints, GltfGeometry& geometry) {
+    const std::uint64_t of_vertex =
+        3 * (sizeof(std::uint64_t) + 4 * primitive_.joints.size() * sizeof(GltfInfluence));
+    if (!values_.memory().take(primitive_.path, of_vertex * geometry.num_vertices())) return;
     if (primitive_.joints.empty()) {
       errors_.expected(primitive_.path + ".attributes", "no JOINTS_0 and WEIGHTS_0",
                        "them, as a node has a skin with this mesh");
@@ -115,6 +125,9 @@ class GeometryReader {
 
   std::vector<Triangle> triangles(const std::vector<std::uint32_t>& c) {
     std::vector<Triangle> triangles;
+    const std::uint64_t most =
+        primitive_.mode == GltfMode::kTriangles ? c.size() / 3 : c.size();
+    if (!values_.memory().take(primitive_.path, 3 * sizeof(Triangle) * most)) return triangles;
     if (primitive_.mode == GltfMode::kTriangles) {
       if (c.size() % 3 != 0) {
         errors_.expected(

@@ -119,7 +119,8 @@ class GltfSource : public FrameSource {
 
 InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits) {
-  auto model = read_gltf_model(options.path, options.animation, limits);
+  auto model =
+      read_gltf_model(options.path, options.animation, limits, options.max_memory_bytes);
   if (!model) return model.error();
   FrameSource::Shape shape;
   shape.frame_rate = options.frame_rate.value_or(model->frame_rate.value_or(FrameRate{}));
@@ -133,6 +134,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
       triangles_of(*model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
   shape.notes = model->notes;
   shape.files = model->files;
+  shape.memory_bytes = model->memory_bytes;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
       std::move(shape), name, std::move(*model), std::move(*first_frame));

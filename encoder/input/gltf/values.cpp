@@ -50,8 +50,12 @@ std::string gltf_accessor_path(std::uint32_t accessor) {
 }
 
 GltfValues::GltfValues(const std::vector<GltfAccessor>& accessors, GltfBuffers& buffers,
-                       std::uint64_t spare_values, GltfErrors& errors)
-    : accessors_(accessors), buffers_(buffers), spare_values_(spare_values), errors_(errors) {}
+                       std::uint64_t spare_values, GltfMemory& memory, GltfErrors& errors)
+    : accessors_(accessors),
+      buffers_(buffers),
+      spare_values_(spare_values),
+      memory_(memory),
+      errors_(errors) {}
 
 bool GltfValues::has_type(std::uint32_t accessor, std::string_view type) const {
   if (errors_) return false;
@@ -84,7 +88,9 @@ bool GltfValues::take(std::uint32_t accessor, std::uint64_t elements) {
   const std::uint64_t limit = spare_values_ + kValuesPerByte * buffers_.bytes_at_hand();
   const std::uint64_t left = limit - std::min(limit, values_);
   values_ += elements * a.width;
-  if (elements * a.width <= left) return true;
+  if (elements * a.width <= left) {
+    return memory_.take(gltf_accessor_path(accessor), elements * a.width * sizeof(float));
+  }
   errors_.expected(gltf_accessor_path(accessor) + ".count", to_string(elements),
                    "at most " + to_string(left / a.width) + ", as all there is has " +
                        to_string(buffers_.bytes_at_hand()) + " bytes");
@@ -160,7 +166,8 @@ std::vector<float> GltfValues::floats(std::uint32_t accessor, std::string_view t
     store_floats(accessor, element, bytes, std::span(values).subspan(first, a.width));
   };
   each(accessor, store);
-  return errors_ ? std::vector<float>() : values;
+  if (errors_) return {};
+  return values;
 }
 
 std::vector<std::uint32_t> GltfValues::integers(std::uint32_t accessor, std::string_view type) {
@@ -181,7 +188,8 @@ std::vector<std::uint32_t> GltfValues::integers(std::uint32_t accessor, std::str
     }
   };
   each(accessor, store);
-  return errors_ ? std::vector<std::uint32_t>() : values;
+  if (errors_) return {};
+  return values;
 }
 
 std::vector<GltfDelta> GltfValues::deltas(std::uint32_t accessor) {

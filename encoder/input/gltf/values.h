@@ -10,6 +10,7 @@
 
 #include "encoder/input/gltf/accessor.h"
 #include "encoder/input/gltf/affine.h"
+#include "encoder/input/gltf/memory.h"
 
 namespace rlpc {
 
@@ -27,9 +28,11 @@ class GltfValues {
   // Over all accessors that are read, values are at most `spare_values` and 16 for each byte
   // that is there: a small document can neither claim much nor say the same over and over.
   GltfValues(const std::vector<GltfAccessor>& accessors, GltfBuffers& buffers,
-             std::uint64_t spare_values, GltfErrors& errors);
+             std::uint64_t spare_values, GltfMemory& memory, GltfErrors& errors);
 
   const GltfAccessor& accessor(std::uint32_t i) const { return accessors_[i]; }
+  // For what becomes of values.
+  GltfMemory& memory() { return memory_; }
 
   // [count][width]; integers become floats, exactly but for normalised ones.
   std::vector<float> floats(std::uint32_t accessor, std::string_view type, Integers integers);
@@ -58,6 +61,7 @@ class GltfValues {
   GltfBuffers& buffers_;
   std::uint64_t spare_values_;
   std::uint64_t values_ = 0;
+  GltfMemory& memory_;
   GltfErrors& errors_;
 };
 

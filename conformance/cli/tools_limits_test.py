@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""What the tools take of a machine, whatever they are given: memory, and what they write.
+
+    tools_limits_test.py --bin BUILD/bin [unittest arguments, such as Endless]
+"""
+
+import json
+import os
+import struct
+import subprocess
+import threading
+
+from tools_testing import Result, Tools, ToolsTest, main, write_pc2
+
+MIB = 1 << 20
+SIGNATURE = b"\x89RLPC\r\n\x1a"
+
+
+class MeasuredTest(ToolsTest):
+    SLACK = 20 * MIB
+
+    def measured(self, tool, *arguments, feed=None):
+        """The result, and the most memory that the tool took. feed: called with the file that is
+        its standard input, which it may close before all is written."""
+        out, err = self.path("stdout"), self.path("stderr")
+        with open(out, "wb") as stdout, open(err, "wb") as stderr:
+            with subprocess.Popen([Tools.folder / tool, *map(str, arguments)], stdout=stdout,
+                                  stderr=stderr, stdin=subprocess.PIPE) as running:
+                writer = threading.Thread(target=self.write, args=(feed, running.stdin))
+                writer.start()
+                _, status, usage = os.wait4(running.pid, 0)
+                running.returncode = os.waitstatus_to_exitcode(status)
+                writer.join()
+        done = subprocess.CompletedProcess([], running.returncode, out.read_bytes(),
+                                           err.read_bytes())
+        return Result(done), usage.ru_maxrss * 1024
+
+    @staticmethod
+    def write(feed, pipe):
+        try:
+            if feed:
+                feed(pipe)
+            pipe.close()
+        except BrokenPipeError:
+            pass
+
+    def takes(self, most, code, words, tool, *arguments, feed=None):
+        result, memory = self.measured(tool, *arguments, feed=feed)
+        self.assertEqual(result.code, code, f"{tool} {arguments}: {result.err}")
+        text = result.err + result.out.decode(errors="replace")
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, text)
+        # Of a tool that does nothing, and what is counted of this interpreter, which starts it.
+        usual = self.measured(tool, "--version")[1]
+        if b"__asan_init" not in (Tools.folder / tool).read_bytes():  # which takes much itself
+            self.assertLess(memory, usual + most + self.SLACK, f"{tool} {arguments}")
+
+
+def endless(begin, block=bytes(MIB)):
+    """Writes up to 2 GB, unless nobody reads that."""
+    def feed(pipe):
+        pipe.write(begin)
+        for _ in range(2000):
+            pipe.write(block)
+    return feed
+
+
+class Endless(MeasuredTest):
+    """Input without an end: what is no stream or mesh is refused at once, else up to a limit."""
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.path("out.rlpc")
+        (self.path("clip.obj")).write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+
+    def decoders(self, name):
+        return (("rlpcdec", name, "--verify"), ("rlpcdec", name, "-o", self.path("out.rlpd")),
+                ("rlpcinfo", name), ("rlpcval", name),
+                ("rlpcinfo", name, "--extract", "layers=1", "-o", self.out))
+
+    def test_that_is_no_stream(self):
+        for command in self.decoders("-"):
+            self.takes(0, 1, "R-STR-01", *command, feed=endless(bytes(64)))
+        for command in self.decoders("/dev/zero"):
+            self.takes(0, 1, "R-STR-01", *command)
+        pipe = self.path("pipe")
+        os.mkfifo(pipe)
+        for command in self.decoders(pipe):
+            with subprocess.Popen(["dd", "if=/dev/zero", f"of={pipe}", "bs=1M", "count=2000"],
+                                  stderr=subprocess.DEVNULL):
+                self.takes(0, 1, "R-STR-01", *command)
+        zeros = self.path("zeros.rlpc")
+        zeros.symlink_to("/dev/zero")
+        self.takes(0, 2, "R-STR-01", "rlpccmp", zeros, zeros)
+
+    def test_that_begins_like_a_stream(self):
+        for command in self.decoders("-"):
+            self.takes(20 * MIB, 3, "limit", *command, "--max-memory", "20MB",
+                       feed=endless(SIGNATURE))
+
+    def test_what_is_kept_of_a_pipe_counts(self):
+        self.encode(self.path("a.rlpc"), "--kg", 1)
+        stream = self.path("a.rlpc").read_bytes()
+        feed = lambda pipe: pipe.write(stream)  # noqa: E731
+        need = 400 * 538 + 120 * 1074  # of the mesh, about
+        self.takes(0, 3, "limit", "rlpcdec", "-", "--verify", "--max-memory",
+                   len(stream) + 1000, feed=feed)
+        self.takes(0, 3, "limit", "rlpcdec", "-", "--verify", "--max-memory", len(stream) - 1,
+                   feed=feed)
+        self.takes(0, 0, "", "rlpcdec", "-", "--verify", "--max-memory",
+                   len(stream) + 20 * need, feed=feed)
+
+    def test_that_is_no_mesh(self):
+        mesh = self.path("clip.obj")
+        for arguments in (["-"], ["-", "--points", mesh], [mesh, "--points", "-"]):
+            self.takes(0, 1, "standard input", "rlpcenc", *arguments, "-o", self.out,
+                       feed=endless(bytes(64)))
+            self.assertFalse(self.out.exists())
+        self.takes(0, 2, "standard input", "rlpccmp", "-", mesh, feed=endless(bytes(64)))
+        for name in ("/dev/zero", "/dev/null"):
+            self.takes(0, 1, name, "rlpcenc", name, "-o", self.out)
+            self.takes(0, 1, name, "rlpcenc", mesh, "--points", name, "-o", self.out)
+
+    def test_that_begins_like_a_mesh(self):
+        mesh = self.path("clip.obj")
+        for begin in (b"ply\n", b"OFF\n", b"# \n", b"glTF", b"{", b"RLPD", b"v 0 0 0\n"):
+            for tool, code, last in (("rlpcenc", 1, ["-o", self.out]), ("rlpccmp", 2, [mesh])):
+                self.takes(40 * MIB, code, ["standard input", "limit of 20 MiB (--max-memory)"],
+                           tool, "-", *last, "--max-memory", "20MB",
+                           feed=endless(begin, b" " * MIB))
+        for begin in (b"POINTCACHE2\0", struct.pack(">2i", 1000000000, 3)):
+            self.takes(40 * MIB, 1, ["standard input", "limit of 20 MiB (--max-memory)"],
+                       "rlpcenc", mesh, "--points", "-", "-o", self.out, "--max-memory", "20MB",
+                       feed=endless(begin))
+
+    def test_small_files_that_are_not(self):
+        self.encode(self.path("a.rlpc"), "--kg", 1)
+        stream, mesh = self.path("a.rlpc"), self.path("clip.obj")
+        zero = self.path("zero.json")
+        zero.symlink_to("/dev/zero")
+        self.takes(0, 2, "cannot be read", "rlpccmp", stream, stream, "--order-map", zero)
+        self.takes(100 * MIB, 4, "cannot read the player", "rlpcdec", stream, "--html",
+                   self.path("a.html"), "--player", zero)
+        self.path("big.json").write_bytes(b" " * (2 * MIB))
+        for name in (zero, self.path("big.json")):
+            self.takes(0, 1, "more than 1 MiB", "rlpcenc", mesh, "-o", self.out, "--metadata", name)
+        self.path("p.obj").symlink_to("/dev/zero")
+        self.takes(0, 4, "p.obj: is there already", "rlpcdec", stream, "-o", self.path("p.pc2"))
+
+
+class EncoderMemory(MeasuredTest):
+    """rlpcenc refuses what may need more than --max-memory, before it takes that."""
+
+    def refused(self, most, words, *arguments):
+        self.takes(most, 1, ["--max-memory", *words], "rlpcenc", *arguments, "-o",
+                   self.path("out.rlpc"), "-q")
+        self.assertFalse(self.path("out.rlpc").exists())
+
+    def gltf(self, **parts):
+        """One triangle, and what else a test adds."""
+        self.path("data.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
+        document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                    "nodes": [{"mesh": 0}],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3,
+                                   "type": "VEC3"}],
+                    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                    "buffers": [{"uri": "data.bin", "byteLength": 36}], **parts}
+        self.path("a.gltf").write_text(json.dumps(document, separators=(",", ":")))
+        return self.path("a.gltf")
+
+    def test_instances(self):
+        """A small document stands for millions of vertices."""
+        primitive = {"attributes": {"POSITION": 0}}
+        document = self.gltf(scenes=[{"nodes": list(range(3000))}], nodes=[{"mesh": 0}] * 3000,
+                             meshes=[{"primitives": [primitive] * 3000}])
+        self.assertLess(document.stat().st_size, 200000)
+        self.refused(200 * MIB, ["a.gltf"], document, "--max-memory", "200MB")
+
+    def test_json(self):
+        """Brackets alone become objects of many bytes."""
+        document = self.gltf(extras=[{}] * 2000000)
+        self.refused(20 * MIB, ["a.gltf"], document, "--max-memory", "100MB")
+
+    def test_text(self):
+        """Polygons of one character a corner."""
+        mesh = self.path("fan.obj")
+        mesh.write_text("v 0 0 0\n" * 3 + "f" + " 1" * 10000000 + "\n")
+        self.refused(100 * MIB, ["fan.obj:4"], mesh, "--max-memory", "100MB")
+        self.refused(0, ["fan.obj"], mesh, "--max-memory", "10MB")
+
+    def test_frames(self):
+        mesh, cache = self.path("m.obj"), self.path("m.pc2")
+        mesh.write_text("".join(f"v {v} 0 0\n" for v in range(1000)))
+        write_pc2(cache, [[0.0] * 3000] * 1000)
+        self.refused(0, ["a shorter --gof needs less".capitalize()], mesh, "--points", cache,
+                     "--gof", "all", "--max-memory", "150MB")
+        self.takes(150 * MIB, 0, "", "rlpcenc", mesh, "--points", cache, "--gof", 20,
+                   "--preset", "fast", "--max-memory", "150MB", "-o", self.path("out.rlpc"))
+
+    def test_default(self):
+        self.clip(2)
+        self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path("out.rlpc"))
+        for tool in ("rlpcenc", "rlpccmp", "rlpcdec", "rlpcinfo", "rlpcval"):
+            self.assertIn(b"--max-memory", self.ok(tool, "--help").out)
+        self.assertIn(b"32GB", self.ok("rlpcenc", "--help").out)
+
+
+if __name__ == "__main__":
+    main()
