@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/io/interrupts.h"
+#include "common/io/messages.h"
 
 namespace rlpc {
 
@@ -88,8 +89,14 @@ OutputError output_error(const std::string& path, const std::string& what, int c
   return OutputError{path + ": cannot " + what + ": " + std::generic_category().message(code)};
 }
 
-OutputResult<OutputFile> OutputFile::create(const std::string& path) {
-  if (path == "-") return OutputFile("standard output", "", "", stdout);
+OutputError OutputLimit::exceeded(const std::string& path) const {
+  return OutputError{path + ": has more than the " + size_text(max_bytes) + " of --max-output",
+                     false, true};
+}
+
+OutputResult<OutputFile> OutputFile::create(const std::string& path,
+                                            std::shared_ptr<OutputLimit> limit) {
+  if (path == "-") return OutputFile("standard output", "", "", stdout, std::move(limit));
   struct stat there {};
   const bool exists = stat(path.c_str(), &there) == 0;
   if (exists && S_ISDIR(there.st_mode)) {
@@ -98,7 +105,7 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path) {
   if (exists && !S_ISREG(there.st_mode)) {
     std::FILE* const file = std::fopen(path.c_str(), "wb");
     if (file == nullptr) return output_error(path, "open", errno);
-    return OutputFile(path, path, "", file);
+    return OutputFile(path, path, "", file, std::move(limit));
   }
   auto target = end_of_links(path);
   if (!target) return target.error();
@@ -110,7 +117,8 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path) {
     if (file >= 0) {
       add_unfinished(temporary);
       if (exists) take_permissions(file, there);
-      OutputFile created(path, std::move(*target), std::move(temporary), fdopen(file, "wb"));
+      OutputFile created(path, std::move(*target), std::move(temporary), fdopen(file, "wb"),
+                         std::move(limit));
       if (created.file_ != nullptr) return created;
       ::close(file);
       return output_error(path, "create", ENOMEM);
@@ -124,10 +132,11 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path) {
   return OutputError{path + ": too many unfinished files; remove " + *target + ".partial*"};
 }
 
-OutputResult<OutputFile> OutputFile::create_within(const std::string& path) {
+OutputResult<OutputFile> OutputFile::create_within(const std::string& path,
+                                                   std::shared_ptr<OutputLimit> limit) {
   std::FILE* const file = std::fopen(path.c_str(), "wbx");
   if (file == nullptr) return output_error(path, "create", errno);
-  return OutputFile(path, path, "", file);
+  return OutputFile(path, path, "", file, std::move(limit));
 }
 
 bool OutputFile::is_same_file(const std::string& a, const std::string& b) {
@@ -145,7 +154,8 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
-      file_(std::exchange(other.file_, nullptr)) {}
+      file_(std::exchange(other.file_, nullptr)),
+      limit_(std::move(other.limit_)) {}
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr && file_ != stdout) std::fclose(file_);
@@ -158,6 +168,10 @@ OutputFile::~OutputFile() {
 
 std::optional<OutputError> OutputFile::write(std::string_view bytes) {
   assert(file_ != nullptr);
+  if (limit_ != nullptr) {
+    if (bytes.size() > limit_->left) return limit_->exceeded(path_);
+    limit_->left -= bytes.size();
+  }
   errno = 0;
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size()) return std::nullopt;
   return output_error(path_, "write", errno);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,18 +18,33 @@ namespace rlpc {
 struct OutputError {
   std::string message;
   bool is_usage = false;  // what was asked for cannot be; no file is at fault
+  bool is_limit =
+      false;  // likewise; a limit of the caller is lower than what there is to write
 };
 template <class T>
 using OutputResult = Result<T, OutputError>;
+
+// What may be written, to all the files together that share it.
+struct OutputLimit {
+  explicit OutputLimit(std::uint64_t bytes) : max_bytes(bytes), left(bytes) {}
+  // Of `path`, which has more than that.
+  OutputError exceeded(const std::string& path) const;
+
+  std::uint64_t max_bytes;
+  std::uint64_t left;
+};
 
 class OutputFile {
  public:
   // Creates a temporary file beside `path`, with the permissions of the file that it is to
   // replace. A path that exists and is not a regular file (a device, a pipe) is opened
   // directly; a symbolic link is followed, also where nothing is yet; "-" is standard output.
-  static OutputResult<OutputFile> create(const std::string& path);
+  // limit: null for none.
+  static OutputResult<OutputFile> create(const std::string& path,
+                                         std::shared_ptr<OutputLimit> limit = nullptr);
   // In a TemporaryFolder, under its own name.
-  static OutputResult<OutputFile> create_within(const std::string& path);
+  static OutputResult<OutputFile> create_within(const std::string& path,
+                                                std::shared_ptr<OutputLimit> limit = nullptr);
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -48,16 +64,19 @@ class OutputFile {
   const std::string& path() const { return path_; }
 
  private:
-  OutputFile(std::string path, std::string target, std::string temporary, std::FILE* file)
+  OutputFile(std::string path, std::string target, std::string temporary, std::FILE* file,
+             std::shared_ptr<OutputLimit> limit)
       : path_(std::move(path)),
         target_(std::move(target)),
         temporary_(std::move(temporary)),
-        file_(file) {}
+        file_(file),
+        limit_(std::move(limit)) {}
 
   std::string path_;
   std::string target_;     // where links lead to
   std::string temporary_;  // empty: written directly, or committed
   std::FILE* file_ = nullptr;
+  std::shared_ptr<OutputLimit> limit_;
 };
 
 // All that is to be in the file; it takes its name.

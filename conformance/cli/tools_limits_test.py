@@ -148,6 +148,41 @@ class Endless(MeasuredTest):
         self.takes(0, 4, "p.obj: is there already", "rlpcdec", stream, "-o", self.path("p.pc2"))
 
 
+class Expansion(ToolsTest):
+    """A few bytes may be a stream of millions of positions; nobody has to write them."""
+
+    def setUp(self):
+        super().setUp()
+        self.path("m.obj").write_text("v 0 0 0\n" * 100)
+        write_pc2(self.path("m.pc2"), [[0.0] * 300] * 1000)
+        self.stream = self.path("m.rlpc")
+        self.ok("rlpcenc", self.path("m.obj"), "--points", self.path("m.pc2"), "-o", self.stream,
+                "--gof", "all", "--preset", "fast", "-q")
+        self.before = self.files()
+
+    def test_frames(self):
+        for output in (["--verify"], ["-o", self.path("out.pc2")]):
+            self.fails(3, "--max-frames", "rlpcdec", self.stream, *output, "--max-frames", 999)
+            self.assertEqual(self.files(), self.before)
+        self.ok("rlpcdec", self.stream, "--verify", "--max-frames", 1000)
+
+    def test_output(self):
+        self.assertLess(self.stream.stat().st_size, 400)
+        for output in ("out.rlpd", "out.pc2", "out.mdd", "out", "f_%d.obj", "f_%d.ply"):
+            self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", self.path(output),
+                       "--max-output", "100KB")
+            self.assertEqual(self.files(), self.before)
+        for name in ("rlpd", "glb"):
+            done = self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", "-", "--format",
+                              name, "--max-output", "1KB")
+            self.assertLessEqual(len(done.out), 1024)
+        self.ok("rlpcdec", self.stream, "-o", self.path("out.rlpd"), "--max-output", 1200044)
+        self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", self.path("out.rlpd"),
+                   "--max-output", 1200043)
+        self.assertEqual(self.path("out.rlpd").stat().st_size, 1200044)
+        self.ok("rlpcdec", self.stream, "-o", self.path("out.pc2"))  # without a limit
+
+
 class EncoderMemory(MeasuredTest):
     """rlpcenc refuses what may need more than --max-memory, before it takes that."""
 

@@ -47,6 +47,23 @@ bool is_mesh(SinkFormat format) {
   return format == SinkFormat::kObj || format == SinkFormat::kPly;
 }
 
+// What there is to write, or less.
+std::uint64_t least_bytes(SinkFormat format, const SinkOptions& options) {
+  const std::uint64_t vertices = options.num_vertices;
+  const std::uint64_t triangles = options.triangles.size();
+  const std::uint64_t frames = options.num_frames;
+  switch (format) {
+    case SinkFormat::kGlb:  // where nothing moves
+      return 12 * vertices;
+    case SinkFormat::kObj:  // "v 0 0 0", "f 1 2 3"
+      return frames * 8 * (vertices + triangles);
+    case SinkFormat::kPly:  // "0 0 0"
+      return frames * (options.ascii ? 6 : 12) * vertices;
+    default:
+      return frames * 12 * vertices;
+  }
+}
+
 OutputResult<std::unique_ptr<FrameSink>> open_one_file(const std::string& path,
                                                        SinkFormat format, SinkOptions options) {
   switch (format) {
@@ -92,8 +109,11 @@ SinkFormat sink_format(const std::string& path, SinkFormat given) {
 
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options) {
-  if (path == "-") return open_standard_output(std::move(options));
   const SinkFormat format = sink_format(path, options.format);
+  if (options.limit != nullptr && least_bytes(format, options) > options.limit->left) {
+    return options.limit->exceeded(path == "-" ? "standard output" : path);
+  }
+  if (path == "-") return open_standard_output(std::move(options));
   const fs::path name = fs::path(path).filename();
   if (name.string().find('%') != std::string::npos) {
     if (!is_mesh(format)) {

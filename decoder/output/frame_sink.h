@@ -46,6 +46,9 @@ struct SinkOptions {
   std::uint32_t first_number = 0;
   SinkFormat format = SinkFormat::kByName;
   bool ascii = false;  // PLY as text
+  // Of all that is written, temporary files included; null: none. Where it is certain before
+  // the first frame that there is more, no sink opens.
+  std::shared_ptr<OutputLimit> limit{};
 };
 
 // `given`, or else by the form of `path`; never kByName.

@@ -204,6 +204,38 @@ TEST_F(FrameSinkTest, KeepsExactlyTheFramesOfAPartialRlpd) {
   }
 }
 
+// All that is there is what may be there, to the byte.
+TEST_F(FrameSinkTest, WritesUpToALimit) {
+  for (const char* name : {"a.rlpd", "a.pc2", "a.mdd", "a.glb", "f%d.obj", "f%d.ply", "out"}) {
+    SinkOptions options = two_frames();
+    constexpr std::uint64_t kEnough = 1 << 20;
+    options.limit = std::make_shared<OutputLimit>(kEnough);
+    ASSERT_EQ(write(path(name), options), "") << name;
+    const std::uint64_t needed = kEnough - options.limit->left;
+    std::uint64_t there = 0;
+    for (const std::string& file : files()) {
+      if (fs::is_regular_file(folder_ / file)) there += fs::file_size(folder_ / file);
+    }
+    EXPECT_EQ(needed, there) << name;
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+    for (std::uint64_t bytes = 0; bytes <= needed; ++bytes) {
+      options.limit = std::make_shared<OutputLimit>(bytes);
+      const std::string error = write(path(name), options);
+      if (bytes == needed) {
+        EXPECT_EQ(error, "") << name;
+        continue;
+      }
+      EXPECT_NE(error.find("has more than the " + std::to_string(bytes) + " bytes of"),
+                bytes % 1024 == 0 ? 0 : std::string::npos)
+          << error;
+      EXPECT_TRUE(files().empty()) << name;
+    }
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+  }
+}
+
 TEST_F(FrameSinkTest, NamesPathAndReason) {
   for (const char* name : {"none/a.rlpd", "none/a.pc2", "none/out/f%d.obj", "none/out"}) {
     const std::string error = write(path(name));

@@ -151,6 +151,9 @@ class GltfSink : public FrameSink {
 
  private:
   std::optional<OutputError> failure() const {
+    if (options_.limit != nullptr && chunk_.size() > options_.limit->left) {
+      return options_.limit->exceeded(file_.path());
+    }
     if (!failed_ && chunk_.size() <= kMaxFileBytes) return std::nullopt;
     if (failed_)
       return output_error(file_.path(), "store its binary part for a while", reason_);
@@ -395,7 +398,7 @@ class GltfSink : public FrameSink {
 
 OutputResult<std::unique_ptr<FrameSink>> open_gltf_sink(const std::string& path,
                                                         SinkOptions options) {
-  auto file = OutputFile::create(path);
+  auto file = OutputFile::create(path, options.limit);
   if (!file) return file.error();
   return std::unique_ptr<FrameSink>(
       std::make_unique<GltfSink>(std::move(options), std::move(*file)));

@@ -61,7 +61,7 @@ class MeshSink : public FrameSink {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
     const fs::path path = fs::path(temporary_.path()) / file_name(written_);
-    auto file = OutputFile::create_within(path.string());
+    auto file = OutputFile::create_within(path.string(), options_.limit);
     if (!file) return file.error();
     ++written_;
     if (auto error = file->write(mesh_.frame(positions))) return error;
@@ -120,7 +120,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string
                                                                SinkFormat format,
                                                                const SinkOptions& options) {
   assert(options.num_frames == 1);
-  auto file = OutputFile::create(path);
+  auto file = OutputFile::create(path, options.limit);
   if (!file) return file.error();
   return std::unique_ptr<FrameSink>(
       std::make_unique<SingleMeshSink>(format, options, std::move(*file)));

@@ -115,9 +115,9 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
                        "be replaced by the one that goes with " +
                        path + "; give another name, or remove it"};
   }
-  auto points = OutputFile::create(path);
+  auto points = OutputFile::create(path, options.limit);
   if (!points) return points.error();
-  auto mesh = OutputFile::create(mesh_path);
+  auto mesh = OutputFile::create(mesh_path, options.limit);
   if (!mesh) return mesh.error();
   auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
                                                std::move(*mesh));

@@ -57,7 +57,7 @@ class RlpdSink : public FrameSink {
 
 OutputResult<std::unique_ptr<FrameSink>> open_rlpd_sink(const std::string& path,
                                                         SinkOptions options) {
-  auto file = OutputFile::create(path);
+  auto file = OutputFile::create(path, options.limit);
   if (!file) return file.error();
   auto sink = std::make_unique<RlpdSink>(std::move(options), std::move(*file));
   if (auto error = sink->write_header()) return *error;

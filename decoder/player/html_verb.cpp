@@ -88,8 +88,8 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
     }
   }
   const PageStreams streams{title(request.input), &stream, reference.get()};
-  if (const auto error = write_player_page(request.output, *player, streams)) {
-    return complain(error->message, kExitIo);
+  if (const auto error = write_player_page(request.output, *player, streams, request.limit)) {
+    return complain(error->message, exit_code(*error));
   }
   if (!request.quiet) {
     std::fprintf(stderr, "%s: plays %u frames of %u vertices; open it in a browser\n",

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "common/io/output_file.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -14,6 +15,7 @@ struct HtmlRequest {
   std::string player;     // page of the player; empty: where it usually is
   std::string reference;  // of the same mesh, its vertices in the same order; empty: none
   DecoderOptions decoder;
+  std::shared_ptr<OutputLimit> limit;  // of the page; null: none
   bool quiet = false;
 };
 

@@ -74,7 +74,8 @@ OutputResult<std::string> read_player(const std::string& path) {
 }
 
 std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,
-                                             const PageStreams& streams) {
+                                             const PageStreams& streams,
+                                             std::shared_ptr<OutputLimit> limit) {
   for (const ByteSource* source : {streams.stream, streams.reference}) {
     if (source != nullptr && source->size() > kMaxPageStreamBytes) {
       return OutputError{path + ": a page holds streams of up to " +
@@ -82,7 +83,7 @@ std::optional<OutputError> write_player_page(const std::string& path, const std:
                          std::to_string(source->size() >> 20)};
     }
   }
-  auto file = OutputFile::create(path);
+  auto file = OutputFile::create(path, std::move(limit));
   if (!file) return file.error();
   const std::size_t place = player.find(kPlace);
   const std::string_view text = player;

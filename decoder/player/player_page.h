@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,7 @@ struct PageStreams {
 
 // Writes the page. Streams are copied a part at a time.
 std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,
-                                             const PageStreams& streams);
+                                             const PageStreams& streams,
+                                             std::shared_ptr<OutputLimit> limit = nullptr);
 
 }  // namespace rlpc

@@ -1,6 +1,7 @@
 // Exit codes of the tools that decode.
 #pragma once
 
+#include "common/io/output_file.h"
 #include "common/result.h"
 
 namespace rlpc {
@@ -28,6 +29,11 @@ inline ExitCode exit_code(Errc code) {
       break;
   }
   return kExitIo;
+}
+
+inline ExitCode exit_code(const OutputError& error) {
+  if (error.is_limit) return kExitLimit;
+  return error.is_usage ? kExitUsage : kExitIo;
 }
 
 }  // namespace rlpc

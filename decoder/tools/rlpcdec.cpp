@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -69,6 +70,7 @@ struct Options {
   bool quiet = false;
   rlpc::HtmlRequest html;
   rlpc::DecoderOptions decoder;
+  std::shared_ptr<rlpc::OutputLimit> limit;
 };
 
 struct FrameSpan {
@@ -83,7 +85,10 @@ int complain(const std::string& message, int code) {
 
 int complain(const Options& o, const rlpc::Error& error) {
   std::string text = rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error);
-  if (error.code == rlpc::Errc::kLimitExceeded) text += " (--max-memory, --max-vertices)";
+  if (error.code == rlpc::Errc::kLimitExceeded) {
+    const bool frames = std::string_view(error.element) == "num_frames_minus1";
+    text += frames ? " (--max-frames)" : " (--max-memory, --max-vertices)";
+  }
   return complain(text, rlpc::exit_code(error.code));
 }
 
@@ -151,6 +156,7 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
   rlpc::HtmlRequest request = o.html;
   request.input = o.input;
   request.decoder = o.decoder;
+  request.limit = o.limit;
   request.quiet = o.quiet;
   return rlpc::write_html(request, source);
 }
@@ -183,10 +189,10 @@ int decode(const Options& o) {
     options.first_number = span->first;
     options.format = o.format;
     options.ascii = o.ascii;
+    options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {
-      return complain(opened.error().message,
-                      opened.error().is_usage ? rlpc::kExitUsage : rlpc::kExitIo);
+      return complain(opened.error().message, rlpc::exit_code(opened.error()));
     }
     sink = std::move(*opened);
   }
@@ -202,7 +208,7 @@ int decode(const Options& o) {
       if (!more) return complain(o, more.error());
       if (sink) {
         if (auto error = sink->write_frame(positions)) {
-          return complain(error->message, rlpc::kExitIo);
+          return complain(error->message, rlpc::exit_code(*error));
         }
       }
       frames.compared += decoder->compared_frames();
@@ -214,7 +220,9 @@ int decode(const Options& o) {
       return complain(o, more.error());
   }
   if (sink) {
-    if (auto error = sink->finish()) return complain(error->message, rlpc::kExitIo);
+    if (auto error = sink->finish()) {
+      return complain(error->message, rlpc::exit_code(*error));
+    }
   }
   report(o, *decoder, frames);
   return rlpc::kExitDone;
@@ -265,6 +273,14 @@ void add_options(CLI::App& app, Options& o) {
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--max-vertices", o.decoder.limits.max_vertices,
                  "Give up on streams with more vertices");
+  app.add_option("--max-frames", o.decoder.limits.max_frames,
+                 "Give up on streams with more frames");
+  app.add_option_function<std::uint64_t>(
+         "--max-output",
+         [&o](std::uint64_t bytes) { o.limit = std::make_shared<rlpc::OutputLimit>(bytes); },
+         "Give up where more than that is to be written, for example 2GB (default: no limit)")
+      ->transform(CLI::AsSizeValue(false))
+      ->excludes(verify);
   app.add_option("--threads", o.decoder.threads,
                  "Threads, each with memory for a GOF and four frames (default: one for each "
                  "processor)")
