@@ -4,6 +4,7 @@
     tools_formats_test.py --bin BUILD/bin [unittest arguments, such as FormatsIn]
 """
 
+import math
 import struct
 import subprocess
 
@@ -157,6 +158,23 @@ class MddTimes(ToolsTest):
         for times in ([0] * 5, [0, 1, 2, 3, 4], [0, 0.1, 0.15, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1, 0],
                       [nan] * 5, [0, nan, 0.2, 0.3, 0.4], [0, 1e-9, 2e-9], [7]):
             self.assertEqual(self.rate_of(times), [30, 1], times)
+
+    def test_what_cannot_be_times_is_told(self):
+        _, frames = self.clip(3)
+        encode = ["rlpcenc", self.path("clip.obj"), "-o", self.path("out.rlpc"), "--kg", 5,
+                  "--preset", "fast", "--points"]
+        nan, cache = float("nan"), self.path("clip.mdd")
+        for times, told in (([0.2, 0.1, 0], True), ([0, nan, 1], True), ([0, 1, math.inf], True),
+                            ([0, 0, 0], False), ([0, 0.1, 0.3], False), ([0, 0.1, 0.2], False)):
+            cache.write_bytes(mdd(frames, times))
+            self.assertEqual("not finite and ascending" in self.ok(*encode, cache).err, told, times)
+            self.assertNotIn("ascending", self.ok(*encode, cache, "--fps", 10).err)
+        cache = self.path("clip.pc2")
+        good = cache.read_bytes()
+        for at, value, told in ((20, nan, True), (24, nan, True), (24, -math.inf, True),
+                                (24, 0, False)):
+            cache.write_bytes(good[:at] + struct.pack("<f", value) + good[at + 4:])
+            self.assertEqual("is the file damaged" in self.ok(*encode, cache).err, told, value)
 
 
 class FormatsOut(ToolsTest):

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -28,6 +29,9 @@ struct Layout {
   std::int32_t points = 0;
   std::int32_t frames = 0;
   std::uint64_t first_byte = 0;  // of the positions
+  // Start and sample rate of PC2 are numbers. They are not used, but say that a file is
+  // damaged.
+  bool has_rate = true;
 };
 
 InputError too_short(const InputFile& file, std::size_t header_bytes) {
@@ -48,7 +52,9 @@ InputResult<Layout> read_pc2_header(InputFile& file) {
     return InputError{file.path() + ": PC2 version " + to_string(version) +
                       " at byte 12; expected 1"};
   }
-  return Layout{false, load_i32(header, 16), load_i32(header, 28), kPc2HeaderBytes};
+  const bool has_rate =
+      std::isfinite(load_f32(header, 20)) && std::isfinite(load_f32(header, 24));
+  return Layout{false, load_i32(header, 16), load_i32(header, 28), kPc2HeaderBytes, has_rate};
 }
 
 InputResult<Layout> read_mdd_header(InputFile& file) {
@@ -123,10 +129,15 @@ bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
   return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
 }
 
-// Frames per second, where the times of an MDD file tell: seconds, evenly spaced. Others are
-// numbers of frames, or not meant.
-InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layout& layout,
-                                                    std::uint64_t max_memory_bytes) {
+// What the times of an MDD file tell.
+struct FrameTimes {
+  // Of seconds, evenly spaced. Others are numbers of frames, or not meant.
+  std::optional<FrameRate> rate;
+  bool may_be_times = true;  // numbers that do not descend
+};
+
+InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
+                                   std::uint64_t max_memory_bytes) {
   const auto count = static_cast<std::size_t>(layout.frames);
   if (std::uint64_t{count} * (4 + sizeof(double)) > max_memory_bytes) {
     return InputError{file.path() + ": " + memory_problem(max_memory_bytes)};
@@ -135,16 +146,20 @@ InputResult<std::optional<FrameRate>> rate_of_times(InputFile& file, const Layou
   if (auto error = file.read(kMddHeaderBytes, bytes)) return *error;
   std::vector<double> times(count);
   for (std::size_t f = 0; f < count; ++f) times[f] = load_f32_be(bytes, 4 * f);
-  if (count < 2) return std::optional<FrameRate>();
+  FrameTimes told;
+  for (std::size_t f = 0; f < count; ++f) {
+    const bool descends = f > 0 && times[f] < times[f - 1];
+    told.may_be_times = told.may_be_times && std::isfinite(times[f]) && !descends;
+  }
+  if (count < 2) return told;
   const double interval = (times.back() - times.front()) / static_cast<double>(count - 1);
   constexpr double kUneven = 0.02;  // of an interval
   for (std::size_t f = 0; f < count; ++f) {
     const double expected = times.front() + interval * static_cast<double>(f);
-    if (!(std::abs(times[f] - expected) <= kUneven * interval)) {
-      return std::optional<FrameRate>();
-    }
+    if (!(std::abs(times[f] - expected) <= kUneven * interval)) return told;
   }
-  return frame_rate_near(1.0 / interval);
+  told.rate = frame_rate_near(1.0 / interval);
+  return told;
 }
 
 class PointCache : public FrameSource {
@@ -191,14 +206,25 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   if (!layout) return layout.error();
   if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
   FrameRate usual;
+  std::vector<std::string> notes;
+  if (!layout->has_rate) {
+    notes.push_back("start and sample rate in " + file->path() +
+                    " are not finite; they are not used anyway, but is the file damaged?");
+  }
   if (layout->big_endian) {
-    const auto rate = rate_of_times(*file, *layout, max_memory_bytes);
-    if (!rate) return rate.error();
-    usual = rate->value_or(usual);
+    const auto times = read_times(*file, *layout, max_memory_bytes);
+    if (!times) return times.error();
+    usual = times->rate.value_or(usual);
+    if (!times->may_be_times && !frame_rate) {
+      notes.push_back("the frame times in " + file->path() +
+                      " are not finite and ascending, and not used: 30 frames per second "
+                      "(--fps sets another rate)");
+    }
   }
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
   shape.files = {mesh_path, points_path};
+  shape.notes = std::move(notes);
   shape.memory_bytes += file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));

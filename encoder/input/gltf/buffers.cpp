@@ -4,6 +4,7 @@
 #include <cassert>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace rlpc {
@@ -66,6 +67,15 @@ std::string percent_decoded(std::string_view uri) {
 // Does it stay in its folder, or go below?
 bool stays_inside(const fs::path& path) {
   return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
+// Not so where a link on the way leads out. What is not there does.
+bool is_below(const fs::path& path, const fs::path& folder) {
+  std::error_code missing;
+  const fs::path real = fs::canonical(path, missing);
+  if (missing) return true;
+  const fs::path way = real.lexically_relative(fs::canonical(folder, missing));
+  return !way.empty() && *way.begin() != "..";
 }
 
 }  // namespace
@@ -137,14 +147,16 @@ std::optional<GltfBuffers::Place> GltfBuffers::find_file(const std::string& plac
                                                          const std::string& uri) {
   const fs::path relative(percent_decoded(uri));
   const std::size_t colon = uri.find(':');
-  if (!stays_inside(relative) || (colon != uri.npos && colon < uri.find('/'))) {
+  const fs::path of_document = fs::path(file_.file.path()).parent_path();
+  // Never "-" alone, which is standard input.
+  const fs::path folder = of_document.empty() ? fs::path(".") : of_document;
+  if (!stays_inside(relative) || (colon != uri.npos && colon < uri.find('/')) ||
+      !is_below(folder / relative, folder)) {
     errors_.expected(place, gltf_quoted(uri),
                      "a file in the folder of the document, or below it; put it there");
     return std::nullopt;
   }
-  const fs::path folder = fs::path(file_.file.path()).parent_path();
-  // Never "-" alone, which is standard input.
-  const std::string path = ((folder.empty() ? fs::path(".") : folder) / relative).string();
+  const std::string path = (folder / relative).string();
   auto known = others_.find(path);
   if (known == others_.end()) {
     auto file = InputFile::open(path);

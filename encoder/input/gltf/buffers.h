@@ -19,8 +19,8 @@ struct GltfBuffer {
 };
 
 // Opens what is asked for when it is asked for. Files are read in the folder of the document
-// (of standard input: the current one) and below it only: a document cannot make the tools read
-// anything else.
+// (of standard input: the current one) and below it only, also by way of links: a document
+// cannot make the tools read anything else.
 class GltfBuffers {
  public:
   GltfBuffers(std::vector<GltfBuffer> buffers, GltfFile& file, GltfErrors& errors);

@@ -163,6 +163,14 @@ TEST_F(GltfErrorsTest, BuffersThatAreNotThere) {
         "file:outside.bin", "https://example.org/a.bin"}) {
     expect_uri(uri, "expected a file in the folder of the document, or below it");
   }
+  const std::filesystem::path in = folder_ / "in";
+  std::filesystem::create_symlink("../outside.bin", in / "link.bin");
+  std::filesystem::create_directory_symlink("..", in / "up");
+  std::filesystem::create_symlink("link.bin", in / "again.bin");
+  std::filesystem::create_symlink("/dev/zero", in / "zero.bin");
+  for (const char* uri : {"link.bin", "up/outside.bin", "again.bin", "zero.bin"}) {
+    expect_uri(uri, "expected a file in the folder of the document, or below it");
+  }
   expect_uri("data:,abc", "buffers[0].uri: found \"data:,abc\", expected data in base64");
   expect_uri("data:a/b;base64,AAAA*AAA", "expected data in base64");
   expect_uri("data:a/b;base64,AAAA", "buffers[0].byteLength: found 36, expected at most 3");

@@ -49,17 +49,23 @@ TEST_F(GltfSourceTest, ReadsBuffersWhereverTheyAre) {
   builder.add_root({{"mesh", builder.add_mesh({{"attributes", {{"POSITION", positions}}},
                                                {"indices", indices}})}});
   put("data/a b.bin", builder.bytes + "more");
+  // Links may lead to another place below the document, which may be seen through one itself.
+  std::filesystem::create_symlink("data/a b.bin", folder_ / "link.bin");
+  std::filesystem::create_directory_symlink(folder_, folder_ / "data" / "self");
   // 2, 1, 0 in 16 bits each, a gap, and the corners.
   const std::string base64 =
       "data:application/gltf-buffer;base64,AgABAAAAAAAAAAAAAAAAAAAAAAAAAI"
       "A/AAAAAAAAAAAAAAAAAACAPwAAAAA=";
-  for (const std::string& uri :
-       {std::string("data/a%20b.bin"), std::string("./data/a b.bin"), base64}) {
+  for (const std::string& uri : {std::string("data/a%20b.bin"), std::string("./data/a b.bin"),
+                                 std::string("link.bin"), base64}) {
     const auto source = open_gltf({put("a.gltf", builder.gltf(uri)), "", {}, "", false});
     ASSERT_TRUE(source) << source.error().message;
     EXPECT_EQ((*source)->triangles(), (std::vector<Triangle>{{2, 1, 0}}));
     EXPECT_EQ(frame_of(**source, 0), kCorners) << uri;
   }
+  put("a.gltf", builder.gltf("link.bin"));
+  const std::string path = (folder_ / "data" / "self" / "a.gltf").string();
+  EXPECT_TRUE(open_gltf({path, "", {}, "", false}));
 }
 
 TEST_F(GltfSourceTest, PutsVerticesInTheOrderOfTheScene) {
