@@ -23,8 +23,8 @@ struct Clustering {
 // are the first N of those of more clusters, so one object serves every N.
 //
 // Seeds: the vertex farthest from the centre of frame 0, then each time the vertex farthest
-// from those chosen. Each brings an incident triangle that is degenerate in no frame, in a point
-// cloud one with two of its nearest points; vertices without one are passed over.
+// from those chosen. Each brings an incident triangle that is degenerate in no frame, in a
+// point cloud one with two of its nearest points; vertices without one are passed over.
 class MotionClusters {
  public:
   // Everything is kept by reference.

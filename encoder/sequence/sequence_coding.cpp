@@ -22,10 +22,10 @@ std::optional<InputError> check_memory(const EncoderSettings& settings,
   // Measured, of vertices that move at random: 90 to 150 bytes of a position in a GOF, 70 of
   // one whose analysis is kept. Of motions, 40 and 10.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
-  constexpr std::uint64_t kOfVertex = 700;  // fixed: memory
-  constexpr std::uint64_t kOfTriangle = 250;  // fixed: memory
-  constexpr std::uint64_t kInGof = 150;  // fixed: memory
-  constexpr std::uint64_t kKept = 70;  // fixed: memory
+  constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
+  constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
+  constexpr std::uint64_t kInGof = 150;                      // fixed: memory
+  constexpr std::uint64_t kKept = 70;                        // fixed: memory
   const std::uint64_t of_vertex = kOfVertex + kInGof * longest_gof + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
                                header.num_triangles * kOfTriangle;
