@@ -7,7 +7,7 @@
 
 #include "common/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
-#include "decoder/parse/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_gof_index.h"
 
 namespace rlpc {
 

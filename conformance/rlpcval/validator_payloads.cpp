@@ -10,10 +10,10 @@
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_json.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse/parse_connectivity.h"
 #include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/parse_metadata.h"
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_connectivity.h"
+#include "decoder/parse/sequence/parse_metadata.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 #include "decoder/recon/gof_recon.h"
 
 namespace rlpc {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "common/bitstream/bit_reader.h"
-#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/sequence/parse_connectivity.h"
 #include "encoder/write/write_connectivity.h"
 
 namespace rlpc {

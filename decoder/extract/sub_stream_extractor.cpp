@@ -5,7 +5,7 @@
 
 #include "common/bitstream/crc32.h"
 #include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 
 namespace rlpc {
 namespace {

@@ -9,9 +9,9 @@
 #include "common/syntax/sequence_header.h"
 #include "common/testing/fuzz_input.h"
 #include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/parse_gof_index.h"
-#include "decoder/parse/parse_metadata.h"
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_metadata.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 
 namespace {
 

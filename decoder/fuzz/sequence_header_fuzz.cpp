@@ -7,7 +7,7 @@
 
 #include "common/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/parse_sequence_header.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
 
 namespace {
 

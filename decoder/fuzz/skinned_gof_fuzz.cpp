@@ -11,10 +11,10 @@
 
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/parse_connectivity.h"
 #include "decoder/parse/parse_gof_header.h"
-#include "decoder/parse/parse_sequence_header.h"
 #include "decoder/parse/parse_skinned_gof.h"
+#include "decoder/parse/sequence/parse_connectivity.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size);

@@ -1,7 +1,7 @@
 #include "decoder/stream/find_gof_index.h"
 
 #include "common/syntax/stream_format.h"
-#include "decoder/parse/parse_end_of_sequence.h"
+#include "decoder/parse/sequence/parse_end_of_sequence.h"
 
 namespace rlpc {
 

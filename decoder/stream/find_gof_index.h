@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "decoder/parse/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_gof_index.h"
 #include "decoder/stream/unit_reader.h"
 
 namespace rlpc {

@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "common/syntax/stream_format.h"
-#include "decoder/parse/parse_connectivity.h"
-#include "decoder/parse/parse_end_of_sequence.h"
 #include "decoder/parse/parse_gof_header.h"
-#include "decoder/parse/parse_metadata.h"
-#include "decoder/parse/parse_sequence_header.h"
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_connectivity.h"
+#include "decoder/parse/sequence/parse_end_of_sequence.h"
+#include "decoder/parse/sequence/parse_metadata.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 #include "decoder/stream/find_gof_index.h"
 
 namespace rlpc {

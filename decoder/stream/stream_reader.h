@@ -12,7 +12,7 @@
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
-#include "decoder/parse/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_gof_index.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/access_unit_reader.h"
 #include "decoder/stream/unit_reader.h"

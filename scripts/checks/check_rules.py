@@ -100,7 +100,7 @@ def validator_code(root):
         paths = [root / name for name in sorted(waiting) if (root / name).exists()]
         text += "".join(cpp_source.without_comments(path.read_text(encoding="utf-8"))
                         for path in paths)
-        included = re.findall(r'#include "(decoder/parse/\w+)\.h"', text)
+        included = re.findall(r'#include "(decoder/parse/[\w/]+)\.h"', text)
         waiting = {name + end for name in included for end in (".h", ".cpp")} - seen
     return text
 

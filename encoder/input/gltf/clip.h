@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/document.h"
+#include "encoder/input/gltf/document/values.h"
 #include "encoder/input/gltf/track.h"
-#include "encoder/input/gltf/values.h"
 
 namespace rlpc {
 

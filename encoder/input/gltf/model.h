@@ -9,7 +9,7 @@
 
 #include "common/syntax/sequence_header.h"
 #include "encoder/input/gltf/clip.h"
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/document.h"
 #include "encoder/input/gltf/primitive.h"
 #include "encoder/input/gltf/scene.h"
 

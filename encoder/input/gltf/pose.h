@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "encoder/input/gltf/affine.h"
 #include "encoder/input/gltf/clip.h"
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/affine.h"
+#include "encoder/input/gltf/document/document.h"
 #include "encoder/input/gltf/scene.h"
 
 namespace rlpc {

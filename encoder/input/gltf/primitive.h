@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
-#include "encoder/input/gltf/affine.h"
-#include "encoder/input/gltf/document.h"
-#include "encoder/input/gltf/values.h"
+#include "encoder/input/gltf/document/affine.h"
+#include "encoder/input/gltf/document/document.h"
+#include "encoder/input/gltf/document/values.h"
 
 namespace rlpc {
 

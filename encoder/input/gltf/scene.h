@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/document.h"
 
 namespace rlpc {
 

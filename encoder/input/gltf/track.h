@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "encoder/input/gltf/affine.h"
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/affine.h"
+#include "encoder/input/gltf/document/document.h"
 
 namespace rlpc {
 

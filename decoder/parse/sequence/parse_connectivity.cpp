@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_connectivity.h"
+#include "decoder/parse/sequence/parse_connectivity.h"
 
 #include <cassert>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/json.h"
+#include "encoder/input/gltf/document/json.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_metadata.h"
+#include "decoder/parse/sequence/parse_metadata.h"
 
 #include <zlib.h>
 

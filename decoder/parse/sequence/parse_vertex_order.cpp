@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 
 #include "common/bitstream/residual_models.h"
 #include "decoder/parse/section_reader.h"

@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_gof_index.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/file.h"
+#include "encoder/input/gltf/document/file.h"
 
 #include <array>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/accessor.h"
+#include "encoder/input/gltf/document/accessor.h"
 
 #include <map>
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/gltf/file.h"
-#include "encoder/input/gltf/json.h"
+#include "encoder/input/gltf/document/file.h"
+#include "encoder/input/gltf/document/json.h"
 
 namespace rlpc {
 

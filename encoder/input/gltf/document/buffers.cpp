@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/buffers.h"
+#include "encoder/input/gltf/document/buffers.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/document.h"
+#include "encoder/input/gltf/document/document.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/gltf/buffers.h"
-#include "encoder/input/gltf/json.h"
+#include "encoder/input/gltf/document/buffers.h"
+#include "encoder/input/gltf/document/json.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_sequence_header.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
 
 #include <gtest/gtest.h>
 

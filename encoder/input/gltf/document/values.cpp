@@ -1,4 +1,4 @@
-#include "encoder/input/gltf/values.h"
+#include "encoder/input/gltf/document/values.h"
 
 #include <algorithm>
 #include <cmath>

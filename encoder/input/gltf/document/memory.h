@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "encoder/input/gltf/json.h"
+#include "encoder/input/gltf/document/json.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {

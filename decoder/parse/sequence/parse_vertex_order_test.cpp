@@ -1,4 +1,4 @@
-#include "decoder/parse/parse_vertex_order.h"
+#include "decoder/parse/sequence/parse_vertex_order.h"
 
 #include <gtest/gtest.h>
 

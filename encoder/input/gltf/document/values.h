@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "encoder/input/gltf/accessor.h"
-#include "encoder/input/gltf/affine.h"
-#include "encoder/input/gltf/memory.h"
+#include "encoder/input/gltf/document/accessor.h"
+#include "encoder/input/gltf/document/affine.h"
+#include "encoder/input/gltf/document/memory.h"
 
 namespace rlpc {
 

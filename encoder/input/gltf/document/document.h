@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/gltf/accessor.h"
-#include "encoder/input/gltf/affine.h"
-#include "encoder/input/gltf/buffers.h"
-#include "encoder/input/gltf/json.h"
+#include "encoder/input/gltf/document/accessor.h"
+#include "encoder/input/gltf/document/affine.h"
+#include "encoder/input/gltf/document/buffers.h"
+#include "encoder/input/gltf/document/json.h"
 
 namespace rlpc {
 
