@@ -10,6 +10,14 @@ enum class GofKind : std::uint8_t {
   kSkinned,   // 6.11: bones, and trajectories of what they leave
 };
 
+// What it is made of, for people.
+constexpr const char* kind_name(GofKind kind) {
+  return kind == GofKind::kSkinned ? "bones" : "clusters";
+}
+
+// 6.12: whether slice units may follow the GOF unit.
+constexpr bool has_slices(GofKind kind) { return kind == GofKind::kSkinned; }
+
 struct GofHeader {
   GofKind kind = GofKind::kClusters;
   std::uint32_t first_frame = 0;

@@ -267,7 +267,7 @@ class Figures(ToolsTest):
         self.assertEqual([(g["first_frame"], g["num_frames"]) for g in gofs], [(0, 60)])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
         for words in ("Baseline profile", "GOFs of clusters: 1, with ", "frames 0 to 59: "
-                      f"{gofs[0]['num_clusters']} clusters, {gofs[0]['num_components']} comp"):
+                      f"{gofs[0]['num_clusters']} clusters and {gofs[0]['num_components']} comp"):
             self.assertIn(words, said)
 
     def test_rlpcinfo_tells_of_both_kinds_of_gofs(self):
@@ -283,7 +283,7 @@ class Figures(ToolsTest):
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
         for words in ("GOFs of clusters: 2, with 2 to 3 clusters and 3 to 4 components",
                       "GOFs of bones: 1, with 2 bones", "frames 4 to 8: 2 bones",
-                      "frames 9 to 11: 2 clusters, 3 components"):
+                      "frames 9 to 11: 2 clusters and 3 components"):
             self.assertIn(words, said)
 
     def test_cloth_of_high_rank_gets_clusters(self):

@@ -29,20 +29,20 @@ TEST(GofSummaries, TellsOfGofsAndTheirSlices) {
   EXPECT_EQ(gofs[1].first_frame, 2U);
   for (const GofSummary& gof : gofs) {
     EXPECT_EQ(gof.num_frames, 2U);
-    EXPECT_EQ(gof.num_bones, 3U);
-    EXPECT_EQ(gof.num_component_groups, 2U);
+    EXPECT_EQ(gof.figure("num_bones"), 3U);
+    EXPECT_EQ(gof.figure("num_component_groups"), 2U);
   }
-  EXPECT_EQ(gofs[0].prediction_idc, 3U);
+  EXPECT_EQ(gofs[0].figure("prediction_idc"), 3U);
   ASSERT_EQ(gofs[0].layer_group_size.size(), 2U);
   EXPECT_EQ(gofs[0].layer_group_size[0], 1U);
-  EXPECT_EQ(gofs[0].layer_group_size[1], gofs[0].num_layers - 1);
-  EXPECT_GT(gofs[0].num_layers, 1U);
-  EXPECT_EQ(gofs[0].num_trajectories(), 3U);
+  EXPECT_EQ(gofs[0].layer_group_size[1], gofs[0].figure("num_layers") - 1);
+  EXPECT_GT(gofs[0].figure("num_layers"), 1U);
+  EXPECT_EQ(gofs[0].figure("num_trajectories"), 3U);
   // Of the second group there is no slice: neither has it trajectories.
-  EXPECT_EQ(gofs[1].prediction_idc, 1U);
+  EXPECT_EQ(gofs[1].figure("prediction_idc"), 1U);
   EXPECT_EQ(gofs[1].layer_group_size, std::vector<std::uint32_t>{1});
-  EXPECT_EQ(gofs[1].num_layers, 1U);
-  EXPECT_EQ(gofs[1].num_trajectories(), 1U);
+  EXPECT_EQ(gofs[1].figure("num_layers"), 1U);
+  EXPECT_EQ(gofs[1].figure("num_trajectories"), 1U);
 }
 
 TEST(GofSummaries, CountsTheBytesOfUnits) {
@@ -83,9 +83,9 @@ TEST(GofSummaries, TellsOfGofsOfClusters) {
   for (std::size_t g = 0; g < 2; ++g) {
     EXPECT_EQ(gofs[g].first_frame, 3 * g);
     EXPECT_EQ(gofs[g].num_frames, 3U);
-    EXPECT_EQ(gofs[g].num_clusters, 2U);
-    EXPECT_EQ(gofs[g].num_components, 4U);
-    EXPECT_FALSE(gofs[g].has_bones());
+    EXPECT_EQ(gofs[g].figure("num_clusters"), 2U);
+    EXPECT_EQ(gofs[g].figure("num_components"), 4U);
+    EXPECT_EQ(gofs[g].kind, GofKind::kClusters);
     EXPECT_TRUE(gofs[g].slices.empty());
   }
 }
@@ -96,11 +96,11 @@ TEST(GofSummaries, TellsBothKindsInOneStream) {
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     const bool has_bones = g % 2 == 1;
     EXPECT_EQ(gofs[g].first_frame, 2 * g);
-    EXPECT_EQ(gofs[g].has_bones(), has_bones);
-    EXPECT_EQ(gofs[g].num_bones, has_bones ? 3U : 0U);
-    EXPECT_EQ(gofs[g].num_clusters, has_bones ? 0U : 2U);
-    EXPECT_EQ(gofs[g].num_components, has_bones ? 0U : 2U);
-    EXPECT_EQ(gofs[g].num_trajectories(), has_bones ? 3U : 0U);
+    EXPECT_EQ(gofs[g].kind, has_bones ? GofKind::kSkinned : GofKind::kClusters);
+    EXPECT_EQ(gofs[g].figure("num_bones"), has_bones ? 3U : 0U);
+    EXPECT_EQ(gofs[g].figure("num_clusters"), has_bones ? 0U : 2U);
+    EXPECT_EQ(gofs[g].figure("num_components"), has_bones ? 0U : 2U);
+    EXPECT_EQ(gofs[g].figure("num_trajectories"), has_bones ? 3U : 0U);
     EXPECT_EQ(gofs[g].slices.size(), has_bones ? 6U : 0U);
   }
 }

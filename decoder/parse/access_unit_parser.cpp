@@ -1,42 +1,107 @@
 #include "decoder/parse/access_unit_parser.h"
 
+#include <optional>
 #include <utility>
 
 #include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/parse_gof_header.h"
+#include "decoder/parse/parse_skinned_gof.h"
 
 namespace rlpc {
+
+// A kind of GOF.
+class AccessUnitParser::KindParser {
+ public:
+  virtual ~KindParser() = default;
+  // What follows the header in the GOF unit.
+  virtual Result<bool> gof(BitReader& r, const GofHeader& header) = 0;
+  // Adds what the slice is, but for its bytes, unless it is left out.
+  virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
+                             std::vector<SliceEntry>& slices);
+  virtual bool is_cut() const { return false; }
+  virtual AnyGof finish() = 0;
+};
+
+Result<bool> AccessUnitParser::KindParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
+                                                 std::vector<SliceEntry>&) {
+  r.fail(Errc::kInvalid, "R-UNT-05", "slice_unit", unit_bit_pos);
+  return *r.error();
+}
+
+class AccessUnitParser::ClusterParser final : public KindParser {
+ public:
+  ClusterParser(const StreamContext& context, std::uint64_t max_memory_bytes)
+      : context_(context), max_memory_bytes_(max_memory_bytes) {}
+
+  Result<bool> gof(BitReader& r, const GofHeader& header) override {
+    auto gof = parse_clusters(r, context_.header, context_.topology, header, max_memory_bytes_);
+    if (!gof) return gof.error();
+    gof_ = std::move(*gof);
+    return true;
+  }
+  AnyGof finish() override { return std::move(gof_); }
+
+ private:
+  const StreamContext& context_;
+  std::uint64_t max_memory_bytes_;
+  ClusterGof gof_;
+};
+
+class AccessUnitParser::SkinnedParser final : public KindParser {
+ public:
+  SkinnedParser(const StreamContext& context, std::uint64_t max_memory_bytes,
+                const SliceCut& cut)
+      : parser_(context.header, *context.meshes, max_memory_bytes, cut) {}
+
+  Result<bool> gof(BitReader& r, const GofHeader& header) override {
+    return parser_.bones(r, header);
+  }
+  Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
+                     std::vector<SliceEntry>& slices) override {
+    if (auto ok = parser_.slice(r, unit_bit_pos); !ok) return ok;
+    if (parser_.last_slice()) slices.push_back(*parser_.last_slice());
+    return true;
+  }
+  bool is_cut() const override { return parser_.is_cut(); }
+  AnyGof finish() override { return parser_.finish(); }
+
+ private:
+  SkinnedGofParser parser_;
+};
+
+AccessUnitParser::AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
+                                   const SliceCut& cut)
+    : context_(context), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
+
+AccessUnitParser::~AccessUnitParser() = default;
+
+std::unique_ptr<AccessUnitParser::KindParser> AccessUnitParser::make_parser() const {
+  switch (kind_) {
+    case GofKind::kClusters:
+      return std::make_unique<ClusterParser>(context_, max_memory_bytes_);
+    case GofKind::kSkinned:
+      return std::make_unique<SkinnedParser>(context_, max_memory_bytes_, cut_);
+  }
+  return nullptr;
+}
 
 Result<bool> AccessUnitParser::gof(BitReader& r, std::uint32_t first_frame,
                                    std::uint64_t unit_bytes) {
   const GofHeader header = parse_gof_header(r, context_.header, first_frame);
   if (r.error()) return *r.error();
+  kind_ = header.kind;
   num_frames_ = header.num_frames;
   access_unit_.gof_bytes = unit_bytes;
-  switch (header.kind) {
-    case GofKind::kClusters: {
-      auto gof =
-          parse_clusters(r, context_.header, context_.topology, header, max_memory_bytes_);
-      if (!gof) return gof.error();
-      access_unit_.gof = std::move(*gof);
-      break;
-    }
-    case GofKind::kSkinned:
-      skinned_.emplace(context_.header, *context_.meshes, max_memory_bytes_, cut_);
-      if (auto ok = skinned_->bones(r, header); !ok) return ok;
-      break;
-  }
-  return true;
+  parser_ = make_parser();
+  return parser_->gof(r, header);
 }
 
 Result<bool> AccessUnitParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
                                      std::uint64_t unit_bytes) {
-  if (auto ok = skinned_->slice(r, unit_bit_pos); !ok) return ok;
-  if (skinned_->last_slice()) {
-    access_unit_.slices.push_back(*skinned_->last_slice());
-    access_unit_.slices.back().bytes = unit_bytes;
-  }
+  const std::size_t before = access_unit_.slices.size();
+  if (auto ok = parser_->slice(r, unit_bit_pos, access_unit_.slices); !ok) return ok;
+  if (access_unit_.slices.size() > before) access_unit_.slices.back().bytes = unit_bytes;
   return true;
 }
 
@@ -48,10 +113,8 @@ Result<bool> AccessUnitParser::hash(BitReader& r) {
 }
 
 AccessUnit AccessUnitParser::finish() {
-  if (skinned_) {
-    access_unit_.is_cut = skinned_->is_cut();
-    access_unit_.gof = skinned_->finish();
-  }
+  access_unit_.is_cut = parser_->is_cut();
+  access_unit_.gof = parser_->finish();
   return std::move(access_unit_);
 }
 

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
-#include "decoder/parse/parse_skinned_gof.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
@@ -21,15 +20,15 @@ class AccessUnitParser {
   // The context must outlive it, with its connectivity set. Slices that the cut leaves out are
   // as if they were absent.
   AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
-                   const SliceCut& cut = {})
-      : context_(context), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
+                   const SliceCut& cut = {});
+  ~AccessUnitParser();
 
   // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
   //
   // 6.5 gof( ), once. first_frame: that the GOF has to begin with.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, std::uint64_t unit_bytes);
   // Whether slice units may follow.
-  bool has_slices() const { return skinned_.has_value(); }
+  bool has_slices() const { return rlpc::has_slices(kind_); }
   // 6.12 slice_unit( ), any number. unit_bit_pos: of the unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
   // 6.7 gof_hash( ), once or not at all.
@@ -39,11 +38,18 @@ class AccessUnitParser {
   AccessUnit finish();
 
  private:
+  class KindParser;
+  class ClusterParser;
+  class SkinnedParser;
+
+  std::unique_ptr<KindParser> make_parser() const;
+
   const StreamContext& context_;
   std::uint64_t max_memory_bytes_;
   SliceCut cut_;
   std::uint32_t num_frames_ = 0;
-  std::optional<SkinnedGofParser> skinned_;
+  GofKind kind_ = GofKind::kClusters;
+  std::unique_ptr<KindParser> parser_;
   AccessUnit access_unit_;
 };
 

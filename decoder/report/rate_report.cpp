@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "decoder/report/svg_chart.h"
@@ -140,25 +141,31 @@ void add_rate_section(HtmlPage& page, const StreamRates& rates) {
           gof_rate_chart(rates) + "</div>\n");
 }
 
+// Those that people read, of each kind of GOF that there is.
+std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs) {
+  std::vector<GofFigure> figures;
+  std::set<GofKind> kinds;
+  for (const GofSummary& gof : gofs) {
+    if (!kinds.insert(gof.kind).second) continue;
+    for (const GofFigure& figure : gof.figures) {
+      if (figure.many != nullptr) figures.push_back(figure);
+    }
+  }
+  return figures;
+}
+
 void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   const std::vector<GofSummary>& gofs = *rates.gofs;
-  const auto has_bones = [](const GofSummary& gof) { return gof.has_bones(); };
-  const bool any_bones = std::any_of(gofs.begin(), gofs.end(), has_bones);
-  const bool any_clusters = !std::all_of(gofs.begin(), gofs.end(), has_bones);
+  const std::vector<GofFigure> columns = figures_of_all_kinds(gofs);
   std::string html = "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
-  if (any_bones) html += "<th>bones</th><th>trajectories</th><th>layers</th><th>slices</th>";
-  if (any_clusters) html += "<th>clusters</th><th>components</th>";
+  for (const GofFigure& column : columns) html += std::string("<th>") + column.many + "</th>";
   html += "<th>bytes</th><th>bpvf</th></tr></thead>\n";
   const auto count = [](std::uint64_t n) { return cell(n == 0 ? "" : grouped_text(n)); };
   for (std::size_t g = 0; g < std::min(gofs.size(), kMaxGofRows); ++g) {
     const GofSummary& gof = gofs[g];
     const std::uint64_t bits = sum(rates.counter->gof_bits()[g]);
     html += "<tr>" + cell(frames_text(gof));
-    if (any_bones) {
-      html += count(gof.num_bones) + count(gof.num_trajectories()) +
-              count(gof.has_bones() ? gof.num_layers : 0) + count(gof.slices.size());
-    }
-    if (any_clusters) html += count(gof.num_clusters) + count(gof.num_components);
+    for (const GofFigure& column : columns) html += count(gof.figure(column.key));
     html += count(bits / 8) +
             cell(number_text(static_cast<double>(bits) /
                              (static_cast<double>(rates.num_vertices) * gof.num_frames))) +

@@ -37,7 +37,7 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
       if (r.error()) return std::nullopt;
     }
     coded.units.push_back({*unit, std::move(*payload)});
-    const auto next = unit_after(*unit, coded.gof.kind == GofKind::kSkinned);
+    const auto next = unit_after(*unit, has_slices(coded.gof.kind));
     if (!next) return std::nullopt;
     unit = *next;
   }

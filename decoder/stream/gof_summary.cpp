@@ -5,22 +5,39 @@
 namespace rlpc {
 namespace {
 
+template <class List>
+std::uint32_t size_of(const List& list) {
+  return static_cast<std::uint32_t>(list.size());
+}
+
 void add_kind(const ClusterGof& gof, GofSummary& summary) {
-  summary.num_clusters = static_cast<std::uint32_t>(gof.clusters.size());
-  for (const Cluster& cluster : gof.clusters) {
-    summary.num_components += static_cast<std::uint32_t>(cluster.components.size());
-  }
+  std::size_t num_components = 0;
+  for (const Cluster& cluster : gof.clusters) num_components += cluster.components.size();
+  summary.figures = {{"num_clusters", "cluster", "clusters", size_of(gof.clusters)},
+                     {"num_components", "component", "components",
+                      static_cast<std::uint32_t>(num_components)}};
 }
 
 void add_kind(const SkinnedGof& gof, GofSummary& summary) {
-  summary.num_bones = static_cast<std::uint32_t>(gof.bones.size());
-  summary.prediction_idc = static_cast<std::uint32_t>(gof.prediction);
-  summary.num_component_groups = gof.num_component_groups;
-  summary.num_layers = static_cast<std::uint32_t>(gof.layer_step.size());
   summary.layer_group_size = gof.layer_group_size;
+  summary.figures = {
+      {"num_bones", "bone", "bones", size_of(gof.bones)},
+      {"num_trajectories", "trajectory", "trajectories", size_of(gof.trajectories)},
+      {"num_component_groups", "component group", "component groups", gof.num_component_groups},
+      {"prediction_idc", nullptr, nullptr, static_cast<std::uint32_t>(gof.prediction)},
+      {"num_layers", "layer", "layers", size_of(gof.layer_step)},
+      {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
+      {"num_slices", "slice", "slices", size_of(summary.slices)}};
 }
 
 }  // namespace
+
+std::uint32_t GofSummary::figure(std::string_view key) const {
+  for (const GofFigure& f : figures) {
+    if (key == f.key) return f.value;
+  }
+  return 0;
+}
 
 SliceTotals GofSummary::totals(const SliceGroups& groups) const {
   SliceTotals totals;

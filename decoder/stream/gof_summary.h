@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "common/result.h"
@@ -31,25 +32,29 @@ struct SliceTotals {
   std::uint64_t bytes = 0;       // of the GOF unit and of slice units
 };
 
+// A number that says how large a GOF is. one, many: what is counted; null: for programs only.
+struct GofFigure {
+  const char* key;  // in JSON
+  const char* one;
+  const char* many;
+  std::uint32_t value;
+};
+
 struct GofSummary {
   GofKind kind = GofKind::kClusters;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::uint64_t bytes = 0;  // of the GOF unit
 
-  // Of a GOF of clusters; it has nothing of what follows.
-  std::uint32_t num_clusters = 0;
-  std::uint32_t num_components = 0;  // of all clusters
+  std::vector<GofFigure> figures;  // the same keys for each GOF of a kind
 
-  std::uint32_t num_bones = 0;
-  std::uint32_t prediction_idc = 0;
-  std::uint32_t num_component_groups = 0;
-  std::uint32_t num_layers = 1;
+  // 0: this kind has none of that key.
+  std::uint32_t figure(std::string_view key) const;
+
+  // Of kinds that have slices.
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   std::vector<SliceEntry> slices;
 
-  bool has_bones() const { return kind == GofKind::kSkinned; }
-  std::uint32_t num_trajectories() const { return totals({}).num_trajectories; }
   SliceTotals totals(const SliceGroups& groups) const;
   SliceGroups groups_that_stay(const SliceCut& cut) const;
 };

@@ -239,7 +239,7 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     if (!gof) return gof.error();
     if (frame < frames_parsed_ + gof->num_frames) return true;
     go_past(**unit, gof->num_frames, (*unit)->end());
-    if (gof->kind != GofKind::kSkinned) continue;
+    if (!has_slices(gof->kind)) continue;
     if (auto ok = skip_slices(); !ok) return ok;
   }
 }

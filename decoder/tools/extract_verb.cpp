@@ -85,9 +85,9 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", printable(o.output).c_str(), bytes,
               bpvf(cutter, bytes));
   for (const GofSummary& gof : cutter.gofs()) {
-    if (!gof.has_bones()) {
-      std::printf("  frames %u to %u: of clusters, %" PRIu64 " bytes, which stay\n",
-                  gof.first_frame, gof.first_frame + gof.num_frames - 1, gof.bytes);
+    if (!has_slices(gof.kind)) {
+      std::printf("  frames %u to %u: of %s, %" PRIu64 " bytes, which stay\n", gof.first_frame,
+                  gof.first_frame + gof.num_frames - 1, kind_name(gof.kind), gof.bytes);
       continue;
     }
     const SliceTotals before = gof.totals({});

@@ -90,12 +90,12 @@ std::uint32_t num_groups(const rlpc::GofSummary& gof) {
 }
 
 nlohmann::ordered_json json_of(const rlpc::GofSummary& gof) {
-  if (!gof.has_bones()) {
-    return {{"first_frame", gof.first_frame},
-            {"num_frames", gof.num_frames},
-            {"num_clusters", gof.num_clusters},
-            {"num_components", gof.num_components},
-            {"bytes", gof.bytes}};
+  nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
+                                 {"num_frames", gof.num_frames}};
+  for (const rlpc::GofFigure& figure : gof.figures) json[figure.key] = figure.value;
+  if (!rlpc::has_slices(gof.kind)) {
+    json["bytes"] = gof.bytes;
+    return json;
   }
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
   for (const rlpc::SliceEntry& slice : gof.slices) {
@@ -114,18 +114,12 @@ nlohmann::ordered_json json_of(const rlpc::GofSummary& gof) {
     const rlpc::SliceTotals cut = gof.totals({rlpc::SliceCut::kAll, group + 1});
     layers.push_back({{"layers", cut.num_layers}, {"bytes", cut.bytes}});
   }
-  return {{"first_frame", gof.first_frame},
-          {"num_frames", gof.num_frames},
-          {"num_bones", gof.num_bones},
-          {"num_trajectories", gof.num_trajectories()},
-          {"num_component_groups", gof.num_component_groups},
-          {"prediction_idc", gof.prediction_idc},
-          {"num_layers", gof.num_layers},
-          {"layer_group_size", gof.layer_group_size},
-          {"bytes", gof.bytes},
-          {"slices", std::move(slices)},
-          {"cut_to_components", std::move(components)},
-          {"cut_to_layers", std::move(layers)}};
+  json["layer_group_size"] = gof.layer_group_size;
+  json["bytes"] = gof.bytes;
+  json["slices"] = std::move(slices);
+  json["cut_to_components"] = std::move(components);
+  json["cut_to_layers"] = std::move(layers);
+  return json;
 }
 
 // What a stream carries is not checked: what is no JSON, or is nested without measure, is told
@@ -179,67 +173,58 @@ std::string counted(std::uint64_t count, const Noun& noun) {
   return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
 }
 
-// "12 clusters", or "3 to 12 clusters"
-template <class Count>
-std::string range_over(const std::vector<rlpc::GofSummary>& gofs, const Noun& noun,
-                       const Count& count) {
-  const auto compare = [&](const auto& a, const auto& b) { return count(a) < count(b); };
+// "12 clusters", or "3 to 12 clusters": of the figures at a place.
+std::string range_over(const std::vector<rlpc::GofSummary>& gofs, std::size_t place) {
+  const auto value = [&](const rlpc::GofSummary& gof) { return gof.figures[place].value; };
+  const auto compare = [&](const auto& a, const auto& b) { return value(a) < value(b); };
   const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
-  const std::string most_counted = counted(count(*most), noun);
-  return count(*least) == count(*most) ? most_counted
-                                       : std::to_string(count(*least)) + " to " + most_counted;
+  const rlpc::GofFigure& figure = most->figures[place];
+  const std::string most_counted = counted(figure.value, {figure.one, figure.many});
+  return value(*least) == figure.value ? most_counted
+                                       : std::to_string(value(*least)) + " to " + most_counted;
 }
 
-std::vector<rlpc::GofSummary> of_kind(std::vector<rlpc::GofSummary> gofs, bool has_bones) {
-  std::erase_if(gofs,
-                [&](const rlpc::GofSummary& gof) { return gof.has_bones() != has_bones; });
-  return gofs;
+// "a", "a and b", "a, b and c"
+std::string listed(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
+    text += parts[i];
+  }
+  return text;
 }
 
-void print_clusters(const std::vector<rlpc::GofSummary>& gofs) {
-  using Entry = rlpc::GofSummary;
-  std::printf(
-      "  GOFs of clusters: %zu, with %s and %s each\n", gofs.size(),
-      range_over(gofs, {"cluster", "clusters"}, [](const Entry& g) { return g.num_clusters; })
-          .c_str(),
-      range_over(gofs, {"component", "components"}, [](const Entry& g) {
-        return g.num_components;
-      }).c_str());
-}
-
-void print_bones(const std::vector<rlpc::GofSummary>& gofs) {
-  using Entry = rlpc::GofSummary;
-  const auto over = [&](const Noun& noun, const auto& count) {
-    return range_over(gofs, noun, count);
-  };
-  std::printf(
-      "  GOFs of bones: %zu, with %s, %s in %s, %s in %s and %s each\n", gofs.size(),
-      over({"bone", "bones"}, [](const Entry& g) { return g.num_bones; }).c_str(),
-      over({"trajectory", "trajectories"}, [](const Entry& g) { return g.num_trajectories(); })
-          .c_str(),
-      over({"component group", "component groups"},
-           [](const Entry& g) { return g.num_component_groups; })
-          .c_str(),
-      over({"layer", "layers"}, [](const Entry& g) { return g.num_layers; }).c_str(),
-      over({"layer group", "layer groups"},
-           [](const Entry& g) { return g.layer_group_size.size(); })
-          .c_str(),
-      over({"slice", "slices"}, [](const Entry& g) { return g.slices.size(); }).c_str());
+// A line for each kind of GOF.
+void print_kinds(std::vector<rlpc::GofSummary> gofs) {
+  while (!gofs.empty()) {
+    const auto end = std::stable_partition(
+        gofs.begin(), gofs.end(),
+        [kind = gofs[0].kind](const rlpc::GofSummary& gof) { return gof.kind == kind; });
+    const std::vector<rlpc::GofSummary> of_kind(gofs.begin(), end);
+    std::vector<std::string> ranges;
+    for (std::size_t i = 0; i < of_kind[0].figures.size(); ++i) {
+      if (of_kind[0].figures[i].many != nullptr) ranges.push_back(range_over(of_kind, i));
+    }
+    std::printf("  GOFs of %s: %zu, with %s each\n", rlpc::kind_name(of_kind[0].kind),
+                of_kind.size(), listed(ranges).c_str());
+    gofs.erase(gofs.begin(), end);
+  }
 }
 
 // Of a GOF of bones, a line for each component group, a column for each layer group; and what
 // stays of the GOF if it is cut behind one of them.
 void print_gof(const rlpc::GofSummary& gof) {
-  if (!gof.has_bones()) {
-    std::printf("\n  frames %u to %u: %s, %s in %" PRIu64 " bytes\n", gof.first_frame,
-                gof.first_frame + gof.num_frames - 1,
-                counted(gof.num_clusters, {"cluster", "clusters"}).c_str(),
-                counted(gof.num_components, {"component", "components"}).c_str(), gof.bytes);
-    return;
+  std::vector<std::string> figures;
+  for (const rlpc::GofFigure& figure : gof.figures) {
+    if (figure.many == nullptr) continue;
+    figures.push_back(counted(figure.value, {figure.one, figure.many}));
   }
-  std::printf("\n  frames %u to %u: %s in %" PRIu64 " bytes; slices in bytes\n",
-              gof.first_frame, gof.first_frame + gof.num_frames - 1,
-              counted(gof.num_bones, {"bone", "bones"}).c_str(), gof.bytes);
+  const bool has_slices = rlpc::has_slices(gof.kind);
+  if (has_slices) figures.resize(1);  // the table has the others
+  std::printf("\n  frames %u to %u: %s in %" PRIu64 " bytes%s\n", gof.first_frame,
+              gof.first_frame + gof.num_frames - 1, listed(figures).c_str(), gof.bytes,
+              has_slices ? "; slices in bytes" : "");
+  if (!has_slices) return;
   std::printf("  %-40s", "layers");
   for (const std::uint32_t size : gof.layer_group_size) std::printf(" %9u", size);
   std::printf(" %12s\n", "GOF to here");
@@ -276,10 +261,7 @@ void print_table(const Options& o, const Summary& s) {
               counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
               counted(h.num_frames, {"frame", "frames"}).c_str(), h.frame_rate.numerator,
               h.frame_rate.denominator, counted(s.gofs.size(), {"GOF", "GOFs"}).c_str());
-  const auto clusters = of_kind(s.gofs, false);
-  const auto bones = of_kind(s.gofs, true);
-  if (!clusters.empty()) print_clusters(clusters);
-  if (!bones.empty()) print_bones(bones);
+  print_kinds(s.gofs);
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
   std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
   const auto& names = rlpc::stream_part_names();

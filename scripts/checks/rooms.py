@@ -4,11 +4,18 @@ A room is a folder. It may include its own files, files of the folders named (no
 them), and single files; other libraries only where LIBRARIES says so.
 """
 
+# Kinds of GOF: a folder of each side has these names.
+_KINDS = ("cluster_gof", "skinned_gof")
+
+
+def _of_kinds(folder):
+    return {folder.format(kind) for kind in _KINDS}
+
+
 _BITS = {"common", "common/bitstream"}
 _MESH = _BITS | {"common/mesh"}
-_GOFS = _MESH | {"common/syntax", "common/components", "common/cluster_gof", "common/skinned_gof"}
-_RECON = {"common/kernels", "common/mesh_prediction", "common/cluster_gof/recon",
-          "common/skinned_gof/recon"}
+_GOFS = _MESH | {"common/syntax", "common/components"} | _of_kinds("common/{}")
+_RECON = {"common/kernels", "common/mesh_prediction"} | _of_kinds("common/{}/recon")
 _PARSE = {"decoder/parse", "decoder/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
 _ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/write"}
@@ -20,12 +27,10 @@ ROOMS = {
     "common/mesh": _BITS,
     "common/components": _BITS,
     "common/syntax": _GOFS,
-    "common/cluster_gof": _MESH | {"common/syntax", "common/components"},
-    "common/skinned_gof": _MESH | {"common/syntax", "common/components"},
+    **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components"}),
     "common/kernels": {"common", "common/components"},
     "common/mesh_prediction": {"common", "common/mesh", "common/kernels"},
-    "common/cluster_gof/recon": _GOFS | _RECON,
-    "common/skinned_gof/recon": _GOFS | _RECON,
+    **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
     "common/c_api": {"common"},
     "common/testing": _GOFS,
     # Files and terminals, for programs and for readers and writers of files; floats (7.3).
@@ -55,15 +60,15 @@ ROOMS = {
     "encoder/metrics": {"common/mesh", "encoder/math"},
     "encoder/write": _GOFS | {"encoder/math/det_math.h"},
     "encoder/gof": _ENCODER,
-    "encoder/cluster_gof": _ENCODER,
+    **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER),
     "encoder/skinned_gof": _ENCODER | {"encoder/skinned_gof/fit", "encoder/skinned_gof/quantise",
                                        "encoder/skinned_gof/search"},
     "encoder/skinned_gof/fit": _ENCODER,
     "encoder/skinned_gof/quantise": _ENCODER | {"encoder/skinned_gof/fit"},
     "encoder/skinned_gof/search": _ENCODER | {"encoder/skinned_gof/fit",
                                               "encoder/skinned_gof/quantise"},
-    "encoder/sequence": _ENCODER | {"common/io", "encoder/cluster_gof", "encoder/skinned_gof",
-                                    "encoder/input", "encoder/input/formats", "encoder/metrics"},
+    "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
+        "common/io", "encoder/input", "encoder/input/formats", "encoder/metrics"},
     "encoder/c_api": {"common/c_api", "encoder"},
     # Readers of mesh files know nothing of coding.
     "encoder/input": {"common", "common/io", "common/mesh", "common/syntax/stream_format.h",
@@ -82,9 +87,9 @@ ROOMS = {
 CLOSED = {room: {"common/mesh/vertex_layers.h"} for room in _PARSE}
 # Functions that headers of these folders and files declare are not called by name in the room,
 # through whatever header they are seen.
-NOT_CALLED = {room: ("common/cluster_gof/recon", "common/skinned_gof/recon",
-                     "common/mesh_prediction", "common/kernels", "decoder/recon",
-                     "common/mesh/vertex_layers.h", "common/io") for room in _PARSE}
+NOT_CALLED = {room: (*sorted(_of_kinds("common/{}/recon")), "common/mesh_prediction",
+                     "common/kernels", "decoder/recon", "common/mesh/vertex_layers.h",
+                     "common/io") for room in _PARSE}
 NOT_CALLED |= {room: ("common/io",) for room in ("decoder/recon", "decoder/stream")}
 # Sees both sides; nothing includes it.
 BOTH_SIDES = "conformance"
