@@ -199,7 +199,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
   const bool has_bones = header.profile_idc == kProfileMain && r.u(1, "bones_flag") != 0;
-  if (r.readable()) gof.bones_flag = has_bones;
+  if (r.readable()) gof.kind = has_bones ? GofKind::kSkinned : GofKind::kClusters;
   gof.section_readable =
       has_bones ? check_bones(r, header, num_layers, gof) : check_clusters(r, header);
   gof.section_readable &= good;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/syntax/gof_header.h"
 #include "common/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "decoder/parse/sequence/parse_gof_index.h"
@@ -29,7 +30,7 @@ struct SliceCounts {
 struct GofHeaderCheck {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;       // 0: not known
-  std::optional<bool> bones_flag;     // if it could be read, or inferred
+  std::optional<GofKind> kind;        // if it could be read, or inferred
   bool section_readable = false;      // nothing but first_frame may be wrong
   std::optional<SliceCounts> slices;  // of a GOF of bones, if known
 };

@@ -8,6 +8,7 @@
 #include "common/bitstream/crc32.h"
 #include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/validator_elements.h"
+#include "conformance/rlpcval/validator_gofs.h"
 #include "conformance/rlpcval/validator_json.h"
 #include "conformance/rlpcval/validator_stream.h"
 #include "decoder/parse/parse_gof_hash.h"
@@ -156,7 +157,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
   const GofHeaderCheck header = check_gof_header(
       r, lead_.header->header, surplus ? std::nullopt : gof_.expected_first_frame, num_layers);
-  gof_.may_have_slices = damaged || header.bones_flag.value_or(true);
+  gof_.may_have_slices = damaged || !header.kind || has_slices(*header.kind);
   gof_.slice_counts = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
   gof_.num_frames = header.num_frames;
@@ -174,9 +175,8 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
 // 6.5 clusters_of_gof( ), 6.11 bones_of_gof( )
 void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
                                const GofHeaderCheck& header) {
-  const bool has_bones = header.bones_flag.value_or(false);
-  if (!header.section_readable || !lead_.has_connectivity ||
-      (has_bones && !lead_.header->positions)) {
+  const bool on_grid = header.kind == GofKind::kClusters || lead_.header->positions;
+  if (!header.section_readable || !lead_.has_connectivity || !on_grid) {
     report_.complete = false;
     return;
   }
@@ -226,7 +226,9 @@ void StreamValidator::end_slices() {
   ++report_.gofs;
   report_.frames += gof_.access_unit->header().num_frames;
   findings_.in_unit(gof_.place);
-  std::visit([this](const auto& gof) { warn_of_gof(*gof_.unit, gof); }, gof_.access_unit->gof);
+  needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, gof_.unit->size);
+  warn_of_gof(*gof_.access_unit, lead_.context, gof_.unit->payload_offset() * 8, findings_,
+              needed_);
 }
 
 // 6.7 gof_hash( )

@@ -63,8 +63,6 @@ class StreamValidator {
 
   // validator_summary.cpp: what shows only with the whole stream.
   void compare_index(const GofIndexCheck& index);
-  void warn_of_gof(const UnitHeader& unit, const ClusterGof& gof);
-  void warn_of_gof(const UnitHeader& unit, const SkinnedGof& gof);
   void warn_of_stream();
   void warn_of_level();
 

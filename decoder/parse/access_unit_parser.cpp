@@ -10,10 +10,9 @@
 
 namespace rlpc {
 
-// A kind of GOF.
-class AccessUnitParser::KindParser {
+class GofParser {
  public:
-  virtual ~KindParser() = default;
+  virtual ~GofParser() = default;
   // What follows the header in the GOF unit.
   virtual Result<bool> gof(BitReader& r, const GofHeader& header) = 0;
   // Adds what the slice is, but for its bytes, unless it is left out.
@@ -23,13 +22,15 @@ class AccessUnitParser::KindParser {
   virtual AnyGof finish() = 0;
 };
 
-Result<bool> AccessUnitParser::KindParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
-                                                 std::vector<SliceEntry>&) {
+Result<bool> GofParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
+                              std::vector<SliceEntry>&) {
   r.fail(Errc::kInvalid, "R-UNT-05", "slice_unit", unit_bit_pos);
   return *r.error();
 }
 
-class AccessUnitParser::ClusterParser final : public KindParser {
+namespace {
+
+class ClusterParser final : public GofParser {
  public:
   ClusterParser(const StreamContext& context, std::uint64_t max_memory_bytes)
       : context_(context), max_memory_bytes_(max_memory_bytes) {}
@@ -48,7 +49,7 @@ class AccessUnitParser::ClusterParser final : public KindParser {
   ClusterGof gof_;
 };
 
-class AccessUnitParser::SkinnedParser final : public KindParser {
+class SkinnedParser final : public GofParser {
  public:
   SkinnedParser(const StreamContext& context, std::uint64_t max_memory_bytes,
                 const SliceCut& cut)
@@ -70,13 +71,15 @@ class AccessUnitParser::SkinnedParser final : public KindParser {
   SkinnedGofParser parser_;
 };
 
+}  // namespace
+
 AccessUnitParser::AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
                                    const SliceCut& cut)
     : context_(context), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
 
 AccessUnitParser::~AccessUnitParser() = default;
 
-std::unique_ptr<AccessUnitParser::KindParser> AccessUnitParser::make_parser() const {
+std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
   switch (kind_) {
     case GofKind::kClusters:
       return std::make_unique<ClusterParser>(context_, max_memory_bytes_);

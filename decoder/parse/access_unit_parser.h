@@ -13,6 +13,8 @@
 
 namespace rlpc {
 
+class GofParser;  // of one kind
+
 // Every size is checked against the level, and what it needs against max_memory_bytes, before
 // memory is taken for it. After an error only destruction makes sense.
 class AccessUnitParser {
@@ -38,18 +40,14 @@ class AccessUnitParser {
   AccessUnit finish();
 
  private:
-  class KindParser;
-  class ClusterParser;
-  class SkinnedParser;
-
-  std::unique_ptr<KindParser> make_parser() const;
+  std::unique_ptr<GofParser> make_parser() const;
 
   const StreamContext& context_;
   std::uint64_t max_memory_bytes_;
   SliceCut cut_;
   std::uint32_t num_frames_ = 0;
   GofKind kind_ = GofKind::kClusters;
-  std::unique_ptr<KindParser> parser_;
+  std::unique_ptr<GofParser> parser_;
   AccessUnit access_unit_;
 };
 
