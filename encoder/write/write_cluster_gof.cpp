@@ -6,6 +6,7 @@
 #include "common/cluster_gof/cluster_models.h"
 #include "common/int_math.h"
 #include "encoder/write/section_writer.h"
+#include "encoder/write/write_gof_header.h"
 
 namespace rlpc {
 namespace {
@@ -149,9 +150,7 @@ std::vector<std::uint8_t> ClusterSectionWriter::write() {
 std::vector<std::uint8_t> write_cluster_gof(const ClusterGof& gof, const SequenceHeader& header,
                                             const Topology& topology) {
   BitWriter w;
-  w.ue(gof.first_frame);
-  w.ue(gof.num_frames - 1);
-  if (header.profile_idc == kProfileMain) w.flag(false);  // bones_flag
+  write_gof_header(w, gof, header.profile_idc);
   w.ue(static_cast<std::uint32_t>(gof.clusters.size()) - 1);
   w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
   w.ue(gof.seed_step - 1);

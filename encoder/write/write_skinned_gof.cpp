@@ -10,6 +10,7 @@
 #include "common/skinned_gof/influences.h"
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/write/section_writer.h"
+#include "encoder/write/write_gof_header.h"
 
 namespace rlpc {
 namespace {
@@ -173,9 +174,7 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
 // 6.5 gof( ) and 6.11 bones_of_gof( )
 std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position_bits) {
   BitWriter w;
-  w.ue(gof.first_frame);
-  w.ue(gof.num_frames - 1);
-  w.flag(true);  // bones_flag
+  write_gof_header(w, gof, kProfileMain);
   w.ue(static_cast<std::uint32_t>(gof.bones.size()) - 1);
   w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
   w.u(3, static_cast<std::uint32_t>(gof.weight_bits));

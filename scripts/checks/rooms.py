@@ -4,8 +4,10 @@ A room is a folder. It may include its own files, files of the folders named (no
 them), and single files; other libraries only where LIBRARIES says so.
 """
 
+import pathlib
+
 # Kinds of GOF: a folder of each side has these names.
-_KINDS = ("cluster_gof", "skinned_gof")
+_KINDS = sorted(path.name for path in (pathlib.Path(__file__).parents[2] / "common").glob("*_gof"))
 
 
 def _of_kinds(folder):

@@ -1,0 +1,14 @@
+// 6.5 gof( ), writing side: what every kind of GOF begins with.
+#pragma once
+
+#include <cstdint>
+
+#include "common/bitstream/bit_writer.h"
+#include "common/syntax/gof_header.h"
+#include "common/syntax/sequence_header.h"
+
+namespace rlpc {
+
+void write_gof_header(BitWriter& w, const GofHeader& gof, std::uint32_t profile_idc);
+
+}  // namespace rlpc
