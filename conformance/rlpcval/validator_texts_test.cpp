@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "conformance/rlpcval/rule_explanations.h"
-#include "conformance/rlpcval/validator_json.h"
+#include "decoder/parse/sequence/json_text.h"
 
 namespace rlpc {
 namespace {

@@ -4,69 +4,106 @@
 #include <utility>
 
 #include "common/bitstream/crc32.h"
-#include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/sequence/parse_vertex_order.h"
+#include "decoder/parse/sequence/json_text.h"
+#include "decoder/parse/sequence/parse_metadata.h"
+#include "decoder/recon/gof_recon.h"
 
 namespace rlpc {
 namespace {
 
-// One stream for several readers.
-class SharedSource final : public ByteSource {
- public:
-  explicit SharedSource(std::shared_ptr<ByteSource> source) : source_(std::move(source)) {}
-  std::uint64_t size() const override { return source_->size(); }
-  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
-    return source_->read(offset, out);
+// 8.6.2: hashes of the positions of an access unit, one per frame or one for the GOF.
+std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
+                                         const StreamContext& context, bool per_frame) {
+  const auto recon = make_recon(access_unit, context);
+  std::vector<std::int32_t> positions(3 * std::size_t{context.header.num_vertices});
+  std::vector<std::uint32_t> crcs;
+  std::uint32_t crc = 0;
+  const std::uint32_t num_frames = recon->num_frames();
+  for (std::uint32_t f = 0; f < num_frames; ++f) {
+    recon->frame(f, positions);
+    crc = crc32_of_positions(positions, per_frame ? 0 : crc);
+    if (per_frame || f + 1 == num_frames) crcs.push_back(crc);
   }
-  std::uint64_t memory_bytes() const override { return source_->memory_bytes(); }
+  return crcs;
+}
 
- private:
-  std::shared_ptr<ByteSource> source_;
-};
+Result<std::vector<GofSummary>> check_gofs(StreamReader& stream) {
+  std::vector<GofSummary> gofs;
+  for (;;) {
+    const auto access_unit = stream.next();
+    if (!access_unit) return access_unit.error();
+    if (!*access_unit) return gofs;
+    const std::optional<GofHash>& hash = (*access_unit)->hash;
+    if (hash && position_crcs(**access_unit, stream.context(), hash->per_frame_flag) !=
+                    hash->position_crc) {
+      return Error{Errc::kInvalid, "R-HSH-02", "position_crc", stream.offset() * 8};
+    }
+    gofs.push_back(summarise(**access_unit));
+  }
+}
+
+// 7.10: what decoding does not check of metadata.
+Result<bool> check_metadata(UnitReader& units) {
+  for (std::uint64_t offset = kStreamHeaderBytes; offset < units.size();) {
+    const auto unit = units.header_at(offset);
+    if (!unit) return unit.error();
+    offset = unit->end();
+    if (unit->type() != UnitType::kMetadata) continue;
+    const auto payload = units.payload(*unit);
+    if (!payload) return payload.error();
+    BitReader r = units.bits(*unit, *payload);
+    const auto json = parse_metadata(r);
+    if (!json) return json.error();
+    if (find_json_error(*json)) {
+      return Error{Errc::kInvalid, "R-MET-03", "metadata_json",
+                   unit->payload_offset() * 8 + 32};
+    }
+  }
+  return true;
+}
+
+DecoderOptions with_cut(DecoderOptions options, const SliceCut& cut) {
+  options.cut = cut;
+  return options;
+}
 
 }  // namespace
 
-SubStreamExtractor::SubStreamExtractor(std::unique_ptr<ByteSource> units, Decoder decoder,
-                                       const SliceCut& cut, std::vector<GofSummary> gofs)
-    : units_(std::move(units), nullptr),
-      decoder_(std::move(decoder)),
-      cut_(cut),
-      gofs_(std::move(gofs)),
-      cuts_any_(std::any_of(gofs_.begin(), gofs_.end(),
-                            [this](const GofSummary& gof) { return cuts(gof); })) {}
+SubStreamExtractor::SubStreamExtractor(std::unique_ptr<StreamReader> stream,
+                                       const DecoderOptions& options,
+                                       std::vector<GofSummary> gofs)
+    : stream_(std::move(stream)),
+      cut_units_(stream_->units(), stream_->context(), options),
+      cut_(options.cut),
+      gofs_(std::move(gofs)) {}
 
 Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> source,
                                                     const SliceCut& cut,
                                                     const DecodeLimits& limits) {
-  const std::shared_ptr<ByteSource> shared = std::move(source);
   DecoderOptions options;
   options.limits = limits;
-  StreamReader whole(std::make_unique<SharedSource>(shared), options);
-  if (const auto ok = whole.open(); !ok) return ok.error();
-  auto gofs = summarise_all(whole);
+  std::uint64_t& left = options.limits.max_memory_bytes;
+  left -= std::min(left, source->memory_bytes());
+  auto stream = std::make_unique<StreamReader>(std::move(source), options);
+  if (const auto ok = stream->open(); !ok) return ok.error();
+  auto gofs = check_gofs(*stream);
   if (!gofs) return gofs.error();
-  options.verify_hashes = false;
-  options.cut = cut;
-  auto decoder = Decoder::open(std::make_unique<SharedSource>(shared), options);
-  if (!decoder) return decoder.error();
-  return SubStreamExtractor(std::make_unique<SharedSource>(shared), std::move(*decoder), cut,
-                            std::move(*gofs));
+  if (const auto ok = check_metadata(stream->units()); !ok) return ok.error();
+  return SubStreamExtractor(std::move(stream), with_cut(options, cut), std::move(*gofs));
+}
+
+bool SubStreamExtractor::cuts_any() const {
+  return std::any_of(gofs_.begin(), gofs_.end(),
+                     [this](const GofSummary& gof) { return cuts(gof); });
 }
 
 Result<Bytes> SubStreamExtractor::next() {
   if (offset_ == 0) {
     offset_ = written_ = kStreamHeaderBytes;
-    if (const auto ok = units_.stream_header(); !ok) return ok.error();
     return write_stream_header(header().profile_idc);
   }
-  while (offset_ < units_.size()) {
-    const auto unit = units_.header_at(offset_);
-    if (!unit) return unit.error();
-    offset_ = unit->end();
-    const auto payload = units_.payload(*unit);
-    if (!payload) return payload.error();
-    auto bytes =
-        cuts_any_ ? cut_unit(*unit, *payload) : Result(write_unit(unit->type(), *payload));
+  while (offset_ < size()) {
+    auto bytes = next_unit();
     if (!bytes) return bytes.error();
     written_ += bytes->size();
     if (!bytes->empty()) return bytes;
@@ -75,80 +112,76 @@ Result<Bytes> SubStreamExtractor::next() {
 }
 
 // What is in the place of a unit; nothing if it is left out.
-Result<Bytes> SubStreamExtractor::cut_unit(const UnitHeader& unit, const Bytes& payload) {
-  const GofSummary* const before = std::exchange(gof_, nullptr);
-  switch (unit.type()) {
-    case UnitType::kVertexOrder: {
-      BitReader r = units_.bits(unit, payload);
-      auto order = parse_vertex_order(r, header().num_vertices);
-      if (!order) return order.error();
-      vertex_order_ = std::move(*order);
-      break;
-    }
+Result<Bytes> SubStreamExtractor::next_unit() {
+  const auto unit = stream_->units().header_at(offset_);
+  if (!unit) return unit.error();
+  offset_ = unit->end();
+  switch (unit->type()) {
     case UnitType::kGof:
-      start_gof();
-      break;
+      return gof(*unit);
     case UnitType::kSlice:
-      gof_ = before;
-      if (!groups_.have(gof_->slices[num_slices_++])) return Bytes{};
-      break;
     case UnitType::kGofHash:
-      if (before != nullptr && cuts(*before)) return new_hash(*before, unit, payload);
-      break;
+      return access_unit_ ? slice_or_hash(*unit) : Bytes{};
     case UnitType::kGofIndex:
+      access_unit_.reset();
       has_index_ = true;
       return Bytes{};
     case UnitType::kEndOfSequence:
       return end_of_sequence();
     default:
-      break;
+      access_unit_.reset();
+      return copy(*unit);
   }
-  return write_unit(unit.type(), payload);
 }
 
-void SubStreamExtractor::start_gof() {
+Result<Bytes> SubStreamExtractor::copy(const UnitHeader& unit) {
+  const auto payload = stream_->units().payload(unit);
+  if (!payload) return payload.error();
+  return write_unit(unit.type(), *payload);
+}
+
+Result<Bytes> SubStreamExtractor::gof(const UnitHeader& unit) {
   if (index_.empty()) {
     first_gof_offset_ = written_;
   } else {
     index_.back().bytes = written_ - gof_offset_;
   }
   gof_offset_ = written_;
-  gof_ = &gofs_[num_gofs_++];
-  groups_ = gof_->groups_that_stay(cut_);
-  num_slices_ = 0;
-  index_.push_back({gof_->num_frames, 0});
+  const GofSummary& gof = gofs_[num_gofs_++];
+  index_.push_back({gof.num_frames, 0});
+  access_unit_ = {unit, &gof, gof.groups_that_stay(cut_)};
+  return copy(unit);
+}
+
+Result<Bytes> SubStreamExtractor::slice_or_hash(const UnitHeader& unit) {
+  if (unit.type() == UnitType::kSlice) {
+    const SliceEntry& slice = access_unit_->gof->slices[access_unit_->num_slices++];
+    return access_unit_->groups.have(slice) ? copy(unit) : Bytes{};
+  }
+  auto bytes = cuts(*access_unit_->gof) ? new_hash() : copy(unit);
+  access_unit_.reset();
+  return bytes;
 }
 
 // 8.6.2 Hash check, of the same kind as before
-Result<Bytes> SubStreamExtractor::new_hash(const GofSummary& gof, const UnitHeader& unit,
-                                           const Bytes& payload) {
-  BitReader r = units_.bits(unit, payload);
-  const auto old = parse_gof_hash(r, gof.num_frames);
-  if (!old) return old.error();
-  if (decoder_.position() != gof.first_frame) {
-    if (const auto ok = decoder_.seek(gof.first_frame); !ok) return ok.error();
-  }
-  std::vector<std::int32_t> positions(3 * std::size_t{header().num_vertices});
-  std::vector<std::int32_t> decoded(positions.size());
-  std::vector<std::uint32_t> crcs;
-  std::uint32_t crc = 0;
-  for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
-    if (const auto more = decoder_.next_frame(positions); !more) return more.error();
-    for (std::size_t v = 0; v < vertex_order_.size(); ++v) {
-      std::copy_n(&positions[3 * std::size_t{vertex_order_[v]}], 3, &decoded[3 * v]);
-    }
-    crc = crc32_of_positions(vertex_order_.empty() ? positions : decoded,
-                             old->per_frame_flag ? 0 : crc);
-    if (old->per_frame_flag || f + 1 == gof.num_frames) crcs.push_back(crc);
-  }
-  return write_unit(UnitType::kGofHash, write_gof_hash(crcs, old->per_frame_flag));
+Result<Bytes> SubStreamExtractor::new_hash() {
+  const auto access_unit = cut_units_.read(access_unit_->unit, access_unit_->gof->first_frame);
+  if (!access_unit) return access_unit.error();
+  const bool per_frame = access_unit->hash->per_frame_flag;
+  return write_unit(
+      UnitType::kGofHash,
+      write_gof_hash(position_crcs(*access_unit, stream_->context(), per_frame), per_frame));
 }
 
-// With the GOF index, if there was one.
+// With the GOF index, if there was one, and it can have such numbers (R-IDX-02).
 Bytes SubStreamExtractor::end_of_sequence() {
+  constexpr std::uint64_t kMost = 0xFFFFFFFE;
+  index_.back().bytes = written_ - gof_offset_;
+  const bool fits = first_gof_offset_ <= kMost &&
+                    std::all_of(index_.begin(), index_.end(),
+                                [](const GofEntry& gof) { return gof.bytes <= kMost; });
   Bytes bytes;
-  if (has_index_) {
-    index_.back().bytes = written_ - gof_offset_;
+  if (has_index_ && fits) {
     bytes = write_unit(UnitType::kGofIndex, write_gof_index(first_gof_offset_, index_));
   }
   const Bytes end = write_unit(UnitType::kEndOfSequence,

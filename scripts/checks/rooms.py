@@ -44,7 +44,7 @@ ROOMS = {
     "decoder/recon": _GOFS | _RECON | {"decoder/stream"},
     "decoder/stream": _GOFS | _PARSE | _PUBLIC_DECODER,
     "decoder": _GOFS | {"common/io", "decoder/stream", "decoder/recon"},
-    "decoder/extract": _GOFS | _PARSE | {"decoder/stream"} | _PUBLIC_DECODER,
+    "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output"} | _PUBLIC_DECODER,
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.

@@ -1,4 +1,4 @@
-#include "conformance/rlpcval/validator_json.h"
+#include "decoder/parse/sequence/json_text.h"
 
 #include <vector>
 
