@@ -90,4 +90,10 @@ std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 
+std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
+                                             const EncoderSettings& settings) {
+  if (settings.profile != Profile::kMain || settings.main != MainTools{}) return nullptr;
+  return std::make_unique<ClusterGofKind>(mesh, settings);
+}
+
 }  // namespace rlpc

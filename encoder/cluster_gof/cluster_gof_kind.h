@@ -10,4 +10,9 @@ namespace rlpc {
 std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings);
 
+// In the Main profile, whatever the preset and the target, for targets that other kinds fail.
+// Null where the settings ask for bones.
+std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
+                                             const EncoderSettings& settings);
+
 }  // namespace rlpc

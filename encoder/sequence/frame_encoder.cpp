@@ -222,7 +222,8 @@ InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double
                             .header = coding_->header(),
                             .rms_spread = rms_spread,
                             .fixed_bits = fixed_bits_per_frame() * span.count,
-                            .first_step = coded_.step},  // GOFs are much alike
+                            .first_step = coded_.step,  // GOFs are much alike
+                            .keeps_level = coded_.gofs > 0},
                            batch);
   if (best) coded_.report.trials += best->trials;
   return best;

@@ -16,6 +16,13 @@ std::uint32_t GofBatch::num_frames() const {
   return sum;
 }
 
+bool GofBatch::use_last_resort() {
+  if (!coding_.has_last_resort()) return false;
+  is_last_resort_ = true;
+  for (Gof& gof : gofs_) gof.coder.reset();
+  return true;
+}
+
 std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analysis_step) {
   const bool needed = !gof.coder || gof.coder->needs_frames(step, analysis_step);
   if (needed && gof.frames.xyz.empty()) {
@@ -24,7 +31,7 @@ std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analys
     gof.frames = std::move(*frames);
     gof.frames.first_frame += options_.first_frame;
   }
-  if (!gof.coder) gof.coder = coding_.make_coder(gof.frames);
+  if (!gof.coder) gof.coder = coding_.make_coder(gof.frames, is_last_resort_);
   return std::nullopt;
 }
 

@@ -46,6 +46,9 @@ class GofBatch {
            const Options& options);
 
   std::uint32_t num_frames() const;
+  // From now on, encodes all GOFs by the kind that is left when others fail a target. False:
+  // there is none.
+  bool use_last_resort();
   // Analyses all GOFs, if analyses are kept. Error: that of the source.
   std::optional<InputError> analyse(double analysis_step);
   // Squared error of all GOFs at a step, by their last analyses; empty where one tells nothing.
@@ -70,6 +73,7 @@ class GofBatch {
   FrameSource& source_;
   Options options_;
   std::vector<Gof> gofs_;
+  bool is_last_resort_ = false;
 };
 
 }  // namespace rlpc

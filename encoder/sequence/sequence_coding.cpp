@@ -6,6 +6,7 @@
 #include "common/bitstream/crc32.h"
 #include "common/io/float_position.h"
 #include "common/io/messages.h"
+#include "encoder/cluster_gof/cluster_gof_kind.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/gof_kinds.h"
@@ -43,7 +44,8 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
       connectivity_(write_connectivity(header.num_vertices, triangles)),
       topology_(make_topology(header.num_vertices, connectivity_.triangles)),
       mesh_{header_, topology_, connectivity_.triangles},
-      kinds_(make_gof_kinds(mesh_, settings_)) {}
+      kinds_(make_gof_kinds(mesh_, settings_)),
+      last_resort_(make_last_resort(mesh_, settings_)) {}
 
 InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
@@ -65,7 +67,9 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
   return frames;
 }
 
-std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames) const {
+std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
+                                                     bool is_last_resort) const {
+  if (is_last_resort) return last_resort_->make_coder(frames);
   if (kinds_.size() == 1) return kinds_.front()->make_coder(frames);
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
 }

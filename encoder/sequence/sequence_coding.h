@@ -47,8 +47,10 @@ class SequenceCoding {
   // The frames of a GOF, in decoded vertex order and grid units; span.first is that of the
   // source. Error: that of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
-  // Keeps a reference to the frames.
-  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const;
+  // Whether there is a kind of GOF beside those compared, for targets that these fail.
+  bool has_last_resort() const { return last_resort_ != nullptr; }
+  // Keeps a reference to the frames. is_last_resort: of that kind alone.
+  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
   // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
   // unit of the GOF, empty if there is to be none. Error: that of the source.
   InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
@@ -61,6 +63,7 @@ class SequenceCoding {
   Topology topology_;
   SequenceMesh mesh_;
   GofKinds kinds_;
+  std::unique_ptr<GofEncoder> last_resort_;
 };
 
 // The units of a coded GOF, as they stand in a stream.

@@ -1,5 +1,6 @@
 #include "encoder/sequence/target_loop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -37,6 +38,41 @@ TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch
   };
 }
 
+bool fits_level(const TargetTask& task, const BatchTrial& trial) {
+  const std::uint32_t level_idc = task.header.level_idc;
+  return std::all_of(trial.gofs.begin(), trial.gofs.end(), [&](const CodedGof& gof) {
+    const auto needed = gof.needs.level_from(level_idc);
+    return needed && (!task.keeps_level || *needed == level_idc);
+  });
+}
+
+InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
+                                       std::uint32_t trials_before) {
+  TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
+  if (task.first_step > 0.0) {
+    search.begin_at(task.first_step);
+  } else if (task.settings.target.kind == Target::kKg) {
+    if (auto error = batch.analyse(search.analysis_step())) return *error;
+    if (const auto expected = expected_kg(task, batch)) search.begin_at(expected);
+  }
+  std::optional<TargetResult> best;
+  std::uint32_t trials = trials_before;
+  while (!search.finished()) {
+    ++trials;
+    const auto progress = [&](double done) {
+      if (task.progress) task.progress(trials, done);
+    };
+    auto trial = batch.encode(search.step(), search.analysis_step(), progress);
+    if (!trial) return trial.error();
+    const double value = measured(task, *trial, batch.num_frames());
+    const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
+    if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
+  }
+  best->met = search.met();
+  best->trials = trials;
+  return std::move(*best);
+}
+
 }  // namespace
 
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
@@ -67,29 +103,13 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 }
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
-  TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
-  if (task.first_step > 0.0) {
-    search.begin_at(task.first_step);
-  } else if (task.settings.target.kind == Target::kKg) {
-    if (auto error = batch.analyse(search.analysis_step())) return *error;
-    if (const auto expected = expected_kg(task, batch)) search.begin_at(expected);
-  }
-  std::optional<TargetResult> best;
-  std::uint32_t trials = 0;
-  while (!search.finished()) {
-    ++trials;
-    const auto progress = [&](double done) {
-      if (task.progress) task.progress(trials, done);
-    };
-    auto trial = batch.encode(search.step(), search.analysis_step(), progress);
-    if (!trial) return trial.error();
-    const bool better = search.report(measured(task, *trial, batch.num_frames()),
-                                      trial->gof_bytes, expected_kg(task, batch));
-    if (better || !best) best = TargetResult{std::move(*trial), search.last_step()};
-  }
-  best->met = search.met();
-  best->trials = trials;
-  return std::move(*best);
+  auto best = search_steps(task, batch, 0);
+  if (!best || best->met || !batch.use_last_resort()) return best;
+  auto other = search_steps(task, batch, best->trials);
+  if (!other) return other;
+  best->trials = other->trials;
+  const bool closer = other->met || other->measured < best->measured;
+  return closer && fits_level(task, other->trial) ? std::move(other) : std::move(best);
 }
 
 }  // namespace rlpc

@@ -18,21 +18,24 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 struct TargetTask {
   const EncoderSettings& settings;
   const SequenceHeader& header;
-  double rms_spread = 0.0;  // of a coordinate about the mean of its frame, units
-  double fixed_bits = 0.0;  // that count towards a rate beside the GOFs
-  double first_step = 0.0;  // to begin with, grid steps; 0: unknown
+  double rms_spread = 0.0;   // of a coordinate about the mean of its frame, units
+  double fixed_bits = 0.0;   // that count towards a rate beside the GOFs
+  double first_step = 0.0;   // to begin with, grid steps; 0: unknown
+  bool keeps_level = false;  // that of the header: a last resort must not need a higher one
   // Called with the trial, from 1, and the fraction of it that is done.
   std::function<void(std::uint32_t trial, double done)> progress = {};
 };
 
 struct TargetResult {
-  BatchTrial trial;   // the best
-  double step = 0.0;  // that it was made with, grid steps
-  bool met = false;   // the target
+  BatchTrial trial;       // the best
+  double step = 0.0;      // that it was made with, grid steps
+  double measured = 0.0;  // the error or rate that is searched for
+  bool met = false;       // the target
   std::uint32_t trials = 0;
 };
 
-// Error: that of the batch.
+// Where the target is out of reach of the kinds of GOF that are compared, the last resort of
+// the batch is searched too. Error: that of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
 
 }  // namespace rlpc

@@ -1,0 +1,105 @@
+// Targets that GOFs of bones fail: those of clusters reach them in the Main profile, too.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "conformance/roundtrip/small_animation.h"
+#include "encoder/frame_encoder.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kFrames = 8;
+
+// A strip of triangles that trembles, with a vertex that is far away in one frame.
+MemoryFrames strip_with_outlier(std::uint32_t num_vertices, float far_away) {
+  FrameSource::Shape shape;
+  for (std::uint32_t v = 0; v + 2 < num_vertices; ++v) {
+    shape.triangles.push_back({v, v + 1, v + 2});
+  }
+  std::mt19937 random(num_vertices);
+  const auto number = [&random] { return static_cast<float>(random() % 1000) / 1000.0F; };
+  std::vector<float> rest(3 * std::size_t{num_vertices});
+  for (float& x : rest) x = number();
+  std::vector<std::vector<float>> frames;
+  for (std::uint32_t f = 0; f < kFrames; ++f) {
+    frames.push_back(rest);
+    for (float& x : frames.back()) x += 0.1F * number();
+  }
+  frames[5][0] = far_away;
+  return {std::move(shape), std::move(frames)};
+}
+
+struct Case {
+  std::uint32_t num_vertices;
+  float far_away;
+  double max_error;
+};
+constexpr Case kCases[] = {
+    {3, 10.0F, 3e-6}, {4, 1000.0F, 3e-4}, {20, 1000.0F, 1e-3}, {3, 1e5F, 0.03}};
+
+EncoderSettings settings_for(const Case& c, Profile profile, Preset preset) {
+  EncoderSettings settings;
+  settings.profile = profile;
+  settings.preset = preset;
+  settings.target = {Target::kMaxError, c.max_error};
+  return settings;
+}
+
+EncodeReport encode_case(const Case& c, const EncoderSettings& settings) {
+  MemoryFrames source = strip_with_outlier(c.num_vertices, c.far_away);
+  EncodeReport report;
+  const StreamBytes stream = encode_to_memory(source, settings, &report);
+  EXPECT_EQ(report.metrics.max_error <= c.max_error, report.target_met);
+  return report;
+}
+
+class EachPreset : public testing::TestWithParam<Preset> {};
+INSTANTIATE_TEST_SUITE_P(LastResort, EachPreset,
+                         testing::Values(Preset::kFast, Preset::kMedium, Preset::kSlow));
+
+TEST_P(EachPreset, MainReachesWhatBaselineReaches) {
+  for (const Case& c : kCases) {
+    SCOPED_TRACE(testing::Message() << c.num_vertices << " vertices, " << c.max_error);
+    EXPECT_TRUE(encode_case(c, settings_for(c, Profile::kBaseline, GetParam())).target_met);
+    EXPECT_TRUE(encode_case(c, settings_for(c, Profile::kMain, GetParam())).target_met);
+  }
+}
+
+TEST_P(EachPreset, BonesThatAreAskedForStay) {
+  for (const Case& c : kCases) {
+    EncoderSettings settings = settings_for(c, Profile::kMain, GetParam());
+    settings.main.clusters = false;
+    EXPECT_FALSE(encode_case(c, settings).target_met) << "no case for a last resort";
+  }
+}
+
+TEST(LastResort, FramesThatComeOneByOneReachTheTarget) {
+  for (const Case& c : kCases) {
+    MemoryFrames source = strip_with_outlier(c.num_vertices, c.far_away);
+    FrameFormat format;
+    format.num_vertices = c.num_vertices;
+    format.num_frames = kFrames;
+    format.triangles = source.triangles();
+    format.box_max = {c.far_away, 1.1F, 1.1F};
+    auto encoder =
+        FrameEncoder::create(format, settings_for(c, Profile::kMain, Preset::kFast),
+                             [](std::span<const std::uint8_t> /*bytes*/) { return true; });
+    ASSERT_TRUE(encoder);
+    std::vector<float> xyz(3 * std::size_t{c.num_vertices});
+    for (std::uint32_t f = 0; f < kFrames; ++f) {
+      ASSERT_FALSE(source.read_frame(f, xyz));
+      ASSERT_FALSE(encoder->add_frame(xyz));
+    }
+    const auto report = encoder->finish();
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->target_met);
+    EXPECT_LE(report->metrics.max_error, c.max_error);
+  }
+}
+
+}  // namespace
+}  // namespace rlpc
