@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <iostream>
 #include <string>
 #include <string_view>
 
@@ -24,15 +23,5 @@ std::string size_text(std::uint64_t bytes);
 
 // "TOOL: MESSAGE" in a line of standard error, printable.
 void print_message(std::string_view tool, std::string_view message);
-
-// What CLI11 has to say about a command line: help on standard output, or what is wrong, on
-// standard error. Its exit code, 0 for help.
-template <class App, class ParseError>
-int exit_of_parse(const App& app, const ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);
-  print_message(app.get_name(), error.what());
-  std::cerr << "Run with --help for more information.\n";
-  return error.get_exit_code();
-}
 
 }  // namespace rlpc

@@ -138,10 +138,9 @@ class BadInput(ToolsTest):
             self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
         self.assertEqual(self.files(), ["mesh.obj"])
         for words, options in (("found `0,3`", "--kg 0,3"), ("fast,medium,slow", "--preset best"),
-                               ("Put patterns in quotes", self.path("b.obj"))):
+                               ("put patterns in quotes", self.path("b.obj"))):
             self.fails(64, words, "rlpcenc", mesh, "-o", self.path("x"), *str(options).split())
         for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):
-            self.assertIn(b"Exit code", self.ok(tool, "--help").out)
             self.assertRegex(self.ok(tool, "--version").out, rb"\d+\.\d+\.\d+")
             self.fails(64, "", tool)
 
@@ -174,16 +173,6 @@ class BadInput(ToolsTest):
         for options in ("--profile baseline --frame world --no-rdo --components 1",
                         "--no-outer-ring --bones 1"):
             self.ok("rlpcenc", mesh, "-o", self.path("out.rlpc"), *options.split())
-
-    def test_help_shows_the_profile_of_an_option(self):
-        groups = self.ok("rlpcenc", "--help").out.decode().split("\n\n")
-        for heading, options in (("Parameters of both", ("--components", "--gof")),
-                                 ("Main profile", ("--bones", "--layer-groups")),
-                                 ("Baseline profile", ("--clusters", "--seeds"))):
-            group = [text for text in groups if text.strip().startswith(heading)]
-            self.assertEqual(len(group), 1, heading)
-            for option in options:
-                self.assertIn(option, group[0])
 
 
 class BadOutput(ToolsTest):

@@ -237,8 +237,8 @@ class EncoderMemory(MeasuredTest):
         self.clip(2)
         self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path("out.rlpc"))
         for tool in ("rlpcenc", "rlpccmp", "rlpcdec", "rlpcinfo", "rlpcval"):
-            self.assertIn(b"--max-memory", self.ok(tool, "--help").out)
-        self.assertIn(b"32GB", self.ok("rlpcenc", "--help").out)
+            self.assertIn(b"--max-memory", self.ok(tool, "--help-all").out)
+        self.assertIn(b"32GB", self.ok("rlpcenc", "--help-all").out)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@
 #include "common/io/messages.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/tools/command_line.h"
 #include "conformance/rlpcval/rlpcval_report.h"
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
@@ -23,25 +24,27 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(
-A finding names the rule of the specification, the place and the clause, and says what it means,
-where it usually comes from, and what to do. After an error the validator goes on where it can:
-what it finds then may be a consequence, and is marked so.
+constexpr const char* kExamples = R"(Examples
+  rlpcval walk.rlpc                          all findings
+  rlpcval *.rlpc --quiet && echo good        a test for scripts
+  rlpcval walk.rlpc --json > findings.json   for programs (findings.schema.json)
+  rlpcval --explain R-RNG-01                 what a rule or a warning means
+  rlpcenc cow.obj -o - | rlpcval -           from standard input)";
+
+constexpr const char* kDetails =
+    R"(A finding names the rule of the specification, its clause and the position, and
+explains what it means, its likely cause, and what to do. After an error the
+validator continues where it can; findings that may be consequences of an
+earlier one are marked.
 
 Severities
   error         the stream does not conform
-  unsupported   it is of another version, profile or level; its contents were not checked
+  unsupported   another version, profile or level; the contents were not checked
   warning       legal, but surely not meant (W-...)
 
-Examples
-  rlpcval walk.rlpc                          all findings
-  rlpcval *.rlpc --quiet && echo good        a test for scripts
-  rlpcval walk.rlpc --json > findings.json   for machines (findings.schema.json)
-  rlpcval --explain R-RNG-01                 what a rule or a warning means
-  rlpcenc cow.obj -o - | rlpcval -           from standard input
-
-Exit code: 0 conforming; 1 errors; 2 unsupported; 3 not checked whole because of --max-memory;
-4 not readable; 64 usage. Of several streams, the first of 1, 4, 3 and 2 that occurs.)";
+Exit code: 0 conforming; 1 errors; 2 unsupported; 3 not checked completely
+because of --max-memory; 4 not readable; 64 wrong usage. For several streams,
+the first of 1, 4, 3 and 2 that occurs.)";
 
 struct Options {
   std::vector<std::string> inputs;
@@ -53,15 +56,21 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
+  const std::string options = "Options";
   app.add_option("STREAM", o.inputs, "Streams to validate; - for standard input");
-  app.add_option("--explain", o.explain, "Say what a rule or a warning means")->type_name("ID");
-  app.add_flag("--strict-warnings", o.strict_warnings, "Exit code 1 for warnings too");
+  app.add_option("--explain", o.explain, "Explain a rule or a warning")
+      ->option_text("ID")
+      ->group(options);
+  app.add_flag("--strict-warnings", o.strict_warnings, "Exit code 1 for warnings too")
+      ->group(options);
   app.add_option("--max-memory", o.validation.limits.max_memory_bytes,
-                 "Give up on streams that need more, for example 500MB")
-      ->transform(CLI::AsSizeValue(false));
-  app.add_flag("--json", o.json, "Report as JSON on standard output");
-  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
-  app.footer(kExamples);
+                 "Refuse streams that need more, for example 500MB")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("SIZE")
+      ->group(options);
+  app.add_flag("--json", o.json, "Report as JSON on standard output")->group(options);
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(options);
+  rlpc::add_help(app, {"STREAM... [OPTIONS]", {options}, kExamples, kDetails}, RLPC_VERSION);
 }
 
 rlpc::ExitCode exit_code(const rlpc::ValidationReport& report, bool strict_warnings) {
@@ -127,15 +136,10 @@ int explain(const std::string& id) {
 
 int main(int argc, char** argv) try {
   rlpc::handle_interrupts();
-  CLI::App app("Finds everything that is wrong with .rlpc streams.", "rlpcval");
-  app.set_version_flag("--version", "rlpcval " RLPC_VERSION);
+  CLI::App app("Validates .rlpc streams: reports every violation, by rule.", "rlpcval");
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
-  }
+  if (const auto parsed = rlpc::parse_command_line(app, argc, argv)) return *parsed;
   if (!options.explain.empty()) {
     return rlpc::after_standard_output("rlpcval", explain(options.explain), rlpc::kExitIo);
   }

@@ -131,7 +131,7 @@ class Validation(ToolsTest):
         self.fails(64, "", "rlpcval", self.path("a.rlpc"), "--unknown")
         self.fails(64, "R-XYZ-01", "rlpcval", "--explain", "R-XYZ-01")
         for words in (b"Examples", b"Exit code", b"--strict-warnings"):
-            self.assertIn(words, self.ok("rlpcval", "--help").out)
+            self.assertIn(words, self.ok("rlpcval", "--help-all").out)
 
 
 def repaired(data):

@@ -18,6 +18,7 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/tools/command_line.h"
 #include "conformance/tools/comparison_input.h"
 #include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
@@ -30,45 +31,51 @@ namespace {
 
 enum ExitCode : int { kCompared = 0, kExceeded = 1, kFailed = 2, kUsage = 64 };
 
-constexpr const char* kExamples = R"(
-A is the original, B what was decoded. Either is one of
-  clip.rlpc                       a stream: decoded, its hashes checked, its bits counted
-  clip.rlpd                       decoded positions
-  mesh.obj with --points-a/-b     triangles from the mesh, positions from the point cache
-  clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or .ply, .off)
-                                  beside it
-  walk.glb, walk.gltf             a glTF 2.0 scene; of the original, with the same --animation,
-                                  --fps and --no-weld as for rlpcenc
-  folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file for each frame, in numeric order
-  mesh.obj                        one frame; if the other side has several and mesh.pc2 (.mdd)
-                                  is beside it, the cache is read as well, and the report says
-                                  so
-
-Vertices of a stream are in the order of the input only if it was encoded with --keep-order. For
-all others, give --order-map the file that rlpcenc wrote with the option of that name.
-
-Examples
+constexpr const char* kExamples = R"(Examples
   rlpcenc cow.obj --points cow.pc2 -o cow.rlpc --order-map cow.order
-  rlpccmp cow.obj cow.rlpc --points-a cow.pc2 --order-map cow.order
-  rlpccmp cow.obj cow.rlpd --points-a cow.pc2 --order-map cow.order --stream cow.rlpc
-  rlpccmp frames/ walk.rlpc --csv errors.csv             encoded with --keep-order
-  rlpccmp cow.obj cow.rlpc --html cow.html               error on the mesh, and over time
-  rlpccmp old.rlpc new.rlpc --max-kg 0.01 --quiet        a test for scripts
+  rlpccmp cow.obj cow.rlpc --points cow.pc2 --order-map cow.order
+  rlpccmp cow.obj cow.rlpc --html cow.html         if encoded with --keep-order
+  rlpccmp frames/ walk.rlpc --csv errors.csv
+  rlpccmp old.rlpc new.rlpc --max-kg 0.01 --quiet  a test for scripts)";
 
-KG error    100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
-RMS         root of the mean squared distance of a vertex, in units
-PSNR        of Ramanathan, Kassim and Tan 2008, 3.2: -10 log10 of the squared error over the
-            vertices that moved, relative to the largest displacement; mean over the frames
-STED        spatio-temporal edge difference, after Vasa and Skala 2011: with ed = |l - l'| / l of
-            an edge, the deviation of ed, weighted by l, from its mean over the edges that meet
-            in a vertex; mean over vertices and frames (spatial part). Likewise of the virtual
-            edges sqrt(distance^2 + (0.01 d)^2) from a vertex to itself one frame before and
-            behind, d the diagonal of A's first frame (temporal part). Root of the sum of
-            squares of both. Neighbourhood and time window 1, dt = 0.01, c = 1
-normals     angle between the normals of a triangle in A and B; mean by area in A
+constexpr const char* kDetails = R"(A is the original, B the decoded animation. Either is one of
+  clip.rlpc                       a stream: decoded, its hashes verified, its
+                                  bits counted
+  clip.rlpd                       decoded positions
+  mesh.obj with --points-a/-b     triangles from the mesh, frames from the point
+                                  cache
+  clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or
+                                  .ply, .off) beside it
+  walk.glb, walk.gltf             a glTF 2.0 scene; for the original, repeat the
+                                  --animation, --fps and --no-weld of rlpcenc
+  folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file per frame, in numeric
+                                  order
+  mesh.obj                        one frame; if the other side has several and
+                                  mesh.pc2 (.mdd) is beside it, that cache is
+                                  read as well, and the report says so
 
-Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input or output failed
-or cannot be compared; 64 usage.)";
+The vertices of a stream are in the order of the input only if it was encoded
+with --keep-order. Otherwise pass the file that rlpcenc --order-map wrote.
+
+Measures
+  KG error  100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
+  RMS       root mean square distance of vertices, in units of A
+  PSNR      of Ramanathan, Kassim and Tan 2008, 3.2: -10 log10 of the squared
+            error over the vertices that moved, relative to the largest
+            displacement; mean over the frames
+  STED      spatio-temporal edge difference, after Vasa and Skala 2011: with
+            ed = |l - l'| / l of an edge, the deviation of ed, weighted by l,
+            from its mean over the edges that meet in a vertex; mean over
+            vertices and frames (spatial part). The same for the virtual edges
+            sqrt(distance^2 + (0.01 d)^2) from a vertex to itself one frame
+            earlier and later, d the diagonal of A's first frame (temporal
+            part). Root of the sum of squares of both. Neighbourhood and time
+            window 1, dt = 0.01, c = 1
+  normals   angle between the normals of a triangle in A and B; mean weighted by
+            area in A
+
+Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input
+or output failed, or A and B cannot be compared; 64 wrong usage.)";
 
 struct Options {
   rlpc::InputOptions a;
@@ -84,7 +91,7 @@ struct Options {
   bool quiet = false;
 };
 
-// Not so CLI11's own check, which lets NaN through: nothing would be beyond that.
+// CLI11's own check accepts NaN, which nothing exceeds.
 const CLI::Validator kBound(
     [](const std::string& word) {
       double value = 0.0;
@@ -95,39 +102,64 @@ const CLI::Validator kBound(
     "NUMBER");
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("A", o.a.path, "The original")->required();
-  app.add_option("B", o.b.path, "The decoded animation")->required();
-  app.add_option("--points-a,--points", o.a.points,
-                 "Point cache (.pc2, .mdd) with the frames of A");
-  app.add_option("--points-b", o.b.points, "Point cache (.pc2, .mdd) with the frames of B");
-  app.add_option("--animation-a,--animation", o.a.animation,
-                 "If A is a glTF file: a name, an index from 0, or `all` (default: the first)");
-  app.add_option("--animation-b", o.b.animation, "Likewise of B");
-  app.add_option("--fps", o.fps, "Frames per second of glTF files (default: 30)");
-  app.add_flag_callback(
-      "--no-weld-a,--no-weld", [&o] { o.a.weld = false; },
-      "If A is a glTF file: keep vertices apart that coincide in every frame");
-  app.add_flag_callback(
-      "--no-weld-b", [&o] { o.b.weld = false; }, "Likewise of B");
-  app.add_option("--order-map", o.order_map, "Per vertex of B, its index in A, a line each");
-  app.add_option("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
-      ->check(CLI::ExistingFile);
-  app.add_option("--csv", o.csv, "Write the errors of each frame; - for standard output");
-  app.add_option("--html", o.html,
-                 "Write a page with charts, and the mesh with its error as colour");
-  app.add_option("--max-kg", o.max_kg, "Exit code 1 if the KG error is above, per cent")
-      ->check(kBound);
+  const std::string input = "Input";
+  const std::string output = "Output";
+  const std::string more = "More input";
+  app.add_option("A", o.a.path, "The original animation")->required();
+  app.add_option("B", o.b.path, "The decoded animation, or its stream")->required();
+  const auto add_file = [&](const char* name, std::string& value, const char* what) {
+    return app.add_option(name, value, what)->option_text("FILE");
+  };
+  add_file("--points-a,--points", o.a.points, "Point cache (.pc2, .mdd) with the frames of A")
+      ->group(input);
+  add_file("--points-b", o.b.points, "Point cache (.pc2, .mdd) with the frames of B")
+      ->group(input);
+  add_file("--order-map", o.order_map,
+           "Index in A of each vertex of B, from rlpcenc --order-map")
+      ->group(input);
+  add_file("--stream", o.stream, "The .rlpc file that B was decoded from, for the rate")
+      ->check(CLI::ExistingFile)
+      ->group(input);
+  add_file("--csv", o.csv, "Write the errors of each frame; - for standard output")
+      ->group(output);
+  add_file("--html", o.html, "Write a page with charts, and the error in colour on the mesh")
+      ->group(output);
+  app.add_option("--max-kg", o.max_kg, "Exit code 1 if the KG error is larger")
+      ->check(kBound)
+      ->option_text("PERCENT")
+      ->group(output);
   app.add_option("--max-error", o.max_error,
-                 "Exit code 1 if a vertex is further off, in units of A")
-      ->check(kBound);
+                 "Exit code 1 if the error of a vertex is larger, in units of A")
+      ->check(kBound)
+      ->option_text("DISTANCE")
+      ->group(output);
+  app.add_flag("--json", o.json, "Report as JSON on standard output")->group(output);
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(output);
+
+  app.add_option("--animation-a,--animation", o.a.animation,
+                 "If A is a glTF file: name, index from 0, or `all` (default: first)")
+      ->option_text("NAME")
+      ->group(more);
+  app.add_option("--animation-b", o.b.animation, "The same for B")
+      ->option_text("NAME")
+      ->group(more);
+  app.add_option("--fps", o.fps, "Frame rate of glTF files (default: 30)")
+      ->option_text("RATE")
+      ->group(more);
+  app.add_flag_callback(
+         "--no-weld-a,--no-weld", [&o] { o.a.weld = false; },
+         "If A is a glTF file: keep vertices that coincide in every frame apart")
+      ->group(more);
+  app.add_flag_callback(
+         "--no-weld-b", [&o] { o.b.weld = false; }, "The same for B")
+      ->group(more);
   app.add_option(
          "--max-memory", o.a.max_memory_bytes,
-         "Give up on input that needs more, for example 500MB (default: 32GB, of streams "
-         "4GB)")
-      ->transform(CLI::AsSizeValue(false));
-  app.add_flag("--json", o.json, "Report as JSON on standard output");
-  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
-  app.footer(kExamples);
+         "Refuse input that needs more, for example 500MB (default: 32GB; streams: 4GB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("SIZE")
+      ->group(more);
+  rlpc::add_help(app, {"A B [OPTIONS]", {input, output}, kExamples, kDetails}, RLPC_VERSION);
 }
 
 int complain(const std::string& message) {
@@ -333,14 +365,9 @@ int run(Options& o) {
 int main(int argc, char** argv) try {
   rlpc::handle_interrupts();
   CLI::App app("Compares a decoded animation with its original.", "rlpccmp");
-  app.set_version_flag("--version", "rlpccmp " RLPC_VERSION);
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return rlpc::exit_of_parse(app, error) == 0 ? kCompared : kUsage;
-  }
+  if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   return rlpc::after_standard_output("rlpccmp", run(options), kFailed);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpccmp: out of memory\n");

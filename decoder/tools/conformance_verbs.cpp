@@ -17,6 +17,7 @@
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/syntax/stream_format.h"
+#include "common/tools/command_line.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/rlpc_decoder.h"
@@ -157,19 +158,22 @@ std::optional<int> run_conformance_verb(int argc, char** argv) {
     return describe();
   }
   if (arguments.size() < 2 || std::string_view(arguments[1]) != "decode") return std::nullopt;
-  CLI::App app("Decodes a stream as a conformance judge wants it.", "rlpcdec decode");
+  CLI::App app("Decodes a stream for the conformance judge.", "rlpcdec decode");
   Request request;
   // The levels bound what a stream can ask for; without --max-mem, all of it is given.
   request.decoder.limits.max_memory_bytes = std::numeric_limits<std::uint64_t>::max();
   app.add_option("input", request.input, "Stream to decode")->required();
   app.add_option("output", request.output, "OUT.rlpd (Annex A), or OUT.f32 (7.3)")->required();
   app.add_option("--max-mem", request.decoder.limits.max_memory_bytes,
-                 "Give up on streams that need more bytes of memory");
-  try {
-    app.parse(argc - 1, argv + 1);
-  } catch (const CLI::ParseError& error) {
-    return exit_of_parse(app, error) == 0 ? kExitDone : kExitUsage;
-  }
+                 "Refuse streams that need more bytes of memory")
+      ->option_text("BYTES");
+  add_help(app,
+           {"IN.rlpc OUT [OPTIONS]",
+            {"Options"},
+            "Example\n  rlpcdec decode a.rlpc a.rlpd",
+            "conformance/VALIDATE.md describes this interface."},
+           RLPC_VERSION);
+  if (const auto code = parse_command_line(app, argc - 1, argv + 1)) return *code;
   return decode(request);
 }
 

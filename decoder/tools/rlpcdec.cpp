@@ -21,6 +21,7 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/tools/command_line.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/player/html_verb.h"
@@ -30,33 +31,42 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(
-OUT is one of
-  clip.rlpd               integer positions and their grid: exact, what conformance compares
+constexpr const char* kExamples = R"(OUT is one of
   clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
-  clip.glb                glTF: the first frame, and the others as morph targets
-  out/frame_%04d.obj      one OBJ file for each frame; likewise .ply (binary, or --ascii)
-  out                     a folder of OBJ files (--format ply: of PLY files)
-  -                       standard output, with --format rlpd or glb; of one frame, obj or ply
+  clip.glb                glTF: the first frame, the others as morph targets
+  out/frame_%04d.obj      one OBJ (or PLY) file per frame; out/: likewise
+  clip.rlpd               exact integer positions, for conformance
 
 Examples
   rlpcdec walk.rlpc -o walk.pc2
-  rlpcdec walk.rlpc -o walk.glb
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
-  rlpcdec walk.rlpc --verify            decode, compare the hashes, write nothing
-  rlpcdec walk.rlpc --html walk.html    a page that plays it in a browser, without a network
-                                        (scripts/player builds the player)
-  rlpcdec walk.rlpc -o walk.pc2 --max-components 12 --max-layers 5
-                                        less detail in less time (Main profile): what decoding
-                                        gives after rlpcinfo --extract components=12,layers=5.
-                                        GOFs of clusters have no slices, and stay whole
+  rlpcdec walk.rlpc --verify
+  rlpcdec walk.rlpc --html walk.html)";
+
+constexpr const char* kDetails =
+    R"(A folder OUT gets OBJ files, with --format ply PLY files. With -o -, the format
+is needed: rlpd or glb; of a single frame also obj or ply.
+
+--html writes a page that contains the stream and plays it in a browser, without
+a network. scripts/player builds the player that it needs.
+
+Fewer components or layers are faster to decode (Main profile). The result is
+that of decoding after rlpcinfo --extract components=K,layers=L. Cluster GOFs
+have no slices: they are decoded whole.
 
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
   rlpcdec decode IN.rlpc OUT.rlpd [--max-mem BYTES]
 
-Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the limits;
-4 input or output failed; 64 usage.)";
+Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the
+limits; 4 input or output failed; 64 wrong usage.)";
+
+// Groups of options.
+constexpr const char* kOutput = "Output (one of -o, --html, --verify)";
+constexpr const char* kPage = "Page";
+constexpr const char* kLess = "Less detail (Main profile)";
+constexpr const char* kLimits = "Limits and threads";
+constexpr const char* kReport = "Report";
 
 struct Options {
   std::string input;
@@ -228,69 +238,122 @@ int decode(const Options& o) {
   return rlpc::kExitDone;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("input", o.input, "Stream to decode; - for standard input")->required();
-  auto* output = app.add_option("-o,--output", o.output, "What to write, see below");
+struct Outputs {
+  CLI::Option* file;
+  CLI::Option* page;
+  CLI::Option* verify;
+};
+
+Outputs add_outputs(CLI::App& app, Options& o) {
+  app.add_option("STREAM", o.input, "Stream to decode; - for standard input")->required();
+  auto* file = app.add_option("-o,--output", o.output, "Animation to write (see below)")
+                   ->option_text("OUT")
+                   ->group(kOutput);
+  auto* page = app.add_option("--html", o.html.output, "Page to write that plays the stream")
+                   ->option_text("FILE")
+                   ->excludes(file)
+                   ->group(kOutput);
   auto* verify =
-      app.add_flag("--verify", o.verify_only, "Decode and compare the hashes, write nothing")
-          ->excludes(output);
-  auto* html = app.add_option("--html", o.html.output, "Page to write that plays the stream")
-                   ->excludes(output)
-                   ->excludes(verify);
-  app.add_option("--reference", o.html.reference,
-                 "With --html: a finer stream of the same animation, its vertices in the same "
-                 "order (with --keep-order both, or neither); the page colours the mesh by its "
-                 "distance from it")
-      ->needs(html);
-  app.add_option("--player", o.html.player,
-                 "With --html: page of the player (default: as installed, or as built)")
-      ->needs(html);
+      app.add_flag("--verify", o.verify_only, "Decode and verify the hashes; write nothing")
+          ->excludes(file)
+          ->excludes(page)
+          ->group(kOutput);
+  return {file, page, verify};
+}
+
+void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
   static const std::map<std::string, rlpc::SinkFormat> kFormats{
       {"rlpd", rlpc::SinkFormat::kRlpd}, {"pc2", rlpc::SinkFormat::kPc2},
       {"mdd", rlpc::SinkFormat::kMdd},   {"glb", rlpc::SinkFormat::kGlb},
       {"obj", rlpc::SinkFormat::kObj},   {"ply", rlpc::SinkFormat::kPly}};
   app.add_option_function<std::string>(
          "--format", [&o](const std::string& word) { o.format = kFormats.at(word); },
-         "Format of OUT (default: by its name)")
+         "rlpd, pc2, mdd, glb, obj or ply (default: by the name of OUT)")
       ->check(CLI::IsMember(kFormats).description(""))
-      ->type_name("rlpd|pc2|mdd|glb|obj|ply")
-      ->excludes(verify)
-      ->excludes(html);
-  app.add_flag("--ascii", o.ascii, "PLY files as text")->excludes(verify)->excludes(html);
-  app.add_option("--frames", o.frames, "Only the frames A-B, counted from 0");
-  app.add_flag("--no-hashes", o.no_hashes, "Do not compare the hashes of the stream")
-      ->excludes(verify);
+      ->option_text("WORD")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_option("--frames", o.frames, "Frames A to B only, counted from 0: A-B, A- or A")
+      ->option_text("A-B")
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_flag("--ascii", o.ascii, "PLY files as text")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")
+      ->excludes(outputs.verify)
+      ->group(kOutput);
+
+  app.add_option("--reference", o.html.reference,
+                 "With --html: a finer stream of the same animation in the same vertex order "
+                 "(both with --keep-order, or neither); the page colours the mesh by the "
+                 "distance between the two")
+      ->option_text("STREAM")
+      ->needs(outputs.page)
+      ->group(kPage);
+  app.add_option("--player", o.html.player,
+                 "With --html: page of the player (default: as installed, or as built)")
+      ->option_text("PAGE")
+      ->needs(outputs.page)
+      ->group(kPage);
+}
+
+void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Only the component groups with up to K trajectories of a GOF of bones")
+                 "Only the component groups with up to K trajectories of a skinned GOF")
       ->check(CLI::Range(0U, rlpc::SliceCut::kAll - 1))
-      ->excludes(verify);
+      ->option_text("K")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kLess);
   app.add_option("--max-layers", o.decoder.cut.max_layers,
                  "Only the layer groups with up to L vertex layers, the coarsest")
       ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
-      ->excludes(verify);
+      ->option_text("L")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kLess);
+
   app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
-                 "Give up on streams that need more, for example 500MB")
-      ->transform(CLI::AsSizeValue(false));
+                 "Refuse streams that need more, for example 500MB")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("SIZE")
+      ->group(kLimits);
   app.add_option("--max-vertices", o.decoder.limits.max_vertices,
-                 "Give up on streams with more vertices");
-  app.add_option("--max-frames", o.decoder.limits.max_frames,
-                 "Give up on streams with more frames");
+                 "Refuse streams with more vertices")
+      ->option_text("N")
+      ->group(kLimits);
+  app.add_option("--max-frames", o.decoder.limits.max_frames, "Refuse streams with more frames")
+      ->option_text("N")
+      ->group(kLimits);
   app.add_option_function<std::uint64_t>(
          "--max-output",
          [&o](std::uint64_t bytes) { o.limit = std::make_shared<rlpc::OutputLimit>(bytes); },
-         "Give up where more than that is to be written, for example 2GB (default: no limit)")
+         "Refuse to write more, for example 2GB (default: no limit)")
       ->transform(CLI::AsSizeValue(false))
-      ->excludes(verify);
+      ->option_text("SIZE")
+      ->excludes(outputs.verify)
+      ->group(kLimits);
   app.add_option("--threads", o.decoder.threads,
-                 "Threads, each with memory for a GOF and four frames (default: one for each "
+                 "1 to 256, each with memory for a GOF and four frames (default: one per "
                  "processor)")
-      ->check(CLI::Range(1, 256));
-  app.add_flag("--json", o.json, "Report as JSON on standard output");
-  app.add_flag("-q,--quiet", o.quiet, "No report, no progress");
-  for (const char* name : {"--frames", "--max-components", "--max-layers", "--json"}) {
-    html->excludes(app.get_option(name));  // a page has all of the stream, and no report
-  }
-  app.footer(kExamples);
+      ->check(CLI::Range(1, 256))
+      ->option_text("N")
+      ->group(kLimits);
+}
+
+void add_options(CLI::App& app, Options& o) {
+  const Outputs outputs = add_outputs(app, o);
+  add_format_options(app, o, outputs);
+  add_limit_options(app, o, outputs);
+  app.add_flag("--json", o.json, "Report as JSON on standard output")
+      ->excludes(outputs.page)
+      ->group(kReport);
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kReport);
+  rlpc::add_help(app, {"STREAM -o OUT [OPTIONS]", {kOutput, kReport}, kExamples, kDetails},
+                 RLPC_VERSION);
 }
 
 }  // namespace
@@ -299,15 +362,10 @@ int main(int argc, char** argv) try {
   rlpc::handle_interrupts();
   if (const auto code = rlpc::run_conformance_verb(argc, argv)) return *code;
   CLI::App app("Decodes an .rlpc stream.", "rlpcdec");
-  app.set_version_flag("--version", "rlpcdec " RLPC_VERSION);
   Options options;
   options.decoder.threads = std::max(1U, std::thread::hardware_concurrency());
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
-  }
+  if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (options.output.empty() && options.html.output.empty() && !options.verify_only) {
     return complain("give -o OUT, --html OUT, or --verify to write nothing", rlpc::kExitUsage);
   }

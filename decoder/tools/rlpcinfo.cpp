@@ -18,6 +18,7 @@
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/io/standard_output.h"
+#include "common/tools/command_line.h"
 #include "decoder/describe_error.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
@@ -30,24 +31,24 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(
-Examples
-  rlpcinfo walk.rlpc              what is in it, and what takes how many bits
-  rlpcinfo walk.rlpc --json       the same for machines
-  rlpcinfo walk.rlpc --gofs       and what is in each of its GOFs and slices
+constexpr const char* kExamples = R"(Examples
+  rlpcinfo walk.rlpc              contents, and bits per part
+  rlpcinfo walk.rlpc --gofs       also of each GOF and slice
   rlpcinfo walk.rlpc --html walk.html
-                                  and as a page with charts, for a browser
-  rlpcinfo walk.rlpc --trace      every syntax element: bit position, name, value
-  rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc
-                                  the stream without slices of finer detail (Main profile): of
-                                  each GOF, as many component groups as have 12 trajectories or
-                                  fewer (0: bones and rest shape alone), and as many layer groups
-                                  as have 5 layers or fewer, the coarsest (but always the first).
-                                  GOFs of clusters have no slices, and stay whole. Nothing is
-                                  encoded anew; --gofs tells what there is to choose
+  rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
-Exit code: 0 all of it was read; 1 not a conforming stream; 2 not supported, or a stream that
-cannot be cut; 3 beyond the limits; 4 input or output failed; 64 usage.)";
+constexpr const char* kDetails =
+    R"(--extract writes the stream without the slices of finer detail (Main profile),
+without re-encoding. Of each skinned GOF it keeps the component groups with up
+to K trajectories (0: only bones and rest shape), and the layer groups with up
+to L vertex layers, the coarsest (always at least the first). Cluster GOFs have
+no slices: they are kept whole. --gofs shows the possible cuts.
+
+--trace prints bit position, name and value of every syntax element.
+
+Exit code: 0 the whole stream was read; 1 not a conforming stream; 2 not
+supported, or a stream that cannot be cut; 3 beyond the limits; 4 input or
+output failed; 64 wrong usage.)";
 
 struct Options {
   std::string input;
@@ -347,33 +348,45 @@ int inform(const Options& o) {
   return rlpc::kExitDone;
 }
 
+// Returns --extract.
+CLI::Option* add_options(CLI::App& app, Options& o) {
+  const std::string report = "Report";
+  const std::string cut = "Smaller stream";
+  app.add_option("STREAM", o.input, "Stream to look at; - for standard input")->required();
+  auto* json = app.add_flag("--json", o.json, "JSON on standard output")->group(report);
+  auto* gofs =
+      app.add_flag("--gofs", o.gofs, "Contents of each GOF and slice, too")->group(report);
+  auto* html = app.add_option("--html", o.html, "Write a page with charts, too")
+                   ->option_text("FILE")
+                   ->group(report);
+  auto* trace = app.add_flag("--trace", o.trace, "Every syntax element instead")->group(report);
+  app.add_option("--max-memory", o.max_memory_bytes,
+                 "Refuse streams that need more to decode, for example 500MB")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("SIZE")
+      ->group(report);
+  auto* extract = app.add_option("--extract", o.extract, "Keep only coarser slices")
+                      ->option_text("components=K,layers=L")
+                      ->group(cut);
+  auto* output = app.add_option("-o,--output", o.output,
+                                "With --extract: stream to write; - for standard output")
+                     ->option_text("FILE")
+                     ->group(cut);
+  trace->excludes(json)->excludes(html);
+  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
+  output->needs(extract);
+  rlpc::add_help(app, {"STREAM [OPTIONS]", {report, cut}, kExamples, kDetails}, RLPC_VERSION);
+  return extract;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   rlpc::handle_interrupts();
-  CLI::App app("Tells what is in an .rlpc stream.", "rlpcinfo");
-  app.set_version_flag("--version", "rlpcinfo " RLPC_VERSION);
+  CLI::App app("Shows what an .rlpc stream contains.", "rlpcinfo");
   Options options;
-  app.add_option("input", options.input, "Stream to look at; - for standard input")->required();
-  auto* json = app.add_flag("--json", options.json, "JSON on standard output");
-  auto* gofs = app.add_flag("--gofs", options.gofs, "Tell of each GOF and slice");
-  auto* html = app.add_option("--html", options.html, "Write a page with charts, too");
-  auto* trace = app.add_flag("--trace", options.trace, "Print every syntax element");
-  auto* extract = app.add_option("--extract", options.extract,
-                                 "components=K,layers=L: write the stream without some slices");
-  auto* output = app.add_option("-o,--output", options.output, "Where --extract writes to");
-  app.add_option("--max-memory", options.max_memory_bytes,
-                 "Give up on streams that need more to decode, for example 500MB")
-      ->transform(CLI::AsSizeValue(false));
-  trace->excludes(json)->excludes(html);
-  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
-  output->needs(extract);
-  app.footer(kExamples);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return rlpc::exit_of_parse(app, error) == 0 ? rlpc::kExitDone : rlpc::kExitUsage;
-  }
+  auto* extract = add_options(app, options);
+  if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
     return complain(options.html + ": is the input itself; give another name",
                     rlpc::kExitUsage);

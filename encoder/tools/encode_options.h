@@ -16,6 +16,7 @@ struct EncodeOptions {
   std::string quality;    // its word, if the target was given by one
   bool dry_run = false;
   bool json = false;
+  bool verbose = false;
   bool quiet = false;
   EncoderSettings settings;
 };

@@ -37,6 +37,8 @@ ROOMS = {
     "common/testing": _GOFS,
     # Files and terminals, for programs and for readers and writers of files; floats (7.3).
     "common/io": {"common", "common/mesh"},
+    # Command lines of programs.
+    "common/tools": {"common/io"},
     # Bits to structures; no reconstruction, no files.
     "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
     "decoder/parse/sequence": _GOFS | {"decoder/parse"},
@@ -51,7 +53,8 @@ ROOMS = {
     "decoder/output": {"common", "common/io", "common/mesh"},
     "decoder/player": {"common/bitstream", "common/io", "common/mesh", "decoder/output", "decoder/stream",
                        "decoder/tools", "decoder/recon/async.h"} | _PUBLIC_DECODER,
-    "decoder/tools": _GOFS | {"common/io", "decoder/extract", "decoder/output", "decoder/player",
+    "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",
+                              "decoder/player",
                               "decoder/report", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/fuzz": _GOFS | _RECON | _PARSE | {"common/testing", "decoder/stream"}
                     | _PUBLIC_DECODER,
@@ -82,7 +85,8 @@ ROOMS = {
                            "encoder/math/det_math.h"},
     "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
                            "encoder/input/gltf", "encoder/input/gltf/document"},
-    "encoder/tools": {"common/io", "encoder", "encoder/input", "encoder/metrics", "encoder/sequence"},
+    "encoder/tools": {"common/io", "common/tools", "encoder", "encoder/input", "encoder/metrics",
+                      "encoder/sequence"},
 }
 # Although the room is open: layers of vertices are made with the connectivity (8.9), not while a
 # GOF is parsed.
@@ -98,7 +102,8 @@ BOTH_SIDES = "conformance"
 
 # Layers that neither throw nor catch, but for the interface in C, programs, and threads.
 NEITHER_THROW_NOR_CATCH = {"common", "decoder"}
-MAY_CATCH = {"common/c_api", "common/io", "decoder/c_api", "decoder/tools", "decoder/recon/async.cpp"}
+MAY_CATCH = {"common/c_api", "common/io", "common/tools", "decoder/c_api", "decoder/tools",
+             "decoder/recon/async.cpp"}
 
 # Folders in which all is an integer, folders in them included; but for one.
 INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
@@ -111,6 +116,7 @@ _PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
 LIBRARIES = {
     "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
     FILES: {"sys"},
+    "common/tools": {"CLI"},
     "decoder": _TOOLS,
     "encoder": _TOOLS | {"Eigen"},
     "conformance": _TOOLS | _PEERS | {"Eigen"},

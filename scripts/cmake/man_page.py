@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the manual page of a tool from what it says itself with --help."""
+"""Writes the manual page of a program from its --help-all."""
 
 import argparse
 import os
@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 TOOLS = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
-COLUMN = 30  # of descriptions in the help
+COLUMN = 26  # of descriptions in the help
 
 
 def escaped(text):
@@ -23,11 +23,13 @@ def bold(text):
 
 
 def option(first, more):
-    """Of "  -o,--output TEXT   what it does", or of a long name with that in the lines behind."""
-    name, description = (first, more) if more else (first[:COLUMN], [first[COLUMN:]])
-    words = name.strip().split(" ", 1)
-    term = bold(words[0]) + (" " + escaped(words[1]) if len(words) > 1 else "")
-    return [".TP", term, *(escaped(line.strip()) for line in description)]
+    """An entry: "  -o, --output FILE   Its description" with the lines that continue it."""
+    name, description = re.fullmatch(r"  (.*?)(?:  +(.*))?", first).groups()
+    words = [bold(word) if word.startswith("-") else escaped(word)
+             for word in re.findall(r"[^ ,]+|[ ,]+", name)]
+    term = "".join(words) if name.startswith("-") else bold(name)
+    lines = ([description] if description else []) + more
+    return [".TP", term, *(escaped(line.strip()) for line in lines)]
 
 
 def options(lines):
@@ -71,7 +73,7 @@ def footer(blocks):
 
 
 def page(tool, version, text):
-    """The manual page for the text of --help."""
+    """The manual page for the text of --help-all."""
     blocks = [block.split("\n") for block in re.split(r"\n\n+", text.strip())]
     about, usage = blocks[0][0], blocks[0][1].removeprefix("Usage: ")
     purpose = about[0].lower() + about[1:].rstrip(".")
@@ -80,9 +82,11 @@ def page(tool, version, text):
            ".SH NAME", f"{tool} \\- {escaped(purpose)}",
            ".SH SYNOPSIS", f"{bold(tool)} {escaped(arguments)}"]
     rest = blocks[1:]
+    if rest[0][0].startswith("  "):
+        out += [".SH ARGUMENTS", *options(rest[0])]
+        rest = rest[1:]
     while rest and rest[0][0].endswith(":") and not rest[0][0].startswith(" "):
-        title = {"Positionals:": "ARGUMENTS"}.get(rest[0][0], rest[0][0].rstrip(":").upper())
-        out += [f".SH {escaped(title)}", *options(rest[0][1:])]
+        out += [f".SH {escaped(rest[0][0].rstrip(':').upper())}", *options(rest[0][1:])]
         rest = rest[1:]
     out += footer(rest)
     others = [f"{bold(other)}(1)" for other in TOOLS if other != tool]
@@ -95,7 +99,7 @@ def main():
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--version", required=True)
     args = parser.parse_args()
-    done = subprocess.run([args.tool, "--help"], check=True, capture_output=True, text=True,
+    done = subprocess.run([args.tool, "--help-all"], check=True, capture_output=True, text=True,
                           env={**os.environ, "LC_ALL": "C.UTF-8", "COLUMNS": "80"})
     text = page(args.tool.name, args.version, done.stdout)
     partial = args.output.with_name(args.output.name + ".partial")

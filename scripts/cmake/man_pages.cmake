@@ -1,4 +1,4 @@
-# Manual pages of the tools, from what they say with --help. Left out where the tools cannot be run
+# Manual pages of the tools, from their --help-all. Left out where the tools cannot be run
 # or there is no Python.
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(CMAKE_CROSSCOMPILING OR NOT Python3_Interpreter_FOUND)

@@ -158,7 +158,7 @@ class Toolbox:
                 return ("its library was not there when peer_codec was built "
                         "(scripts/setup --compare)")
         if "rlpcenc" in codec.tools:
-            known = self._says("rlpcenc", "--help")
+            known = self._says("rlpcenc", "--help-all")
             asked = " ".join((codec.options, *(s for ladder in codec.ladders for s in ladder[:1])))
             for word in asked.split():
                 if word.startswith("--") and not re.search(rf"{word}(?![\w-])", known):

@@ -1,0 +1,156 @@
+#include "common/tools/command_line.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "common/io/messages.h"
+
+namespace rlpc {
+namespace {
+
+constexpr int kUsage = 64;
+constexpr std::size_t kColumn = 26;  // where descriptions begin
+constexpr std::size_t kWidth = 80;
+
+// "  --name VALUE          description", wrapped.
+std::string entry(const std::string& term, const std::string& description) {
+  std::string out = "  " + term;
+  std::size_t column = out.size();
+  if (column + 2 > kColumn) {
+    out += '\n';
+    column = 0;
+  }
+  bool first = true;
+  std::istringstream words(description);
+  for (std::string word; words >> word; first = false) {
+    if (!first && column + 1 + word.size() > kWidth) {
+      out += '\n';
+      column = 0;
+      first = true;
+    }
+    const std::string gap(first ? kColumn - column : 1, ' ');
+    out += gap + word;
+    column += gap.size() + word.size();
+  }
+  return out + "\n";
+}
+
+std::string option_entry(const CLI::Option* option) {
+  std::string term;
+  for (const char c : option->get_name(option->get_positional(), true)) {
+    term += c == ',' ? std::string(", ") : std::string(1, c);
+  }
+  if (!option->get_option_text().empty()) term += " " + option->get_option_text();
+  return entry(term, option->get_description());
+}
+
+class HelpPages : public CLI::Formatter {
+ public:
+  explicit HelpPages(HelpText text) : text_(std::move(text)) {}
+
+  std::string make_help(const CLI::App* app, std::string /*name*/,
+                        CLI::AppFormatMode mode) const override {
+    const bool all = mode == CLI::AppFormatMode::All;
+    std::string out =
+        app->get_description() + "\nUsage: " + app->get_name() + " " + text_.usage + "\n\n";
+    for (const auto* option :
+         app->get_options([](const CLI::Option* o) { return o->get_positional(); })) {
+      out += option_entry(option);
+    }
+    for (const std::string& group : all ? app->get_groups() : text_.main_groups) {
+      const auto options = app->get_options([&group](const CLI::Option* o) {
+        return o->get_group() == group && o->nonpositional();
+      });
+      if (options.empty()) continue;
+      out += "\n" + group + ":\n";
+      for (const auto* option : options) out += option_entry(option);
+    }
+    out += "\n" + text_.examples + "\n";
+    if (all) return out + "\n" + text_.details + "\n";
+    return out + "\nAll options, details and exit codes: " + app->get_name() + " --help-all\n";
+  }
+
+ private:
+  HelpText text_;
+};
+
+// Letters to insert, remove or replace.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+// The option that was probably meant; "": none is near.
+std::string similar_option(const CLI::App& app, const std::string& word) {
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      const std::size_t distance = edit_distance(word, "--" + name);
+      if (distance >= least) continue;
+      least = distance;
+      nearest = "--" + name;
+    }
+  }
+  return nearest;
+}
+
+std::string surplus_text(const CLI::App& app, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (!word.starts_with("-")) continue;
+    const std::string similar = similar_option(app, word.substr(0, word.find('=')));
+    return "unknown option " + word +
+           (similar.empty() ? "" : "; did you mean " + similar + "?");
+  }
+  const bool has_points = app.get_option_no_throw("--points") != nullptr;
+  for (const std::string& word : words) {
+    if (has_points && (word.ends_with(".pc2") || word.ends_with(".mdd"))) {
+      return "unexpected argument " + word + "; did you mean --points " + word + "?";
+    }
+  }
+  return "unexpected argument" + std::string(words.size() == 1 ? " " : "s ") +
+         CLI::detail::join(words, " ") +
+         (has_points ? "; put patterns in quotes, as in 'walk_*.obj'" : "");
+}
+
+}  // namespace
+
+void add_help(CLI::App& app, HelpText text, const std::string& version) {
+  app.set_help_flag("-h,--help", "The options most used")->group("Help");
+  app.set_help_all_flag("--help-all", "This page")->group("Help");
+  app.set_version_flag("--version", app.get_name() + " " + version, "The version")
+      ->group("Help");
+  app.formatter(std::make_shared<HelpPages>(std::move(text)));
+}
+
+std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    print_message(app.get_name(), surplus_text(app, app.remaining()));
+    std::cerr << "Run with --help for more information.\n";
+    return kUsage;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    print_message(app.get_name(), error.what());
+    std::cerr << "Run with --help for more information.\n";
+    return kUsage;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rlpc

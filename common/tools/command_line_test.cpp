@@ -1,0 +1,115 @@
+#include "common/tools/command_line.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+struct Program {
+  Program() {
+    app.add_option("IN", in, "What to read")->required();
+    app.add_option("-o,--output", out,
+                   "A description that is much too long for one line, and must be continued in "
+                   "the column where it began")
+        ->option_text("FILE")
+        ->check(CLI::ExistingFile)
+        ->group("Main");
+    app.add_option("--points", points, "Points")->option_text("FILE")->group("Main");
+    app.add_option("--a-rather-long-name", number, "A number")
+        ->check(CLI::Range(1, 9))
+        ->option_text("N")
+        ->group("Rare");
+    add_help(app, {"IN [OPTIONS]", {"Main"}, "Examples\n  program x", "Details"}, "1.2.3");
+  }
+
+  // The exit code; 1000: the program goes on.
+  int run(std::vector<std::string> words) {
+    words.insert(words.begin(), "program");
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const auto code = parse_command_line(app, static_cast<int>(argv.size()), argv.data());
+    shown = testing::internal::GetCapturedStdout();
+    said = testing::internal::GetCapturedStderr();
+    return code.value_or(1000);
+  }
+
+  CLI::App app{"Does a thing.", "program"};
+  std::string in;
+  std::string out;
+  std::string points;
+  int number = 0;
+  std::string shown;
+  std::string said;
+};
+
+TEST(CommandLine, HelpHasTheMainGroupsInColumns) {
+  Program p;
+  EXPECT_EQ(p.run({"--help"}), 0);
+  EXPECT_EQ(p.shown, R"(Does a thing.
+Usage: program IN [OPTIONS]
+
+  IN                      What to read
+
+Main:
+  -o, --output FILE       A description that is much too long for one line, and
+                          must be continued in the column where it began
+  --points FILE           Points
+
+Examples
+  program x
+
+All options, details and exit codes: program --help-all
+)");
+}
+
+TEST(CommandLine, HelpAllHasEveryGroupAndTheDetails) {
+  Program p;
+  EXPECT_EQ(p.run({"--help-all"}), 0);
+  for (const char* text :
+       {"\nMain:\n", "\nRare:\n  --a-rather-long-name N  A number\n", "\nHelp:\n  -h, --help  ",
+        "  --help-all  ", "  --version  ", "\nExamples\n  program x\n\nDetails\n"}) {
+    EXPECT_NE(p.shown.find(text), std::string::npos) << text << p.shown;
+  }
+  EXPECT_EQ(p.shown.find("N:"), std::string::npos);
+}
+
+TEST(CommandLine, ShowsTheVersion) {
+  Program p;
+  EXPECT_EQ(p.run({"--version"}), 0);
+  EXPECT_EQ(p.shown, "program 1.2.3\n");
+}
+
+TEST(CommandLine, ReadsOptions) {
+  Program p;
+  EXPECT_EQ(p.run({"x", "--a-rather-long-name", "7"}), 1000);
+  EXPECT_EQ(p.in, "x");
+  EXPECT_EQ(p.number, 7);
+  EXPECT_EQ(p.said, "");
+}
+
+TEST(CommandLine, SuggestsWhatWasMeant) {
+  const std::string more = "\nRun with --help for more information.\n";
+  const auto complaint = [&](const std::vector<std::string>& words) {
+    Program p;
+    EXPECT_EQ(p.run(words), 64);
+    EXPECT_TRUE(p.said.ends_with(more)) << p.said;
+    return p.said.substr(0, p.said.size() - std::min(more.size(), p.said.size()));
+  };
+  EXPECT_EQ(complaint({"x", "--pionts=y"}),
+            "program: unknown option --pionts=y; did you mean --points?");
+  EXPECT_EQ(complaint({"x", "--nonsense"}), "program: unknown option --nonsense");
+  EXPECT_EQ(complaint({"x", "y.pc2"}),
+            "program: unexpected argument y.pc2; did you mean --points y.pc2?");
+  EXPECT_EQ(complaint({"x", "y", "z"}),
+            "program: unexpected arguments y z; put patterns in quotes, as in 'walk_*.obj'");
+  EXPECT_EQ(complaint({}), "program: IN is required");
+}
+
+}  // namespace
+}  // namespace rlpc
