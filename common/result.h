@@ -19,9 +19,10 @@ enum class Errc : std::uint8_t {
 // Trivially copyable: naming a failure never allocates. Both strings are literals.
 struct Error {
   Errc code = Errc::kInvalid;
-  const char* rule = "";      // rule id of the specification, for example "R-HDR-03"
-  const char* element = "";   // syntax element, spelled as in the specification
-  std::uint64_t bit_pos = 0;  // where that element begins, or near it (spec/permissive.md)
+  const char* rule = "";           // rule id of the specification, for example "R-HDR-03"
+  const char* element = "";        // syntax element, spelled as in the specification
+  std::uint64_t bit_pos = 0;       // where that element begins, or near it (spec/permissive.md)
+  std::uint64_t needed_bytes = 0;  // at least, if memory is the limit exceeded and it is known
 };
 
 template <class T, class E = Error>

@@ -1,12 +1,45 @@
-// Errors of a stream in words.
+// Stream errors in words.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "common/result.h"
 
 namespace rlpc {
+
+// What an Errc::kLimitExceeded is about.
+enum class ExceededLimit : std::uint8_t { kVertices, kTriangles, kFrames, kMemory };
+
+inline ExceededLimit exceeded_limit(const Error& error) {
+  const std::string_view element = error.element;
+  if (error.needed_bytes > 0) return ExceededLimit::kMemory;
+  if (element == "num_vertices_minus1") return ExceededLimit::kVertices;
+  if (element == "num_triangles") return ExceededLimit::kTriangles;
+  if (element == "num_frames_minus1") return ExceededLimit::kFrames;
+  return ExceededLimit::kMemory;
+}
+
+inline std::string describe_limit(const Error& error) {
+  switch (exceeded_limit(error)) {
+    case ExceededLimit::kVertices:
+      return "more vertices than the limit";
+    case ExceededLimit::kTriangles:
+      return "more triangles than the limit";
+    case ExceededLimit::kFrames:
+      return "more frames than the limit";
+    case ExceededLimit::kMemory:
+      break;
+  }
+  if (error.needed_bytes == 0) return "needs more memory than the limit";
+  constexpr std::uint64_t kManyKib = 10240;
+  const std::uint64_t kib = (error.needed_bytes + 1023) / 1024;
+  return "needs at least " +
+         (kib < kManyKib ? std::to_string(kib) + " KiB"
+                         : std::to_string((kib + 1023) / 1024) + " MiB") +
+         " of memory, more than the limit";
+}
 
 // For example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is damaged or ...".
 inline std::string describe_error(const Error& error) {
@@ -18,14 +51,14 @@ inline std::string describe_error(const Error& error) {
       return where + ": the stream ends too early" + rule + "; the file was cut off";
     case Errc::kInvalid:
       if (std::string_view(error.rule) == "R-STR-01") {
-        return where + ": expected an RLPC stream, which begins with other bytes" + rule;
+        return "not an RLPC stream" + rule;
       }
       return where + ": not a conforming stream" + rule +
              "; the file is damaged, or its encoder has a bug";
     case Errc::kUnsupported:
-      return where + ": not supported by this version" + rule + "; get a newer decoder";
+      return where + ": not supported by this version" + rule + "; use a newer decoder";
     case Errc::kLimitExceeded:
-      return where + ": more than the limits allow" + rule + "; raise them to decode it";
+      return where + ": " + describe_limit(error);
     case Errc::kIo:
       break;
   }

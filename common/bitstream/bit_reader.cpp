@@ -4,8 +4,9 @@
 
 namespace rlpc {
 
-void BitReader::fail(Errc code, const char* rule, const char* element, std::uint64_t bit_pos) {
-  if (!error_) error_ = Error{code, rule, element, bit_pos};
+void BitReader::fail(Errc code, const char* rule, const char* element, std::uint64_t bit_pos,
+                     std::uint64_t needed_bytes) {
+  if (!error_) error_ = Error{code, rule, element, bit_pos, needed_bytes};
 }
 
 std::uint32_t BitReader::take(int n, const char* element, std::uint64_t at) {

@@ -38,7 +38,8 @@ class BitReader {
   // Fails unless every byte has been read (rule R-BIT-03).
   void expect_end();
 
-  void fail(Errc code, const char* rule, const char* element, std::uint64_t bit_pos);
+  void fail(Errc code, const char* rule, const char* element, std::uint64_t bit_pos,
+            std::uint64_t needed_bytes = 0);
   const std::optional<Error>& error() const { return error_; }
   std::uint64_t bit_pos() const { return first_bit_ + pos_; }
   Trace* trace() const { return trace_; }

@@ -306,7 +306,7 @@ class BadStreams(ToolsTest):
 
     def test_limits(self):
         for option in (["--max-vertices", 500], ["--max-memory", "50KB"]):
-            self.fails(3, "limits", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
+            self.fails(3, "than the limit (--max-", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
                        *option)
         self.assertEqual(self.files(), ["a.rlpc"])
         self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--max-vertices", 538, "--max-memory",

@@ -265,7 +265,8 @@ static void test_options(const buffer* stream) {
   options.max_vertices = VERTICES - 1;
   CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) ==
         RLPC_LIMIT_EXCEEDED);
-  CHECK_TEXT(rlpc_decoder_error_text(decoder), "num_vertices_minus1: more than the limits");
+  CHECK_TEXT(rlpc_decoder_error_text(decoder),
+             "num_vertices_minus1: more vertices than the limit");
   rlpc_decoder_close(decoder);
   options.max_vertices = VERTICES;
 

@@ -1,11 +1,13 @@
 #include "conformance/rlpcval/rlpcval_report.h"
 
 #include <cinttypes>
+#include <string>
 #include <string_view>
 
 #include "common/io/messages.h"
 #include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/rule_explanations.h"
+#include "decoder/describe_error.h"
 
 namespace rlpc {
 namespace {
@@ -167,11 +169,13 @@ void print_report(std::FILE* out, const std::string& path, const ValidationRepor
     std::fprintf(out, "\n  %s not listed\n", counted(report.omitted, "error").c_str());
   }
   if (report.stopped) {
-    const char* what = report.stopped->code == Errc::kIo
-                           ? "the file could not be read"
-                           : "more than the limits allow: raise --max-memory";
+    const bool memory = exceeded_limit(*report.stopped) == ExceededLimit::kMemory;
+    const char* const advice = memory ? "; raise --max-memory" : "";
+    const std::string what = report.stopped->code == Errc::kIo
+                                 ? "the file could not be read"
+                                 : describe_limit(*report.stopped) + advice;
     std::fprintf(out, "\nbit %" PRIu64 ": %s: %s\n", report.stopped->bit_pos,
-                 report.stopped->element, what);
+                 report.stopped->element, what.c_str());
   }
   if (!report.complete) {
     std::fprintf(out, "\n  Not all was checked: validate again when this is mended.\n");

@@ -100,13 +100,17 @@ void StreamValidator::check_limits() {
   const DecodeLimits& limits = options_.limits;
   const SequenceHeader& h = lead_.header->header;
   const char* element = nullptr;
-  if (memory_of(h) > limits.max_memory_bytes) element = "num_vertices_minus1";
+  std::uint64_t needed_bytes = 0;
+  if (memory_of(h) > limits.max_memory_bytes) {
+    element = "num_vertices_minus1";
+    needed_bytes = memory_of(h);
+  }
   if (h.num_frames > limits.max_frames) element = "num_frames_minus1";
   if (h.num_triangles > limits.max_triangles) element = "num_triangles";
   if (h.num_vertices > limits.max_vertices) element = "num_vertices_minus1";
   lead_.within_limits = element == nullptr;
   if (lead_.within_limits) return;
-  findings_.error({Errc::kLimitExceeded, "", element, lead_.header_bit_pos});
+  findings_.error({Errc::kLimitExceeded, "", element, lead_.header_bit_pos, needed_bytes});
 }
 
 // 6.4 Connectivity

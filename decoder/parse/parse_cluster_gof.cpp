@@ -140,7 +140,9 @@ void ClusterSectionParser::count_factors(std::uint64_t more, const char* element
 
 void ClusterSectionParser::take_memory(std::uint64_t bytes, const char* element) {
   memory_bytes_ += bytes;
-  if (!failed() && memory_bytes_ > max_memory_bytes_) section_.fail_limit(element);
+  if (!failed() && memory_bytes_ > max_memory_bytes_) {
+    section_.fail_memory(element, memory_bytes_);
+  }
 }
 
 // 6.5.4 seed_tracks( )

@@ -108,10 +108,9 @@ void SkinnedGofParser::bone_section(BitReader& r) {
   num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
                  3 * std::uint64_t{header_.num_vertices};
   if (section.failed()) return;
-  const std::uint64_t of_vertices = sizeof(Influences) * std::uint64_t{header_.num_vertices};
-  if (num_factors_ * kBytesPerFactor + of_vertices > max_memory_bytes_) {
-    section.fail_limit("bone_section");
-  }
+  const std::uint64_t needed_bytes =
+      num_factors_ * kBytesPerFactor + sizeof(Influences) * std::uint64_t{header_.num_vertices};
+  if (needed_bytes > max_memory_bytes_) section.fail_memory("bone_section", needed_bytes);
   if (section.failed()) return;
   BoneParser parser(section, header_, gof_.num_frames);
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
@@ -213,7 +212,7 @@ void SkinnedGofParser::SliceParser::group_components() {
   if (parser_.num_factors_ > level.max_gof_factors) {
     section_.fail("R-LVL-05", "num_group_components_minus1");
   } else if (parser_.num_factors_ * kBytesPerFactor > parser_.max_memory_bytes_) {
-    section_.fail_limit("num_group_components_minus1");
+    section_.fail_memory("num_group_components_minus1", parser_.num_factors_ * kBytesPerFactor);
   }
   for (int l = 0; l < count && !failed(); ++l) {
     gof_.trajectories.emplace_back();

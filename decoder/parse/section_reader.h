@@ -28,8 +28,8 @@ class SectionReader {
   void fail(const char* rule, const char* element) {
     reader_.fail(Errc::kInvalid, rule, element, bit_pos());
   }
-  void fail_limit(const char* element) {
-    reader_.fail(Errc::kLimitExceeded, "", element, bit_pos());
+  void fail_memory(const char* element, std::uint64_t needed_bytes) {
+    reader_.fail(Errc::kLimitExceeded, "", element, bit_pos(), needed_bytes);
   }
   // A section that ran out of bytes is not worth decoding.
   void check_overrun(const char* element) {

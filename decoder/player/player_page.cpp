@@ -68,9 +68,7 @@ OutputResult<std::string> read_player(const std::string& path) {
     return OutputError{place.string() + ": not the page that scripts/player builds"};
   }
   if (!path.empty()) return OutputError{path + ": cannot read the player"};
-  return OutputError{
-      "no player here: `scripts/player` builds it, then `cmake --install` installs it too; or "
-      "give its page with --player"};
+  return OutputError{"player not built: run scripts/player first, or pass --player PAGE"};
 }
 
 std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,

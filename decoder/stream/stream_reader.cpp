@@ -73,8 +73,8 @@ Result<bool> StreamReader::read_sequence_header() {
 
 Result<bool> StreamReader::check_limits() const {
   const SequenceHeader& header = context_.header;
-  const auto exceeded = [](const char* element) {
-    return Error{Errc::kLimitExceeded, "", element, kStreamHeaderBytes * 8};
+  const auto exceeded = [](const char* element, std::uint64_t needed_bytes = 0) {
+    return Error{Errc::kLimitExceeded, "", element, kStreamHeaderBytes * 8, needed_bytes};
   };
   if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
   if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
@@ -85,7 +85,7 @@ Result<bool> StreamReader::check_limits() const {
       (header.profile_idc == kProfileMain ? 400 : 100) + 12 * kFramesHeld;
   const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
                               std::uint64_t{header.num_triangles} * 120;
-  if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1");
+  if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", fixed);
   return true;
 }
 

@@ -88,7 +88,7 @@ Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t compute
 
 Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
   if (unit.size > max_payload_bytes_) {
-    return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8};
+    return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, unit.size};
   }
   trace_header(unit);
   std::vector<std::uint8_t> bytes(kUnitHeaderBytes + std::size_t{unit.size} + kUnitCrcBytes);

@@ -10,9 +10,9 @@
 
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
-#include "decoder/describe_error.h"
 #include "decoder/extract/sub_stream_extractor.h"
 #include "decoder/tools/exit_code.h"
+#include "decoder/tools/stream_message.h"
 
 namespace rlpc {
 namespace {
@@ -31,7 +31,7 @@ int complain(const std::string& message, int code) {
 }
 
 int complain(const ExtractOptions& o, const Error& error) {
-  return complain(name_of_input(o.input) + ": " + describe_error(error), exit_code(error.code));
+  return complain(stream_message(o.input, error, o.limits), exit_code(error.code));
 }
 
 double bpvf(const SubStreamExtractor& cutter, std::uint64_t bytes) {
@@ -140,7 +140,8 @@ int extract(const ExtractOptions& o) {
   auto source = file_or_standard_input(o.input, o.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
   if (OutputFile::is_same_file(o.output, o.input)) {
-    return complain(o.output + ": is the input itself; give another name", kExitUsage);
+    return complain(o.output + ": is an input, too; choose another name for the output",
+                    kExitUsage);
   }
   auto cutter = SubStreamExtractor::open(std::move(*source), o.cut, o.limits);
   if (!cutter) return complain(o, cutter.error());

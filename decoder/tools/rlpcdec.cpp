@@ -22,12 +22,12 @@
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "common/tools/command_line.h"
-#include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/conformance_verbs.h"
 #include "decoder/tools/exit_code.h"
+#include "decoder/tools/stream_message.h"
 
 namespace {
 
@@ -94,12 +94,8 @@ int complain(const std::string& message, int code) {
 }
 
 int complain(const Options& o, const rlpc::Error& error) {
-  std::string text = rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error);
-  if (error.code == rlpc::Errc::kLimitExceeded) {
-    const bool frames = std::string_view(error.element) == "num_frames_minus1";
-    text += frames ? " (--max-frames)" : " (--max-memory, --max-vertices)";
-  }
-  return complain(text, rlpc::exit_code(error.code));
+  return complain(rlpc::stream_message(o.input, error, o.decoder.limits),
+                  rlpc::exit_code(error.code));
 }
 
 // "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
@@ -381,7 +377,7 @@ int main(int argc, char** argv) try {
   for (const std::string& read : {options.input, options.html.reference, options.html.player}) {
     for (const std::string& written : {options.output, options.html.output}) {
       if (!rlpc::OutputFile::is_same_file(written, read)) continue;
-      return complain(written + ": is read, too, and would be written over; give another name",
+      return complain(written + ": is an input, too; choose another name for the output",
                       rlpc::kExitUsage);
     }
   }

@@ -19,7 +19,6 @@
 #include "common/io/output_file.h"
 #include "common/io/standard_output.h"
 #include "common/tools/command_line.h"
-#include "decoder/describe_error.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
@@ -28,6 +27,7 @@
 #include "decoder/stream/stream_reader.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/extract_verb.h"
+#include "decoder/tools/stream_message.h"
 
 namespace {
 
@@ -67,8 +67,9 @@ int complain(const std::string& message, int code) {
 }
 
 int complain(const Options& o, const rlpc::Error& error) {
-  return complain(rlpc::name_of_input(o.input) + ": " + rlpc::describe_error(error),
-                  rlpc::exit_code(error.code));
+  rlpc::DecodeLimits limits;
+  limits.max_memory_bytes = o.max_memory_bytes;
+  return complain(rlpc::stream_message(o.input, error, limits), rlpc::exit_code(error.code));
 }
 
 int complain(const rlpc::OutputError& error) { return complain(error.message, rlpc::kExitIo); }
@@ -388,7 +389,7 @@ int main(int argc, char** argv) try {
   auto* extract = add_options(app, options);
   if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
-    return complain(options.html + ": is the input itself; give another name",
+    return complain(options.html + ": is an input, too; choose another name for the output",
                     rlpc::kExitUsage);
   }
   if (options.json && (options.html == "-" || options.output == "-")) {
