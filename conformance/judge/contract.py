@@ -54,7 +54,7 @@ class Decoder:
         if done.code != 0:
             raise ContractError(self._refusal(f"{done.ending()}", done.stderr))
         try:
-            self.answer = json.loads(done.stdout)
+            self.answer = json_of(done.stdout)
             schema.check(self.answer, schema.load("contract"), "the answer")
         except (ValueError, schema.SchemaError) as error:
             raise ContractError(self._refusal(str(error), "")) from error
@@ -97,6 +97,15 @@ class Decoder:
         return f"{self.command} decode {shlex.quote(str(stream.path))} out.{form}"
 
 
+def json_of(text):
+    if not text.strip():
+        raise ValueError("printed nothing")
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise ValueError(f"printed no JSON ({error})") from error
+
+
 def read_verdict(done):
     """(verdict, None), or (None, what is wrong) with the last line of standard error."""
     if done.code not in (REJECTED, UNSUPPORTED, LIMIT):
@@ -106,8 +115,8 @@ def read_verdict(done):
         where = "; there is one earlier" if any(t.startswith(VERDICT) for t in lines) else ""
         return None, f"the last line of standard error does not begin with \"{VERDICT}\"{where}"
     try:
-        verdict = json.loads(lines[-1][len(VERDICT):])
+        verdict = json_of(lines[-1][len(VERDICT):])
         schema.check(verdict, schema.load("verdict"), "the verdict")
     except (ValueError, schema.SchemaError) as error:
-        return None, f"the last line of standard error is no verdict: {error}"
+        return None, f"the last line of standard error is not a verdict: {error}"
     return verdict, None

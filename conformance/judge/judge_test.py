@@ -191,7 +191,7 @@ class FakeDecoders(JudgeTest):
                    {**GOOD, "R-full": "FAIL"}, 1)
 
     def test_contract_is_checked_first(self):
-        for fault, word in (("answers_no_json", "--rlpc-conformance"),
+        for fault, word in (("answers_no_json", "printed no JSON"),
                             ("speaks_another_contract", "contract")):
             code, report, errors = self.judge(fake(fault))
             self.assertEqual((code, report), (1, None))
