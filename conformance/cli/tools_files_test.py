@@ -94,9 +94,9 @@ class SamePlaces(ToolsTest):
         (self.path("linked.obj")).symlink_to(obj)
         self.before["linked.obj"] = self.before["clip.obj"]
         for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
-            self.refused("is read, too", "rlpcenc", obj, "-o", output)
-        self.refused("is read, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
-        self.refused("is read, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
+            self.refused("is an input, too", "rlpcenc", obj, "-o", output)
+        self.refused("is an input, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
+        self.refused("is an input, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
         self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
         for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
                         ["-o", out, "--order-map", "-", "--json"]):
@@ -110,13 +110,13 @@ class SamePlaces(ToolsTest):
         last, frames = frame.read_bytes(), self.path("frames")
         out = self.path("x.rlpc")
         for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
-            self.fails(64, "is read, too", "rlpcenc", source, "-o", frame)
-            self.fails(64, "is read, too", "rlpcenc", source, "-o", out, "--order-map", frame)
-            self.fails(64, "written over", "rlpccmp", source, source, "--csv", frame)
+            self.fails(64, "is an RLPC stream", "rlpcenc", source, "-o", frame)
+            self.fails(64, "is an input, too", "rlpcenc", source, "-o", out, "--order-map", frame)
+            self.fails(64, "choose another name", "rlpccmp", source, source, "--csv", frame)
         self.assertEqual(frame.read_bytes(), last)
         self.assertFalse(out.exists())
         # The mesh beside the cache, which nobody named.
-        self.fails(64, "written over", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
+        self.fails(64, "choose another name", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
                    "--csv", self.path("clip.obj"))
         buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
         self.path("data.bin").write_bytes(buffer)
@@ -129,15 +129,15 @@ class SamePlaces(ToolsTest):
             "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
                             {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
             "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
-        self.fails(64, "is read, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
+        self.fails(64, "is an input, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
         self.assertEqual(self.path("data.bin").read_bytes(), buffer)
         self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
 
     def test_of_the_decoder(self):
         stream = self.path("a.rlpc")
-        self.refused("is read, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
-        self.refused("is read, too", "rlpcdec", stream, "--html", stream)
-        self.refused("is the input itself", "rlpcinfo", stream, "--html", stream)
+        self.refused("is an input, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
+        self.refused("is an input, too", "rlpcdec", stream, "--html", stream)
+        self.refused("is an input, too", "rlpcinfo", stream, "--html", stream)
         # The mesh that nobody named.
         self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
                      code=4)
@@ -150,10 +150,10 @@ class SamePlaces(ToolsTest):
         obj, pc2, stream = self.path("clip.obj"), self.path("clip.pc2"), self.path("a.rlpc")
         pair = [obj, "--points-a", pc2, obj, "--points-b", pc2]
         for option in ("--csv", "--html"):
-            self.refused("written over", "rlpccmp", *pair, option, obj)
-            self.refused("written over", "rlpccmp", *pair, option, pc2)
-            self.refused("written over", "rlpccmp", *pair, "--stream", stream, option, stream)
-        self.refused("written over", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
+            self.refused("choose another name", "rlpccmp", *pair, option, obj)
+            self.refused("choose another name", "rlpccmp", *pair, option, pc2)
+            self.refused("choose another name", "rlpccmp", *pair, "--stream", stream, option, stream)
+        self.refused("choose another name", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
                      self.path("x"))
         self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")
 

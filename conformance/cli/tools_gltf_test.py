@@ -70,13 +70,14 @@ class GltfInput(ToolsTest):
 
     def test_what_is_joined_and_left_out_is_told(self):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
-        for words in ("2 primitives are of points or lines", "172 of 225 vertices remain",
-                      "8 degenerate triangles are left out"):
+        for words in ("dropped 2 primitives of points or lines", "dropped 8 degenerate triangles",
+                      "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
+                      "dropped: skeleton, names of nodes and animations"):
             self.assertIn(f"{TULIP}: {words}", result.err)
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--no-weld",
                          "--json")
         self.assertEqual(result.json()["num_vertices"], CUP + STEM + SOIL + 2 * BEE)
-        self.assertNotIn("remain", result.err)
+        self.assertNotIn("merged", result.err)
         self.assertEqual(self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1,
                                  "--quiet").err, "")
 
@@ -197,7 +198,7 @@ class GltfErrors(ToolsTest):
             self.fails(1, f"standard input: {words}", "rlpcenc", "-", "-o", self.path("a.rlpc"),
                        input=data)
         told = self.ok("rlpcenc", "-", "-o", self.path("a.rlpc"), "--kg", 1, input=whole).err
-        self.assertIn("standard input: 172 of 225 vertices remain", told)
+        self.assertIn("standard input: merged 53 duplicate vertices", told)
 
 
 if __name__ == "__main__":

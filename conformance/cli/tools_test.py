@@ -440,7 +440,7 @@ class Targets(ToolsTest):
                                        (("--kg", 1, "-q"), True, False),
                                        (("--quality", "good"), False, False)):
             result = self.ok(*elephant, *options)
-            self.assertEqual("the error may be seen" in result.err, told, options)
+            self.assertEqual("the error may be visible" in result.err, told, options)
             found = result.json()["visibility"]
             self.assertEqual(found["visible"], visible, options)
             self.assertAlmostEqual(

@@ -281,7 +281,8 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
   return code;
 }
 
-constexpr const char* kWrittenOver = " would be written over; give another name";
+constexpr const char* kWrittenOver =
+    ": is an input or the other output, too; choose another name";
 
 std::optional<std::string> written_over(const Options& o,
                                         const std::vector<std::string>& read) {
@@ -293,7 +294,7 @@ std::optional<std::string> written_over(const Options& o,
   return std::nullopt;
 }
 
-// What would be written over, or mixed.
+// Outputs that would overwrite a file that is used, or mix with another.
 std::optional<std::string> check_places(const Options& o) {
   if (o.csv == "-" && o.json) return "--json and --csv cannot both go to standard output";
   if (o.html == "-" && (o.json || o.csv == "-")) {

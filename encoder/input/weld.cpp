@@ -85,8 +85,8 @@ void drop_degenerate(FrameSource::Shape& shape) {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   });
   if (dropped == 0) return;
-  shape.notes.push_back(std::to_string(dropped) + " degenerate triangle" +
-                        (dropped == 1 ? " is" : "s are") + " left out");
+  shape.notes.push_back("dropped " + std::to_string(dropped) + " degenerate triangle" +
+                        (dropped == 1 ? "" : "s"));
 }
 
 InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source) {
@@ -115,10 +115,11 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   shape.files = source->files();
   shape.memory_bytes = source->memory_bytes();
   if (vertices.size() < welded.size()) {
-    shape.notes.push_back(std::to_string(vertices.size()) + " of " +
-                          std::to_string(welded.size()) +
-                          " vertices remain, as each other one coincides with one of them in "
-                          "every frame");
+    const std::size_t merged = welded.size() - vertices.size();
+    shape.notes.push_back("merged " + std::to_string(merged) + " duplicate " +
+                          (merged == 1 ? "vertex" : "vertices") + " (" +
+                          std::to_string(vertices.size()) +
+                          " left); --no-weld keeps them apart");
   }
   drop_degenerate(shape);
   return std::unique_ptr<FrameSource>(

@@ -67,16 +67,15 @@ TEST(Weld, JoinsOnlyWhatCoincidesInEveryFrame) {
   EXPECT_EQ(x_of(*source, 2), (std::vector<float>{1, 2, 4, 5}));
   EXPECT_EQ(source->notes(),
             (std::vector<std::string>{"a note",
-                                      "4 of 6 vertices remain, as each other one coincides "
-                                      "with one of them in every frame"}));
+                                      "merged 2 duplicate vertices (4 left); --no-weld keeps "
+                                      "them apart"}));
 }
 
 TEST(Weld, TellsHowManyDegenerateTrianglesItDrops) {
   const auto source = welded({{0, 0, 1, 2}}, {{0, 1, 2}, {1, 2, 3}, {2, 3, 2}, {0, 2, 3}});
   EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
-  EXPECT_EQ(source->notes().back(), "2 degenerate triangles are left out");
-  EXPECT_EQ(welded({{0, 0, 1}}, {{0, 1, 2}})->notes().back(),
-            "1 degenerate triangle is left out");
+  EXPECT_EQ(source->notes().back(), "dropped 2 degenerate triangles");
+  EXPECT_EQ(welded({{0, 0, 1}}, {{0, 1, 2}})->notes().back(), "dropped 1 degenerate triangle");
 }
 
 TEST(Weld, KeepsWhatIsApart) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/tools/command_line.h"
+#include "encoder/input/input_format.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/quality.h"
 
@@ -346,7 +348,7 @@ std::optional<std::string> finish_settings(const CommandLine& line) {
   return std::nullopt;
 }
 
-// What would be written over something else that is read or written; nothing is, so far.
+// Outputs that would overwrite an input or each other; nothing is written yet.
 std::optional<std::string> check_places(const CommandLine& line) {
   const EncodeOptions& o = line.options;
   if (o.output.empty() && !o.dry_run) return "--output is required (or --dry-run)";
@@ -359,11 +361,15 @@ std::optional<std::string> check_places(const CommandLine& line) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& other : read) {
       if (!OutputFile::is_same_file(written, other)) continue;
-      return written + ": is read, too, and would be written over; give another name";
+      return written + ": is an input, too; choose another name for the output";
     }
   }
   if (OutputFile::is_same_file(o.output, o.order_map)) {
-    return o.output + ": is given for the stream and for --order-map; give two names";
+    return o.output + ": is given for the stream and for --order-map; choose two names";
+  }
+  if (format_of_extension(o.output) != nullptr) {
+    return o.output + ": the output is an RLPC stream; choose a name such as " +
+           std::filesystem::path(o.output).replace_extension(".rlpc").string();
   }
   return std::nullopt;
 }

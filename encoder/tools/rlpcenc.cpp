@@ -46,7 +46,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
   if (!e.exact()) {
-    std::printf("  as encoded in eight stretches of %u frames in all:\n", e.frames_encoded);
+    std::printf("  estimated from eight sections, %u frames in all:\n", e.frames_encoded);
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
@@ -113,14 +113,31 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
       kTargetMissed);
 }
 
-// Who asks for a preview, or more than there is, knows.
+// A target whose error should not be visible. Errors are about proportional to KG errors.
+std::string finer(const EncodeOptions& o, const Visibility& v) {
+  const Target& target = o.settings.target;
+  if (target.kind == Target::kNone) return "larger --qu and --qc";
+  if (target.kind == Target::kBpvf) return "a higher --bpvf";
+  const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
+  const NamedQuality* const named =
+      std::find_if(kQualities.begin(), kQualities.end(),
+                   [&](const NamedQuality& q) { return q.kg_error_percent <= value; });
+  if (target.kind == Target::kKg && named != kQualities.end()) {
+    return std::string("--quality ") + named->word;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1g", 0.9 * value);
+  return (target.kind == Target::kKg ? "--kg " : "--max-error ") + std::string(text);
+}
+
+// With --quality preview, or where the target was not met, this is no news.
 void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
-  std::fprintf(stderr,
-               "rlpcenc: the error may be seen: RMS %.3g %% of the median length of edges "
-               "(above %.3g %%). Try %s.\n",
-               v.error_percent, Visibility::kVisiblePercent,
-               o.settings.target.kind == Target::kBpvf ? "a higher --bpvf" : "a smaller error");
+  std::fprintf(
+      stderr,
+      "rlpcenc: the error may be visible: RMS %.3g %% of the median edge length (above "
+      "%.3g %%). Try %s.\n",
+      v.error_percent, Visibility::kVisiblePercent, finer(o, v).c_str());
 }
 
 int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
@@ -190,15 +207,15 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   return report;
 }
 
-// What INPUT may not be meant to be.
+// Where INPUT may not be what was meant.
 std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
   std::vector<std::string> notes;
   if (source.triangles().empty())
-    notes.emplace_back("has no triangles; points alone are coded");
+    notes.emplace_back("has no triangles; encoded as a point cloud");
   if (source.num_frames() > 1 || input.path == "-") return notes;
   const std::string cache = sibling_of(input.path, InputFormat::Holds::kPoints);
   if (!cache.empty() && is_mesh_extension(input.path)) {
-    notes.push_back("is one frame; with --points " + cache + " it has those of that file");
+    notes.push_back("is a single frame; did you mean --points " + cache + "?");
   }
   return notes;
 }
@@ -217,7 +234,7 @@ int run(const EncodeOptions& o) {
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
   if (const auto written = written_over(o, **source)) {
-    return complain(*written + ": is read, too, and would be written over; give another name",
+    return complain(*written + ": is an input, too; choose another name for the output",
                     kUsage);
   }
   const std::string name = name_of_input(o.input.path);

@@ -1,9 +1,12 @@
 #include "encoder/input/formats/point_cache.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -162,6 +165,41 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
   return told;
 }
 
+float load_value(std::span<const char> bytes, std::size_t offset, const Layout& layout) {
+  return layout.big_endian ? load_f32_be(bytes, offset) : load_f32(bytes, offset);
+}
+
+// Whether the first frame is the mesh turned from Y up to Z up, or back, and not the mesh
+// itself.
+InputResult<bool> has_other_axes(InputFile& file, const Layout& layout,
+                                 const std::vector<float>& mesh) {
+  struct Axes {
+    std::array<std::size_t, 3> from;
+    std::array<float, 3> sign;
+    bool match = true;
+  };
+  Axes as_they_are{{0, 1, 2}, {1, 1, 1}};
+  Axes z_up{{0, 2, 1}, {1, -1, 1}};
+  Axes y_up{{0, 2, 1}, {1, 1, -1}};
+  float largest = 0;
+  for (const float x : mesh) largest = std::max(largest, std::abs(x));
+  constexpr float kNear = 1e-4F;
+  constexpr std::size_t kBlock = 12 * std::size_t{4096};
+  std::vector<char> bytes;
+  for (std::size_t at = 0; at < mesh.size(); at += kBlock / 4) {
+    bytes.resize(std::min(kBlock, 4 * (mesh.size() - at)));
+    if (auto error = file.read(layout.first_byte + 4 * at, bytes)) return *error;
+    for (Axes* axes : {&as_they_are, &z_up, &y_up}) {
+      for (std::size_t i = 0; i < bytes.size() / 4 && axes->match; ++i) {
+        const float expected = axes->sign[i % 3] * mesh[at + i - i % 3 + axes->from[i % 3]];
+        const float found = load_value(bytes, 4 * i, layout);
+        axes->match = std::abs(found - expected) <= kNear * largest;
+      }
+    }
+  }
+  return !as_they_are.match && (z_up.match || y_up.match);
+}
+
 class PointCache : public FrameSource {
  public:
   PointCache(Shape shape, InputFile file, const Layout& layout)
@@ -173,7 +211,7 @@ class PointCache : public FrameSource {
     const std::uint64_t offset = layout_.first_byte + frame * std::uint64_t{bytes_.size()};
     if (auto error = file_.read(offset, bytes_)) return error;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
-      xyz[i] = layout_.big_endian ? load_f32_be(bytes_, 4 * i) : load_f32(bytes_, 4 * i);
+      xyz[i] = load_value(bytes_, 4 * i, layout_);
     }
     return check_finite(file_.path(), frame, xyz);
   }
@@ -220,6 +258,13 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
                       " are not finite and ascending, and not used: 30 frames per second "
                       "(--fps sets another rate)");
     }
+  }
+  const auto other_axes = has_other_axes(*file, *layout, mesh->xyz);
+  if (!other_axes) return other_axes.error();
+  if (*other_axes) {
+    notes.push_back("the axes of " + file->path() +
+                    " are others: one is Y-up, the other Z-up; the result has those of " +
+                    file->path());
   }
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);

@@ -43,7 +43,7 @@ TEST_F(GltfPrimitiveTest, LeavesPointsAndLinesOutAndSaysSo) {
   const auto source = open(builder);
   EXPECT_EQ(source->num_vertices(), 3U);
   EXPECT_EQ(source->notes(),
-            (std::vector<std::string>{"4 primitives are of points or lines and left out"}));
+            (std::vector<std::string>{"dropped 4 primitives of points or lines"}));
 }
 
 // Two targets: the first moves vertex 1 along y, the second all along z.
@@ -220,7 +220,7 @@ TEST_F(GltfPrimitiveTest, DropsTrianglesWithoutThreeCornersInAnyCase) {
       builder.add("SCALAR", std::vector<std::uint32_t>{0, 1, 1, 2, 1, 0});
   const auto source = open(builder);
   EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{2, 1, 0}}));
-  EXPECT_EQ(source->notes(), (std::vector<std::string>{"1 degenerate triangle is left out"}));
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped 1 degenerate triangle"}));
 }
 
 }  // namespace

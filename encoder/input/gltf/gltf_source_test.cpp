@@ -201,7 +201,8 @@ TEST_F(GltfSourceTest, LeavesOutWhatExtensionsMoveAndSaysSo) {
   const auto source = open(builder);
   EXPECT_EQ(source->num_frames(), 61U);
   EXPECT_EQ(source->notes(),
-            (std::vector<std::string>{"1 animation channel is of extensions and left out"}));
+            (std::vector<std::string>{"dropped: names of animations",
+                                      "dropped 1 animation channel of extensions"}));
 }
 
 TEST_F(GltfSourceTest, SaysWhatElseItLeavesOut) {
@@ -210,12 +211,34 @@ TEST_F(GltfSourceTest, SaysWhatElseItLeavesOut) {
   builder.json["animations"][1]["name"] = "Run";
   builder.json["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"};
   const auto source = open(builder);
-  ASSERT_EQ(source->notes().size(), 2U);
+  ASSERT_EQ(source->notes().size(), 3U);
   EXPECT_EQ(source->notes()[0],
-            "what EXT_mesh_gpu_instancing adds or hides is left out of account");
-  EXPECT_TRUE(source->notes()[1].starts_with("the first of 2 animations is taken: "));
-  EXPECT_NE(source->notes()[1].find("\"Run\""), std::string::npos);
-  EXPECT_EQ(open(builder, "all")->notes().size(), 1U);
+            "EXT_mesh_gpu_instancing is ignored: the animation may show more or less");
+  EXPECT_EQ(source->notes()[1], "dropped: names of animations");
+  EXPECT_TRUE(source->notes()[2].starts_with("reads the first of 2 animations ("));
+  EXPECT_NE(source->notes()[2].find("\"Run\""), std::string::npos);
+  EXPECT_EQ(open(builder, "all")->notes().size(), 2U);
+}
+
+TEST_F(GltfSourceTest, ListsWhatItDrops) {
+  GltfBuilder builder = one_triangle();
+  EXPECT_TRUE(open(builder)->notes().empty());
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["NORMAL"] = attributes["POSITION"];
+  builder.json["materials"] = {Json::object()};
+  EXPECT_EQ(open(builder)->notes(), (std::vector<std::string>{"dropped: normals, materials"}));
+  for (const char* name : {"TEXCOORD_0", "TANGENT", "COLOR_0"}) {
+    attributes[name] = attributes["POSITION"];
+  }
+  builder.json["textures"] = {Json::object()};
+  builder.json["cameras"] = {Json::object()};
+  builder.json["skins"] = {{{"joints", {0}}}};
+  builder.json["extensions"]["KHR_lights_punctual"] = Json::object();
+  builder.json["nodes"][0]["name"] = "Hips";
+  EXPECT_EQ(
+      open(builder)->notes(),
+      (std::vector<std::string>{"dropped: UVs, normals, tangents, vertex colours, materials, "
+                                "textures, skeleton, cameras, lights, names of nodes"}));
 }
 
 TEST_F(GltfSourceTest, RefusesMeshesWithoutAnything) {
@@ -246,11 +269,10 @@ TEST_F(GltfSourceTest, WeldsUnlessToldNotTo) {
   const auto joined = open(builder, "", true);
   EXPECT_EQ(frame_of(*joined, 0), (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}));
   EXPECT_EQ(joined->triangles(), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
-  EXPECT_EQ(
-      joined->notes(),
-      (std::vector<std::string>{
-          "4 of 9 vertices remain, as each other one coincides with one of them in every frame",
-          "1 degenerate triangle is left out"}));
+  EXPECT_EQ(joined->notes(),
+            (std::vector<std::string>{
+                "merged 5 duplicate vertices (4 left); --no-weld keeps them apart",
+                "dropped 1 degenerate triangle"}));
 }
 
 }  // namespace

@@ -25,24 +25,29 @@ class ModelReader {
     model_.scene = read_gltf_scene(document_, errors_);
     if (errors_) return {};
     for (const std::string& extension : document_.extensions_left_out) {
-      model_.notes.push_back("what " + extension + " adds or hides is left out of account");
+      model_.notes.push_back(extension + " is ignored: the animation may show more or less");
+    }
+    if (!document_.dropped.empty()) {
+      std::string list;
+      for (const std::string& what : document_.dropped)
+        list += (list.empty() ? "" : ", ") + what;
+      model_.notes.push_back("dropped: " + list);
     }
     if (animation.empty() && document_.animations.size() > 1) {
-      model_.notes.push_back("the first of " + to_string(document_.animations.size()) +
-                             " animations is taken: " + gltf_animation_names(document_) +
-                             "; --animation chooses");
+      model_.notes.push_back("reads the first of " + to_string(document_.animations.size()) +
+                             " animations (" + gltf_animation_names(document_) +
+                             "); --animation chooses another");
     }
     for (const std::uint32_t chosen : choose_animations(document_, animation, errors_)) {
       if (errors_) return {};
       model_.clips.push_back(read_gltf_clip(document_, chosen, values_, errors_));
-      note(document_.animations[chosen].num_unknown, "animation channel",
-           "of extensions and left out");
+      note(document_.animations[chosen].num_unknown, "animation channel", "of extensions");
     }
     read_skins();
     if (errors_) return {};
     for (const std::uint32_t node : model_.scene.with_mesh) add_mesh(node);
     if (model_.instances.empty()) errors_.add("scenes", "expected a mesh with triangles there");
-    note(num_without_triangles_, "primitive", "of points or lines and left out");
+    note(num_without_triangles_, "primitive", "of points or lines");
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
     model_.files = buffers_.files();
@@ -50,10 +55,10 @@ class ModelReader {
   }
 
  private:
-  void note(std::uint64_t count, const std::string& what, const std::string& why) {
+  void note(std::uint64_t count, const std::string& what, const std::string& kind) {
     if (count == 0) return;
-    model_.notes.push_back(to_string(count) + " " + what + (count == 1 ? " is " : "s are ") +
-                           why);
+    model_.notes.push_back("dropped " + to_string(count) + " " + what +
+                           (count == 1 ? " " : "s ") + kind);
   }
 
   void read_skins() {

@@ -43,6 +43,51 @@ std::vector<std::string> left_out(const GltfValue& used) {
   return found;
 }
 
+bool any_named(const GltfValue& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i]["name"].exists()) return true;
+  }
+  return false;
+}
+
+// What a document has that a stream does not carry, as users call it.
+std::vector<std::string> dropped(const GltfValue& root) {
+  struct Attribute {
+    const char* name;
+    const char* what;
+    bool found = false;
+  };
+  Attribute attributes[] = {{"TEXCOORD_0", "UVs"},
+                            {"NORMAL", "normals"},
+                            {"TANGENT", "tangents"},
+                            {"COLOR_0", "vertex colours"}};
+  const GltfValue meshes = root["meshes"];
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const GltfValue primitives = meshes[m]["primitives"];
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      for (Attribute& a : attributes) a.found |= primitives[p]["attributes"][a.name].exists();
+    }
+  }
+  std::vector<std::string> found;
+  for (const Attribute& a : attributes) {
+    if (a.found) found.emplace_back(a.what);
+  }
+  const std::pair<const char*, const char*> arrays[] = {{"materials", "materials"},
+                                                        {"textures", "textures"},
+                                                        {"skins", "skeleton"},
+                                                        {"cameras", "cameras"}};
+  for (const auto& [name, what] : arrays) {
+    if (root[name].size() > 0) found.emplace_back(what);
+  }
+  if (root["extensions"]["KHR_lights_punctual"].exists()) found.emplace_back("lights");
+  const bool nodes = any_named(root["nodes"]);
+  const bool animations = any_named(root["animations"]);
+  if (nodes)
+    found.emplace_back(animations ? "names of nodes and animations" : "names of nodes");
+  if (animations && !nodes) found.emplace_back("names of animations");
+  return found;
+}
+
 void check_version(const GltfValue& asset) {
   const std::string version = asset["version"].text();
   if (!version.starts_with("2.")) asset["version"].fail("\"2.0\"");
@@ -229,6 +274,7 @@ GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors) {
   check_version(root["asset"]);
   check_extensions(root["extensionsRequired"]);
   document.extensions_left_out = left_out(root["extensionsUsed"]);
+  document.dropped = dropped(root);
   const Counts counts(root);
   document.buffers = read_all(root["buffers"], [](const GltfValue& value) {
     GltfBuffer buffer;

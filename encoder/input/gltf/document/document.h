@@ -91,6 +91,8 @@ struct GltfDocument {
   std::optional<std::vector<std::uint32_t>> scene;  // its nodes; none: all that have no parent
   // Extensions that are not read, though they would change shapes or motions.
   std::vector<std::string> extensions_left_out;
+  // What it has beside positions and their motion: "UVs", "materials".
+  std::vector<std::string> dropped;
 };
 
 // Whole only if there are no errors.

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Messages that say what is wrong and what to do: each of these once sent somebody astray."""
+
+import re
+import shutil
+import struct
+import subprocess
+
+from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_obj, write_pc2
+
+
+def write_mdd(path, frames):
+    points = len(frames[0]) // 3
+    data = struct.pack(f">ii{len(frames)}f", len(frames), points,
+                       *(f / 25 for f in range(len(frames))))
+    path.write_bytes(data + b"".join(struct.pack(f">{len(f)}f", *f) for f in frames))
+
+
+class Messages(ToolsTest):
+    def stream(self, *options):
+        path = self.path("a.rlpc")
+        self.encode(path, "--kg", 1, *options)
+        return path
+
+    def test_limits_are_named_with_what_is_needed(self):
+        stream = self.stream()
+        for limits, words in (
+                (["--max-memory", "50KB"], r"needs at least \d+ KiB of memory, more than the "
+                                           r"limit \(--max-memory, 50 KiB\)"),
+                (["--max-vertices", 500], r"num_vertices_minus1: more vertices than the limit "
+                                          r"\(--max-vertices 500\)"),
+                (["--max-frames", 59], r"num_frames_minus1: more frames than the limit "
+                                       r"\(--max-frames 59\)")):
+            result = self.fails(3, "", "rlpcdec", stream, "--verify", *limits)
+            self.assertRegex(result.err, words)
+        needed = re.search(r"(\d+) KiB of", self.fails(
+            3, "", "rlpcinfo", stream, "--max-memory", "50KB").err).group(1)
+        # One less is too little for the mesh; with as much, the mesh fits.
+        less = run("rlpcinfo", stream, "--max-memory", 1024 * (int(needed) - 1))
+        self.assertIn(f"at least {needed} KiB", less.err)
+        enough = run("rlpcinfo", stream, "--max-memory", 1024 * int(needed))
+        self.assertNotIn(f"at least {needed} KiB", enough.err)
+        result = run("rlpcval", stream, "--max-memory", "50KB")
+        self.assertIn(b"of memory, more than the limit", result.out)
+
+    def test_what_is_no_stream_is_recognised(self):
+        stream = self.stream().read_bytes()
+        files = {"fox.glb": (b"glTF\2\0\0\0", "it looks like glTF"),
+                 "fox.gltf": (b'\n {"asset": 1}', "it looks like glTF or other JSON"),
+                 "m.obj": (b"v 1 2 3\n", "it looks like an OBJ mesh"),
+                 "c.pc2": (b"POINTCACHE2\0", "it looks like a PC2 point cache"),
+                 "a.rlpc.gz": (b"\x1f\x8b\x08", "it looks like a gzip file"),
+                 "text.rlpc": (stream[:4] + b"C\n\x1a" + stream[7:], "a transfer as text"),
+                 "none.rlpc": (b"", "the stream ends too early"),
+                 "noise.rlpc": (bytes(range(128, 200)), "not an RLPC stream (rule R-STR-01)\n")}
+        for name, (content, words) in files.items():
+            self.path(name).write_bytes(content)
+            for tool, options in (("rlpcdec", ["--verify"]), ("rlpcinfo", [])):
+                self.fails(1, [name, words], tool, self.path(name), *options)
+        self.fails(1, "standard input: not an RLPC stream", "rlpcinfo", "-",
+                   input=files["fox.glb"][0] + bytes(64))
+
+    def test_the_output_is_a_stream(self):
+        self.clip(2)
+        for name in ("fox.glb", "fox.PC2", "frames.obj"):
+            self.fails(64, ["the output is an RLPC stream", name.split(".")[0] + ".rlpc"],
+                       "rlpcenc", self.path("clip.obj"), "-o", self.path(name))
+            self.assertFalse(self.path(name).exists())
+
+    def test_what_gltf_loses(self):
+        said = self.ok("rlpcenc", INPUTS / "tulip.glb", "-o", self.path("a.rlpc"), "--kg", 1,
+                       "--preset", "fast").err
+        self.assertIn("merged 53 duplicate vertices (172 left)", said)
+        dropped = re.search(r"dropped: (.*)", said).group(1).split(", ")
+        self.assertIn("skeleton", dropped)
+        self.assertNotIn("UVs", dropped)  # it has none
+
+    def test_points_are_advised_for_meshes_only(self):
+        triangles, frames = self.clip(1)
+        said = self.ok("rlpcenc", self.path("clip.obj"), "--dry-run", "--kg", 1).err
+        self.assertIn(f"clip.obj: is a single frame; did you mean --points {self.path('clip.pc2')}?",
+                      said)
+        self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path("a.rlpc"), "--kg", 1)
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("clip.glb"))
+        self.assertNotIn("--points",
+                         self.ok("rlpcenc", self.path("clip.glb"), "--dry-run", "--kg", 1).err)
+        self.assertEqual((len(triangles), len(frames)), (1072, 1))
+
+    def test_advice_on_visible_errors_helps(self):
+        clip = [INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2", "--preset", "fast"]
+        for options in (["--kg", 1], ["--max-error", 0.05]):
+            said = run("rlpcenc", *clip, "-o", self.path("a.rlpc"), *options).err
+            found = re.search(r"may be visible: .*\(above 3 %\)\. Try (--\S+) (\S+)\.\n", said)
+            self.assertIsNotNone(found, said)
+            said = run("rlpcenc", *clip, "-o", self.path("a.rlpc"), *found.groups()).err
+            self.assertNotIn("visible", said, found.groups())
+
+    def test_axes_of_mesh_and_points(self):
+        triangles, (frame, *_) = self.clip(2)
+        y_up = [c for v in range(0, len(frame), 3)
+                for c in (frame[v], frame[v + 2], -frame[v + 1])]
+        write_obj(self.path("turned.obj"), y_up, triangles)
+        write_mdd(self.path("clip.mdd"), [frame, frame])
+        write_pc2(self.path("turned.pc2"), [y_up, y_up])
+        for mesh, points, differ in (("clip.obj", "clip.mdd", False), ("clip.obj", "clip.pc2", False),
+                                     ("turned.obj", "clip.mdd", True), ("turned.obj", "clip.pc2", True),
+                                     ("clip.obj", "turned.pc2", True),
+                                     ("turned.obj", "turned.pc2", False)):
+            said = self.ok("rlpcenc", self.path(mesh), "--points", self.path(points), "--dry-run",
+                           "--kg", 1, "--preset", "fast").err
+            self.assertEqual("one is Y-up, the other Z-up" in said, differ, (mesh, points, said))
+
+    def test_choices_of_the_encoder_are_told_when_asked(self):
+        self.clip(4)
+        clip = ["rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "--dry-run"]
+        self.assertNotIn(b"trial", self.ok(*clip).out)
+        self.assertRegex(self.ok(*clip, "--verbose").out, rb"GOF.* components?, \d+ trial")
+
+    def test_the_player_is_not_built(self):
+        stream = self.stream()
+        self.fails(4, "none.html: cannot read the player", "rlpcdec", stream, "--html",
+                   self.path("a.html"), "--player", self.path("none.html"))
+        self.path("bin").mkdir()  # with nothing beside it
+        shutil.copy(Tools.folder / "rlpcdec", self.path("bin"))
+        done = subprocess.run([self.path("bin") / "rlpcdec", stream, "--html", self.path("a.html")],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.stderr, "rlpcdec: player not built: run scripts/player first, or pass "
+                                      "--player PAGE\n")
+
+
+if __name__ == "__main__":
+    main()
