@@ -210,9 +210,13 @@ class Reports(unittest.TestCase):
         said = [e.text for e in root.iter("{http://www.w3.org/2000/svg}text")]
         self.assertIn("a & b: 100 vertices, 10 frames", said)
         self.assertIn("Baseline", said)
-        page = report.page("T < 1", ["n & m"], [report.rates_table([SEQUENCE], self.curves,
-                                                                   self.POINTS, 0.1)], [svg])
+        table = report.rates_table([SEQUENCE], self.curves, self.POINTS, 0.1)
+        page = report.page("T < 1", ["n & m"], [table], [svg])
         xml.etree.ElementTree.fromstring(page.split("\n", 1)[1])
+        self.assertLess(page.index("<svg"), page.index("<table"))
+        text = report.markdown("T", ["n"], [table], ["a & b"])
+        self.assertLess(text.index("![a & b](<a & b.svg>)"), text.index("| sequence |"))
+        self.assertIn("- n", text)
 
     def test_nothing_to_draw(self):
         self.assertIsNone(report.curve_plot(SEQUENCE, self.curves, [], (0.1, 1.0)))

@@ -227,20 +227,24 @@ def curve_plot(sequence, curves, points, kgs):
 
 
 def page(title, notes, tables, plots):
-    parts = [f"<h1>{html.escape(title)}</h1>", "<ul>",
-             *(f"<li>{html.escape(note)}</li>" for note in notes), "</ul>"]
+    parts = [f"<h1>{html.escape(title)}</h1>", *plots]
     for table in tables:
         parts += [f"<h2>{html.escape(table.title)}</h2>", table.html()]
-    parts += plots
+    parts += ["<h2>Notes</h2>", "<ul>", *(f"<li>{html.escape(note)}</li>" for note in notes),
+              "</ul>"]
     return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
             f"<title>{html.escape(title)}</title><style>{STYLE}</style></head><body>\n"
             + "\n".join(parts) + "\n</body></html>\n")
 
 
-def markdown(title, notes, tables):
-    lines = [f"# {title}", "", *(f"- {note}" for note in notes)]
+def markdown(title, notes, tables, plots):
+    """`plots`: names of SVG files beside it, without extension."""
+    lines = [f"# {title}"]
+    for name in plots:
+        lines += ["", f"![{name}](<{name}.svg>)"]
     for table in tables:
         lines += ["", f"## {table.title}", "", table.markdown().rstrip()]
+    lines += ["", "## Notes", "", *(f"- {note}" for note in notes)]
     return "\n".join(lines) + "\n"
 
 

@@ -18,7 +18,7 @@ import svg_plot
 NAME = re.compile(r"(Decode|EncodeTarget)/kg:[\d.]+(?:/(fast|medium))?/(.+)/real_time")
 COLOURS = ("#0f6fb4", "#c8501e", "#2d8a4e", "#7f4fa8", "#8a6d00", "#b03070")
 TITLES = {"Decode": "Decoding, one thread", "EncodeTarget": "Encoding to a KG error, one thread"}
-FILES = {"Decode": "decode.svg", "EncodeTarget": "encode.svg"}
+FILES = {"Decode": "decode", "EncodeTarget": "encode"}
 
 
 def curves(results):
@@ -56,8 +56,8 @@ def main():
     results, folder = map(pathlib.Path, sys.argv[1:])
     for kind, lines in curves(json.loads(results.read_text(encoding="utf-8"))).items():
         path = folder / FILES[kind]
-        path.write_text(plot(kind, lines), encoding="utf-8")
-        print(path)
+        for ending in svg_plot.save(path, plot(kind, lines)):
+            print(f"{path}.{ending}")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 import bench_plots
@@ -45,11 +46,27 @@ class BenchPlots(unittest.TestCase):
                                       folder / "bench.json", folder],
                                      check=True, capture_output=True, text=True).stdout
             paths = [folder / "decode.svg", folder / "encode.svg"]
-            self.assertEqual(printed.split("\n"), [*map(str, paths), ""])
+            self.assertEqual([line for line in printed.split("\n") if line.endswith(".svg")],
+                             [*map(str, paths)])
             for path, words in zip(paths, (["a & b"], ["a & b, fast", "a & b, medium"])):
                 texts = [e.text for e in xml.etree.ElementTree.parse(path).iter() if e.text]
                 for word in words:
                     self.assertIn(word, texts)
+
+    def test_png_and_pdf_where_there_is_a_tool(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            with unittest.mock.patch.object(svg_plot.shutil, "which", return_value=None):
+                self.assertEqual(svg_plot.save(folder / "v1.2", "<svg/>"), ["svg"])
+            self.assertEqual([path.name for path in folder.iterdir()], ["v1.2.svg"])
+            tool = folder / "tool"  # copies its last argument to that of -o
+            tool.write_text('#!/bin/sh\nfor last; do :; done\n'
+                            'while [ "$1" != -o ]; do shift; done\ncp "$last" "$2"\n')
+            tool.chmod(0o755)
+            with unittest.mock.patch.object(svg_plot.shutil, "which", return_value=str(tool)):
+                self.assertEqual(svg_plot.save(folder / "v1.3", "<svg/>"), ["svg", "png", "pdf"])
+            for ending in ("svg", "png", "pdf"):
+                self.assertEqual((folder / f"v1.3.{ending}").read_text(), "<svg/>")
 
     def test_long_names_have_room(self):
         def width(name):

@@ -136,10 +136,9 @@ def write_curves(bench, folder, title, quick):
         points = [(bpvf, kg) for bpvf, kg, _, _ in PUBLISHED.values()]
         series.append(svg_plot.Series("RLPCA as published", points, METHODS["RLPCA"][1], "none",
                                       "square"))
-    (folder / "curves.svg").write_text(
-        svg_plot.plot(f"{title}: rate and distortion, one group of frames", series,
-                      "bits per vertex and frame (everything counted)", "KG error, per cent"),
-        encoding="utf-8")
+    svg_plot.save(folder / "curves", svg_plot.plot(
+        f"{title}: rate and distortion, one group of frames", series,
+        "bits per vertex and frame (everything counted)", "KG error, per cent"))
 
 
 def write_frames(bench, folder, title):
@@ -158,9 +157,9 @@ def write_frames(bench, folder, title):
         rows = csv.writer(file)
         rows.writerow(["frame", *(f"{method}_rms_error" for method in columns)])
         rows.writerows([f, *errors] for f, errors in enumerate(zip(*columns.values())))
-    (folder / "frames.svg").write_text(
-        svg_plot.plot(f"{title}: error of each frame, N = 10, L = 10", series, "frame",
-                      "RMS error, units", log_x=False, log_y=False), encoding="utf-8")
+    svg_plot.save(folder / "frames", svg_plot.plot(
+        f"{title}: error of each frame, N = 10, L = 10", series, "frame", "RMS error, units",
+        log_x=False, log_y=False))
 
 
 def is_cow(bench):

@@ -2,6 +2,8 @@
 
 import html
 import math
+import shutil
+import subprocess
 
 HEIGHT = 600
 LEFT, RIGHT, TOP, BOTTOM = 80, 670, 56, 536  # of the plot
@@ -92,6 +94,19 @@ def legend(series_list):
         yield marker(series, x + 17, y)
         yield text(x + NAME_LEFT, y + 4.5, series.name)
         y += 24
+
+
+def save(path, svg):
+    """Writes PATH.svg; PATH.png and PATH.pdf if rsvg-convert is installed. Returns the extensions."""
+    path.with_name(path.name + ".svg").write_text(svg, encoding="utf-8")
+    written = ["svg"]
+    tool = shutil.which("rsvg-convert")
+    for kind, options in (("png", ["--zoom", "2"]), ("pdf", [])):
+        if tool:
+            subprocess.run([tool, "--format", kind, *options, "-o", f"{path}.{kind}",
+                            f"{path}.svg"], check=True)
+            written.append(kind)
+    return written
 
 
 def plot(title, series_list, x_label, y_label, log_x=True, log_y=True):
