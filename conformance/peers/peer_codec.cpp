@@ -28,6 +28,8 @@ struct Options {
   std::string input;
   std::string output;
   std::string order_map;
+  std::string frame_rate;
+  InputOptions source;  // of convert
   int bits = 12;
 };
 
@@ -44,8 +46,8 @@ const std::vector<std::string> kCodecs = {
 #endif
 };
 
-Animation read_animation(const Options& o) {
-  auto source = open_frame_source({o.mesh, o.points, std::nullopt});
+Animation read_animation(const InputOptions& input) {
+  auto source = open_frame_source(input);
   if (!source) throw std::runtime_error(source.error().message);
   Animation out{(*source)->num_vertices(), (*source)->triangles(), {}};
   out.frames.resize((*source)->num_frames());
@@ -117,6 +119,22 @@ std::vector<std::uint32_t> read_order(const std::string& path) {
   return {std::istream_iterator<std::uint32_t>(in), {}};
 }
 
+Animation read_animation(const Options& o) {
+  return read_animation(InputOptions{o.mesh, o.points, std::nullopt});
+}
+
+// Nine digits in OUT.obj and floats in OUT.pc2 keep every coordinate exactly.
+void convert(const Options& o) {
+  InputOptions input = o.source;
+  if (!o.frame_rate.empty()) {
+    const auto rate = parse_frame_rate(o.frame_rate);
+    if (!rate) throw std::runtime_error("--fps: " + rate.error().message);
+    input.frame_rate = *rate;
+  }
+  if (auto error = check_gltf_options(input)) throw std::runtime_error(error->message);
+  write_animation(o.output, read_animation(input));
+}
+
 void encode(const Options& o) {
   const Animation animation = read_animation(o);
 #ifdef RLPC_DRACO
@@ -183,6 +201,18 @@ CLI::App* add_verb(CLI::App& app, Options& o, const std::string& name,
   return verb;
 }
 
+CLI::App* add_convert(CLI::App& app, Options& o) {
+  CLI::App* verb = app.add_subcommand(
+      "convert", "Write any input of rlpcenc as OUT.pc2, with OUT.obj beside it");
+  verb->add_option("input", o.source.path)->required();
+  verb->add_option("--points", o.source.points, "Point cache with the frames");
+  verb->add_option("--animation", o.source.animation, "Of a glTF file: name, index or `all`");
+  verb->add_option("--fps", o.frame_rate, "Frame rate of glTF files");
+  verb->add_flag("!--no-weld", o.source.weld, "Of a glTF file: keep coincident vertices apart");
+  verb->add_option("-o,--output", o.output)->required();
+  return verb;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Other codecs, for comparisons; which, depends on the libraries at build time.",
                "peer_codec");
@@ -191,6 +221,7 @@ int run(int argc, char** argv) {
   const auto* encoding =
       add_verb(app, o, "encode", "Write what the codec makes of an animation");
   const auto* decoding = add_verb(app, o, "decode", "Write OUT.pc2, and OUT.obj beside it");
+  const auto* converting = add_convert(app, o);
   add_verb(app, o, "order", "Write, per decoded vertex, its index in the input");
   app.require_subcommand(1);
   try {
@@ -204,6 +235,8 @@ int run(int argc, char** argv) {
     encode(o);
   } else if (decoding->parsed()) {
     decode(o);
+  } else if (converting->parsed()) {
+    convert(o);
   } else {
     write_order(o);
   }

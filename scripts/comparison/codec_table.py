@@ -1,8 +1,11 @@
 """The codecs of the comparison and how to run them: tables, to be changed here and nowhere else."""
 
 import dataclasses
+import pathlib
 import re
+import shlex
 import shutil
+import string
 import subprocess
 
 # In commands: {mesh}, {points}: the input; {gof}; {setting}: a step of the ladder, in words;
@@ -30,6 +33,16 @@ class Codec:
     ladders: tuple = ()  # of settings, coarse to fine; none: "--kg X" for every error asked for
     restores_order: bool = False  # the decoder does: no order map for the comparison
     line: str = "solid"
+    is_shell: bool = False  # commands of the user, run by sh
+
+    def files(self):
+        """The files named by commands of the user; results depend on them, too."""
+        if not self.is_shell:
+            return []
+        words = [word for step in self.encode + self.decode for word in shlex.split(step)]
+        found = {str(pathlib.Path(path).resolve()) for path in map(shutil.which, words) if path}
+        found |= {str(path.resolve()) for path in map(pathlib.Path, words) if path.is_file()}
+        return sorted(found)
 
     @property
     def has_gof(self):
@@ -37,6 +50,8 @@ class Codec:
 
     @property
     def tools(self):
+        if self.is_shell:
+            return []
         return sorted({step.split()[0] for step in self.prepare + self.encode + self.decode})
 
 
@@ -101,6 +116,58 @@ NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 1
                 "of them.")
 
 
+class BadCodec(Exception):
+    """--codec asks for what cannot be run; the text says why."""
+
+
+OWN_COLOURS = ("#d62728", "#17becf", "#bcbd22", "#7f7f7f", "#9467bd")
+# Placeholders, and those of which one must be used.
+OWN_ENCODE = {"mesh", "points", "step", "file", "order"}, ({"file"}, {"mesh", "points"})
+OWN_DECODE = {"file", "out", "order"}, ({"file"}, {"out"})
+
+
+def _steps_of(text):
+    """2..16: integers; else a list, separated by commas."""
+    first_last = re.fullmatch(r"(-?\d+)\.\.(-?\d+)", text)
+    if not first_last:
+        return tuple(word for word in text.split(",") if word)
+    first, last = map(int, first_last.groups())
+    way = 1 if first <= last else -1
+    return tuple(map(str, range(first, last + way, way)))
+
+
+def _check_command(what, command, known, needed):
+    try:
+        used = {name for _, name, _, _ in string.Formatter().parse(command) if name is not None}
+        shlex.split(command)
+    except ValueError as error:
+        raise BadCodec(f"{what}: {error} (double the braces of the command itself)") from error
+    for name in sorted(used - known):
+        raise BadCodec(f"{what}: unknown {{{name}}}; use "
+                       + ", ".join(f"{{{k}}}" for k in sorted(known)))
+    for choice in needed:
+        if not used & choice:
+            raise BadCodec(f"{what}: {' or '.join(f'{{{k}}}' for k in sorted(choice))} is missing")
+
+
+def own_codec(name, encode, decode, steps, number):
+    """The codec of the number-th --codec."""
+    if not re.fullmatch(r"[\w.+-]+", name):
+        raise BadCodec(f"{name}: a name has letters, digits and . + - _ only")
+    if name in {codec.name for codec in CODECS}:
+        raise BadCodec(f"{name}: is the name of a built-in codec")
+    _check_command(f"{name}, encode", encode, *OWN_ENCODE)
+    _check_command(f"{name}, decode", decode, *OWN_DECODE)
+    ladder = _steps_of(steps)
+    if not ladder:
+        raise BadCodec(f"{name}: no steps")
+    if "{step}" not in encode and len(ladder) > 1:
+        raise BadCodec(f"{name}, encode: {{step}} is missing, but there are {len(ladder)} steps")
+    what = f"`{encode}` and `{decode}`, steps {steps}"
+    return Codec(name, name, OWN_COLOURS[number % len(OWN_COLOURS)], what, (encode,), (decode,),
+                 ladders=(ladder,), is_shell=True)
+
+
 def variant(name, title, colour, options):
     return Codec(name, title, colour, f"Main with {options}", options=f"--profile main {options}")
 
@@ -145,18 +212,28 @@ class Toolbox:
                 check=False).stdout
         return self._said[command]
 
+    def how_to_build(self, tool):
+        build = shlex.quote(str(self.folder.parent))
+        if (self.folder.parent / "CMakeCache.txt").is_file():
+            return f"run `cmake {build} && cmake --build {build} --target {tool}`"
+        return "leave out --bin to have it built"
+
+    def not_there(self, tool):
+        """Why a tool is missing, and the remedy."""
+        if tool in self.OWN:
+            return f"is not in {self.folder}; {self.how_to_build(tool)}"
+        return "is not installed; run scripts/setup --compare"
+
     def missing(self, codec):
-        """Why the codec cannot be run here; None: it can."""
+        """Why the codec cannot be run here, and the remedy; None: it can."""
         for tool in codec.tools:
-            if self.path(tool) is None and tool in self.OWN:
-                return f"{tool} is not in {self.folder}"
             if self.path(tool) is None:
-                return f"{tool} is not installed (scripts/setup --compare)"
+                return f"{tool} {self.not_there(tool)}"
         if "peer_codec" in codec.tools:
             kind = codec.encode[0].split()[2]
             if kind not in self._says("peer_codec", "list").split():
-                return ("its library was not there when peer_codec was built "
-                        "(scripts/setup --compare)")
+                return ("peer_codec was built without the library; run scripts/setup --compare, "
+                        f"then {self.how_to_build('peer_codec')}")
         if "rlpcenc" in codec.tools:
             known = self._says("rlpcenc", "--help-all")
             asked = " ".join((codec.options, *(s for ladder in codec.ladders for s in ladder[:1])))

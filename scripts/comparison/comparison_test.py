@@ -5,16 +5,19 @@ import csv
 import dataclasses
 import math
 import pathlib
+import shutil
 import struct
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / name)
                 for name in ("comparison", "figures")]
 import arithmetic  # noqa: E402
 import codec_table  # noqa: E402
+import inputs  # noqa: E402
 import measure  # noqa: E402
 import report  # noqa: E402
 
@@ -130,22 +133,143 @@ class Inputs(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
-        head = struct.pack("<12siiffi", b"POINTCACHE2\0", 1, 7, 0.0, 1.0, 9)
-        for name in ("a", "b"):
-            (self.folder / f"{name}.obj").write_text("")
-            (self.folder / f"{name}.pc2").write_bytes(head)
-        (self.folder / "alone.obj").write_text("")
 
-    def test_folders_and_pairs(self):
-        a, b = measure.find_sequences([self.folder])
-        self.assertEqual((a.name, b.name, a.num_vertices, a.num_frames), ("a", "b", 7, 9))
-        (pair,) = measure.find_sequences([self.folder / "a.obj", self.folder / "b.pc2"])
-        self.assertEqual((pair.name, pair.points.name), ("a", "b.pc2"))
+    def make(self, *names):
+        for name in names:
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / name).write_text("")
+
+    def found(self, *names):
+        return [(i.name, i.path.relative_to(self.folder).as_posix(), i.points and i.points.name)
+                for i in inputs.find([self.folder / name for name in names])]
+
+    def test_meshes_with_their_caches(self):
+        self.make("a.obj", "a.pc2", "b.ply", "b.mdd", "alone.obj", "x.glb", "y.pc2")
+        pairs = [("a", "a.obj", "a.pc2"), ("b", "b.ply", "b.mdd")]
+        self.assertEqual(self.found("."), pairs)
+        self.assertEqual(self.found("a.obj", "b.ply"), pairs)
+        self.assertEqual(self.found("a.obj", "y.pc2", "alone.obj", "a.pc2"),
+                         [("a", "a.obj", "y.pc2"), ("alone", "alone.obj", "a.pc2")])
+
+    def test_whole_animations(self):
+        self.make("d/walk.glb", "d/run.gltf", "d/clip.rlpd", "d/mesh.obj", "d/notes.txt")
+        whole = [("clip", "d/clip.rlpd", None), ("run", "d/run.gltf", None),
+                 ("walk", "d/walk.glb", None)]
+        self.assertEqual(self.found("d"), whole)
+        self.assertEqual(self.found("d/clip.rlpd", "d/run.gltf", "d/walk.glb"), whole)
+
+    def test_a_file_for_each_frame(self):
+        self.make("walk/f_001.obj", "walk/f_002.obj")
+        self.assertEqual(self.found("walk"), [("walk", "walk", None)])
+        self.assertEqual(self.found("walk/f_%03d.obj"), [("f", "walk/f_%03d.obj", None)])
+        self.assertEqual(self.found("walk/*.obj"), [("walk", "walk/*.obj", None)])
+
+    def test_point_caches_tell_their_size(self):
+        self.make("a.obj")
+        (self.folder / "a.pc2").write_bytes(
+            struct.pack("<12siiffi", b"POINTCACHE2\0", 1, 7, 0.0, 1.0, 9))
+        (a,) = inputs.open_all(inputs.find([self.folder]), None, None)
+        self.assertEqual((a.name, a.num_vertices, a.num_frames), ("a", 7, 9))
 
     def test_complaints(self):
-        for paths in (["alone.obj"], ["c.obj"], ["a.obj", "a.obj"], ["a.obj", "alone.obj"]):
-            with self.assertRaises(measure.Failure):
-                measure.find_sequences([self.folder / path for path in paths])
+        self.make("alone.obj", "a.obj", "a.pc2", "b/a.obj", "b/a.pc2", "texts/a.txt")
+        for words, names in ((("alone.obj",), "is one frame"), (("c.obj",), "no such file"),
+                             (("alone.obj", "c.pc2"), "c.pc2: no such file"),
+                             (("a.obj", "b/a.obj"), "two inputs are called a"),
+                             (("a.pc2",), "name its mesh before it"),
+                             (("texts",), "holds no mesh")):
+            with self.assertRaisesRegex(measure.Failure, names):
+                self.found(*words)
+        with self.assertRaisesRegex(measure.Failure, "--animation: no input is a glTF file"):
+            inputs.open_all(inputs.find([self.folder / "a.obj"]), None, None,
+                            ("--animation", "Run"))
+
+
+class OwnCodecs(unittest.TestCase):
+    ENCODE, DECODE = "enc {mesh} {step} {file}", "dec {file} {out}.pc2"
+
+    def ladder(self, steps):
+        return codec_table.own_codec("x", self.ENCODE, self.DECODE, steps, 0).ladders
+
+    def test_steps(self):
+        self.assertEqual(self.ladder("4..7"), (("4", "5", "6", "7"),))
+        self.assertEqual(self.ladder("1..-1"), (("1", "0", "-1"),))
+        self.assertEqual(self.ladder("0.1,-q 5"), (("0.1", "-q 5"),))
+
+    def test_complaints(self):
+        for words, complaint in ((("a b", self.ENCODE, self.DECODE, "1"), "only"),
+                                 (("main", self.ENCODE, self.DECODE, "1"), "built-in"),
+                                 (("x", "enc {mesh} {step}", self.DECODE, "1"), "{file} is missing"),
+                                 (("x", "enc {step} {file}", self.DECODE, "1"), "{mesh} or {points}"),
+                                 (("x", self.ENCODE, "dec {file}", "1"), "{out} is missing"),
+                                 (("x", self.ENCODE, "dec {mesh} {file} {out}", "1"), "unknown {mesh}"),
+                                 (("x", "enc {mesh} {file}", self.DECODE, "1,2"), "{step} is missing"),
+                                 (("x", self.ENCODE, self.DECODE, ","), "no steps"),
+                                 (("x", "awk '{' {file}", self.DECODE, "1"), "double the braces")):
+            with self.subTest(words=words), self.assertRaises(codec_table.BadCodec) as raised:
+                codec_table.own_codec(*words, 0)
+            self.assertIn(complaint, str(raised.exception))
+
+    def test_results_depend_on_the_files_that_are_named(self):
+        codec = codec_table.own_codec("x", f"sh {__file__} {{mesh}} {{file}}", self.DECODE, "1", 0)
+        self.assertIn(str(pathlib.Path(__file__).resolve()), codec.files())
+        self.assertIn(str(pathlib.Path(shutil.which("sh")).resolve()), codec.files())
+
+    def test_what_is_decoded_is_found(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            out, mesh = folder / "decoded", pathlib.Path("in.obj")
+            sequence = dataclasses.replace(SEQUENCE, mesh=mesh)
+            with self.assertRaisesRegex(measure.Failure, "no {out}"):
+                measure.decoded_words(sequence, out)
+            cache = folder / "decoded.mdd"
+            cache.write_text("")
+            self.assertEqual(measure.decoded_words(sequence, out), [mesh, "--points-b", cache])
+            (folder / "decoded.ply").write_text("")
+            self.assertEqual(measure.decoded_words(sequence, out), [cache])
+            cache.unlink()
+            (folder / "decoded.ply").rename(folder / "decoded.glb")
+            self.assertEqual(measure.decoded_words(sequence, out), [folder / "decoded.glb"])
+            out.mkdir()
+            with self.assertRaisesRegex(measure.Failure, "wrote decoded, decoded.glb"):
+                measure.decoded_words(sequence, out)
+
+
+class Missing(unittest.TestCase):
+    """Codecs that cannot be run name what would help."""
+    LORENZO, DRACO = (next(c for c in codec_table.CODECS if c.name == name)
+                      for name in ("lorenzo-xz", "draco"))
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="a build ")
+        self.addCleanup(temporary.cleanup)
+        self.build = pathlib.Path(temporary.name)
+        (self.build / "bin").mkdir()
+
+    def reason(self, codec):
+        return codec_table.Toolbox(self.build / "bin").missing(codec)
+
+    def test_programs_of_ours(self):
+        self.assertEqual(self.reason(self.DRACO), f"peer_codec is not in {self.build / 'bin'}; leave "
+                                                  "out --bin to have it built")
+        (self.build / "CMakeCache.txt").touch()
+        self.assertIn(f"`cmake '{self.build}' && cmake --build '{self.build}' --target peer_codec`",
+                      self.reason(self.DRACO))
+
+    def test_libraries(self):
+        (self.build / "CMakeCache.txt").touch()
+        tool = self.build / "bin" / "peer_codec"
+        tool.write_text("#!/bin/sh\necho lorenzo\n")
+        tool.chmod(0o755)
+        self.assertIsNone(self.reason(self.LORENZO))
+        for words in ("without the library", "scripts/setup --compare, then run `cmake"):
+            self.assertIn(words, self.reason(self.DRACO))
+
+    def test_programs_of_others(self):
+        with unittest.mock.patch.object(codec_table.shutil, "which", return_value=None):
+            self.assertEqual(self.reason(dataclasses.replace(self.LORENZO, prepare=(), encode=("xz",),
+                                                             decode=())),
+                             "xz is not installed; run scripts/setup --compare")
 
 
 class Reports(unittest.TestCase):

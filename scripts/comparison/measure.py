@@ -57,32 +57,6 @@ def open_sequence(mesh, points):
     return Sequence(mesh.stem, mesh, points, num_vertices, num_frames)
 
 
-def find_sequences(paths):
-    """MESH.obj CACHE.pc2 pairs, MESH.obj with its cache beside it, folders of these."""
-    found, rest = [], [pathlib.Path(p) for p in paths]
-    while rest:
-        path = rest.pop(0)
-        if path.is_dir():
-            pairs = [(m, m.with_suffix(".pc2")) for m in sorted(path.glob("*.obj"))]
-            pairs = [pair for pair in pairs if pair[1].is_file()]
-            if not pairs:
-                raise Failure(f"{path}: no NAME.obj with NAME.pc2 in it")
-        elif path.suffix == ".obj" and rest and rest[0].suffix == ".pc2":
-            pairs = [(path, rest.pop(0))]
-        else:
-            pairs = [(path, path.with_suffix(".pc2"))]
-        for mesh, points in pairs:
-            for file in (mesh, points):
-                if not file.is_file():
-                    raise Failure(f"{file}: no such file")
-            found.append(open_sequence(mesh, points))
-    names = [s.name for s in found]
-    for name in names:
-        if names.count(name) > 1:
-            raise Failure(f"two inputs are called {name}")
-    return found
-
-
 def file_digest(path):
     digest = hashlib.sha256()
     with open(path, "rb") as file:
@@ -91,12 +65,11 @@ def file_digest(path):
     return digest.hexdigest()
 
 
-def run_step(toolbox, words, good=(0,)):
-    """(seconds, peak memory in MiB) of one process."""
+def run_step(words, good=(0,)):
+    """(seconds, peak memory in MiB) of one process and its children."""
     with tempfile.TemporaryFile() as said:
         start = time.monotonic()
-        process = subprocess.Popen([toolbox.path(words[0]), *words[1:]],
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                    stderr=said)
         try:
             _, status, usage = os.wait4(process.pid, 0)
@@ -109,19 +82,31 @@ def run_step(toolbox, words, good=(0,)):
         if process.returncode not in good:
             said.seek(0)
             text = said.read().decode(errors="replace").strip()
-            raise Failure(f"{words[0]}: {text or f'exit code {process.returncode}'}")
+            name = pathlib.Path(words[0]).name
+            raise Failure(f"{name}: {text or f'exit code {process.returncode}'}")
     return seconds, usage.ru_maxrss / 1024
 
 
-def run_steps(toolbox, steps, places):
+def filled_in(toolbox, step, places):
+    """The words of a step of the table: paths may have blanks, settings are several words."""
+    words = []
+    for word in step.split():
+        filled = word.format(**places)
+        words += shlex.split(filled) if word == "{setting}" else [filled]
+    return [toolbox.path(words[0]), *words[1:]]
+
+
+def run_steps(toolbox, codec, steps, places):
     seconds, peak = 0.0, 0.0
     for step in steps:
-        words = []
-        for word in step.split():  # paths may have blanks, settings are several words
-            filled = word.format(**places)
-            words += shlex.split(filled) if word == "{setting}" else [filled]
-        # rlpcenc, 2: written, but the target was out of reach.
-        more, memory = run_step(toolbox, words, (0, 2) if words[0] == "rlpcenc" else (0,))
+        if codec.is_shell:
+            quoted = {name: shlex.quote(str(value)) for name, value in places.items()}
+            quoted["step"] = places["setting"]  # may be several words
+            more, memory = run_step(["sh", "-c", step.format(**quoted)])
+        else:
+            # rlpcenc, 2: written, but the target was out of reach.
+            good = (0, 2) if step.split()[0] == "rlpcenc" else (0,)
+            more, memory = run_step(filled_in(toolbox, step, places), good)
         seconds, peak = seconds + more, max(peak, memory)
     return seconds, peak
 
@@ -143,6 +128,7 @@ class Laboratory:
 
     def _key(self, sequence, codec, gof, setting):
         tools = {tool: self._digest(self.toolbox.path(tool)) for tool in codec.tools}
+        tools.update((name, self._digest(name)) for name in codec.files())
         what = [self._digest(sequence.mesh), self._digest(sequence.points), tools, codec.prepare,
                 codec.encode, codec.decode, gof, setting]
         return hashlib.sha256(json.dumps(what).encode()).hexdigest()
@@ -166,13 +152,16 @@ class Laboratory:
         with tempfile.TemporaryDirectory(prefix="rlpc-compare-") as name:
             folder = pathlib.Path(name)
             places = {"mesh": sequence.mesh, "points": sequence.points, "gof": gof,
-                      "setting": setting, "raw": folder / "coded", "out": folder / "decoded.pc2",
+                      "setting": setting, "raw": folder / "coded",
+                      "out": folder / ("decoded" if codec.is_shell else "decoded.pc2"),
                       "file": folder / "coded.packed", "order": folder / "order"}
-            run_steps(self.toolbox, codec.prepare, places)
-            encode_seconds, encode_peak = run_steps(self.toolbox, codec.encode, places)
+            run_steps(self.toolbox, codec, codec.prepare, places)
+            encode_seconds, encode_peak = run_steps(self.toolbox, codec, codec.encode, places)
+            if not places["file"].is_file():
+                raise Failure("the encoder wrote no {file}")
             size = places["file"].stat().st_size
             places["raw"].unlink(missing_ok=True)  # the decoder has nothing but the file
-            decode_seconds, decode_peak = run_steps(self.toolbox, codec.decode, places)
+            decode_seconds, decode_peak = run_steps(self.toolbox, codec, codec.decode, places)
             metrics = self._compare(sequence, codec, places)
         return {"bytes": size, "bpvf": 8 * size / sequence.size,
                 "kg_error_percent": metrics["kg_error_percent"],
@@ -182,13 +171,26 @@ class Laboratory:
 
     def _compare(self, sequence, codec, places):
         command = [self.toolbox.path("rlpccmp"), sequence.mesh, "--points-a", sequence.points,
-                   places["out"], "--json", "--quiet"]
-        if not codec.restores_order:
+                   *decoded_words(sequence, places["out"]), "--json", "--quiet"]
+        if not codec.restores_order and places["order"].is_file():
             command += ["--order-map", places["order"]]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise Failure(f"rlpccmp: {done.stderr.strip()}")
         return json.loads(done.stdout)["metrics"]
+
+
+def decoded_words(sequence, out):
+    """The decoded animation as arguments of rlpccmp: `out`, with or without an extension. A point
+    cache without a mesh of its name has the triangles of the input."""
+    files = sorted(out.parent.glob(out.name + "*"))
+    caches = [path for path in files if path.suffix in (".pc2", ".mdd")]
+    if not files or len(caches or files) > 1:
+        raise Failure("the decoder wrote " + (", ".join(path.name for path in files) or "no {out}"))
+    decoded = (caches or files)[0]
+    if caches and not any(decoded.with_suffix(s).is_file() for s in (".obj", ".ply", ".off")):
+        return [sequence.mesh, "--points-b", decoded]
+    return [decoded]
 
 
 def climb(ladder, measure, errors):
