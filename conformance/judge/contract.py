@@ -54,16 +54,20 @@ class Decoder:
         if done.code != 0:
             raise ContractError(self._refusal(f"{done.ending()}", done.stderr))
         try:
-            self.answer = json_of(done.stdout)
+            self.answer = json.loads(done.stdout)
+        except ValueError as error:
+            said = "no JSON" if done.stdout.strip() else "nothing"
+            raise ContractError(self._refusal(f"printed {said}", done.stderr)) from error
+        try:
             schema.check(self.answer, schema.load("contract"), "the answer")
-        except (ValueError, schema.SchemaError) as error:
+        except schema.SchemaError as error:
             raise ContractError(self._refusal(str(error), "")) from error
         return self.answer
 
     def _refusal(self, what, stderr):
         last = stderr.strip().splitlines()[-1:]
         return (f"{self.command} --rlpc-conformance: {what}" + "".join(f" ({t})" for t in last)
-                + "\nIt must print one JSON object and end with exit code 0, for example\n"
+                + "\nIt must print one JSON object and exit with code 0, for example\n"
                 '  {"contract":1,"name":"mydec","version":"0.1","spec":["1.0"],'
                 '"profiles":["baseline"],"levels":[1,2],"outputs":["rlpd"]}')
 
@@ -97,15 +101,6 @@ class Decoder:
         return f"{self.command} decode {shlex.quote(str(stream.path))} out.{form}"
 
 
-def json_of(text):
-    if not text.strip():
-        raise ValueError("printed nothing")
-    try:
-        return json.loads(text)
-    except ValueError as error:
-        raise ValueError(f"printed no JSON ({error})") from error
-
-
 def read_verdict(done):
     """(verdict, None), or (None, what is wrong) with the last line of standard error."""
     if done.code not in (REJECTED, UNSUPPORTED, LIMIT):
@@ -115,8 +110,11 @@ def read_verdict(done):
         where = "; there is one earlier" if any(t.startswith(VERDICT) for t in lines) else ""
         return None, f"the last line of standard error does not begin with \"{VERDICT}\"{where}"
     try:
-        verdict = json_of(lines[-1][len(VERDICT):])
+        verdict = json.loads(lines[-1][len(VERDICT):])
+    except ValueError:
+        return None, f"there is no JSON behind \"{VERDICT}\" on the last line of standard error"
+    try:
         schema.check(verdict, schema.load("verdict"), "the verdict")
-    except (ValueError, schema.SchemaError) as error:
+    except schema.SchemaError as error:
         return None, f"the last line of standard error is not a verdict: {error}"
     return verdict, None

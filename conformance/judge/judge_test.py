@@ -156,8 +156,10 @@ class FakeDecoders(JudgeTest):
                    {UNSUPPORTED: ("FAIL-overreject", "rejected")}, NO_STRICT, 1)
         for fault in ("no_verdict", "verdict_is_not_last", "verdict_is_no_json",
                       "verdict_has_another_name"):
-            self.draws(fault, each((*REJECT, UNSUPPORTED), "FAIL-verdict", "no-verdict"),
-                       NO_STRICT, 1)
+            rows = self.draws(fault, each((*REJECT, UNSUPPORTED), "FAIL-verdict", "no-verdict"),
+                              NO_STRICT, 1)
+            self.assertEqual("there is no JSON" in rows[UNSUPPORTED]["text"],
+                             fault == "verdict_is_no_json")
 
     def test_rules_are_graded_apart(self):
         refused = (*REJECT, UNSUPPORTED)
@@ -191,7 +193,8 @@ class FakeDecoders(JudgeTest):
                    {**GOOD, "R-full": "FAIL"}, 1)
 
     def test_contract_is_checked_first(self):
-        for fault, word in (("answers_no_json", "printed no JSON"),
+        for fault, word in (("answers_no_json", "--rlpc-conformance: printed no JSON\n"),
+                            ("answers_nothing", "--rlpc-conformance: printed nothing\n"),
                             ("speaks_another_contract", "contract")):
             code, report, errors = self.judge(fake(fault))
             self.assertEqual((code, report), (1, None))

@@ -58,6 +58,13 @@ def answers_no_json(_):
 answers_no_json.says_instead = "mydec 1.0, at your service"
 
 
+def answers_nothing(_):
+    pass
+
+
+answers_nothing.says_instead = "\n"
+
+
 def speaks_another_contract(_):
     pass
 
