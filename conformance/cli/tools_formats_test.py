@@ -5,10 +5,12 @@
 """
 
 import math
+import re
 import struct
 import subprocess
 
-from tools_testing import INPUTS, Tools, ToolsTest, main, read_pc2, read_rlpd
+from tools_testing import (INPUTS, Tools, ToolsTest, main, read_obj, read_pc2, read_rlpd, write_obj,
+                           write_pc2)
 
 OUTPUTS = ("a.rlpd", "a.pc2", "a.mdd", "a.glb", "obj", "ply/f%d.ply", "text/f_%04d.ply")
 ENCODE = ["--preset", "fast", "--kg", 0.5, "--quiet"]
@@ -137,6 +139,49 @@ class FormatsIn(ToolsTest):
         self.fails(1, "standard input: the file is empty", "rlpcenc", "-", "--points",
                    self.path("clip.pc2"), *out, input=b"")
         self.fails(1, "standard input: unknown kind of file", "rlpcenc", "-", *out, input=b"hello")
+
+
+class PointClouds(ToolsTest):
+    """Clusters and local frames need no triangles: their seeds are neighbours in space."""
+
+    def roundtrip(self, *options):
+        """Bytes, and the cluster count and LCF flags of the only GOF."""
+        stream, cloud = self.path("cloud.rlpc"), self.path("cloud.obj")
+        report = self.ok("rlpcenc", cloud, "--points", self.path("clip.pc2"), "-o", stream, "--json",
+                         "--keep-order", "--profile", "baseline", "--kg", 0.5, *options).json()
+        self.assertTrue(report["target_met"])
+        self.ok("rlpcdec", stream, "-o", self.path("out.pc2"), "-q")
+        self.assertEqual(read_obj(self.path("out.obj"))[1], [])
+        compared = self.ok("rlpccmp", cloud, self.path("out.pc2"), "--points-a",
+                           self.path("clip.pc2"), "--json").json()
+        self.assertAlmostEqual(compared["metrics"]["kg_error_percent"],
+                               report["metrics"]["kg_error_percent"], 5)
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        trace = self.ok("rlpcinfo", stream, "--trace").out.decode()
+        return (report["bytes"], info["gofs"][0]["num_clusters"],
+                re.findall(r" lcf_flag = (\d)", trace))
+
+    def test_clusters_and_local_frames(self):
+        """A cloud of two parts, one of which spins."""
+        _, frames = self.clip(12)
+        parts = [frames[0][:600], frames[0][600:1200]]
+        clip = []
+        for t in range(12):
+            c, s = math.cos(0.3 * t), math.sin(0.3 * t)
+            spinning = []
+            for x, y, z in zip(*[iter(parts[1])] * 3):
+                spinning += [9 + c * x - s * y, s * x + c * y, z]
+            clip.append([*parts[0], *spinning])
+        write_obj(self.path("cloud.obj"), clip[0], [])
+        write_pc2(self.path("clip.pc2"), clip)
+        world = self.roundtrip("--frame", "world")
+        local = self.roundtrip("--frame", "lcf")
+        eight = self.roundtrip("--clusters", 8)
+        both = self.roundtrip("--clusters", 8, "--frame", "lcf")
+        self.assertEqual(set(world[2]), {"0"})
+        self.assertEqual((set(local[2]), set(both[2])), ({"1"}, {"1"}))
+        self.assertEqual((eight[1], both[1]), (8, 8))
+        self.assertLess(local[0], world[0])
 
 
 class MddTimes(ToolsTest):
