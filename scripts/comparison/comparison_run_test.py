@@ -161,6 +161,8 @@ else:
     def test_usage(self):
         self.compare("--codecs", "baseline,nobody", code=64)
         self.compare("--gof", "few", code=64)
+        for number in ("0", "-1"):
+            self.assertIn("positive", self.compare("--jobs", number, code=64).stderr)
         done = self.compare("--codecs", "baseline", self.folder / "nowhere.obj", code=1)
         self.assertIn("nowhere.obj", done.stderr)
 
@@ -170,6 +172,16 @@ else:
         done = self.compare("--codecs", "baseline", self.folder / "in put", code=1)
         self.assertIn("bad, Baseline: failed: rlpcenc: ", done.stderr)
         self.assertEqual({p["sequence"] for p in self.points()}, {"arm"})
+
+
+class Reproduce(unittest.TestCase):
+    def test_missing_tools_are_named(self):
+        with tempfile.TemporaryDirectory() as none:
+            done = subprocess.run([ROOT / "scripts" / "reproduce", "--bin", none, "-o", none],
+                                  capture_output=True, text=True, timeout=100, check=False)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr, f"reproduce: {none}/rlpcenc: No such file or directory; leave "
+                                      "out --bin to have the tools built\n")
 
 
 def main():

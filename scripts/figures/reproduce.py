@@ -70,7 +70,11 @@ class Bench:
     def call(self, tool, *arguments):
         start = time.monotonic()
         command = [self.tools / tool, *map(str, arguments)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as error:
+            sys.exit(f"reproduce: {command[0]}: {error.strerror}; leave out --bin to have the "
+                     "tools built")
         if done.returncode not in (0, 2) or (done.returncode == 2 and tool != "rlpcenc"):
             sys.exit(f"reproduce: {tool} failed: {done.stderr.strip()}")
         return done.stdout, time.monotonic() - start
@@ -208,7 +212,7 @@ def main():
     write_curves(bench, folder, title, options.quick)
     write_frames(bench, folder, title)
     write_table(bench, folder, title)
-    print(f"\nWritten to {folder}: curves.csv, curves.svg, frames.csv, frames.svg, table.md")
+    print(f"\nreproduce: wrote to {folder}: curves.csv, curves.svg, frames.csv, frames.svg, table.md")
 
 
 if __name__ == "__main__":
