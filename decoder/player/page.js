@@ -1,4 +1,4 @@
-// The page: a stream, a scene, and the controls between them.
+// The page: a stream, a view of it, and the controls between them.
 import { DecodingThread } from "./decoding_thread.js";
 import { describedStream, takeBlob } from "./embedded.js";
 import {
@@ -6,7 +6,7 @@ import {
 } from "./facts.js";
 import { FrameStates } from "./frame_states.js";
 import { Playback } from "./playback.js";
-import { Scene } from "./scene.js";
+import { Viewer, kRampCss } from "../viewer/viewer.js";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kWireModes = ["off", "over", "alone"];
@@ -20,7 +20,8 @@ const wanted = new URLSearchParams(location.hash.slice(1));
 class Player {
   constructor() {
     this.wasm = takeBlob("#wasm");
-    this.scene = new Scene($("view"));
+    this.viewer = new Viewer($("view"));
+    document.querySelector(".ramp").style.background = kRampCss;
     this.wire = 0;
     this.up = wanted.get("up") === "z" ? "z" : "y";
     this.flat = wanted.has("flat");
@@ -55,9 +56,9 @@ class Player {
     this.largestDistance = 0;
     this.referenceDiffers = undefined; // what is said of it, once it is known
     this.paintsErrors = this.hasReference && wanted.get("errors") !== "off";
-    this.scene.setMesh(header, triangles);
-    this.scene.setUp(this.up);
-    this.scene.setFlat(this.flat);
+    this.viewer.setMesh(header.num_vertices, triangles);
+    this.viewer.setUp(this.up);
+    this.viewer.set({ flat: this.flat });
     this.states = new FrameStates(header.num_frames, $("strip"));
     this.showFacts();
     $("slider").max = header.num_frames - 1;
@@ -98,15 +99,15 @@ class Player {
   }
 
   edgesArrived(edges) {
-    this.scene.setEdges(edges);
-    this.scene.setWireframe(kWireModes[this.wire]);
+    this.viewer.setEdges(edges);
   }
 
   /** The reply of the frame to be shown now. */
   show(reply) {
     if (reply.coordinates) {
-      this.thread.recycle(this.scene.showFrame(reply));
+      this.viewer.showFrame(reply);
       if (this.hasReference) this.showDeviation(reply);
+      this.thread.recycle(reply);
     }
     this.say(reply.coordinates ? "" : `Frame ${reply.frame} cannot be decoded`);
     $("view").toggleAttribute("data-stale", !reply.coordinates);
@@ -128,7 +129,7 @@ class Player {
     const { position_bits: bits, grid_log2_step: step } = this.header;
     const unit = 2 ** (bits - 1 + step); // of the animation, in the cube where it is drawn
     const most = roundedUp(this.largestDistance * unit);
-    this.scene.setDeviationScale(this.paintsErrors && distances ? most / unit : 0);
+    this.viewer.set({ deviationScale: this.paintsErrors && distances ? most / unit : 0 });
     if (!distances) return;
     $("deviation-most").textContent = digits(most);
     $("deviation-frame").textContent =
@@ -194,20 +195,20 @@ class Player {
       this.edgesRequested = true;
       this.thread.requestEdges();
     }
-    this.scene.setWireframe(kWireModes[mode]);
+    this.viewer.set({ wire: kWireModes[mode] });
     this.showToggles();
   }
 
   setFlat(flat) {
     this.flat = flat;
-    this.scene.setFlat(flat);
+    this.viewer.set({ flat });
     this.seek(this.playback.frame); // with normals, or without
     this.showToggles();
   }
 
   setUp(axis) {
     this.up = axis;
-    this.scene.setUp(axis);
+    this.viewer.setUp(axis);
     this.showToggles();
   }
 
@@ -271,7 +272,7 @@ class Player {
       flat: () => this.setFlat(!this.flat),
       errors: () => this.setPaintsErrors(!this.paintsErrors),
       up: () => this.setUp(this.up === "y" ? "z" : "y"),
-      home: () => this.scene.lookAtAll(),
+      home: () => this.viewer.lookAtAll(),
       check: () => this.checkAll(),
     };
     for (const [id, action] of Object.entries(actions)) $(id).onclick = action;
@@ -302,7 +303,7 @@ class Player {
   }
 
   resize() {
-    this.scene.resize(innerWidth, innerHeight);
+    this.viewer.resize();
     if (this.states) this.states.isDrawn = false;
   }
 
@@ -312,7 +313,7 @@ class Player {
       if (reply) this.show(reply);
       this.showNumbers();
     }
-    this.scene.draw();
+    this.viewer.draw();
   }
 }
 

@@ -69,18 +69,20 @@ class Browser(InFolder):
         shot = self.folder / "shot.png"
         self.browser.screenshot(shot)
         self.assertTrue(shot.read_bytes().startswith(b"\x89PNG"))
-        # The middle of the view has the light colour of the mesh; without it, the dark floor.
+        # The middle of the view is opaque and lit; without the surface, one sees through it.
         middle = """(() => {
-          player.scene.setWireframe('MODE');
-          player.scene.draw();
-          const gl = player.scene.renderer.getContext();
+          player.viewer.set({ wire: 'MODE' });
+          player.viewer.draw();
+          const { gl } = player.viewer;
           const pixel = new Uint8Array(4);
           gl.readPixels(gl.drawingBufferWidth / 2, gl.drawingBufferHeight / 2, 1, 1, gl.RGBA,
                         gl.UNSIGNED_BYTE, pixel);
           return [...pixel];
         })()"""
-        self.assertGreater(min(self.browser.evaluate(middle.replace("MODE", "off"))), 80)
-        self.assertLess(max(self.browser.evaluate(middle.replace("MODE", "alone"))[:3]), 80)
+        *colour, opacity = self.browser.evaluate(middle.replace("MODE", "off"))
+        self.assertEqual(opacity, 255)
+        self.assertGreater(min(colour), 40)
+        self.assertLess(self.browser.evaluate(middle.replace("MODE", "alone"))[3], 255)
 
     def test_keys(self):
         self.open(self.stream, "frame=10")
@@ -94,12 +96,12 @@ class Browser(InFolder):
         self.browser.press(" ")
         self.assertFalse(self.browser.evaluate("player.playback.playing"))
         self.browser.press("w")
-        self.browser.wait_for("player.scene.lines?.visible")
+        self.browser.wait_for("player.viewer.wire === 'over' && player.viewer.numEdges > 0")
         # Closed and of genus 0 in each part, it has 3/2 edges for each triangle.
-        self.assertEqual(self.browser.evaluate("2 * player.scene.lines.geometry.index.count / 2"),
+        self.assertEqual(self.browser.evaluate("2 * player.viewer.numEdges"),
                          self.browser.evaluate("3 * player.header.num_triangles"))
         self.browser.press("n")
-        self.browser.wait_for("player.scene.material.flatShading")
+        self.browser.wait_for("player.viewer.flat")
 
     def test_the_time_line(self):
         self.open(self.stream, "frame=0")
@@ -156,7 +158,7 @@ class Browser(InFolder):
         self.assertIn("bit-exact", self.text("hash"))
         self.assertRegex(self.text("deviation"), "reference cannot be decoded: .*R-UNT-")
         self.assertNotIn("RMS", self.text("deviation"))
-        self.assertEqual(self.browser.evaluate("player.scene.deviationScale.value"), 0)
+        self.assertEqual(self.browser.evaluate("player.viewer.deviationScale"), 0)
         self.browser.evaluate("player.seek(50)")
         self.wait_for_frame(50)
         self.assertIn("largest 0, RMS 0", self.text("deviation"))
@@ -224,19 +226,34 @@ class Browser(InFolder):
         return max(distances) ** 0.5, (sum(distances) / len(distances)) ** 0.5
 
     def test_a_stream_that_is_dropped_takes_the_place_of_another(self):
-        held = "(({ memory, programs }) => [memory.geometries, memory.textures, programs.length])" \
-               "(player.scene.renderer.info)"
+        held = "[live.size, player.viewer.buffers.size]"
+        drawn = "player.shownFrame === 3 && player.viewer.numEdges > 0 && player.viewer.isDrawn"
         self.open(self.stream, "frame=3&wire=over")
-        self.wait_for_frame(3)
-        self.browser.wait_for("player.scene.lines?.visible && player.scene.isDrawn")
+        self.browser.wait_for(drawn)
+        self.browser.evaluate("""(() => {
+          globalThis.live = new Set(player.viewer.buffers.values());
+          const { gl } = player.viewer;
+          for (const kind of ["Buffer", "VertexArray", "Texture", "Program"]) {
+            const [create, destroy] = [gl[`create${kind}`], gl[`delete${kind}`]];
+            gl[`create${kind}`] = () => {
+              const made = create.call(gl);
+              live.add(made);
+              return made;
+            };
+            gl[`delete${kind}`] = (made) => {
+              live.delete(made);
+              destroy.call(gl, made);
+            };
+          }
+          live.add(player.viewer.vertices);
+        })()""")
         before = self.browser.evaluate(held)
         self.browser.evaluate("globalThis.addresses = 0;"
                               "URL.createObjectURL = () => String(++addresses)")
         for _ in range(2):
-            self.browser.evaluate("player.shownFrame = undefined; player.scene.lines = null;"
+            self.browser.evaluate("player.shownFrame = undefined;"
                                   "player.open('dropped.rlpc', player.stream)")
-            self.browser.wait_for("player.shownFrame === 3 && player.scene.lines?.visible"
-                                  " && player.scene.isDrawn")
+            self.browser.wait_for(drawn)
         self.assertEqual(self.browser.evaluate(held), before)
         self.assertEqual(self.browser.evaluate("addresses"), 0)
 

@@ -215,6 +215,9 @@ class Playing(unittest.TestCase):
     def test_playback(self):
         self.run_in_node("playback_test.mjs")
 
+    def test_camera(self):
+        self.run_in_node(HERE.parent / "viewer" / "camera_test.mjs")
+
     def test_facts(self):
         self.run_in_node("facts_test.mjs")
 

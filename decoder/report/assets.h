@@ -5,9 +5,9 @@
 
 namespace rlpc {
 
-extern const std::string_view kPageCss;     // page.css
-extern const std::string_view kChartsJs;    // charts.js
-extern const std::string_view kViewerHtml;  // viewer.html
-extern const std::string_view kViewerJs;    // viewer.js
+extern const std::string_view kPageCss;       // page.css
+extern const std::string_view kChartsJs;      // charts.js
+extern const std::string_view kMeshViewHtml;  // mesh_view.html
+extern const std::string_view kMeshViewJs;    // ../viewer, mesh_view.js
 
 }  // namespace rlpc

@@ -87,9 +87,9 @@ std::string HtmlPage::text() const {
   page += kChartsJs;
   page += "</script>\n";
   if (viewer_) {
-    page += "<script>\n";
-    page += kViewerJs;
-    page += "</script>\n";
+    page += "<script>\n\"use strict\";\n(() => {\n";
+    page += kMeshViewJs;
+    page += "})();\n</script>\n";
   }
   return page + "</body>\n</html>\n";
 }

@@ -125,7 +125,7 @@ std::string MeshView::html(double diagonal) const {
       {"largest", largest},
       {"upper", upper_value(errors_)},
       {"diagonal", diagonal}};
-  std::string html(kViewerHtml);
+  std::string html(kMeshViewHtml);
   html += "<script type=\"application/json\" id=\"mesh-info\">" + info.dump() + "</script>\n";
   html += data_html("mesh-triangles", corners);
   html += frames_html(original_, "mesh-original", low, step);

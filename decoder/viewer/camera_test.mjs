@@ -1,0 +1,81 @@
+// Run by player_test.py: where the camera sees points.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Camera } from "./camera.js";
+import { multiply } from "./matrices.js";
+
+/** Corners of a box; centre and half its size. */
+function corners({ centre, halfSize }) {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
+    centre.map((value, i) => value + (corner >> i & 1 ? halfSize[i] : -halfSize[i])));
+}
+
+/** [left, right, bottom, top] of points in the view, which is from -1 to 1. */
+function seen(camera, points) {
+  const { view, projection } = camera.matrices();
+  const m = multiply(projection, view);
+  const places = points.map((p) => [0, 1, 3].map((r) =>
+    m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]));
+  const xs = places.map(([x, , w]) => x / w), ys = places.map(([, y, w]) => y / w);
+  return [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+}
+
+const kBoxes = [
+  { centre: [0, 0, 0], halfSize: [0.4, 0.2, 0.2] },
+  { centre: [0, 3, -9], halfSize: [0.05, 0.5, 0.05] },
+  { centre: [7, 0, 0], halfSize: [0.5, 0, 0.1] },
+];
+
+function framed(camera, box, least = 0.8) {
+  const [left, right, bottom, top] = seen(camera, corners(box));
+  assert.ok(Math.max(right - left, top - bottom) / 2 > least, [left, right, bottom, top]);
+  for (const edge of [-left, right, -bottom, top]) assert.ok(edge < 1, [left, right, bottom, top]);
+}
+
+test("the mesh is large and whole in windows of any shape", () => {
+  for (const aspect of [0.4, 1, 2.5]) {
+    for (const box of kBoxes) {
+      const camera = new Camera();
+      camera.setAspect(aspect);
+      camera.look(box, corners(box));
+      framed(camera, box);
+    }
+  }
+});
+
+test("what moves away or grows is followed", () => {
+  const camera = new Camera();
+  camera.look(kBoxes[0], corners(kBoxes[0]));
+  for (let t = 1; t < 20; ++t) {
+    const box = { centre: [t, 2 * t, -t], halfSize: kBoxes[0].halfSize.map((h) => h * 1.2 ** t) };
+    camera.follow(box, corners(box));
+    framed(camera, box, 0.7);
+  }
+});
+
+test("a window that becomes narrow still shows all", () => {
+  const camera = new Camera();
+  camera.setAspect(2);
+  camera.look(kBoxes[0], corners(kBoxes[0]));
+  camera.setAspect(0.5);
+  framed(camera, kBoxes[0], 0.3);
+});
+
+test("the view is turned, moved and zoomed, and comes back", () => {
+  const camera = new Camera();
+  let changes = 0;
+  camera.addListener(() => ++changes);
+  camera.look(kBoxes[0], corners(kBoxes[0]));
+  const first = seen(camera, corners(kBoxes[0]));
+  camera.zoom(0.5);
+  assert.ok(seen(camera, corners(kBoxes[0]))[1] > 1.5 * first[1]);
+  camera.move(100, 0, 500); // by a fifth of the height: 0.4 in the view
+  const middle = (box) => (box[0] + box[1]) / 2;
+  assert.ok(middle(seen(camera, [kBoxes[0].centre])) > 0.3);
+  camera.turn(30, 1e6);
+  assert.ok(camera.pitch < Math.PI / 2);
+  camera.look(kBoxes[0], corners(kBoxes[0]));
+  assert.deepEqual(seen(camera, corners(kBoxes[0])), first);
+  assert.equal(changes, 2);
+});
