@@ -155,6 +155,15 @@ class Text(FolderTest):
                 expected = eval(value) if value else None
                 self.assertEqual(result, expected, f"{name}: {step}")
 
+    def test_shift_that_annex_c_names(self):
+        text = (ROOT / "spec" / "annex-c-trace.md").read_text(encoding="utf-8")
+        largest, bits, shift = map(int, re.search(
+            r"by\s+up\s+to\s+(\d+),\s+which\s+has\s+(\d+)\s+bits,\s+so\s+that\s+offsets\s+are\s+"
+            r"shifted\s+left\s+by\s+(\d+)\s+bits", text).groups())
+        offsets = eval(re.search(r"^\| Offsets \| (.*) \|$", text, re.MULTILINE).group(1))
+        self.assertEqual(largest << shift, max(abs(c) for offset in offsets for c in offset))
+        self.assertEqual([largest.bit_length(), bits + shift], [bits, 11])
+
     def test_triangulations_of_table_8_2(self):
         text = (ROOT / "spec" / "08-decoding.md").read_text(encoding="utf-8")
         table = text[text.index("begin: triangulations"):text.index("end: triangulations")]
