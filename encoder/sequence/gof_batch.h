@@ -60,7 +60,7 @@ class GofBatch {
 
  private:
   struct Gof {
-    GofSpan span;
+    GofSpan span{};
     GofFrames frames;  // while they are needed
     std::unique_ptr<GofCoder> coder;
   };

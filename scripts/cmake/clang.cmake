@@ -1,5 +1,5 @@
-# Toolchain of the presets `sanitize`, `tsan` and `fuzz`: the clang that the project is tested with, else
-# whichever there is. `cmake --preset sanitize -DCMAKE_CXX_COMPILER=g++` still overrides it.
+# Toolchain of the presets `sanitize`, `tsan`, `msan` and `fuzz`: the clang that the project is tested
+# with, else whichever there is. `cmake --preset sanitize -DCMAKE_CXX_COMPILER=g++` still overrides it.
 if(NOT CMAKE_CXX_COMPILER)
   find_program(RLPC_CLANG NAMES clang++-14 clang++ REQUIRED)
   set(CMAKE_CXX_COMPILER ${RLPC_CLANG})
