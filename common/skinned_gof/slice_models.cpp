@@ -44,7 +44,7 @@ void VertexContexts::mean_magnitudes(std::span<const std::uint32_t> ring,
   const std::size_t n = means.size();
   std::fill(sums_.begin(), sums_.end(), std::uint16_t{0});
   for (const std::uint32_t u : ring) {
-    const std::uint8_t* const magnitudes = &magnitudes_[std::size_t{u} * n];
+    const std::uint8_t* const magnitudes = magnitudes_.data() + std::size_t{u} * n;
     for (std::size_t k = 0; k < n; ++k) {
       sums_[k] = static_cast<std::uint16_t>(sums_[k] + magnitudes[k]);
     }
