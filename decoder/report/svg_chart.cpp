@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "decoder/report/html_page.h"
+#include "decoder/report/svg_axis.h"
 
 namespace rlpc {
 namespace {
@@ -18,72 +19,28 @@ constexpr double kTop = 14;
 constexpr double kBottom = 42;
 constexpr std::size_t kMaxPoints = 1000;  // of a line
 
-std::string pixel(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
-std::string text_at(double x, double y, const char* anchor, std::string_view words) {
-  return "<text x=\"" + pixel(x) + "\" y=\"" + pixel(y) + "\" text-anchor=\"" + anchor + "\">" +
-         escape_html(words) + "</text>\n";
-}
-
-// From 0 to `last`, with ticks at round numbers.
-class Axis {
- public:
-  Axis(double last, double first_pixel, double last_pixel)
-      : last_(last), first_pixel_(first_pixel), last_pixel_(last_pixel) {}
-
-  double at(double value) const {
-    return first_pixel_ + value / last_ * (last_pixel_ - first_pixel_);
-  }
-  std::vector<double> ticks(int most, double least_step) const {
-    const double rough = std::max(last_ / most, least_step);
-    const double unit = std::pow(10.0, std::floor(std::log10(rough)));
-    double step = 10 * unit;
-    for (const double m : {5.0, 2.0, 1.0}) {
-      if (m * unit >= rough * (1 - 1e-9)) step = m * unit;
-    }
-    std::vector<double> values;
-    for (int i = 0; i * step <= last_ * (1 + 1e-9); ++i) values.push_back(i * step);
-    return values;
-  }
-
- private:
-  double last_;
-  double first_pixel_;
-  double last_pixel_;
-};
-
 struct Frames {
   Axis x;
   Axis y;
 };
 
 Frames axes(double last_frame, double highest) {
-  return {Axis(last_frame, kLeft, kWidth - kRight),
-          Axis(highest > 0 ? 1.06 * highest : 1, kHeight - kBottom, kTop)};
-}
-
-std::string tick_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return {Axis(0, last_frame, false, kLeft, kWidth - kRight),
+          Axis(0, highest > 0 ? 1.06 * highest : 1, false, kHeight - kBottom, kTop)};
 }
 
 std::string grid(const Frames& axes, std::string_view x_label) {
   std::string svg;
-  for (const double value : axes.y.ticks(5, 0)) {
-    const std::string y = pixel(axes.y.at(value));
-    svg += "<path class=\"grid\" d=\"M" + pixel(kLeft) + " " + y + "H" +
-           pixel(kWidth - kRight) + "\"/>\n" +
-           text_at(kLeft - 8, axes.y.at(value) + 4, "end", tick_text(value));
+  for (const double value : axes.y.ticks(5)) {
+    const std::string y = pixel_text(axes.y.at(value));
+    svg += "<path class=\"grid\" d=\"M" + pixel_text(kLeft) + " " + y + "H" +
+           pixel_text(kWidth - kRight) + "\"/>\n" +
+           svg_text(kLeft - 8, axes.y.at(value) + 4, "end", tick_text(value));
   }
   for (const double value : axes.x.ticks(8, 1)) {
-    svg += text_at(axes.x.at(value), kHeight - kBottom + 18, "middle", tick_text(value));
+    svg += svg_text(axes.x.at(value), kHeight - kBottom + 18, "middle", tick_text(value));
   }
-  return svg + text_at((kLeft + kWidth - kRight) / 2, kHeight - 4, "middle", x_label);
+  return svg + svg_text((kLeft + kWidth - kRight) / 2, kHeight - 4, "middle", x_label);
 }
 
 std::string legend(const std::vector<ChartSeries>& series) {
@@ -155,8 +112,8 @@ std::string line(const ChartSeries& series, const Frames& axes, std::size_t grou
       continue;
     }
     path += open ? "L" : "M";
-    path += pixel(axes.x.at(static_cast<double>(i * group))) + " " +
-            pixel(axes.y.at(series.values[i]));
+    path += pixel_text(axes.x.at(static_cast<double>(i * group))) + " " +
+            pixel_text(axes.y.at(series.values[i]));
     open = true;
     ++points;
   }
@@ -213,9 +170,9 @@ std::string stacked_bars(std::string_view title, std::string_view unit,
       const double left = frames.x.at(bars[b].first_frame);
       const double right = frames.x.at(bars[b].first_frame + bars[b].num_frames);
       const double gap = right - left > 4 ? 1 : 0;  // between bars that are wide enough
-      path += "M" + pixel(left) + " " + pixel(frames.y.at(below[b])) + "V" +
-              pixel(frames.y.at(below[b] + s.values[b])) + "H" + pixel(right - gap) + "V" +
-              pixel(frames.y.at(below[b])) + "z";
+      path += "M" + pixel_text(left) + " " + pixel_text(frames.y.at(below[b])) + "V" +
+              pixel_text(frames.y.at(below[b] + s.values[b])) + "H" + pixel_text(right - gap) +
+              "V" + pixel_text(frames.y.at(below[b])) + "z";
       below[b] += s.values[b];
     }
     data["values"].push_back(std::move(values));

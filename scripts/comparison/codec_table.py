@@ -192,7 +192,7 @@ ABLATIONS = (
 class Toolbox:
     """Where the programs are, and what they can do."""
 
-    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "make_tentacle")
+    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "plot_svg", "make_tentacle")
 
     def __init__(self, folder):
         self.folder = folder

@@ -148,7 +148,7 @@ else:
     def test_missing_codecs_are_named_with_the_remedy(self):
         tools = self.folder / "few"
         tools.mkdir()
-        for name in ("rlpcenc", "rlpcdec", "rlpccmp"):
+        for name in ("rlpcenc", "rlpcdec", "rlpccmp", "plot_svg"):
             (tools / name).symlink_to(Tools.folder / name)
         done = self.compare("--codecs", "baseline,lorenzo-xz,draco", self.folder / "in put",
                             tools=tools)
@@ -157,6 +157,9 @@ else:
         self.assertIn("Left out: Lorenzo", (self.folder / "out/index.html").read_text("utf-8"))
         done = self.compare("--codecs", "lorenzo-xz", self.folder / "in put", tools=tools, code=1)
         self.assertIn("no codec is left", done.stderr)
+        (tools / "plot_svg").unlink()
+        done = self.compare("--codecs", "baseline", self.folder / "in put", tools=tools, code=1)
+        self.assertIn("plot_svg is not in", done.stderr)
 
     def test_usage(self):
         self.compare("--codecs", "baseline,nobody", code=64)

@@ -1,4 +1,4 @@
-"""Results as CSV, Markdown, SVG, and one HTML page that holds all of it."""
+"""Results as CSV, Markdown, plots, and one HTML page that holds all of it."""
 
 import csv
 import dataclasses
@@ -7,7 +7,7 @@ import io
 
 import arithmetic
 import measure
-import svg_plot
+import plots
 
 NOTHING = "-"
 
@@ -217,17 +217,18 @@ def curve_plot(sequence, curves, points, kgs):
                       if min(kgs) / 2 <= kg <= 2 * max(kgs))
         second = any(c.codec is curve.codec for c in curves[:number_of])
         if line:
-            series.append(svg_plot.Series(curve.title, line, curve.codec.colour,
-                                          "dashed" if second else curve.codec.line,
-                                          width=2.8 if number_of == 0 else 2.0))
+            series.append(plots.Series(curve.title, line, curve.codec.colour,
+                                       "dashed" if second else curve.codec.line,
+                                       width=2.8 if number_of == 0 else 2.0))
     if not series:
         return None
-    return svg_plot.plot(described(sequence), series, "bits per vertex and frame (whole file)",
-                         "KG error, per cent")
+    return plots.Plot(described(sequence), series, "bits per vertex and frame (whole file)",
+                      "KG error, per cent")
 
 
-def page(title, notes, tables, plots):
-    parts = [f"<h1>{html.escape(title)}</h1>", *plots]
+def page(title, notes, tables, pictures):
+    """`pictures`: SVG."""
+    parts = [f"<h1>{html.escape(title)}</h1>", *pictures]
     for table in tables:
         parts += [f"<h2>{html.escape(table.title)}</h2>", table.html()]
     parts += ["<h2>Notes</h2>", "<ul>", *(f"<li>{html.escape(note)}</li>" for note in notes),
@@ -237,10 +238,10 @@ def page(title, notes, tables, plots):
             + "\n".join(parts) + "\n</body></html>\n")
 
 
-def markdown(title, notes, tables, plots):
-    """`plots`: names of SVG files beside it, without extension."""
+def markdown(title, notes, tables, pictures):
+    """`pictures`: names of SVG files beside it, without extension."""
     lines = [f"# {title}"]
-    for name in plots:
+    for name in pictures:
         lines += ["", f"![{name}](<{name}.svg>)"]
     for table in tables:
         lines += ["", f"## {table.title}", "", table.markdown().rstrip()]

@@ -10,7 +10,7 @@ import arithmetic
 import codec_table
 import measure
 import report
-import svg_plot
+import plots
 
 # Vertices, frames.
 SIZES = ((1_000, 50), (1_000, 500), (1_000, 5_000), (10_000, 50), (10_000, 500), (10_000, 5_000),
@@ -76,16 +76,16 @@ def plot(found, codecs):
         for what, line, marker in (("encode", "solid", "circle"), ("decode", "dashed", "square")):
             points = sorted((s.size, getattr(p, f"{what}_seconds")) for s, p in found
                             if p.codec == codec.name)
-            series.append(svg_plot.Series(f"{codec.title}, {what}", points, codec.colour, "none",
-                                          marker))
+            series.append(plots.Series(f"{codec.title}, {what}", points, codec.colour, "none",
+                                       marker))
             ends = sorted({points[0][0], points[-1][0]})
             if len(ends) == 2:
                 factor, power = arithmetic.power_fit(points)
-                series.append(svg_plot.Series(f"about n^{power:.2f}",
-                                              [(n, factor * n ** power) for n in ends],
-                                              codec.colour, line, "none"))
-    return svg_plot.plot(f"Time against size, {SETTING}", series, "n = vertices times frames",
-                         "seconds")
+                series.append(plots.Series(f"about n^{power:.2f}",
+                                           [(n, factor * n ** power) for n in ends],
+                                           codec.colour, line, "none"))
+    return plots.Plot(f"Time against size, {SETTING}", series, "n = vertices times frames",
+                      "seconds")
 
 
 def points_csv(found):

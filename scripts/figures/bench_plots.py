@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Speed against rate, as SVG, from what the benchmarks report as JSON.
 
-  bench_plots.py BENCH.json FOLDER
+  bench_plots.py PLOT_SVG BENCH.json FOLDER
 
-writes FOLDER/decode.svg and FOLDER/encode.svg, each where its benchmarks ran, and prints their
+draws FOLDER/decode.svg and FOLDER/encode.svg, each where its benchmarks ran, and prints their
 paths.
 """
 
@@ -13,7 +13,7 @@ import re
 import statistics
 import sys
 
-import svg_plot
+import plots
 
 NAME = re.compile(r"(Decode|EncodeTarget)/kg:[\d.]+(?:/(fast|medium))?/(.+)/real_time")
 COLOURS = ("#0f6fb4", "#c8501e", "#2d8a4e", "#7f4fa8", "#8a6d00", "#b03070")
@@ -43,20 +43,19 @@ def plot(kind, lines):
     series = []
     for (animation, preset), points in lines.items():
         fast = preset == "fast"
-        series.append(svg_plot.Series(animation + (f", {preset}" if preset else ""),
-                                      sorted(points),
-                                      COLOURS[animations.index(animation) % len(COLOURS)],
-                                      "dashed" if fast else "solid",
-                                      "square" if fast else "circle"))
-    return svg_plot.plot(TITLES[kind], series, "bits per vertex and frame (whole file)",
-                         "million vertices times frames a second")
+        series.append(plots.Series(animation + (f", {preset}" if preset else ""),
+                                   sorted(points),
+                                   COLOURS[animations.index(animation) % len(COLOURS)],
+                                   "dashed" if fast else "solid", "square" if fast else "circle"))
+    return plots.Plot(TITLES[kind], series, "bits per vertex and frame (whole file)",
+                      "million vertices times frames a second")
 
 
 def main():
-    results, folder = map(pathlib.Path, sys.argv[1:])
+    tool, results, folder = map(pathlib.Path, sys.argv[1:])
     for kind, lines in curves(json.loads(results.read_text(encoding="utf-8"))).items():
         path = folder / FILES[kind]
-        for ending in svg_plot.save(path, plot(kind, lines)):
+        for ending in plot(kind, lines).save(tool, path):
             print(f"{path}.{ending}")
 
 

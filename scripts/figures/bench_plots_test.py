@@ -1,6 +1,11 @@
 #!/usr/bin/env python3
-"""Plots of scripts/bench, from a report as the benchmark library writes it."""
+"""Plots of scripts/bench, from a report as the benchmark library writes it; and how plots are drawn.
 
+  bench_plots_test.py --bin FOLDER
+"""
+
+import argparse
+import dataclasses
 import json
 import pathlib
 import subprocess
@@ -11,7 +16,10 @@ import unittest.mock
 import xml.etree.ElementTree
 
 import bench_plots
-import svg_plot
+import plots
+
+BIN = pathlib.Path(__file__).resolve().parents[2] / "build" / "release" / "bin"
+TOOL = BIN / "plot_svg"
 
 
 def run(name, bpvf, speed, **others):
@@ -42,7 +50,7 @@ class BenchPlots(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             (folder / "bench.json").write_text(json.dumps(RESULTS), encoding="utf-8")
-            printed = subprocess.run([sys.executable, "-B", bench_plots.__file__,
+            printed = subprocess.run([sys.executable, "-B", bench_plots.__file__, TOOL,
                                       folder / "bench.json", folder],
                                      check=True, capture_output=True, text=True).stdout
             paths = [folder / "decode.svg", folder / "encode.svg"]
@@ -53,31 +61,52 @@ class BenchPlots(unittest.TestCase):
                 for word in words:
                     self.assertIn(word, texts)
 
+    def test_nothing_measured_nothing_written(self):
+        self.assertEqual(bench_plots.curves({"benchmarks": RESULTS["benchmarks"][:1]}), {})
+
+
+class Plots(unittest.TestCase):
+    PLOT = plots.Plot("a & b", [plots.Series("c", [(1, 1), (2, 2)], "black")], "x", "y")
+
     def test_png_and_pdf_where_there_is_a_tool(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            with unittest.mock.patch.object(svg_plot.shutil, "which", return_value=None):
-                self.assertEqual(svg_plot.save(folder / "v1.2", "<svg/>"), ["svg"])
+            with unittest.mock.patch.object(plots.shutil, "which", return_value=None):
+                self.assertEqual(self.PLOT.save(TOOL, folder / "v1.2"), ["svg"])
             self.assertEqual([path.name for path in folder.iterdir()], ["v1.2.svg"])
             tool = folder / "tool"  # copies its last argument to that of -o
             tool.write_text('#!/bin/sh\nfor last; do :; done\n'
                             'while [ "$1" != -o ]; do shift; done\ncp "$last" "$2"\n')
             tool.chmod(0o755)
-            with unittest.mock.patch.object(svg_plot.shutil, "which", return_value=str(tool)):
-                self.assertEqual(svg_plot.save(folder / "v1.3", "<svg/>"), ["svg", "png", "pdf"])
+            with unittest.mock.patch.object(plots.shutil, "which", return_value=str(tool)):
+                self.assertEqual(self.PLOT.save(TOOL, folder / "v1.3"), ["svg", "png", "pdf"])
+            svg = self.PLOT.svg(TOOL)
             for ending in ("svg", "png", "pdf"):
-                self.assertEqual((folder / f"v1.3.{ending}").read_text(), "<svg/>")
+                self.assertEqual((folder / f"v1.3.{ending}").read_text(), svg)
 
-    def test_long_names_have_room(self):
-        def width(name):
-            svg = svg_plot.plot("", [svg_plot.Series(name, [(1, 1), (2, 2)], "black")], "x", "y")
-            return int(xml.etree.ElementTree.fromstring(svg).get("width"))
-        self.assertEqual(width("a"), width("ab"))
-        self.assertGreater(width(30 * "a"), width("a") + 40)
+    def test_it_is_well_formed_and_in_words_of_any_language(self):
+        title = "<é & ﷽>"
+        svg = xml.etree.ElementTree.fromstring(dataclasses.replace(self.PLOT, title=title).svg(TOOL))
+        texts = [e.text for e in svg.iter("{http://www.w3.org/2000/svg}text")]
+        for word in (title, "c", "x", "y"):
+            self.assertIn(word, texts)
 
-    def test_nothing_measured_nothing_written(self):
-        self.assertEqual(bench_plots.curves({"benchmarks": RESULTS["benchmarks"][:1]}), {})
+    def test_what_cannot_be_drawn_is_named(self):
+        for points, words in (([(1, 0)], "c: not above 0"), ([], "no points"),
+                              ([(1, None)], "number"), ([(1,)], "out of range")):
+            plot = dataclasses.replace(self.PLOT, series=[plots.Series("c", points, "black")])
+            with self.subTest(points=points), self.assertRaisesRegex(plots.Failure, words):
+                plot.svg(TOOL)
+        bad = dataclasses.replace(self.PLOT, series=[plots.Series("c", [(1, 1)], "black", "wavy")])
+        with self.assertRaisesRegex(plots.Failure, "wavy"):
+            bad.svg(TOOL)
+        with self.assertRaisesRegex(plots.Failure, "/nowhere/plot_svg: No such file"):
+            self.PLOT.svg("/nowhere/plot_svg")
 
 
 if __name__ == "__main__":
-    unittest.main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", type=pathlib.Path, default=BIN)
+    options, rest = parser.parse_known_args()
+    TOOL = options.bin.resolve() / "plot_svg"
+    unittest.main(argv=[sys.argv[0], *rest])

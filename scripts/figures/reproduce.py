@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-import svg_plot
+import plots
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -133,16 +133,16 @@ def write_curves(bench, folder, title, quick):
             for r in runs:
                 rows.writerow([r.method, r.clusters or "", r.components or "", r.bpvf, r.kg,
                                f"{r.encode_seconds:.3f}", f"{r.decode_seconds:.3f}"])
-    series = [svg_plot.Series(name, [(r.bpvf, r.kg) for r in runs if r.kg > 0], colour, line,
-                              width=2.8 if colour == OUR_COLOUR else 2.0)
+    series = [plots.Series(name, [(r.bpvf, r.kg) for r in runs if r.kg > 0], colour, line,
+                           width=2.8 if colour == OUR_COLOUR else 2.0)
               for name, runs, colour, line in curves]
     if is_cow(bench):
         points = [(bpvf, kg) for bpvf, kg, _, _ in PUBLISHED.values()]
-        series.append(svg_plot.Series("RLPCA as published", points, METHODS["RLPCA"][1], "none",
-                                      "square"))
-    svg_plot.save(folder / "curves", svg_plot.plot(
-        f"{title}: rate and distortion, one group of frames", series,
-        "bits per vertex and frame (everything counted)", "KG error, per cent"))
+        series.append(plots.Series("RLPCA as published", points, METHODS["RLPCA"][1], "none",
+                                   "square"))
+    plot = plots.Plot(f"{title}: rate and distortion, one group of frames", series,
+                      "bits per vertex and frame (everything counted)", "KG error, per cent")
+    plot.save(bench.tools / "plot_svg", folder / "curves")
 
 
 def write_frames(bench, folder, title):
@@ -154,16 +154,16 @@ def write_frames(bench, folder, title):
         with open(path, newline="", encoding="utf-8") as file:
             columns[method] = [float(row["rms_error"]) for row in csv.DictReader(file)]
         path.unlink()
-        series.append(svg_plot.Series(f"{method}, {run.bpvf:.2f} bpvf",
-                                      list(enumerate(columns[method])), METHODS[method][1],
-                                      marker="none"))
+        series.append(plots.Series(f"{method}, {run.bpvf:.2f} bpvf",
+                                   list(enumerate(columns[method])), METHODS[method][1],
+                                   marker="none"))
     with open(folder / "frames.csv", "w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["frame", *(f"{method}_rms_error" for method in columns)])
         rows.writerows([f, *errors] for f, errors in enumerate(zip(*columns.values())))
-    svg_plot.save(folder / "frames", svg_plot.plot(
-        f"{title}: error of each frame, N = 10, L = 10", series, "frame", "RMS error, units",
-        log_x=False, log_y=False))
+    plot = plots.Plot(f"{title}: error of each frame, N = 10, L = 10", series, "frame",
+                      "RMS error, units", log_x=False, log_y=False)
+    plot.save(bench.tools / "plot_svg", folder / "frames")
 
 
 def is_cow(bench):
@@ -209,8 +209,11 @@ def main():
     folder = options.folder or ROOT / "build" / "reproduce" / title
     folder.mkdir(parents=True, exist_ok=True)
     bench = Bench(options.bin.resolve(), mesh, points, folder)
-    write_curves(bench, folder, title, options.quick)
-    write_frames(bench, folder, title)
+    try:
+        write_curves(bench, folder, title, options.quick)
+        write_frames(bench, folder, title)
+    except plots.Failure as failure:
+        sys.exit(f"reproduce: {failure}")
     write_table(bench, folder, title)
     print(f"\nreproduce: wrote to {folder}: curves.csv, curves.svg, frames.csv, frames.svg, table.md")
 

@@ -1,0 +1,36 @@
+// What plots and charts have in common.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rlpc {
+
+// Values to pixels.
+class Axis {
+ public:
+  // 0 < low if it is logarithmic; low < high.
+  Axis(double low, double high, bool is_log, double first_pixel, double last_pixel);
+
+  double at(double value) const;
+  // 1, 2 and 5 of each decade if it is logarithmic; else about `most` round numbers, not closer
+  // than `least_step`.
+  std::vector<double> ticks(int most, double least_step = 0) const;
+
+ private:
+  double low_;
+  double high_;
+  bool is_log_;
+  double first_pixel_;
+  double last_pixel_;
+};
+
+std::string pixel_text(double value);  // in tenths
+std::string tick_text(double value);
+
+// A text element; `attributes` follow those of its place.
+std::string svg_text(double x, double y, std::string_view anchor, std::string_view words,
+                     std::string_view attributes = "");
+
+}  // namespace rlpc
