@@ -275,7 +275,7 @@ class MeshView {
       box[3] = Math.max(box[3], y + 1);
       ++covered;
     }
-    Object.assign($("stage").dataset, { frame: this.frame * this.info.stride, covered: covered,
+    Object.assign($("stage").dataset, { frame: this.frame * this.info.stride, covered,
       box: box.map((value, i) => (value / [width, height][i % 2]).toFixed(3)).join(" ") });
   }
 }

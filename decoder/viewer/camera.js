@@ -110,7 +110,8 @@ export class Camera {
   }
 
   zoom(factor) {
-    this.distance = Math.max(0.05 * this.fitted, Math.min(20 * this.fitted, this.distance * factor));
+    const [least, most] = [0.05 * this.fitted, 20 * this.fitted];
+    this.distance = Math.max(least, Math.min(most, this.distance * factor));
   }
 
   /** Drag to turn, shift or the right button to move, wheel to zoom; two fingers move and zoom. */

@@ -79,3 +79,38 @@ test("the view is turned, moved and zoomed, and comes back", () => {
   assert.deepEqual(seen(camera, corners(kBoxes[0])), first);
   assert.equal(changes, 2);
 });
+
+test("pointers turn, move and zoom", () => {
+  const camera = new Camera();
+  const on = {};
+  camera.attach({ clientHeight: 500, setPointerCapture() {},
+    addEventListener: (name, handler) => (on[name] = handler) });
+  const at = (pointerId, clientX, clientY, more = {}) =>
+    ({ pointerId, clientX, clientY, buttons: 1, preventDefault() {}, ...more });
+  const state = () => [camera.yaw, camera.pitch, camera.distance, ...camera.pan];
+  const changed = (before) => state().map((value, i) => value !== before[i]);
+  const [turned, moved, zoomed] = [[0, 1], [3, 4, 5], [2]].map((which) =>
+    [0, 1, 2, 3, 4, 5].map((i) => which.includes(i)));
+
+  let before = state();
+  on.pointermove(at(1, 50, 50)); // not held
+  assert.deepEqual(state(), before);
+  on.pointerdown(at(1, 0, 0));
+  on.pointermove(at(1, 10, 10));
+  assert.deepEqual(changed(before), turned);
+  before = state();
+  on.pointermove(at(1, 20, 20, { shiftKey: true }));
+  assert.deepEqual(changed(before), moved);
+  before = state();
+  on.pointerdown(at(2, 120, 20)); // two fingers, 100 apart; then 200
+  on.pointermove(at(2, 220, 20));
+  assert.equal(camera.distance, before[2] / 2);
+  assert.equal(camera.yaw, before[0]);
+  on.pointerup(at(1, 20, 20));
+  on.pointercancel(at(2, 220, 20));
+  before = state();
+  on.pointermove(at(2, 0, 0));
+  assert.deepEqual(state(), before);
+  on.wheel(at(0, 0, 0, { deltaY: 100 }));
+  assert.deepEqual(changed(before), zoomed);
+});

@@ -3,7 +3,8 @@
 const kVersion = "#version 300 es\nprecision highp float;\n";
 
 /** Colours of a share from 0 to 1, as in CSS; for legends and for the surface. */
-export const kRamp = [[217, 222, 229], [250, 215, 110], [241, 140, 56], [207, 43, 74], [104, 22, 125]];
+export const kRamp =
+  [[217, 222, 229], [250, 215, 110], [241, 140, 56], [207, 43, 74], [104, 22, 125]];
 
 export const kRampCss = `linear-gradient(to right, ${kRamp.map((c) => `rgb(${c})`).join(", ")})`;
 

@@ -263,7 +263,8 @@ export class Viewer {
     const model = this.modelMatrix();
     const light = this.drawShadow(model);
     const { view, projection, eye } = camera.matrices();
-    const common = { model, light, camera: multiply(projection, view), hasShadow: this.hasShadow() };
+    const common =
+      { model, light, camera: multiply(projection, view), hasShadow: this.hasShadow() };
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (this.wire !== "alone") this.drawSurface({ ...common, eye });
