@@ -24,7 +24,7 @@ class Decoder::Impl {
       : stream_(std::move(source), options),
         threads_(std::clamp(options.threads, 1U, kMaxThreads)),
         band_(threads_) {
-    // A trace is in the order of the stream.
+    // A trace follows the order of the stream.
     if (threads_ > 1 && options.trace == nullptr) {
       prefetch_.emplace(stream_, options.limits.max_memory_bytes / threads_);
     }
@@ -49,7 +49,7 @@ class Decoder::Impl {
   Result<bool> load_gof();
   Result<PreparedGof> find_gof(const UnitHeader& unit);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
-  // What is loaded may not fit the position any more.
+  // The loaded GOF may no longer match the position.
   void fail(const Error& error) {
     failure_ = error;
     gof_.reset();
@@ -86,7 +86,7 @@ Result<bool> Decoder::Impl::load_gof() {
   return true;
 }
 
-// The GOF of a unit, prefetched or read now.
+// The GOF of a unit, prefetched or parsed now.
 Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   const std::uint32_t first_frame = stream_.next_first_frame();
   if (prefetch_) {

@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// What an Errc::kLimitExceeded is about.
+// The limit behind an Errc::kLimitExceeded.
 enum class ExceededLimit : std::uint8_t { kVertices, kTriangles, kFrames, kMemory };
 
 inline ExceededLimit exceeded_limit(const Error& error) {

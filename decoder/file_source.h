@@ -10,18 +10,18 @@
 
 namespace rlpc {
 
-// That of DecodeLimits, if nobody says otherwise.
+// The default of DecodeLimits.
 inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
 
-// Reads from a file as needed. A pipe or a device is read whole, and kept, unless it does not
-// begin like a stream: then nothing behind that is read. Errors: Errc::kIo, the element says
-// why; Errc::kLimitExceeded: there is more to keep than max_memory_bytes.
+// Reads from a file as needed. A pipe or a device is read to its end and buffered, unless its
+// beginning shows that it is not a stream. Errors: Errc::kIo, whose element holds the reason;
+// Errc::kLimitExceeded: more than max_memory_bytes to buffer.
 Result<std::unique_ptr<ByteSource>> file_source(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes);
-// Standard input, likewise.
+// The same for standard input.
 Result<std::unique_ptr<ByteSource>> standard_input_source(
     std::uint64_t max_memory_bytes = kUsualMemoryBytes);
-// The one or, for "-", the other.
+// Standard input for "-", otherwise the file.
 inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes) {
   return path == "-" ? standard_input_source(max_memory_bytes)

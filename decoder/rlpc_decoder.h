@@ -12,11 +12,11 @@
 //     use(decoder->triangles(), positions);
 //   }
 //
-// Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory stays
-// within one GOF and four frames; whatever a stream claims is compared with its level and with
-// DecodeLimits before memory is taken for it. A Decoder is used by one thread at a time;
-// different Decoders are independent. After an error the decoder repeats it until seek()
-// succeeds, for example with a frame past the damage.
+// Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory is
+// bounded by one GOF plus four frames; every size in a stream is checked against its level and
+// DecodeLimits before anything is allocated. A Decoder is used by one thread at a time;
+// different Decoders are independent. Errors are sticky until seek() succeeds, for example to a
+// frame past the damage.
 #pragma once
 
 #include <cstdint>
@@ -38,12 +38,12 @@
 
 namespace rlpc {
 
-// The most that a caller is ready to spend on one stream. Beyond it: Errc::kLimitExceeded.
+// The most that a caller will spend on one stream. Beyond it: Errc::kLimitExceeded.
 struct DecodeLimits {
   std::uint32_t max_vertices = 1U << 23;
   std::uint32_t max_triangles = 1U << 24;
   std::uint32_t max_frames = kMaxFrames;
-  // Estimated; with what the source keeps, where it is a pipe.
+  // Estimated; includes the buffered contents of a pipe.
   std::uint64_t max_memory_bytes = kUsualMemoryBytes;
 };
 
@@ -53,14 +53,13 @@ struct DecoderOptions {
   DecodeLimits limits;
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
-  // With more than one, GOFs are parsed ahead and frames reconstructed side by side; positions
-  // and errors are the same. Each further thread may take memory for a GOF, of up to
-  // max_memory_bytes / threads, and for four frames. Beyond 1 to kMaxThreads: the nearest of
-  // these.
+  // With more than one, GOFs are prefetched and frames reconstructed in parallel; positions and
+  // errors are the same. Each further thread may take memory for a GOF, up to max_memory_bytes
+  // / threads, and for four frames. Clamped to 1 to kMaxThreads.
   std::uint32_t threads = 1;
-  // Decodes as if the slices that it leaves out were not in the stream, which saves their
-  // time: of them, CRC and indices alone are checked. The hashes of their GOFs do not fit, and
-  // are not compared. Nothing is left out of GOFs of clusters.
+  // Decodes as if slices outside the cut were absent, which saves their time: only their CRC
+  // and indices are checked. The hashes of GOFs that lose slices no longer match, and are not
+  // verified. Cluster GOFs are decoded whole.
   SliceCut cut;
 };
 
@@ -74,8 +73,8 @@ class Decoder {
   ~Decoder();
 
   const SequenceHeader& header() const;
-  // Vertex indices as in the decoded frames; input order if the stream carries it, else that of
-  // the connectivity process.
+  // Vertex indices as in the decoded frames; input order if the stream carries it, otherwise
+  // that of the connectivity process.
   std::span<const Triangle> triangles() const;
   bool has_vertex_order() const;
   // JSON text of the last metadata unit so far; empty if there was none.
@@ -86,17 +85,16 @@ class Decoder {
   Result<bool> next_frame(std::span<std::int32_t> positions);
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
-  // Parses all that is left of the stream, without the positions of its frames: for tools that
-  // look at its syntax. Returns the number of GOFs in the stream; afterwards there is no next
-  // frame.
+  // Parses the rest of the stream without reconstructing frames, for programs that inspect its
+  // syntax. Returns the number of GOFs in the stream; afterwards there is no next frame.
   Result<std::uint32_t> parse_rest();
   // Index of the frame that next_frame would decode.
   std::uint32_t position() const;
-  // Whether DecoderOptions::cut left slices out of a GOF so far.
+  // Whether DecoderOptions::cut has dropped slices of a GOF so far.
   bool was_cut() const;
-  // How many frames, up to the one that next_frame decoded last, it has just compared with a
-  // hash of the stream: 1 if each has its own, those of a GOF with its last one if they were
-  // decoded in order, else 0. They fit it unless next_frame said otherwise (R-HSH-02).
+  // Number of frames that the last next_frame verified against hashes: 1 if each frame has its
+  // own; the whole GOF on its last frame, if decoded in order; otherwise 0. A mismatch is an
+  // error of next_frame (R-HSH-02).
   std::uint32_t compared_frames() const;
 
  private:

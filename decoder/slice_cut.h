@@ -1,4 +1,4 @@
-// 8.14.1 Slices that are absent: those to leave out of each GOF of bones.
+// 8.14.1 Slices that are absent: those to drop from each skinned GOF.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 namespace rlpc {
 
-// Component groups and layer groups stay whole or go: of each GOF, as many stay as have at most
-// max_components trajectories together, and at most max_layers vertex layers, the coarsest
-// ones. The first layer group always stays, and so do influences and rest positions.
+// Component groups and layer groups are kept or dropped as a whole: each GOF keeps the leading
+// groups with at most max_components trajectories in total, and the coarsest with at most
+// max_layers vertex layers. The first layer group is always kept, as are influences and rest
+// positions.
 struct SliceCut {
   static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t max_components = kAll;

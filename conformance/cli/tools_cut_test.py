@@ -171,9 +171,9 @@ class Cutting(CutTest):
         for words in (f"{report['before']['bytes']} bytes", f"{report['after']['bytes']} bytes",
                       f"{report['after']['bpvf']:.4f} bpvf", " 0 of ", "slices"):
             self.assertIn(words, said)
-        self.assertNotIn("nothing was left out", said)
-        self.assertIn("nothing was left out", self.extract(path, "components=9999").out.decode())
-        self.assertIn("hashes of GOFs that are cut were not compared",
+        self.assertNotIn("nothing was dropped", said)
+        self.assertIn("nothing was dropped", self.extract(path, "components=9999").out.decode())
+        self.assertIn("hashes of GOFs that lost slices were not verified",
                       self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 0).err)
         self.assertIn("have no hashes",
                       self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 9999).err)
@@ -204,9 +204,9 @@ class Cutting(CutTest):
         said = self.extract(streams / "MIX-0201a.rlpc", "components=2,layers=1").out.decode()
         self.assertEqual(self.path("cut.rlpc").read_bytes(),
                          (streams / "MIX-0202a.rlpc").read_bytes())
-        for words in ("frames 0 to 3: of clusters, 271 bytes, which stay", "frames 4 to 8: 2 of 3"):
+        for words in ("frames 0 to 3: of clusters, 271 bytes, kept whole", "frames 4 to 8: 2 of 3"):
             self.assertIn(words, said)
-        self.assertIn("nothing was left out", self.extract(
+        self.assertIn("nothing was dropped", self.extract(
             streams / "MIX-0203a.rlpc", "components=0,layers=1").out.decode())
 
     def test_layers_that_cannot_be_left_out(self):
@@ -216,7 +216,7 @@ class Cutting(CutTest):
             if any(gof["slices"] and gof["layer_group_size"][0] > 1 for gof in gofs):
                 break
         self.assertFalse(self.extract(path, "layers=1", "--json").json()["request_met"])
-        self.assertIn("the first layer group always stays",
+        self.assertIn("the first layer group is always kept",
                       self.extract(path, "layers=1").out.decode())
 
 

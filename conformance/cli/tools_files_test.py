@@ -139,7 +139,7 @@ class SamePlaces(ToolsTest):
         self.refused("is an input, too", "rlpcdec", stream, "--html", stream)
         self.refused("is an input, too", "rlpcinfo", stream, "--html", stream)
         # The mesh that nobody named.
-        self.refused("clip.obj: is there already", "rlpcdec", stream, "-o", self.path("clip.pc2"),
+        self.refused("clip.obj: already exists", "rlpcdec", stream, "-o", self.path("clip.pc2"),
                      code=4)
         self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
                      "pc2", code=4)

@@ -145,7 +145,7 @@ class Endless(MeasuredTest):
         for name in (zero, self.path("big.json")):
             self.takes(0, 1, "more than 1 MiB", "rlpcenc", mesh, "-o", self.out, "--metadata", name)
         self.path("p.obj").symlink_to("/dev/zero")
-        self.takes(0, 4, "p.obj: is there already", "rlpcdec", stream, "-o", self.path("p.pc2"))
+        self.takes(0, 4, "p.obj: already exists", "rlpcdec", stream, "-o", self.path("p.pc2"))
 
 
 class Expansion(ToolsTest):

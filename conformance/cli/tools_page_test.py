@@ -117,7 +117,7 @@ class Pages(PageTest):
                 "--points-b", self.path("long.pc2")]
         self.ok("rlpccmp", *long, "--html", self.path("a.html"), "-q")
         page = self.path("a.html").read_text()
-        self.has("One of every 2 frames is shown", page)
+        self.has("Shows one of every 2 frames", page)
         self.has("the largest of 3 each", page)
         info = json.loads(self.block(page, "mesh-info"))
         self.assertEqual((info["frames"], info["stride"], info["all_frames"]), (1300, 2, 2600))

@@ -163,8 +163,8 @@ class RoundTrip(ToolsTest):
             return report["frames_compared"], report["hashes_verified"], text
 
         expected = {  # of all frames; of 5 to 24, where one GOF of 20 frames has parts of two
-            "none": ((0, False, "no hashes"), (0, False, "not compared")),
-            "gof": ((60, True, "hashes agree"), (0, False, "not compared")),
+            "none": ((0, False, "no hashes"), (0, False, "not verified")),
+            "gof": ((60, True, "hashes agree"), (0, False, "not verified")),
             "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),
         }
         for mode, (of_all, of_some) in expected.items():

@@ -14,7 +14,7 @@
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
 struct rlpc_decoder {
   std::optional<rlpc::Decoder> decoder;
-  std::vector<std::int32_t> positions;  // of a frame that goes out as floats
+  std::vector<std::int32_t> positions;  // of a frame converted to floats
   rlpc::HandleError error;
   bool is_placed = false;
 };
@@ -95,7 +95,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   return options;
 }
 
-// make_source(limits) gives a Result<std::unique_ptr<ByteSource>>.
+// make_source(limits) returns a Result<std::unique_ptr<ByteSource>>.
 template <class MakeSource>
 rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
                  const MakeSource& make_source) {
@@ -128,7 +128,7 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
   });
 }
 
-// Whether a buffer has room for what goes into it, no more and no less.
+// Whether a buffer has exactly the size needed.
 bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_values,
                   std::size_t wanted) {
   if (buffer != nullptr && num_values == wanted) return true;

@@ -14,18 +14,17 @@
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
 //   rlpc_decoder_close(decoder);
 //
-// Frames come out one by one; memory stays within one group of frames (GOF) and four frames,
-// whatever the length of the stream, and below max_memory_bytes whatever it claims. Nothing
-// throws or ends the process. A handle is used by one thread at a time; different handles are
+// Frames come out one by one. Memory is bounded by one group of frames (GOF) plus four frames,
+// whatever the length of the stream, and by max_memory_bytes, whatever the stream claims.
+// Nothing throws or aborts. A handle is used by one thread at a time; different handles are
 // independent.
 //
-// Memory: everything that comes out goes into buffers of the caller, who has nothing to free
-// but the handle, which can stand in memory of the caller as well (place). What the decoder
-// keeps it takes with the allocator of C++, and it cannot be given another: when it opens a
-// stream, for each GOF, and for the first frame. Within a GOF, frames take nothing but, every
-// fourth, one buffer for the moment; more with several threads, or after a seek. If memory
-// ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which gives all of
-// it back.
+// Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
+// it can live in the caller's memory as well (place). Internally the decoder allocates with C++
+// operator new, without a hook for other allocators: when it opens a stream, for each GOF, and
+// for the first frame. Within a GOF, every fourth frame allocates one temporary buffer, the
+// others nothing; more with several threads, or after a seek. If memory runs out, calls return
+// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
 #pragma once
 
 #include <stddef.h>
@@ -37,31 +36,32 @@
 extern "C" {
 #endif
 
-// NOLINTBEGIN(readability-identifier-naming): names as they are usual in C.
+// NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef struct rlpc_decoder rlpc_decoder;
 
 #define RLPC_ALL UINT32_MAX
 
 typedef struct rlpc_decode_options {
   size_t struct_size;     // rlpc_decode_options_init sets it
-  uint32_t max_vertices;  // beyond these: RLPC_LIMIT_EXCEEDED
+  uint32_t max_vertices;  // exceeding one of these: RLPC_LIMIT_EXCEEDED
   uint32_t max_triangles;
   uint32_t max_frames;
-  uint32_t verify_hashes;  // 1: compare decoded positions with the hashes of the stream; or 0
-  uint64_t max_memory_bytes;  // 4 GiB by default; with what is kept of a pipe or a device
-  uint32_t threads;           // 1 to 256, else RLPC_BAD_ARGUMENT; positions are the same
-  // Less detail in less time (Main profile): as many groups of trajectories, and of vertex
-  // layers, as have no more than these together. RLPC_ALL: all.
+  uint32_t verify_hashes;  // 1: verify the hashes of the stream; 0: do not
+  uint64_t
+      max_memory_bytes;  // default 4 GiB; includes the buffered contents of a pipe or device
+  uint32_t threads;      // 1 to 256, otherwise RLPC_BAD_ARGUMENT; positions do not depend on it
+  // Less detail in less time (Main profile): only the leading groups of trajectories, and of
+  // vertex layers, whose sizes add up to at most these. RLPC_ALL: all.
   uint32_t max_components;
   uint32_t max_layers;
-  // Memory for the handle, of rlpc_decoder_bytes() bytes and aligned as that of malloc, which
-  // must stay until the handle is closed. Null: it is allocated.
+  // Memory for the handle: rlpc_decoder_bytes() bytes, aligned as by malloc, valid until the
+  // handle is closed. Null: allocated by the library.
   void* place;
   size_t place_bytes;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
-  size_t struct_size;  // as given to rlpc_decoder_info
+  size_t struct_size;  // as passed to rlpc_decoder_info
   uint32_t profile;    // 0: Baseline, 1: Main
   uint32_t level;
   uint32_t num_vertices;
@@ -77,8 +77,8 @@ typedef struct rlpc_stream_info {
   uint32_t has_vertex_order;  // 1: vertices are in the order of the encoder's input
 } rlpc_stream_info;
 
-// Where a stream is read from. read: fills `out` with num_bytes bytes from `offset`, which are
-// always within `size`; returns 0, or another value if it fails.
+// Where a stream is read from. read: fills `out` with num_bytes bytes from `offset`, always
+// within `size`; returns 0 on success.
 typedef struct rlpc_source {
   void* user;
   uint64_t size;  // bytes
@@ -89,27 +89,28 @@ typedef struct rlpc_source {
 // Sets all to the defaults. struct_size: sizeof *options.
 RLPC_API void rlpc_decode_options_init(rlpc_decode_options* options, size_t struct_size);
 
-// What a handle takes in memory of the caller.
+// Size of a handle, for rlpc_decode_options.place.
 RLPC_API size_t rlpc_decoder_bytes(void);
 
-// Opens a stream, and reads up to its first GOF. options may be null. *decoder is a handle also
-// if that fails, for its error text, and is to be closed; it is null if an argument is null or
-// wrong, or without memory for a handle.
+// Opens a stream and reads up to its first GOF. options may be null. On failure, *decoder is
+// still a handle, for its error text, and must be closed; it is null only if an argument is
+// null or invalid, or if there is no memory for a handle.
 //
-// _memory: the bytes must stay as they are until the handle is closed.
+// _memory: the bytes must stay valid and unchanged until the handle is closed.
 RLPC_API rlpc_status rlpc_decoder_open_memory(const void* bytes, size_t num_bytes,
                                               const rlpc_decode_options* options,
                                               rlpc_decoder** decoder);
 RLPC_API rlpc_status rlpc_decoder_open_file(const char* path,
                                             const rlpc_decode_options* options,
                                             rlpc_decoder** decoder);
-// *source is copied; its user must stay until the handle is closed.
+// *source is copied; its `user` must stay valid until the handle is closed.
 RLPC_API rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
                                               const rlpc_decode_options* options,
                                               rlpc_decoder** decoder);
 RLPC_API void rlpc_decoder_close(rlpc_decoder* decoder);  // may be null
 
-// Of the last call that failed; "" if none did. Until the next call for the handle.
+// The error of the last failed call; "" if none failed. Valid until the next call on the
+// handle.
 RLPC_API const char* rlpc_decoder_error_text(const rlpc_decoder* decoder);
 
 // struct_size: sizeof *info.
@@ -118,23 +119,23 @@ RLPC_API rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* 
 // Vertex indices, three a triangle. num_values: 3 * num_triangles.
 RLPC_API rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
                                             size_t num_values);
-// The last metadata so far, JSON text; "" if there was none. Until the next call for the
+// The latest metadata so far, JSON text; "" if there was none. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
 
 // The next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END after the
-// last frame, once the rest of the stream has been checked. An error of the stream comes again
-// until rlpc_decoder_seek succeeds.
+// last frame, once the rest of the stream has been checked. Stream errors are sticky until
+// rlpc_decoder_seek succeeds.
 //
-// _positions: exact, in grid units; what every decoder gives.
-// _floats: in the units of the encoder's input.
+// _positions: exact, in grid units, the same from every decoder. _floats: in the units of the
+// encoder's input.
 RLPC_API rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* positions,
                                                  size_t num_values);
 RLPC_API rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz,
                                               size_t num_values);
-// Makes `frame`, from 0 and below num_frames, the next one. GOFs in between are not decoded.
+// Makes `frame` (0 to num_frames - 1) the next one. GOFs in between are not decoded.
 RLPC_API rlpc_status rlpc_decoder_seek(rlpc_decoder* decoder, uint32_t frame);
-// The frame that comes next, from 0; num_frames after the last one. 0 without a stream.
+// Index of the next frame, from 0; num_frames after the last one. 0 without a stream.
 RLPC_API uint32_t rlpc_decoder_position(const rlpc_decoder* decoder);
 
 #ifdef __cplusplus

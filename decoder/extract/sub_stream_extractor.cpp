@@ -111,7 +111,7 @@ Result<Bytes> SubStreamExtractor::next() {
   return Bytes{};
 }
 
-// What is in the place of a unit; nothing if it is left out.
+// What replaces a unit; empty if it is dropped.
 Result<Bytes> SubStreamExtractor::next_unit() {
   const auto unit = stream_->units().header_at(offset_);
   if (!unit) return unit.error();
@@ -163,7 +163,7 @@ Result<Bytes> SubStreamExtractor::slice_or_hash(const UnitHeader& unit) {
   return bytes;
 }
 
-// 8.6.2 Hash check, of the same kind as before
+// 8.6.2 Hash check, of the same kind as in the input
 Result<Bytes> SubStreamExtractor::new_hash() {
   const auto access_unit = cut_units_.read(access_unit_->unit, access_unit_->gof->first_frame);
   if (!access_unit) return access_unit.error();

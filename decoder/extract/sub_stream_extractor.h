@@ -30,13 +30,13 @@ class SubStreamExtractor {
                                          const SliceCut& cut, const DecodeLimits& limits = {});
 
   const SequenceHeader& header() const { return stream_->header(); }
-  std::uint64_t size() const { return stream_->units().size(); }  // of the stream before
-  // Those before. GOFs of clusters have no slices, and stay whole.
+  std::uint64_t size() const { return stream_->units().size(); }  // of the input
+  // Those of the input. Cluster GOFs have no slices, and are kept whole.
   const std::vector<GofSummary>& gofs() const { return gofs_; }
   SliceTotals totals_that_stay(const GofSummary& gof) const {
     return gof.totals(gof.groups_that_stay(cut_));
   }
-  // Whether a slice is left out of the GOF.
+  // Whether the GOF loses a slice.
   bool cuts(const GofSummary& gof) const {
     return totals_that_stay(gof).num_slices < gof.slices.size();
   }
@@ -61,8 +61,8 @@ class SubStreamExtractor {
   SliceCut cut_;
   std::vector<GofSummary> gofs_;
 
-  std::uint64_t offset_ = 0;   // in the stream before
-  std::uint64_t written_ = 0;  // bytes of the cut stream so far
+  std::uint64_t offset_ = 0;   // in the input
+  std::uint64_t written_ = 0;  // bytes of the output so far
   // The access unit that the unit before belongs to.
   struct OpenAccessUnit {
     UnitHeader unit;  // of its GOF

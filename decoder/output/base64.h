@@ -1,4 +1,4 @@
-// Bytes as text, for pages that hold them.
+// Bytes as text, for embedding in pages.
 #pragma once
 
 #include <cstdint>

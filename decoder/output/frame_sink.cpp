@@ -47,13 +47,13 @@ bool is_mesh(SinkFormat format) {
   return format == SinkFormat::kObj || format == SinkFormat::kPly;
 }
 
-// What there is to write, or less.
+// A lower bound of the bytes to write.
 std::uint64_t least_bytes(SinkFormat format, const SinkOptions& options) {
   const std::uint64_t vertices = options.num_vertices;
   const std::uint64_t triangles = options.triangles.size();
   const std::uint64_t frames = options.num_frames;
   switch (format) {
-    case SinkFormat::kGlb:  // where nothing moves
+    case SinkFormat::kGlb:  // if nothing moves
       return 12 * vertices;
     case SinkFormat::kObj:  // "v 0 0 0", "f 1 2 3"
       return frames * 8 * (vertices + triangles);
@@ -85,16 +85,13 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
   const SinkFormat format = options.format;
   const std::string name = "standard output: ";
   if (format == SinkFormat::kByName) {
-    return misuse(name + "has no name to tell the format; give it");
+    return misuse(name + "needs a format");
   }
   if (format == SinkFormat::kPc2 || format == SinkFormat::kMdd) {
-    return misuse(name +
-                  "a point cache is of no use without the mesh beside it; write .rlpd or "
-                  ".glb there");
+    return misuse(name + "a point cache needs the mesh in a second file; write .rlpd or .glb");
   }
   if (is_mesh(format) && options.num_frames > 1) {
-    return misuse(name + "takes one frame of " + std::string(extension_of(format)) +
-                  ", not several");
+    return misuse(name + "takes a single frame as " + std::string(extension_of(format)));
   }
   return open_one_file("-", format, std::move(options));
 }
@@ -117,8 +114,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
   const fs::path name = fs::path(path).filename();
   if (name.string().find('%') != std::string::npos) {
     if (!is_mesh(format)) {
-      return misuse(path + ": a name with a number is for .obj and .ply files; " +
-                    std::string(extension_of(format)) + " takes all frames in one");
+      return misuse(path + ": numbered names are for .obj and .ply files; one " +
+                    std::string(extension_of(format)) + " file holds all frames");
     }
     return open_mesh_sink(path, format, std::move(options));
   }
@@ -129,21 +126,21 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
     if (options.num_frames == 1) return open_one_file(path, format, std::move(options));
     const std::string kind = named == SinkFormat::kObj ? "OBJ" : "PLY";
     return misuse(path + ": one " + kind +
-                  " file holds one frame; give a folder, a name with a number as in "
+                  " file holds one frame; choose a folder, a numbered name such as "
                   "frame_%04d" +
                   extension + ", or X.pc2 (which also writes X.obj)");
   }
   if (named != SinkFormat::kByName) {
     return misuse(path + ": " + std::string(extension_of(format)) +
-                  " files were asked for, one for each frame; give a folder, or a name "
-                  "with a number as in frame_%04d" +
+                  " files hold one frame each; choose a folder, or a numbered name "
+                  "such as frame_%04d" +
                   std::string(extension_of(format)));
   }
   std::error_code ignored;
   if (!extension.empty() && !fs::is_directory(path, ignored)) {
     return misuse(path + ": cannot write " + extension +
                   " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
-                  "frame_%04d.ply, or a folder, with / at the end if there is a dot in it");
+                  "frame_%04d.ply, or a folder (ending in / if its name has a dot)");
   }
   const std::string pattern = "frame_%04d" + std::string(extension_of(format));
   return open_mesh_sink((fs::path(path) / pattern).string(), format, std::move(options));

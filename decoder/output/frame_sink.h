@@ -13,10 +13,9 @@
 
 namespace rlpc {
 
-// Takes the frames in order. Everything is written beside its place under a temporary name and
-// moved there by finish(); a sink destroyed without a successful finish() removes what it wrote
-// and leaves the files that were there before as they were. After an error only destruction
-// makes sense.
+// Takes the frames in order. Everything is written next to its destination under a temporary
+// name and moved there by finish(). A sink destroyed without a successful finish() removes what
+// it wrote; existing files stay untouched. After an error it can only be destroyed.
 class FrameSink {
  public:
   FrameSink() = default;
@@ -31,7 +30,7 @@ class FrameSink {
   virtual std::optional<OutputError> finish() = 0;
 };
 
-// What is written; kByName: what the name of the file says.
+// The format to write; kByName: by the name of the file.
 enum class SinkFormat : std::uint8_t { kByName, kRlpd, kPc2, kMdd, kGlb, kObj, kPly };
 
 struct SinkOptions {
@@ -46,27 +45,27 @@ struct SinkOptions {
   std::uint32_t first_number = 0;
   SinkFormat format = SinkFormat::kByName;
   bool ascii = false;  // PLY as text
-  // Of all that is written, temporary files included; null: none. Where it is certain before
-  // the first frame that there is more, no sink opens.
+  // On all bytes written, temporary files included; null: none. If more is certain to be
+  // needed, opening the sink fails.
   std::shared_ptr<OutputLimit> limit{};
 };
 
-// `given`, or else by the form of `path`; never kByName.
+// `given`, otherwise by the form of `path`; never kByName.
 SinkFormat sink_format(const std::string& path, SinkFormat given);
 
-// By options.format, or else by the form of `path`:
+// By options.format, otherwise by the form of `path`:
 //   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
 //   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame
 //   x.glb               glTF: one mesh, moved by morph targets
 //   x.obj, x.ply        if there is only one frame
 //   anything else       a folder of OBJ files, frame_0000.obj, frame_0001.obj, ...
-// "-" is standard output, for formats of one file; options.format must then say which.
-// Refuses x.obj for several frames, and extensions of files that it cannot write.
+// "-" is standard output, for single-file formats; it needs options.format. Refuses x.obj for
+// several frames, and extensions of formats that it cannot write.
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options);
 
-// The formats one by one. A device or pipe (/dev/stdout) as path is written directly.
+// The individual formats. A device or pipe (/dev/stdout) is written directly.
 OutputResult<std::unique_ptr<FrameSink>> open_rlpd_sink(const std::string& path,
                                                         SinkOptions options);
 // kPc2 or kMdd.
@@ -80,9 +79,9 @@ OutputResult<std::unique_ptr<FrameSink>> open_gltf_sink(const std::string& path,
 OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string& path,
                                                                SinkFormat format,
                                                                const SinkOptions& options);
-// `pattern` has one %d or %04d in its last part. If its folder does not exist it appears whole,
-// at the end; if it does, files with the numbers of this sequence are replaced and all others
-// are left alone.
+// `pattern` has one %d or %04d in its last component. A folder that does not exist appears at
+// the end, complete; in an existing one, files with the numbers of this sequence are replaced,
+// all others left alone.
 OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& pattern,
                                                         SinkFormat format, SinkOptions options);
 

@@ -1,9 +1,9 @@
 // glTF 2.0 as one .glb file: frame 0 is the mesh, every other frame that differs from it a
-// morph target with weight 1 at the time of the frame. Viewers blend what is between (LINEAR).
+// morph target with weight 1 at the time of the frame. Viewers interpolate in between (LINEAR).
 //
-// A target says how far vertices are from frame 0. Where such a distance is no 32-bit float,
-// the sum would miss the position; such a frame gets its positions themselves as target,
-// together with one target for all such frames that takes frame 0 away.
+// A target holds differences from frame 0. Where such a difference is not exact in 32-bit
+// floats, the sum would miss the position. Such frames get their positions as the target,
+// together with a common target that cancels frame 0.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -26,14 +26,14 @@ namespace {
 using std::to_string;
 
 constexpr std::uint64_t kMaxFileBytes = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint32_t kMaxShortVertices = 65535;  // glTF uses no index 65535
+constexpr std::uint32_t kMaxShortVertices = 65535;  // index 65535 is reserved in glTF
 constexpr int kUnsignedShort = 5123;
 constexpr int kUnsignedInt = 5125;
 constexpr int kFloat = 5126;
 constexpr int kVertexTarget = 34962;
 constexpr int kIndexTarget = 34963;
 
-// An array of JSON that grows.
+// A growing JSON array.
 class JsonArray {
  public:
   // Index of the value in the array.
@@ -50,7 +50,8 @@ class JsonArray {
   std::uint32_t size_ = 0;
 };
 
-// The binary chunk, in a file without a name: JSON stands before it, but is known only after.
+// The binary chunk, in an unnamed temporary file: the JSON chunk precedes it, but is known only
+// at the end.
 class BinaryChunk {
  public:
   BinaryChunk() : file_(std::tmpfile()) {}
@@ -62,7 +63,7 @@ class BinaryChunk {
 
   std::uint64_t size() const { return size_; }
 
-  // Begins at a multiple of 4. False: errno says why.
+  // Begins at a multiple of 4. False: see errno.
   bool append(std::string_view bytes) {
     constexpr std::array<char, 4> kZeros{};
     const std::size_t padding = (4 - bytes.size() % 4) % 4;
@@ -83,7 +84,7 @@ class BinaryChunk {
   std::uint64_t size_ = 0;
 };
 
-// Smallest and largest of each axis, as an accessor of positions must say.
+// Minimum and maximum per axis, which accessors of positions must have.
 std::string bounds_text(std::span<const float> xyz) {
   std::string min = "\"min\":[";
   std::string max = "\"max\":[";
@@ -100,7 +101,7 @@ std::string bounds_text(std::span<const float> xyz) {
   return min + "]," + max + "]";
 }
 
-// The positions of a frame from those of frame 0. Nothing: some are not exactly a sum.
+// Differences of a frame from frame 0; none if some sum would not be exact.
 std::optional<std::vector<float>> exact_moves(std::span<const float> from,
                                               std::span<const float> to) {
   std::vector<float> moves(from.size());
@@ -156,7 +157,7 @@ class GltfSink : public FrameSink {
     }
     if (!failed_ && chunk_.size() <= kMaxFileBytes) return std::nullopt;
     if (failed_)
-      return output_error(file_.path(), "store its binary part for a while", reason_);
+      return output_error(file_.path(), "store its binary part temporarily", reason_);
     return too_large();
   }
 
@@ -166,7 +167,7 @@ class GltfSink : public FrameSink {
                        "(--frames), or a point cache"};
   }
 
-  // `target`: what glTF calls the use of the view; 0: none.
+  // `target`: bufferView.target; 0: none.
   std::uint32_t add_view(std::string_view bytes, int target) {
     std::string view = "{\"buffer\":0,\"byteOffset\":" + to_string(chunk_.size()) +
                        ",\"byteLength\":" + to_string(bytes.size());
@@ -196,7 +197,7 @@ class GltfSink : public FrameSink {
                           ",\"bufferView\":" + view + "," + bounds_text(xyz) + "}");
   }
 
-  // What follows in an accessor that is zero but for `values` at `places`.
+  // The sparse part of an accessor that is zero except for `values` at `places`.
   std::string sparse_text(const std::vector<std::uint32_t>& places, std::uint64_t count,
                           std::span<const float> values) {
     const bool is_short = count <= kMaxShortVertices;
@@ -212,7 +213,7 @@ class GltfSink : public FrameSink {
            "},\"values\":{\"bufferView\":" + to_string(add_floats(values, 0)) + "}}";
   }
 
-  // Is a sparse accessor the smaller one?
+  // Whether a sparse accessor is smaller.
   static bool is_sparse(std::uint64_t places, std::uint64_t count, std::uint64_t value_bytes) {
     const std::uint64_t index_bytes = count <= kMaxShortVertices ? 2 : 4;
     return places > 0 && places * (index_bytes + value_bytes) < count * value_bytes;
@@ -241,7 +242,7 @@ class GltfSink : public FrameSink {
                                      "," + bounds_text(moves) + sparse + "}"))));
   }
 
-  // Before the targets of the frames that need it, so that sums stay exact.
+  // Comes before the targets of the frames that need it, so that sums stay exact.
   std::uint32_t minus_base_target() {
     if (!minus_base_) {
       std::vector<float> minus(base_.size());
@@ -251,7 +252,7 @@ class GltfSink : public FrameSink {
     return *minus_base_;
   }
 
-  // Weight 1 for a target in this frame.
+  // Gives a target weight 1 in this frame.
   void add_weight(std::uint32_t target) { weights_.push_back({written_, target}); }
 
   std::uint32_t add_indices() {
@@ -282,7 +283,7 @@ class GltfSink : public FrameSink {
                           ",\"bufferView\":" + view + ",\"min\":[0],\"max\":[" + last + "]}");
   }
 
-  // Those of all targets for each frame.
+  // The weights of all targets, per frame.
   std::uint32_t add_weights() {
     const std::uint64_t count = std::uint64_t{options_.num_frames} * targets_.size();
     std::vector<std::uint32_t> places;
@@ -300,7 +301,7 @@ class GltfSink : public FrameSink {
     return accessors_.add(accessor + "}");
   }
 
-  // An animation in which nothing moves still has its length.
+  // An animation without motion still has a duration.
   void add_target_at_rest() {
     targets_.add(
         position_text(accessors_.add(accessor_text(kFloat, options_.num_vertices, "VEC3") +

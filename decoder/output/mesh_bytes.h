@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// The shortest digits that read back as the same number.
+// The shortest decimal text that reads back as the same number.
 void append_number(std::string& text, float value);
 void append_number(std::string& text, std::uint64_t value);
 // "30000/1001": our readers find the frame rate in a comment of the file.
@@ -20,7 +20,7 @@ class MeshBytes {
   // OBJ, or PLY as options.ascii says.
   MeshBytes(SinkFormat format, const SinkOptions& options);
 
-  // All of the file of one frame, valid until the next call.
+  // The whole file of one frame, valid until the next call.
   const std::string& frame(std::span<const std::int32_t> positions);
 
  private:

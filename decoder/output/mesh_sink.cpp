@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// File names with a number in them, made from "frame_%04d.obj".
+// Numbered file names, from a pattern such as "frame_%04d.obj".
 struct NumberedName {
   std::string prefix;
   std::string suffix;

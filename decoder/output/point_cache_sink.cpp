@@ -87,7 +87,8 @@ class PointCacheSink : public FrameSink {
   std::uint32_t written_ = 0;
 };
 
-// Nobody asked for this file by its name. What MeshBytes writes begins in the same way.
+// The user did not name this file: only replaces one that MeshBytes wrote, to judge by its
+// beginning.
 bool may_replace_mesh(const std::string& path) {
   constexpr std::string_view kOurs = "# frame_rate ";
   std::array<char, kOurs.size()> begin{};
@@ -106,14 +107,12 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
   }
   const std::string mesh_path = std::filesystem::path(path).replace_extension(".obj").string();
   if (OutputFile::is_same_file(path, mesh_path)) {
-    return OutputError{path + ": a point cache has its mesh beside it, in " + mesh_path +
-                       "; give another name than that"};
+    return OutputError{path + ": the mesh of the point cache goes to " + mesh_path +
+                       "; choose another name"};
   }
   if (!may_replace_mesh(mesh_path)) {
-    return OutputError{mesh_path +
-                       ": is there already, and no mesh of this tool's; it would "
-                       "be replaced by the one that goes with " +
-                       path + "; give another name, or remove it"};
+    return OutputError{mesh_path + ": already exists, not written by rlpcdec; the mesh of " +
+                       path + " would replace it. Choose another name, or remove it"};
   }
   auto points = OutputFile::create(path, options.limit);
   if (!points) return points.error();

@@ -13,9 +13,9 @@ namespace rlpc {
 class GofParser {
  public:
   virtual ~GofParser() = default;
-  // What follows the header in the GOF unit.
+  // The GOF unit after its header.
   virtual Result<bool> gof(BitReader& r, const GofHeader& header) = 0;
-  // Adds what the slice is, but for its bytes, unless it is left out.
+  // Adds the slice, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              std::vector<SliceEntry>& slices);
   virtual bool is_cut() const { return false; }

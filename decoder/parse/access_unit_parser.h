@@ -1,5 +1,5 @@
-// An access unit from its units, one after the other. The one place that knows which kind of
-// GOF is parsed how; whoever reads a stream hands its units to it.
+// Builds an access unit from its units, one after the other. The only place that knows how each
+// kind of GOF is parsed; all readers of streams hand their units to it.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ namespace rlpc {
 
 class GofParser;  // of one kind
 
-// Every size is checked against the level, and what it needs against max_memory_bytes, before
-// memory is taken for it. After an error only destruction makes sense.
+// Every size is checked against the level, and the memory it needs against max_memory_bytes,
+// before anything is allocated. After an error it can only be destroyed.
 class AccessUnitParser {
  public:
-  // The context must outlive it, with its connectivity set. Slices that the cut leaves out are
-  // as if they were absent.
+  // The context must outlive it, and have its connectivity set. Slices outside the cut are
+  // treated as absent.
   AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
                    const SliceCut& cut = {});
   ~AccessUnitParser();
 
   // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
   //
-  // 6.5 gof( ), once. first_frame: that the GOF has to begin with.
+  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, std::uint64_t unit_bytes);
   // Whether slice units may follow.
   bool has_slices() const { return rlpc::has_slices(kind_); }
-  // 6.12 slice_unit( ), any number. unit_bit_pos: of the unit.
+  // 6.12 slice_unit( ), any number of times. unit_bit_pos: of the unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
-  // 6.7 gof_hash( ), once or not at all.
+  // 6.7 gof_hash( ), at most once.
   Result<bool> hash(BitReader& r);
 
   // After the last unit.

@@ -11,12 +11,12 @@
 namespace rlpc {
 namespace {
 
-// Memory of a value of a seed track: as a residual, and as a position.
+// Bytes per value of a seed track: as a residual, and as a position.
 constexpr std::uint64_t kBytesPerTrackValue = 14;
 
-// Memory of components of a cluster: the residuals, and the factors arranged for
+// Memory for the components of a cluster: the residuals, and the factors laid out for
 // reconstruction (ComponentSum), in tiles and with both limbs of both factors, each in a vector
-// that may have grown to twice what it holds.
+// whose capacity may be twice its size.
 constexpr std::uint64_t kBytesPerComponent = 320;
 constexpr std::uint64_t kBytesPerResidual = 4;
 constexpr std::uint64_t kBytesPerFactor = 16;
@@ -49,7 +49,7 @@ class ClusterSectionParser {
   void cluster_map();
   std::uint16_t cluster_idx(const ClusterPrediction& prediction);
   void count_factors(std::uint64_t more, const char* element);
-  // Whether what is known so far fits into the memory that the caller allows.
+  // Fails if the memory needed so far exceeds the caller's limit.
   void take_memory(std::uint64_t bytes, const char* element);
   void seed_tracks();
   void component_counts();
@@ -66,7 +66,7 @@ class ClusterSectionParser {
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
   std::vector<std::uint32_t> frame_mean_;
-  Component previous_;  // header of the component before
+  Component previous_;  // header of the previous component
 };
 
 // 6.5.2 cluster_headers( )

@@ -13,8 +13,8 @@
 namespace rlpc {
 
 // 6.5 clusters_of_gof( ): the rest of the payload, to which `r` ends. Every size is checked
-// against the level, and what its factors need against max_memory_bytes, before memory is taken
-// for it.
+// against the level, and the memory of its factors against max_memory_bytes, before anything is
+// allocated.
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
                                   const Topology& topology, const GofHeader& gof_header,
                                   std::uint64_t max_memory_bytes);

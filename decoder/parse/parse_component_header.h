@@ -10,7 +10,8 @@
 
 namespace rlpc {
 
-// A field of a header, from what it was before; `models` are those of all fields, with `mean`.
+// A field of a header, coded relative to its previous value. `models`: of all fields, with
+// `mean`.
 inline int parse_header_field(SectionReader& section, ResidualModels& models,
                               std::array<std::uint32_t, 4>& mean, HeaderField field,
                               int previous, Range range, const char* element,
@@ -19,7 +20,7 @@ inline int parse_header_field(SectionReader& section, ResidualModels& models,
                               element, rule);
 }
 
-// Header: Component or Trajectory. After a failure, `header` is not to be used.
+// Header: Component or Trajectory. After a failure, `header` must not be used.
 template <class Header>
 void parse_component_header(SectionReader& section, ResidualModels& models,
                             std::array<std::uint32_t, 4>& mean, const Header& previous,

@@ -1,4 +1,4 @@
-// 6.5 gof( ), up to what its kind has, parsing side.
+// 6.5 gof( ), up to the part specific to its kind, parsing side.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// expected_first_frame: less than num_frames of the sequence. The error is left in `r`.
+// expected_first_frame: below num_frames of the sequence. Errors are left in `r`.
 GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
                            std::uint32_t expected_first_frame);
 

@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-// Memory of a factor: as a residual with its magnitude, as a value, and arranged for the sums.
+// Bytes per factor: as a residual with its magnitude, as a value, and laid out for the sums.
 constexpr std::uint64_t kBytesPerFactor = 18;
 
 // 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
@@ -354,7 +354,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   const std::size_t trajectories_before = gof_.trajectories.size();
   SliceParser(*this, r, group, layers).parse();
   if (r.error()) return *r.error();
-  // Only the slice tells how many trajectories its group has.
+  // The number of trajectories in a group is known only from its slice.
   if (group >= end_component_group_) {
     is_cut_ = true;
     return true;

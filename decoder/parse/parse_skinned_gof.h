@@ -1,4 +1,4 @@
-// 6.11 and 6.12: bones of a GOF, and slices, parsing side.
+// 6.11 and 6.12: skinned GOFs and slices, parsing side.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@
 
 namespace rlpc {
 
-// The unit of a GOF of bones and the slice units behind it, one after the other. Every size
-// is checked against the level, and what it needs against max_memory_bytes, before memory is
-// taken for it. Slices that the cut leaves out are as if they were absent.
+// The unit of a skinned GOF and the slice units after it, one by one. Every size is checked
+// against the level, and the memory it needs against max_memory_bytes, before anything is
+// allocated. Slices outside the cut are treated as absent.
 class SkinnedGofParser {
  public:
   // All must outlive it.
@@ -35,9 +35,9 @@ class SkinnedGofParser {
   // After the last slice.
   SkinnedGof finish() { return std::move(gof_); }
 
-  // What the last slice() was; of one that was left out, nothing.
+  // The slice that the last slice() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
-  // Whether a slice was left out so far.
+  // Whether a slice has been dropped so far.
   bool is_cut() const { return is_cut_; }
 
  private:
@@ -54,15 +54,15 @@ class SkinnedGofParser {
   const CodedMesh* mesh_ = nullptr;
   SkinnedGof gof_;
   std::uint64_t num_factors_ = 0;
-  // Models that go on from slice to slice (9.8.1).
+  // Models that are kept from slice to slice (9.8.1).
   SliceModels models_;
-  Trajectory previous_;  // header of the trajectory before
+  Trajectory previous_;  // header of the previous trajectory
   std::vector<std::uint32_t> trajectory_mean_;
   std::unique_ptr<VertexModels> vertex_models_;
   std::unique_ptr<VertexModels> models_of_group_;
   std::optional<VertexContexts> contexts_;  // of the group that is being read
   std::uint32_t last_group_ = 0;
-  // Groups from these on are left out.
+  // Groups from these on are dropped.
   std::uint32_t end_component_group_ = 0;
   std::uint32_t end_layer_group_ = 0;
   bool is_cut_ = false;

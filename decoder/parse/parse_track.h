@@ -13,8 +13,8 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: means of the tracks before, which go on. One residual of three
-// coordinates for each frame.
+// frame_mean [num_gof_frames]: running means, kept from track to track. One residual of three
+// coordinates per frame.
 inline std::vector<Vec3i> parse_track(SectionReader& section, ResidualModels& models,
                                       std::span<std::uint32_t> frame_mean,
                                       const char* element) {

@@ -14,8 +14,8 @@
 
 namespace rlpc {
 
-// Reads the rest of a payload as one section. Sticky: errors are left in the BitReader, and the
-// caller stops where failed() tells it to.
+// Reads the rest of a payload as one section. Errors are sticky and left in the BitReader; the
+// caller stops when failed().
 class SectionReader {
  public:
   // name: of the syntax structure, for errors at its start and end.
@@ -31,7 +31,7 @@ class SectionReader {
   void fail_memory(const char* element, std::uint64_t needed_bytes) {
     reader_.fail(Errc::kLimitExceeded, "", element, bit_pos(), needed_bytes);
   }
-  // A section that ran out of bytes is not worth decoding.
+  // A section that ran out of bytes is not decoded any further.
   void check_overrun(const char* element) {
     if (rd_.overrun()) fail("R-RNG-01", element);
   }
@@ -111,7 +111,7 @@ class SectionReader {
 
  private:
   std::uint64_t bit_pos() const { return first_bit_ + rd_.bits_spent(); }
-  // Position of the element that comes, if anybody wants to know.
+  // Position of the next element; 0 unless tracing.
   std::uint64_t mark() const { return reader_.trace() != nullptr ? bit_pos() : 0; }
   void trace(const char* element, std::int64_t value, std::uint64_t at) {
     if (reader_.trace() != nullptr) reader_.trace()->element(element, value, at);

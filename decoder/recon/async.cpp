@@ -1,4 +1,4 @@
-// What a thread throws would end the program.
+// An exception that leaves a thread would end the program.
 #include "decoder/recon/async.h"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// Work on threads of its own.
+// Work on other threads.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace rlpc {
 
-// Runs `work` on another thread. The future gives false if there was no thread for it, or not
-// enough memory: then `work` was not done, or only in part. Waits for it when it is destroyed.
+// Runs `work` on another thread. The future yields false if no thread could be started or
+// memory ran out: `work` was then not done, or only partly. Its destructor waits.
 std::future<bool> run_async(std::function<void()> work);
 
 }  // namespace rlpc

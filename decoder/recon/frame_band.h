@@ -1,4 +1,4 @@
-// Frames of a GOF that were reconstructed together.
+// Frames of a GOF that are reconstructed together.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace rlpc {
 
-// Frames that a thread reconstructs at a time: factors are read from memory once for them.
+// Frames per thread and pass: factors are read from memory once for all of them.
 inline constexpr std::uint32_t kBandFrames = 4;
 
-// A band for each thread; but a single frame after a seek, and then more and more.
+// One band per thread; after a seek a single frame, then more and more.
 class FrameBand {
  public:
   explicit FrameBand(std::uint32_t threads)
       : most_(kBandFrames * threads), next_count_(most_) {}
 
-  // Another GOF: what is held is not of it.
+  // Another GOF follows: drops the frames held.
   void clear() { count_ = 0; }
-  // The next frame may be the only one that is wanted.
+  // After a seek: the next frame may be the only one wanted.
   void begin_small() { next_count_ = 1; }
-  // Frame f of the GOF in decoded order, frame_size values; until the next call.
+  // Frame f of the GOF in decoded order, frame_size values; valid until the next call.
   std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,
                                       std::size_t frame_size);
 

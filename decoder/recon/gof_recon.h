@@ -1,4 +1,4 @@
-// A GOF of any kind, ready to give its frames.
+// A GOF of any kind, ready for reconstruction.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// 8.6.2 Hash check, of one GOF: decoded positions against the hashes of the stream.
+// 8.6.2 Hash check of one GOF: verifies decoded positions against the hashes of the stream.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace rlpc {
 
 class HashCheck {
  public:
-  HashCheck() = default;  // nothing to compare with
+  HashCheck() = default;  // no hash
   // num_frames: of the GOF.
   HashCheck(GofHash hash, std::uint32_t num_frames);
 
-  // The next frame is the first one of the GOF, again.
+  // Restarts at the first frame of the GOF.
   void restart();
   // Frame f of the GOF, in decoded order. False if it, or the GOF that it completes, does not
-  // fit its hash. A hash of the whole GOF needs all of its frames in order.
+  // match its hash. A hash of the whole GOF needs all frames in order.
   bool add_frame(std::uint32_t f, std::span<const std::int32_t> positions);
-  // How many frames the last add_frame compared: all of them if it completed the GOF.
+  // Number of frames that the last add_frame verified: all of the GOF if it completed it.
   std::uint32_t compared_frames() const { return compared_frames_; }
 
  private:

@@ -1,6 +1,5 @@
-// GOFs that are parsed and prepared on other threads before they are wanted. They change
-// nothing but the time that decoding takes: a GOF with an error is not given, and its decoder
-// finds the error by itself.
+// GOFs parsed and prepared on other threads before they are needed. This affects nothing but
+// speed: a GOF with an error yields nothing, and the decoder parses it again to find the error.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace rlpc {
 
-// An access unit, and what gives its frames.
+// An access unit and its reconstruction.
 struct PreparedGof {
   GofHeader header;
   std::optional<GofHash> hash;
@@ -34,11 +33,11 @@ class Prefetch {
   Prefetch(StreamReader& stream, std::uint64_t max_memory_bytes)
       : stream_(stream), max_memory_bytes_(max_memory_bytes) {}
 
-  // Sees to it that up to `count` GOFs are here or on their way: those behind a byte offset, of
-  // which the first one begins with first_frame. Forgets any before it.
+  // Keeps up to `count` GOFs ready or in progress, from a byte offset on; the first of them
+  // begins with first_frame. Drops earlier ones.
   void fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count);
-  // The GOF whose unit is at the offset, if it was prepared without an error. If not, all are
-  // forgotten.
+  // The GOF whose unit is at the offset, if it was prepared without an error; otherwise drops
+  // all.
   std::optional<Found> take(std::uint64_t offset, std::uint32_t first_frame);
   void clear() { gofs_.clear(); }
 

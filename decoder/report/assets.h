@@ -1,4 +1,4 @@
-// Files beside this one, compiled in: a tool needs nothing but itself.
+// Files in this folder, compiled in, so that a program is self-contained.
 #pragma once
 
 #include <string_view>

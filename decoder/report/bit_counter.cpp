@@ -45,7 +45,7 @@ constexpr std::size_t kRestPart = 7;
 constexpr std::size_t kSpatialPart = 12;
 constexpr std::size_t kAncillaryPart = 13;
 
-// Of what stands in a unit outside the elements above.
+// The part of all other bits of a unit.
 std::size_t part_of_unit(UnitType type) {
   switch (type) {
     case UnitType::kSequenceHeader:

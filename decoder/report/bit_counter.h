@@ -1,4 +1,4 @@
-// What takes how many bits of a stream, and of each of its GOFs.
+// Bits per part, of a stream and of each of its GOFs.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace rlpc {
 
 inline constexpr std::size_t kNumStreamParts = 14;
 using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
-// Of each part, in the order of all tables.
+// Bits of each part, in the order of all tables.
 const std::array<std::string_view, kNumStreamParts>& stream_part_names();
 
 // Adds up the bits from each element to the next.
@@ -46,7 +46,7 @@ class BitCounter final : public Trace {
   std::size_t unit_part_ = 0;
   std::uint64_t last_ = 0;
   std::uint64_t num_units_ = 0;
-  PartSizes unit_bits_{};  // of the unit that is open
+  PartSizes unit_bits_{};  // of the current unit
   std::vector<PartSizes> gof_bits_;
 };
 

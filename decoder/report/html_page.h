@@ -1,4 +1,4 @@
-// One HTML page that needs nothing else: no network, no other file.
+// A self-contained HTML page: no network, no other file.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace rlpc {
 // With & < > and quotes as entities: for text and for attributes.
 std::string escape_html(std::string_view text);
 
-// With so many digits that count: "0.0123", "1234", "0.000012".
+// With this many significant digits: "0.0123", "1234", "0.000012".
 std::string number_text(double value, int digits = 4);
 
 // "1,234,567"
 std::string grouped_text(std::uint64_t value);
 
-// A figure that stands out, with what it is below: {"1.05", "bits per vertex and frame"}.
+// A key figure with its caption: {"1.05", "bits per vertex and frame"}.
 struct KeyFigure {
   std::string value;
   std::string name;
@@ -27,11 +27,11 @@ class HtmlPage {
  public:
   explicit HtmlPage(std::string_view title);
 
-  // What follows is HTML, of the caller's own making, other than `name`, `text` and figures.
+  // Arguments below are HTML made by the caller, except `name`, `text` and figures.
   void add_fact(std::string_view name, std::string_view text);
   void add_key_figures(const std::vector<KeyFigure>& figures);
   void add_section(std::string_view title, std::string_view note, std::string_view html);
-  // The script that viewers of meshes need (mesh_view.h).
+  // Includes the script of the mesh viewer (mesh_view.h).
   void use_viewer() { viewer_ = true; }
 
   std::string text() const;

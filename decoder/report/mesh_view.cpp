@@ -18,7 +18,7 @@ std::string data_html(const char* id, std::span<const std::uint8_t> bytes) {
          "</script>\n";
 }
 
-// What 99 of 100 values do not exceed.
+// The 99th percentile.
 float upper_value(std::vector<float> values) {
   const auto place =
       values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 99 / 100);
@@ -59,10 +59,11 @@ void MeshView::add_frame(std::span<const float> original, std::span<const float>
 
 std::string MeshView::note() const {
   const std::string limit = std::to_string(kMaxBytes >> 20) + " MiB";
-  if (stride_ == 0) return "The mesh is too large to be part of a page of " + limit + ".";
+  if (stride_ == 0) return "The mesh is too large for a page of " + limit + ".";
   if (stride_ == 1) return "";
-  return "One of every " + std::to_string(stride_) + " frames is shown, as the page holds " +
-         limit + " of them. The figures and charts are of all frames.";
+  return "Shows one of every " + std::to_string(stride_) +
+         " frames, as the page is limited to " + limit +
+         ". Figures and charts cover all frames.";
 }
 
 std::string MeshView::frames_html(const std::vector<float>& values, const char* id,
@@ -78,7 +79,7 @@ std::string MeshView::frames_html(const std::vector<float>& values, const char* 
   return data_html(id, bytes);
 }
 
-// As square roots, so that small errors have levels, too.
+// As square roots, so that small errors get levels, too.
 std::string MeshView::errors_html(float largest) const {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(errors_.size());

@@ -1,5 +1,5 @@
-// An animation to turn and play within a page, its error as colour: positions in 16 bits,
-// errors in 8, for a viewer that is part of the page.
+// An interactive animation in a page, with its error in colour: positions in 16 bits, errors in
+// 8.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,22 @@ namespace rlpc {
 
 class MeshView {
  public:
-  // Of the triangles and frames in a page, before they become text (4/3 of it).
+  // Bytes of triangles and frames in a page, before base64 (4/3 of it).
   static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
   MeshView(std::uint32_t num_vertices, std::uint32_t num_frames,
            std::span<const Triangle> triangles, FrameRate frame_rate,
            std::size_t max_bytes = kMaxBytes);
 
-  // Every how many frames one is shown, so that all stay within max_bytes; 0: not even one
-  // fits.
+  // Shows every n-th frame, so that all fit max_bytes; 0: not even one fits.
   std::uint32_t stride() const { return stride_; }
   bool shows(std::uint32_t frame) const { return stride_ > 0 && frame % stride_ == 0; }
-  // Those that are shown, in order. Both 3 * num_vertices values.
+  // The frames shown, in order. Both arguments have 3 * num_vertices values.
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // What is left out, in words; empty: nothing.
+  // What is not shown, in words; empty: nothing.
   std::string note() const;
-  // For a page with use_viewer(); after all frames. `diagonal`: what errors are set against.
+  // For a page with use_viewer(), after all frames. `diagonal`: errors are relative to it.
   std::string html(double diagonal) const;
 
  private:

@@ -15,13 +15,13 @@ constexpr std::size_t kMaxBars = 300;
 constexpr std::size_t kMaxGofRows = 200;
 constexpr std::size_t kMaxSliceTables = 20;
 
-// Of the parts, in their order; alike on all pages. The parts that are usually largest have the
-// first colours of the plots of scripts/compare.
+// Colours of the parts, in their order, the same on all pages. The usually largest parts have
+// the first colours of the plots of scripts/compare.
 constexpr std::array<const char*, kNumStreamParts> kColours{
     "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00",
     "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#c4c9d1"};
 
-// A series for each part that occurs; its one value is the bits that it takes.
+// A series per part that occurs, with its bits as the only value.
 std::vector<ChartSeries> part_series(const PartSizes& bits) {
   std::vector<ChartSeries> series;
   for (std::size_t p = 0; p < kNumStreamParts; ++p) {
@@ -48,8 +48,8 @@ std::uint64_t sum(const PartSizes& bits) {
   return total;
 }
 
-// A line for each component group, a column for each layer group, and what stays of the GOF if
-// it is cut behind one of them.
+// A row per component group, a column per layer group, and the size of the GOF when cut after
+// each of them.
 std::string slice_table(const GofSummary& gof) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
   const std::size_t columns = gof.layer_group_size.size();
@@ -141,7 +141,7 @@ void add_rate_section(HtmlPage& page, const StreamRates& rates) {
           gof_rate_chart(rates) + "</div>\n");
 }
 
-// Those that people read, of each kind of GOF that there is.
+// The counts meant for people, for each kind of GOF that occurs.
 std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs) {
   std::vector<GofFigure> figures;
   std::set<GofKind> kinds;
@@ -182,10 +182,11 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
             escape_html(frames_text(gofs[g])) + "</summary>\n" + slice_table(gofs[g]) +
             "</details>\n";
   }
-  page.add_section("Groups of frames",
-                   "A GOF decodes alone. One of bones can be cut to fewer components or layers "
-                   "without encoding anew (rlpcinfo --extract).",
-                   html);
+  page.add_section(
+      "Groups of frames",
+      "GOFs decode independently. Those of bones can be cut to fewer components or "
+      "layers without re-encoding (rlpcinfo --extract).",
+      html);
 }
 
 }  // namespace rlpc

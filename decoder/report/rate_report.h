@@ -1,4 +1,4 @@
-// What takes how many bits of a stream, for a page.
+// Bits per part of a stream, for a page.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct StreamRates {
   }
 };
 
-// Shares of all parts, and the rate of each GOF along the frames.
+// Shares of all parts, and the rate of each GOF over time.
 void add_rate_section(HtmlPage& page, const StreamRates& rates);
-// A line for each GOF, and what is in its slices.
+// A row per GOF, and the contents of its slices.
 void add_gof_section(HtmlPage& page, const StreamRates& rates);
 
 }  // namespace rlpc

@@ -68,7 +68,7 @@ std::string figure(std::string_view title, std::string_view unit, const std::str
   return html + svg + "</svg>\n" + legend(series) + "</figure>\n";
 }
 
-// The worst of every `group` values; of those that are finite, unless none is.
+// The worst of every `group` values, among the finite ones if there are any.
 std::vector<double> grouped(const ChartSeries& series, std::size_t group) {
   const auto takes_its_place = [&](double value, double worst) {
     if (!std::isfinite(value) || !std::isfinite(worst)) return std::isfinite(value);
@@ -86,7 +86,7 @@ std::vector<double> grouped(const ChartSeries& series, std::size_t group) {
   return worst;
 }
 
-// What the axis says of groups.
+// The axis label of groups.
 std::string frame_label(const std::vector<ChartSeries>& series, std::size_t group) {
   if (group == 1) return "frame";
   const auto count = std::count_if(series.begin(), series.end(),
@@ -96,7 +96,7 @@ std::string frame_label(const std::vector<ChartSeries>& series, std::size_t grou
   return "frame; the " + worst + " of " + std::to_string(group) + " each";
 }
 
-double rounded(double value) {  // to the digits that are shown
+double rounded(double value) {  // to the digits shown
   char text[32];
   std::snprintf(text, sizeof text, "%.5g", value);
   return std::strtod(text, nullptr);

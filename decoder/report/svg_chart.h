@@ -1,6 +1,5 @@
 // Charts over the frames of an animation, as SVG within HTML. Colours and fonts come from the
-// style of the page; values under the pointer from its script, which finds them in the data
-// attributes.
+// style of the page; tooltips from its script, which reads the data attributes.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +10,7 @@
 
 namespace rlpc {
 
-// Of lines and bars alike: what a colour stands for.
+// The legend of lines and bars.
 struct ChartSeries {
   std::string name;
   std::string colour;  // as in CSS
@@ -19,13 +18,12 @@ struct ChartSeries {
   bool worst_is_smallest = false;  // as of PSNR
 };
 
-// One value of each series for each frame; what is no finite number is left out. Of long
-// animations, the worst of several frames; the axis says so.
+// One value per series and frame; values that are not finite are omitted. Long animations show
+// the worst of several frames each, which the axis states.
 std::string line_chart(std::string_view title, std::string_view unit,
                        const std::vector<ChartSeries>& series);
 
-// Bars that follow each other along the frames, each as wide as its frames and with the values
-// of all series upon each other.
+// Stacked bars along the frames, each as wide as its frames.
 struct Bar {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
@@ -33,7 +31,7 @@ struct Bar {
 std::string stacked_bars(std::string_view title, std::string_view unit,
                          const std::vector<Bar>& bars, const std::vector<ChartSeries>& series);
 
-// One line, with a share for each series' first value.
+// A single bar, divided by the first value of each series.
 std::string stacked_line(const std::vector<ChartSeries>& series);
 
 }  // namespace rlpc

@@ -14,7 +14,7 @@
 
 namespace rlpc {
 
-// The units of an access unit, not yet parsed but for the header of its GOF.
+// The units of an access unit, of which only the GOF header has been parsed.
 struct CodedAccessUnit {
   struct Unit {
     UnitHeader header;
@@ -29,8 +29,8 @@ struct CodedAccessUnit {
 
 class AccessUnitReader {
  public:
-  // Units and context must outlive it. Of the options: limits, cut, and whether hashes are
-  // verified; if not, hash units are left to whoever goes past the access unit.
+  // Units and context must outlive it. Uses limits, cut and verify_hashes of the options;
+  // without the latter, hash units are left to the caller.
   AccessUnitReader(UnitReader& units, const StreamContext& context,
                    const DecoderOptions& options)
       : units_(units),
@@ -39,14 +39,14 @@ class AccessUnitReader {
         cut_(options.cut),
         wants_hash_(options.verify_hashes) {}
 
-  // gof_unit: a GOF unit; first_frame: that its GOF has to begin with.
+  // gof_unit: a GOF unit; first_frame: the first frame that its GOF must have.
   Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame);
-  // Where the units end that were read last, bytes from the start of the stream.
+  // End of the units read last, bytes from the start of the stream.
   std::uint64_t end() const { return end_; }
 
-  // The same in two steps, of which the second may run on another thread, with max_memory_bytes
-  // for the payloads, and again for what they are parsed into. None, and an error of parse():
-  // read() tells what is wrong.
+  // The same in two steps, the second of which may run on another thread. max_memory_bytes
+  // limits the payloads, and separately the parsed result. If either fails, read() reports the
+  // error.
   std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                          std::uint64_t max_memory_bytes);
   Result<AccessUnit> parse(const CodedAccessUnit& coded, std::uint64_t max_memory_bytes) const;

@@ -18,7 +18,7 @@ class ByteSource {
   virtual std::uint64_t size() const = 0;
   // Fills `out` from `offset`; false if the bytes are not there or cannot be read.
   virtual bool read(std::uint64_t offset, std::span<std::uint8_t> out) = 0;
-  // What it keeps in memory, of that which limits are for.
+  // The memory it holds that counts towards the limits.
   virtual std::uint64_t memory_bytes() const { return 0; }
 };
 

@@ -9,10 +9,10 @@
 
 namespace rlpc {
 
-// GOFs as the index before the end of the sequence tells them; empty if there is none. Whether
-// they are where it says shows when they are parsed (parse_gof_header).
+// The GOFs listed by the index before the end of the sequence; empty if there is none. Whether
+// they are there is checked when they are parsed (parse_gof_header).
 //
-//   first_unit  offset that the end of the sequence is not before, bytes
+// first_unit  lower bound of the offset of the end of the sequence, bytes
 //   num_frames  of the sequence
 Result<std::vector<GofLocation>> find_gof_index(UnitReader& units, std::uint64_t first_unit,
                                                 std::uint32_t num_frames);

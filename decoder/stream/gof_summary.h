@@ -1,4 +1,4 @@
-// What is in a GOF, in numbers: clusters and components, or bones, trajectories and slices.
+// The contents of a GOF in numbers: clusters and components, or bones, trajectories and slices.
 #pragma once
 
 #include <cstddef>
@@ -24,15 +24,15 @@ struct SliceGroups {
   }
 };
 
-// What there is of a GOF within such groups.
+// Totals of a GOF within such groups.
 struct SliceTotals {
   std::size_t num_slices = 0;
   std::uint32_t num_trajectories = 0;
-  std::uint32_t num_layers = 0;  // in which vertices have residuals of rest positions
+  std::uint32_t num_layers = 0;  // whose vertices have residuals of rest positions
   std::uint64_t bytes = 0;       // of the GOF unit and of slice units
 };
 
-// A number that says how large a GOF is. one, many: what is counted; null: for programs only.
+// A number that describes the size of a GOF. one, many: the noun; null: for programs only.
 struct GofFigure {
   const char* key;  // in JSON
   const char* one;
@@ -48,7 +48,7 @@ struct GofSummary {
 
   std::vector<GofFigure> figures;  // the same keys for each GOF of a kind
 
-  // 0: this kind has none of that key.
+  // 0 if the kind lacks the key.
   std::uint32_t figure(std::string_view key) const;
 
   // Of kinds that have slices.
@@ -61,7 +61,7 @@ struct GofSummary {
 
 GofSummary summarise(const AccessUnit& access_unit);
 
-// Those of all GOFs of a stream, which is read to its end.
+// Summaries of all GOFs of a stream, which is read to its end.
 Result<std::vector<GofSummary>> summarise_all(StreamReader& stream);
 
 }  // namespace rlpc

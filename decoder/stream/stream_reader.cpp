@@ -16,7 +16,7 @@ namespace rlpc {
 namespace {
 
 // 6.2 CheckUnitType( expected )
-// A unit where it may not stand, or a critical one that this version does not know.
+// A unit in the wrong place, or a critical one that this version does not know.
 Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
   const UnitType last = version_minor > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
   const bool known =
@@ -114,7 +114,7 @@ Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
   return true;
 }
 
-// Units that a decoder may skip: their CRC holds, and metadata is kept.
+// Units that a decoder may skip: checks their CRC, and keeps metadata.
 Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
   if (unit.type() != UnitType::kMetadata) return units_.skip(unit);
@@ -230,7 +230,7 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     offset_ = std::prev(after)->offset;
     frames_parsed_ = std::prev(after)->first_frame;
   }
-  // Forward over GOFs that are not wanted: only their headers are read.
+  // Skips GOFs forward: only their headers are read.
   for (;;) {
     const auto unit = find_gof();
     if (!unit) return unit.error();

@@ -1,5 +1,4 @@
-// Goes through a stream from access unit to access unit, parsing all and reconstructing
-// nothing.
+// Walks a stream from access unit to access unit: parses everything, reconstructs nothing.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +18,8 @@
 
 namespace rlpc {
 
-// Frames that a decoder holds beside its GOF; open() leaves room for them in max_memory_bytes.
+// Frames that a decoder holds in addition to its GOF; open() counts them towards
+// max_memory_bytes.
 inline constexpr std::uint32_t kFramesHeld = 4;
 
 class StreamReader {
@@ -34,20 +34,20 @@ class StreamReader {
   const StreamContext& context() const { return context_; }
   const SequenceHeader& header() const { return context_.header; }
   std::span<const Triangle> triangles() const { return triangles_; }  // in output order
-  // 8.6.1: of each decoded vertex, its index in the output; empty: they are the same.
+  // 8.6.1: output index of each decoded vertex; empty: the same.
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const std::string& metadata() const { return metadata_; }  // the last so far
 
-  // Goes to the next GOF unit, past everything in between. None: the sequence has ended as it
-  // should.
+  // Advances to the next GOF unit, past everything in between. None: a proper end of the
+  // sequence.
   Result<std::optional<UnitHeader>> find_gof();
-  // The access unit that begins with the unit found; goes past it.
+  // The access unit that begins with the unit found; advances past it.
   Result<AccessUnit> read(const UnitHeader& gof_unit);
-  // The same, if it was read elsewhere: its units end at `end`.
+  // The same for an access unit read elsewhere, whose units end at `end`.
   void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
-  // Both in one, for those who want them all.
+  // Both in one call, to read all of them.
   Result<std::optional<AccessUnit>> next();
-  // Makes the GOF with `frame`, which is below num_frames, the next one.
+  // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);
 
   // First frame of the GOF that find_gof() finds.
@@ -65,7 +65,7 @@ class StreamReader {
   Result<bool> read_ancillary(const UnitHeader& unit);
   Result<bool> check_limits() const;
   Result<bool> check_end(const UnitHeader& unit);
-  // Of a GOF that is skipped: from its first bytes alone.
+  // For a GOF that is skipped: reads only its first bytes.
   Result<GofHeader> gof_header(const UnitHeader& unit);
   Result<bool> skip_slices();
   void remember_gof(const UnitHeader& unit);
@@ -80,7 +80,7 @@ class StreamReader {
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;
-  std::vector<GofLocation> gofs_;  // those met so far, ascending
+  std::vector<GofLocation> gofs_;  // those seen so far, ascending
   bool index_tried_ = false;
   bool ended_ = false;
 };

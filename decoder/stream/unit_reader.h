@@ -1,4 +1,4 @@
-// 6.2: units; finds them, reads them, checks their CRC.
+// 6.2 Units: finds them, reads them, checks their CRC.
 #pragma once
 
 #include <algorithm>
@@ -44,11 +44,11 @@ class UnitReader {
   void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
   // Header of the unit at a byte offset; its end lies within the stream.
   Result<UnitHeader> header_at(std::uint64_t offset);
-  // Payload of a unit whose CRC holds.
+  // The payload of a unit, its CRC checked.
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
-  // Goes past a unit whose payload nobody needs: its CRC holds. Takes no memory.
+  // Skips a unit, its CRC checked. Allocates nothing.
   Result<bool> skip(const UnitHeader& unit);
-  // Up to max_bytes from the beginning of a payload, its CRC not checked.
+  // Up to max_bytes from the beginning of a payload; the CRC is not checked.
   Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
                                                   std::uint32_t max_bytes);
   // Reader over a payload, with positions from the start of the stream.
@@ -63,7 +63,7 @@ class UnitReader {
   std::uint64_t size() const { return source_->size(); }
 
  private:
-  // What a vector of bytes can hold beside the header and the CRC, on machines of 32 bits, too.
+  // What a vector can hold in addition to header and CRC, on 32-bit machines, too.
   static constexpr std::uint64_t kMaxPayloadBytes =
       std::uint64_t{std::numeric_limits<std::ptrdiff_t>::max()} - kUnitHeaderBytes -
       kUnitCrcBytes;

@@ -36,7 +36,8 @@ struct Request {
   DecoderOptions decoder;
 };
 
-// 7.3: binary32 coordinates, x y z of each vertex of each frame, little-endian, nothing else.
+// 7.3: binary32 coordinates, x y z of each vertex of each frame, little-endian, without a
+// header.
 class F32Sink : public FrameSink {
  public:
   F32Sink(const Grid& grid, OutputFile file) : grid_(grid), file_(std::move(file)) {}
@@ -77,7 +78,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_sink(const std::string& path,
   return open_rlpd_sink(path, std::move(options));
 }
 
-// What ended a decoding: an error of the stream, or of the output, or none.
+// How decoding ended: with an error of the stream, of the output, or none.
 struct Outcome {
   std::optional<Error> error;
   std::optional<OutputError> output_error;
@@ -86,7 +87,7 @@ struct Outcome {
 
 Outcome decode_frames(const Request& request) {
   Outcome outcome;
-  // The sink outlives what throws: frames before the memory ran out are kept.
+  // The sink outlives exceptions: frames decoded before memory ran out are kept.
   std::unique_ptr<FrameSink> sink;
   try {
     auto source = file_source(request.input, request.decoder.limits.max_memory_bytes);
@@ -160,7 +161,7 @@ std::optional<int> run_conformance_verb(int argc, char** argv) {
   if (arguments.size() < 2 || std::string_view(arguments[1]) != "decode") return std::nullopt;
   CLI::App app("Decodes a stream for the conformance judge.", "rlpcdec decode");
   Request request;
-  // The levels bound what a stream can ask for; without --max-mem, all of it is given.
+  // Levels bound the memory of a stream; without --max-mem there is no other limit.
   request.decoder.limits.max_memory_bytes = std::numeric_limits<std::uint64_t>::max();
   app.add_option("input", request.input, "Stream to decode")->required();
   app.add_option("output", request.output, "OUT.rlpd (Annex A), or OUT.f32 (7.3)")->required();

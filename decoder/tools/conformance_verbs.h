@@ -1,4 +1,4 @@
-// What a conformance judge asks of a decoder, as arguments of rlpcdec:
+// The interface of a decoder to the conformance judge, as arguments of rlpcdec:
 //
 //   rlpcdec --rlpc-conformance                               what it decodes, as JSON
 //   rlpcdec decode IN.rlpc OUT.rlpd|OUT.f32 [--max-mem BYTES]
@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// The exit code, or nothing if the arguments are not those above.
+// The exit code; none if the arguments are not those above.
 std::optional<int> run_conformance_verb(int argc, char** argv);
 
 }  // namespace rlpc

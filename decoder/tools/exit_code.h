@@ -1,4 +1,4 @@
-// Exit codes of the tools that decode.
+// Exit codes of the programs that decode.
 #pragma once
 
 #include "common/io/output_file.h"

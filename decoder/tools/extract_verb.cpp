@@ -40,7 +40,7 @@ double bpvf(const SubStreamExtractor& cutter, std::uint64_t bytes) {
          (static_cast<double>(h.num_vertices) * h.num_frames);
 }
 
-// The first group of layers stays, even if it has more than the layers asked for.
+// The first layer group is kept even if it has more layers than asked for.
 bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
   return after.num_layers > o.cut.max_layers;
 }
@@ -86,7 +86,7 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
               bpvf(cutter, bytes));
   for (const GofSummary& gof : cutter.gofs()) {
     if (!has_slices(gof.kind)) {
-      std::printf("  frames %u to %u: of %s, %" PRIu64 " bytes, which stay\n", gof.first_frame,
+      std::printf("  frames %u to %u: of %s, %" PRIu64 " bytes, kept whole\n", gof.first_frame,
                   gof.first_frame + gof.num_frames - 1, kind_name(gof.kind), gof.bytes);
       continue;
     }
@@ -100,16 +100,17 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
         before.num_slices, after.bytes, before.bytes);
     if (after.num_trajectories == 0 && before.num_trajectories > 0 &&
         o.cut.max_components > 0) {
-      std::printf("    no group has %u trajectories or less: bones and rest shape alone stay\n",
-                  o.cut.max_components);
+      std::printf(
+          "    no group has %u trajectories or fewer: only bones and rest shape are kept\n",
+          o.cut.max_components);
     }
     if (too_many_layers(o, after)) {
-      std::printf("    more than %u layers: the first layer group always stays\n",
+      std::printf("    more than %u layers: the first layer group is always kept\n",
                   o.cut.max_layers);
     }
   }
   if (!cutter.cuts_any())
-    std::printf("  nothing was left out: no GOF has more than asked for\n");
+    std::printf("  nothing was dropped: no GOF has more than asked for\n");
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ struct ExtractOptions {
   bool json = false;
 };
 
-// Writes the stream, and a report on standard output unless the stream goes there ("-"), or
-// says on standard error why not; the exit code.
+// Writes the stream, and a report on standard output unless the stream goes there ("-").
+// Reports errors on standard error. Returns the exit code.
 int extract(const ExtractOptions& options);
 
 }  // namespace rlpc

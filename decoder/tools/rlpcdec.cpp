@@ -118,7 +118,7 @@ std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num
   return span;
 }
 
-// How many frames were decoded, and how many of them compared with a hash.
+// Numbers of frames decoded, and verified against a hash.
 struct FrameCounts {
   std::uint32_t decoded = 0;
   std::uint32_t compared = 0;
@@ -126,16 +126,15 @@ struct FrameCounts {
 
 std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
                         const FrameCounts& frames) {
-  if (decoder.was_cut()) return ", cut; hashes of GOFs that are cut were not compared";
+  if (decoder.was_cut()) return ", cut; hashes of GOFs that lost slices were not verified";
   if (!o.decoder.verify_hashes) return "";
   if (frames.compared == frames.decoded) return ", hashes agree";
   if (frames.compared > 0) {
     return ", hashes of " + std::to_string(frames.compared) +
-           " of them agree; the others have "
-           "none of their own";
+           " of them agree; the others have none";
   }
   return o.frames.empty() ? ", which have no hashes"
-                          : ", not compared: no hash is of these frames alone";
+                          : ", not verified: no hash covers these frames alone";
 }
 
 void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames) {
@@ -363,11 +362,12 @@ int main(int argc, char** argv) try {
   add_options(app, options);
   if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (options.output.empty() && options.html.output.empty() && !options.verify_only) {
-    return complain("give -o OUT, --html OUT, or --verify to write nothing", rlpc::kExitUsage);
+    return complain("choose an output: -o OUT, --html OUT, or --verify to write nothing",
+                    rlpc::kExitUsage);
   }
   if (options.output == "-") {
     if (options.format == rlpc::SinkFormat::kByName) {
-      return complain("-o -: give --format, as in --format glb", rlpc::kExitUsage);
+      return complain("-o - needs --format, as in --format glb", rlpc::kExitUsage);
     }
     if (options.json) {
       return complain("--json and the output cannot both go to standard output",
@@ -383,7 +383,7 @@ int main(int argc, char** argv) try {
   }
   if (options.ascii &&
       rlpc::sink_format(options.output, options.format) != rlpc::SinkFormat::kPly) {
-    return complain("--ascii: is for PLY files, which " + options.output + " is not",
+    return complain("--ascii is for PLY files, which " + options.output + " is not",
                     rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;

@@ -1,4 +1,4 @@
-// rlpcinfo: what is in an .rlpc stream.
+// rlpcinfo: the contents of an .rlpc stream.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -86,7 +86,7 @@ double bpvf(const Summary& s, double bits) {
   return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
 }
 
-// Component groups that have slices, with that of the rest positions.
+// Component groups that have slices, including that of the rest positions.
 std::uint32_t num_groups(const rlpc::GofSummary& gof) {
   return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
 }
@@ -124,8 +124,8 @@ nlohmann::ordered_json json_of(const rlpc::GofSummary& gof) {
   return json;
 }
 
-// What a stream carries is not checked: what is no JSON, or is nested without measure, is told
-// as the text that it is.
+// Metadata is not validated: if it is not JSON, or nested too deeply, it is shown as plain
+// text.
 nlohmann::ordered_json metadata_json(const std::string& text) {
   constexpr int kDeepest = 100;
   bool too_deep = false;
@@ -175,7 +175,7 @@ std::string counted(std::uint64_t count, const Noun& noun) {
   return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
 }
 
-// "12 clusters", or "3 to 12 clusters": of the figures at a place.
+// "12 clusters", or "3 to 12 clusters": a figure over all GOFs.
 std::string range_over(const std::vector<rlpc::GofSummary>& gofs, std::size_t place) {
   const auto value = [&](const rlpc::GofSummary& gof) { return gof.figures[place].value; };
   const auto compare = [&](const auto& a, const auto& b) { return value(a) < value(b); };
@@ -196,7 +196,7 @@ std::string listed(const std::vector<std::string>& parts) {
   return text;
 }
 
-// A line for each kind of GOF.
+// One line per kind of GOF.
 void print_kinds(std::vector<rlpc::GofSummary> gofs) {
   while (!gofs.empty()) {
     const auto end = std::stable_partition(
@@ -213,8 +213,8 @@ void print_kinds(std::vector<rlpc::GofSummary> gofs) {
   }
 }
 
-// Of a GOF of bones, a line for each component group, a column for each layer group; and what
-// stays of the GOF if it is cut behind one of them.
+// For a skinned GOF, a row per component group, a column per layer group, and the size of the
+// GOF when cut after each of them.
 void print_gof(const rlpc::GofSummary& gof) {
   std::vector<std::string> figures;
   for (const rlpc::GofFigure& figure : gof.figures) {

@@ -14,7 +14,7 @@ struct GofLocation {
   std::uint32_t first_frame = 0;
 };
 
-// num_frames: of the sequence. Offsets are not compared with the units here.
+// num_frames: of the sequence. Offsets are not checked against the units here.
 Result<std::vector<GofLocation>> parse_gof_index(BitReader& r, std::uint32_t num_frames);
 
 }  // namespace rlpc

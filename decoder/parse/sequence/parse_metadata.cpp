@@ -12,7 +12,7 @@ Result<std::string> parse_metadata(BitReader& r) {
       r.u(32, "metadata_size", {0, std::int64_t{kMaxMetadataBytes}}, "R-MET-01");
   if (r.error()) return *r.error();
   const auto deflated = r.remaining_bytes();
-  std::string json(size + 1, '\0');  // room to notice that there is more
+  std::string json(size + 1, '\0');  // one byte more, to detect excess
   uLongf inflated = size + 1;
   uLong used = static_cast<uLong>(deflated.size());
   const int status =
