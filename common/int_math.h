@@ -1,5 +1,5 @@
 // Integer functions of clause 5: the only place that rounds, clips or takes roots.
-// Everything is exact in int64; each function states the range that it is proven for.
+// Everything is exact in int64; each function states its proven range.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ constexpr int floor_log2(std::uint64_t x) {
   return 63 - std::countl_zero(x);
 }
 
-// 5.3 CeilLog2(x): bits needed to tell x values apart. x > 0.
+// 5.3 CeilLog2(x): bits needed to distinguish x values. x > 0.
 constexpr int ceil_log2(std::uint64_t x) { return x <= 1 ? 0 : floor_log2(x - 1) + 1; }
 
 // 5.4 ISqrt(x): floor of the square root. 0 <= x < 2^62.

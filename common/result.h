@@ -1,4 +1,4 @@
-// Errors and results. A bad stream or a bad file gives an Error; a bad caller is an assert.
+// Errors and results. A bad stream or file yields an Error; a bad caller is an assert.
 #pragma once
 
 #include <cassert>
@@ -22,7 +22,7 @@ struct Error {
   const char* rule = "";           // rule id of the specification, for example "R-HDR-03"
   const char* element = "";        // syntax element, spelled as in the specification
   std::uint64_t bit_pos = 0;       // where that element begins, or near it (spec/permissive.md)
-  std::uint64_t needed_bytes = 0;  // at least, if memory is the limit exceeded and it is known
+  std::uint64_t needed_bytes = 0;  // a lower bound, if memory is the limit and it is known
 };
 
 template <class T, class E = Error>

@@ -8,11 +8,11 @@
 
 namespace rlpc {
 
-// The mean of a quickly and a slowly adapting estimate of P(bin == 1), both in 1/65536. Both
-// start by averaging what they have seen, until their own rate is reached.
+// The mean of a fast and a slow estimate of P(bin == 1), both in 1/65536. Both start as plain
+// averages, until their own rate is reached.
 class BitModel {
  public:
-  // In 1/65536, 71 to 65465: neither bin ever costs an infinite number of bits.
+  // In 1/65536, 71 to 65465: the cost of either bin stays finite.
   std::uint32_t probability() const { return (fast_ + slow_) >> 1; }
 
   void update(bool bin) {

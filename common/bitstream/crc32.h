@@ -1,4 +1,4 @@
-// CRC-32 of clause 9.7 (polynomial 0x04C11DB7, reflected; that of zlib and PNG).
+// CRC-32 of clause 9.7 (polynomial 0x04C11DB7, reflected, as in zlib and PNG).
 #pragma once
 
 #include <zlib.h>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Continues `crc` over more bytes; 0 begins.
+// Continues `crc` over more bytes; starts from 0.
 inline std::uint32_t crc32_of(std::span<const std::uint8_t> bytes, std::uint32_t crc = 0) {
   return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
 }

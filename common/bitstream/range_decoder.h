@@ -1,9 +1,8 @@
 // Range decoder (clause 9.3). Its twin is common/bitstream/range_encoder.h.
 //
 // State: `range` and `code`, 32 bits each, code < range; 2^24 <= range after each bin. Bytes
-// are taken in from the most significant side. A section of n bytes ends exactly when n - 1
-// bytes have been shifted in after the first; past its end the decoder reads zeros, at most
-// three.
+// are shifted in, most significant first. A section of n bytes ends exactly when n - 1 bytes
+// have been shifted in after the first; past its end the decoder reads zeros, at most three.
 #pragma once
 
 #include <cassert>
@@ -58,9 +57,9 @@ class RangeDecoder {
   bool starts_legally() const { return starts_legally_; }
   // True if the section held exactly the bytes that were needed (rule R-RNG-01).
   bool at_exact_end() const { return taken_ == section_.size() + 3; }
-  // Past the end: what follows is not worth decoding.
+  // Past the end: the caller may stop decoding.
   bool overrun() const { return taken_ > section_.size() + 3; }
-  // Bits spent so far, to the next whole bit; for traces and error positions.
+  // Bits consumed so far, rounded up; for traces and error positions.
   std::uint64_t bits_spent() const {
     return std::uint64_t{taken_} * 8 - 1 - static_cast<std::uint64_t>(floor_log2(range_));
   }

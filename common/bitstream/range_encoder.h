@@ -1,7 +1,7 @@
 // Range encoder, the inverse of clause 9.3.
 //
-// `low` has 33 bits, the uppermost a carry into bytes already written; a byte that a carry
-// could still change is held back together with the 0xFF bytes that would pass the carry on.
+// `low` has 33 bits, the top one a carry into bytes already written. A byte that a carry could
+// still change is held back, together with the 0xFF bytes that would propagate it.
 #pragma once
 
 #include <cassert>
@@ -38,7 +38,8 @@ class RangeEncoder {
     }
   }
 
-  // Ends the section: one byte more is enough, as range >= 2^24. The encoder is spent.
+  // Ends the section: one more byte suffices, as range >= 2^24. The encoder cannot be used
+  // afterwards.
   std::vector<std::uint8_t> finish() {
     low_ = (low_ + 0xFFFFFF) & ~std::uint64_t{0xFFFFFF};
     shift_low();

@@ -1,5 +1,5 @@
 // Models and context of a residual (clause 9.5): a signed integer whose expected magnitude is
-// known from its surroundings.
+// estimated from its neighbourhood.
 #pragma once
 
 #include <array>
@@ -53,8 +53,8 @@ constexpr std::uint32_t magnitude_of(std::int32_t residual) {
   return static_cast<std::uint32_t>(residual < 0 ? -residual : residual);
 }
 
-// 9.5.3 UpdateMean( mean, magnitude, rate ): running mean of magnitudes with 8 fractional
-// bits; 2^rate values is the length of its memory.
+// 9.5.3 UpdateMean( mean, magnitude, rate ): running mean of magnitudes with 8 fractional bits;
+// its memory is about 2^rate values.
 constexpr std::uint32_t update_mean(std::uint32_t mean, std::uint32_t magnitude, int rate) {
   const std::uint32_t target = (magnitude < 0x100000 ? magnitude : 0x100000) << 8;
   return target >= mean ? mean + ((target - mean) >> rate) : mean - ((mean - target) >> rate);

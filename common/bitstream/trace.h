@@ -15,7 +15,7 @@ class Trace {
   // A syntax structure begins, for example "gof".
   virtual void begin(const char* structure, std::uint64_t bit_pos) = 0;
   // bit_pos: first bit of the element from the start of the stream; for arithmetic-coded
-  // elements, where the bits spent on the elements before them end.
+  // elements, the end of the bits spent on the preceding elements.
   virtual void element(const char* name, std::int64_t value, std::uint64_t bit_pos) = 0;
 };
 

@@ -1,5 +1,4 @@
-// What the handles of the interface in C have in common: their memory, their error, and that no
-// exception leaves them.
+// What handles of the C API share: memory, error, and keeping exceptions inside.
 #pragma once
 
 #include <algorithm>
@@ -17,20 +16,20 @@
 
 namespace rlpc {
 
-// The last error. Without memory of its own, so that its text is there when memory is not.
+// The last error, in a fixed buffer: works after out-of-memory.
 class HandleError {
  public:
   rlpc_status set(rlpc_status status, std::string_view text) {
     text_[text.copy(text_.data(), text_.size() - 1)] = '\0';
     return status;
   }
-  // Stands for ever: whatever the handle holds is not fit for use.
+  // Sticky: the handle is unusable.
   rlpc_status break_handle(rlpc_status status, std::string_view text) {
     broken_ = status;
     return set(status, text);
   }
   void clear() { text_[0] = '\0'; }
-  rlpc_status broken() const { return broken_; }  // RLPC_OK: it is not
+  rlpc_status broken() const { return broken_; }  // RLPC_OK: usable
   const char* text() const { return text_.data(); }
 
  private:
@@ -79,9 +78,8 @@ void close_handle(Handle* handle) noexcept {
   }
 }
 
-// Structures of the interface begin with struct_size, what the caller thinks is their size:
-// they grow with the version, and a caller may be older. Options: as by default, as far as the
-// caller knows them.
+// Structures of the API begin with struct_size, their size in the caller's version, which may
+// be older than ours. Options: the defaults, as far as the caller knows them.
 template <class T>
 void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   if (theirs == nullptr || struct_size < sizeof(std::size_t)) return;
@@ -90,8 +88,8 @@ void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   theirs->struct_size = struct_size;
 }
 
-// `ours` has the defaults, for members that the caller does not know. False: it was not
-// initialised, or has members set that this version does not know.
+// `ours` holds the defaults of members that the caller does not know. False: not initialised,
+// or members are set that this version does not know.
 template <class T>
 bool take_struct(const T* theirs, T& ours) {
   constexpr std::size_t kMostBytes = 4096;

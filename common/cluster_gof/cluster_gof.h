@@ -1,4 +1,5 @@
-// 6.5 Group of frames: what the parser hands to reconstruction, and the analysis to the writer.
+// 6.5 Cluster GOF: passed from the parser to reconstruction, and from the analysis to the
+// writer.
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@ inline constexpr std::uint32_t kMaxSeedStep = 1U << 16;
 enum class SpatialPredictor : std::uint8_t { kNone = 0, kNeighbours = 1, kParallelogram = 2 };
 inline constexpr int kMaxSpatialPredictor = 2;
 
-// One product of a temporal and a spatial factor (clause 8.5). Residuals as coded, predictions
-// not yet undone.
+// One product of a temporal and a spatial factor (clause 8.5): residuals as coded, before
+// prediction is undone.
 struct Component {
   int scale_idx = 0;
   int spatial_bits = 1;
@@ -30,12 +31,12 @@ struct Component {
 
 struct Cluster {
   bool lcf_flag = false;
-  std::array<std::uint32_t, 3> seed_vertex{};  // if lcf_flag: three different vertices
+  std::array<std::uint32_t, 3> seed_vertex{};  // if lcf_flag: three distinct vertices
   std::vector<Component> components;
 };
 
-// Residuals of the track of one seed vertex, in steps. Tracks stand in the order of
-// clause 6.5.2: clusters in order, their seeds in order, each vertex once.
+// Residuals of the track of one seed vertex, in steps. Tracks are in the order of clause 6.5.2:
+// clusters in order, their seeds in order, each vertex once.
 struct SeedTrack {
   std::uint32_t vertex = 0;
   std::uint32_t anchor = 0;  // index of the track of seed 0 of the cluster; itself for seed 0

@@ -1,5 +1,5 @@
 // Models and contexts of the range-coder section of a GOF (clause 9.6). The parser and the
-// writer drive them in the same way; they start afresh in each GOF.
+// writer drive them in the same way; they are reset in each GOF.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct ClusterModels {
   std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
 };
 
-// 9.6.2 Predicted cluster, from the neighbours decoded before.
+// 9.6.2 Predicted cluster, from the neighbours already decoded.
 struct ClusterPrediction {
   std::uint16_t cluster = 0;
   std::size_t context = 0;  // of cluster_predicted_flag: no neighbour, all agree, they differ
@@ -53,7 +53,7 @@ inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_
 // 9.6.4 Expected magnitude of a temporal residual.
 class TemporalContext {
  public:
-  // frame_mean [num_gof_frames]: mean of the components before, per frame.
+  // frame_mean [num_gof_frames]: mean of the previous components, per frame.
   TemporalContext(std::span<std::uint32_t> frame_mean, const Component& component)
       : frame_mean_(frame_mean) {
     const int bits = component.temporal_bits - component.scale_idx / 8 + 4;

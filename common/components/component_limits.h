@@ -1,4 +1,4 @@
-// Ranges of what components have in common, whatever the kind of their GOF (7.5.7, 7.12.1).
+// Limits of components of all kinds of GOF (7.5.7, 7.12.1).
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ inline constexpr int kMaxTemporalBits = 26;
 inline constexpr int kTemporalIndexBits = 24;  // width of a temporal value before scaling
 inline constexpr int kMaxScaleIdx = 127;
 
-// Spatial values are summed in tiles of so many (common/kernels): small enough for a tile to
-// stay in the first cache; a multiple of 16. Estimates of memory count whole tiles.
+// Spatial values are summed in tiles of this size (common/kernels): small enough for the
+// first-level cache; a multiple of 16. Memory estimates count whole tiles.
 inline constexpr std::size_t kTileValues = 64;
 
 }  // namespace rlpc

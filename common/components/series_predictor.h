@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-// The first values of a series have fewer predecessors: the order is then their number.
-// series(i) gives the value at i < f. |values| < 2^32, so the prediction is below 2^36.
+// The first values of a series have fewer predecessors, which limits the order. series(i) gives
+// the value at i < f. |values| < 2^32, so the prediction is below 2^36.
 template <class Series>
 std::int64_t predict_series(const Series& series, std::uint32_t f, int order) {
   switch (std::min<std::uint32_t>(f, static_cast<std::uint32_t>(order))) {

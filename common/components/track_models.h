@@ -12,8 +12,7 @@
 
 namespace rlpc {
 
-// 9.6.1: running magnitude of a residual, a quickly and a slowly adapting mean, 8 fractional
-// bits.
+// 9.6.1: running magnitude of residuals: a fast and a slow mean, 8 fractional bits.
 struct RunningMagnitude {
   std::uint32_t fast = 0;
   std::uint32_t slow = 0;
@@ -42,7 +41,7 @@ enum class HeaderField : std::uint8_t {
 // trajectory.
 class TrackContext {
  public:
-  // frame_mean [num_gof_frames]: mean of the tracks before, per frame.
+  // frame_mean [num_gof_frames]: mean of the previous tracks, per frame.
   explicit TrackContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
   std::uint32_t expected(std::uint32_t f, std::size_t c) const {
     return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;

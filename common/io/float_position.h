@@ -1,4 +1,4 @@
-// The float value of a decoded position (clause 7.3), and times: the only floating point of a
+// The float value of a decoded position (clause 7.3), and times: the only floating point in the
 // decoder.
 #pragma once
 

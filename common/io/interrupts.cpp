@@ -29,7 +29,7 @@ Unfinished& unfinished() {
     if (sigismember(&signals, other) == 1) std::signal(other, SIG_DFL);
   }
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-  unfinished().mutex.lock();  // for good: nothing new is begun
+  unfinished().mutex.lock();  // held for good: nothing new is started
   for (const std::string& path : unfinished().paths) {
     std::error_code ignored;
     std::filesystem::remove_all(path, ignored);
@@ -50,7 +50,7 @@ void handle_interrupts() {
       sigaddset(&signals, signal);
     }
   }
-  // A thread takes them, which may remove files, as a handler may not.
+  // A thread handles them, as signal handlers must not remove files.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   try {
     std::thread([signals] {
@@ -59,7 +59,7 @@ void handle_interrupts() {
       }
       end_by(signal, signals);
     }).detach();
-  } catch (const std::system_error&) {  // no thread is to be had
+  } catch (const std::system_error&) {  // no thread available
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   }
 }

@@ -1,21 +1,21 @@
-// Ctrl-C and the like, which end a program at any time: nothing unfinished is left behind.
+// Signals such as Ctrl-C: a program that they end leaves nothing unfinished behind.
 #pragma once
 
 #include <string>
 
 namespace rlpc {
 
-// First of all in main(), before there are other threads. SIGINT, SIGTERM and SIGHUP then end
-// the process by themselves, but once everything on the list below is removed; a second one
-// does not wait for that. One that is ignored, as under nohup, stays so. SIGXFSZ is ignored: a
-// limit to the size of files is an error of write(), as a full disk is.
+// Call first in main(), before starting threads. SIGINT, SIGTERM and SIGHUP then end the
+// process after removing everything on the list below; a second signal does not wait. Ignored
+// signals, as under nohup, stay ignored. SIGXFSZ is ignored: a file size limit becomes an error
+// of write(), like a full disk.
 void handle_interrupts();
 
-// What an interrupt removes: files, and folders with all that is in them.
+// The list of files, and folders with their contents, that a signal removes.
 void add_unfinished(const std::string& path);
 void remove_unfinished(const std::string& path);  // from the list
 
-// While there is one, interrupts wait: for steps that belong together. They nest.
+// Delays signals while it exists, for steps that belong together. Nests.
 class HoldInterrupts {
  public:
   HoldInterrupts();

@@ -1,4 +1,4 @@
-// What programs say on a terminal, of names and texts that others chose.
+// Messages on a terminal that quote names and texts of others.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ inline std::string name_of_input(const std::string& path) {
   return path == "-" ? "standard input" : path;
 }
 
-// Text as UTF-8 that does nothing to a terminal: control characters, those that turn the
-// direction of writing, and bytes that are no UTF-8 are shown as \x1B. A text of one line:
+// Text as UTF-8 that is harmless to a terminal: control characters, directional controls and
+// invalid UTF-8 are escaped as \x1B. For a single line:
 std::string printable(std::string_view text);
-// Line ends and tabs stay.
+// Keeps line ends and tabs.
 std::string printable_lines(std::string_view text);
 
-// "500 MiB" where it is as round as that, else "123456 bytes".
+// "500 MiB" if exact, otherwise "123456 bytes".
 std::string size_text(std::uint64_t bytes);
 
-// "TOOL: MESSAGE" in a line of standard error, printable.
+// Prints "TOOL: MESSAGE", escaped, as a line of standard error.
 void print_message(std::string_view tool, std::string_view message);
 
 }  // namespace rlpc

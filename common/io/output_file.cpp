@@ -40,7 +40,7 @@ std::string temporary_name(const fs::path& path, int attempt) {
   return (path.parent_path() / (name + end)).string();
 }
 
-// What a name leads to, whether it is there or not.
+// The target of a name, whether or not it exists.
 OutputResult<std::string> end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;
   fs::path at = path;
@@ -54,20 +54,20 @@ OutputResult<std::string> end_of_links(const std::string& path) {
   return output_error(path, "follow the link", ELOOP);
 }
 
-// What replaces a file is for the same people.
+// A replacement keeps the permissions of the file.
 void take_permissions(int file, const struct stat& replaced) {
   mode_t mode = replaced.st_mode & 0777;
-  // Of another group, those permissions would be for others.
+  // In another group, the same bits would grant access to others.
   if (fchown(file, replaced.st_uid, replaced.st_gid) != 0 &&
       fchown(file, static_cast<uid_t>(-1), replaced.st_gid) != 0) {
     mode &= 0707;
   }
-  // File systems without permissions refuse, and then nobody is kept out by any.
+  // File systems without permissions refuse, and have nothing to protect.
   if (fchmod(file, mode) != 0) return;
 }
 
-// On the disk, so that a crash of the system leaves what was there or what is there now. Not
-// all file systems and files can tell.
+// Flushes to the disk, so that a system crash leaves the old or the new contents. Not all file
+// systems and files support it.
 std::optional<OutputError> sync(const std::string& path, int file) {
   if (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) {
     return std::nullopt;
@@ -220,7 +220,7 @@ OutputResult<TemporaryFolder> TemporaryFolder::create(const std::string& path) {
     const HoldInterrupts hold;
     if (fs::create_directory(folder, ec)) {
       add_unfinished(folder);
-      // Its files may replace others, which not everybody may read.
+      // Its files may replace others with restricted permissions.
       if (inside) fs::permissions(folder, fs::perms::owner_all, ec);
       return TemporaryFolder(std::move(folder));
     }
@@ -245,7 +245,7 @@ std::optional<OutputError> TemporaryFolder::sync() const {
   const int folder = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
   if (folder < 0) return output_error(path_, "write", errno);
 #ifdef __linux__
-  const bool good = syncfs(folder) == 0;  // at once, where fsync() would wait for each file
+  const bool good = syncfs(folder) == 0;  // all at once; fsync() would wait for each file
 #else
   const bool good = fsync(folder) == 0;
 #endif

@@ -1,4 +1,4 @@
-// Files that take their names only once they are complete.
+// Files that get their names only when complete.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,16 @@ namespace rlpc {
 // One line for the user: path, what failed, and the system's reason.
 struct OutputError {
   std::string message;
-  bool is_usage = false;  // what was asked for cannot be; no file is at fault
-  bool is_limit =
-      false;  // likewise; a limit of the caller is lower than what there is to write
+  bool is_usage = false;  // the request is impossible; no file is at fault
+  bool is_limit = false;  // the same; a limit of the caller is too low
 };
 template <class T>
 using OutputResult = Result<T, OutputError>;
 
-// What may be written, to all the files together that share it.
+// Bytes that may be written in total to the files that share it.
 struct OutputLimit {
   explicit OutputLimit(std::uint64_t bytes) : max_bytes(bytes), left(bytes) {}
-  // Of `path`, which has more than that.
+  // The error of `path`, which exceeds it.
   OutputError exceeded(const std::string& path) const;
 
   std::uint64_t max_bytes;
@@ -36,10 +35,10 @@ struct OutputLimit {
 
 class OutputFile {
  public:
-  // Creates a temporary file beside `path`, with the permissions of the file that it is to
-  // replace. A path that exists and is not a regular file (a device, a pipe) is opened
-  // directly; a symbolic link is followed, also where nothing is yet; "-" is standard output.
-  // limit: null for none.
+  // Creates a temporary file next to `path`, with the permissions of the file that it will
+  // replace. An existing path that is not a regular file (a device, a pipe) is opened directly;
+  // symbolic links are followed, dangling ones as well; "-" is standard output. limit: null for
+  // none.
   static OutputResult<OutputFile> create(const std::string& path,
                                          std::shared_ptr<OutputLimit> limit = nullptr);
   // In a TemporaryFolder, under its own name.
@@ -52,13 +51,13 @@ class OutputFile {
 
   std::optional<OutputError> write(std::string_view bytes);
   std::optional<OutputError> write(std::span<const std::uint8_t> bytes);
-  // Flushes, to the disk, and closes all but standard output: from here on nothing but the name
-  // can fail.
+  // Flushes to the disk, and closes unless standard output: afterwards only the renaming can
+  // fail.
   std::optional<OutputError> close();
   // After close(): gives the file its name.
   std::optional<OutputError> commit();
-  // Whether writing `a` would change what reads as `b`: both lead to the same file, which is
-  // one, or none yet. Not so devices and pipes, and "-".
+  // Whether writing `a` would overwrite `b`: both lead to the same file, existing or not. Never
+  // true of devices, pipes and "-".
   static bool is_same_file(const std::string& a, const std::string& b);
   // The name as the caller gave it.
   const std::string& path() const { return path_; }
@@ -73,31 +72,31 @@ class OutputFile {
         limit_(std::move(limit)) {}
 
   std::string path_;
-  std::string target_;     // where links lead to
+  std::string target_;     // links resolved
   std::string temporary_;  // empty: written directly, or committed
   std::FILE* file_ = nullptr;
   std::shared_ptr<OutputLimit> limit_;
 };
 
-// All that is to be in the file; it takes its name.
+// Writes the whole contents and commits.
 std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes);
 
-// A folder for files that are to take their names together.
+// A folder whose files get their names together.
 class TemporaryFolder {
  public:
-  // Beside `path` with a name that did not exist, or inside it if `path` is a folder.
+  // Next to `path` under a new name, or inside it if `path` is a folder.
   static OutputResult<TemporaryFolder> create(const std::string& path);
 
   TemporaryFolder(TemporaryFolder&& other) noexcept;
   TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder();  // removes it with what is in it, unless commit() succeeded
+  ~TemporaryFolder();  // removes it with its contents unless commit() succeeded
 
   const std::string& path() const { return path_; }
-  // To the disk, with all that is in it.
+  // Flushes it to the disk, with its contents.
   std::optional<OutputError> sync() const;
-  // Gives the folder its name, which nothing has.
+  // Gives the folder its name, which must not exist.
   std::optional<OutputError> commit(const std::string& path);
-  // Moves a file of it to `path`, where it may replace one, as OutputFile does.
+  // Moves one of its files to `path`, replacing a file there, as OutputFile does.
   std::optional<OutputError> commit_file(const std::string& name,
                                          const std::string& path) const;
 

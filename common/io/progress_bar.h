@@ -1,4 +1,4 @@
-// A progress bar for people: on a terminal only, and gone when the work is done.
+// A progress bar: only on a terminal, erased when the work is done.
 #pragma once
 
 #include <unistd.h>

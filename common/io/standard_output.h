@@ -1,10 +1,10 @@
-// Standard output, which programs forget to look at when they end.
+// Checks standard output when a program ends.
 #pragma once
 
 namespace rlpc {
 
-// `code`; or `failed`, said on standard error, where `code` is 0 but not all of standard output
-// could be written.
+// Returns `code`; or, if that is 0 but standard output could not be written completely, reports
+// this on standard error and returns `failed`.
 int after_standard_output(const char* tool, int code, int failed);
 
 }  // namespace rlpc

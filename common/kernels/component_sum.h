@@ -13,8 +13,7 @@
 
 namespace rlpc {
 
-// Spatial factors narrower than this are shifted up to it, so that temporal factors can be
-// short.
+// Narrower spatial factors are shifted up to this width, so that temporal factors can be short.
 inline constexpr int kSpatialNormBits = 13;
 
 // Table 8-1: 2^(i / 8) with 15 fractional bits.
@@ -33,8 +32,8 @@ constexpr int spatial_factor_bits(int spatial_bits) {
   return spatial_bits > kSpatialNormBits ? spatial_bits : kSpatialNormBits;
 }
 
-// Factors arranged for the sum over their components. Those of more than 16 bits are taken
-// apart into two limbs of at most 14, so that all products are of 16 x 16 bits.
+// Factors laid out for the sum over their components. Those of more than 16 bits are split into
+// two limbs of at most 14, so that all products are of 16 x 16 bits.
 class ComponentSum {
  public:
   // num_values: spatial values of a component. num_rows: its temporal values, of frames or of
@@ -65,7 +64,7 @@ class ComponentSum {
     std::vector<std::int16_t> temporal;              // [pairs][num_rows][2]
     std::vector<std::vector<std::int16_t>> spatial;  // [tiles][pairs][kTileValues][2]
   };
-  // One 16-bit limb of a factor: floor(value / 2^shift), or what that leaves.
+  // One 16-bit limb of a factor: floor(value / 2^shift), or the remainder.
   struct Limb {
     int shift;
     int size_log2;  // |limb| <= 2^size_log2

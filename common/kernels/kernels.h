@@ -1,6 +1,6 @@
 // The inner loops of reconstruction (8.5.3 and 8.14.3), over the vertices of a tile. Plain
-// loops are the definition; where compiler and machine have AVX2, or the vectors of
-// WebAssembly, twins do the same faster. All is exact, so that both give the same integers.
+// loops are the definition; twins for AVX2 and WebAssembly SIMD do the same faster. All
+// arithmetic is exact, so that both give the same integers.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace rlpc {
 
-// Factors of some components, two components (a pair) beside each other; the last pair of an
-// odd number of components has zeros in it.
+// Factors of some components, interleaved in pairs; the last pair of an odd number of
+// components is padded with zeros.
 struct FactorPairs {
   const std::int16_t* temporal;  // [num_pairs][temporal_rows][2]
   std::size_t temporal_rows;
@@ -21,7 +21,7 @@ struct FactorPairs {
   std::size_t num_pairs;        // at least 1
 };
 
-// Rest positions that a bone moves.
+// Rest positions moved by a bone.
 struct BoneArms {
   // From the pivot, |arm| <= 2^29; of [size] each, and three more numbers can be read.
   std::array<const std::int32_t*, 3> arm;
@@ -29,7 +29,7 @@ struct BoneArms {
   std::size_t size;
 };
 
-// How the position of a vertex follows from its sums.
+// How positions follow from sums.
 struct PositionWidths {
   int weight_bits;
   int fraction_bits;
@@ -38,7 +38,7 @@ struct PositionWidths {
 
 struct Kernels {
   // 8.5.3: sums[r][i] = sum over the components of temporal[first_row + r] * spatial[i];
-  // sums [num_rows][kTileValues]. The caller has made sure that they fit.
+  // sums [num_rows][kTileValues]. The caller has checked that they fit.
   void (*sum_products)(const FactorPairs& factors, std::size_t first_row, std::size_t num_rows,
                        std::int32_t* sums);
   // sums[i] += values[i] * weight, n times.
@@ -55,7 +55,7 @@ struct Kernels {
                     const PositionWidths& widths, std::int32_t* positions);
 };
 
-// The loops that this machine can run; the first are the plain ones, the last the fastest.
+// The kernels that this machine can run: the plain ones first, the fastest last.
 std::span<const Kernels> kernels();
 
 }  // namespace rlpc

@@ -17,13 +17,13 @@ RLPC_AVX2 __m256i load(const void* p) {
   return _mm256_loadu_si256(static_cast<const __m256i*>(p));
 }
 RLPC_AVX2 void store(void* p, __m256i x) { _mm256_storeu_si256(static_cast<__m256i*>(p), x); }
-// Four numbers of 32 bits, as 64 bits.
+// Four 32-bit numbers, extended to 64 bits.
 RLPC_AVX2 __m256i load_widened(const std::int32_t* p) {
   return _mm256_cvtepi32_epi64(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
 }
 
-// round2 of numbers of 64 bits below 2^62 in magnitude. There is no arithmetic shift of 64
-// bits: they are made positive before it.
+// round2 of 64-bit numbers below 2^62 in magnitude. AVX2 lacks a 64-bit arithmetic shift: they
+// are made positive first.
 class Round2 {
  public:
   RLPC_AVX2 explicit Round2(int n)
@@ -94,7 +94,7 @@ RLPC_AVX2 void add_weighted(const std::int32_t* values, std::int32_t weight, std
   for (; i < n; ++i) sums[i] += std::int64_t{weight} * values[i];
 }
 
-// The lists of arms and weights go on for at least three numbers after the last.
+// The lists of arms and weights are padded by at least three numbers.
 RLPC_AVX2 void weighted_places(const BoneArms& arms, const std::array<std::int32_t, 3>& axis,
                                std::int32_t origin, std::int64_t* places) {
   const __m256i x = _mm256_set1_epi64x(axis[0]);

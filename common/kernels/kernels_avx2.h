@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// For machines that have AVX2.
+// Only for machines with AVX2.
 extern const Kernels kKernelsAvx2;
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Twin of the plain loop that takes most of the time of decoding (kernels.cpp).
+// Twin of the plain loop that dominates decoding time (kernels.cpp).
 #pragma once
 
 #include "common/kernels/kernels.h"
@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Kernels::sum_products, for WebAssembly with vectors of 128 bits.
+// Kernels::sum_products, for WebAssembly with 128-bit SIMD.
 void sum_products_wasm(const FactorPairs& factors, std::size_t first_row, std::size_t num_rows,
                        std::int32_t* sums);
 

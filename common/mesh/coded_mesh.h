@@ -1,5 +1,5 @@
-// 8.10 Prediction along the mesh: in which order the vertices of a GOF of bones are coded, and
-// from which others each is predicted.
+// 8.10 Prediction along the mesh: the coding order of the vertices of a skinned GOF, and the
+// vertices that each is predicted from.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, k
 
 class CodedMesh {
  public:
-  // Both must outlive it. `layers` is not looked at unless prediction is kLayers.
+  // Both must outlive it. `layers` is ignored unless prediction is kLayers.
   CodedMesh(Prediction prediction, const Topology& topology, const VertexLayers& layers);
 
   Prediction prediction() const { return prediction_; }

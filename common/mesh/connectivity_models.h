@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// Join distances go up to 2^(kMaxJoinPrefix + 1) - 1, so that a join costs bounded time.
+// Join distances go up to 2^(kMaxJoinPrefix + 1) - 1, so that the time of a join is bounded.
 inline constexpr int kMaxJoinPrefix = 9;
 inline constexpr std::uint32_t kMaxJoinDistance = (1U << (kMaxJoinPrefix + 1)) - 1;
 

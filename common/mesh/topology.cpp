@@ -52,7 +52,7 @@ ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
   return group(num_vertices, pairs);
 }
 
-// Of an edge of a triangle: the higher vertex, and the one across.
+// For an edge of a triangle: its higher vertex, and the opposite one.
 struct EdgeOf {
   std::uint32_t high;
   std::uint32_t across;

@@ -1,4 +1,4 @@
-// Neighbourhoods of the decoded connectivity, as far as they serve prediction (clause 8.3).
+// Neighbourhoods of the decoded connectivity, for prediction (clause 8.3).
 #pragma once
 
 #include <cstdint>

@@ -13,14 +13,13 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
-constexpr std::uint32_t kMaxFan = 6;  // triangles around a vertex that can be taken out
-// Two vertices with more triangles get no new edge (8.9.5), and one adds
-// nothing to outer_ring (8.9.6): nothing but the base walks along their
-// triangles.
+constexpr std::uint32_t kMaxFan = 6;  // triangles around a removable vertex
+// Two vertices with more triangles get no new edge (8.9.5), and one such vertex adds nothing to
+// outer_ring (8.9.6): only the base walks along their triangles.
 constexpr std::uint32_t kMaxValence = 12;
 constexpr std::int32_t kGoodValence = 6;
 
-// A set of edges between places in a ring.
+// A set of edges between positions in a ring.
 using EdgeSet = std::uint64_t;
 
 constexpr EdgeSet edge(std::size_t i, std::size_t j) {
@@ -76,10 +75,9 @@ constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
 constexpr std::array<TriangulationList, kMaxRing + 1> kTriangulations = triangulate_all();
 static_assert(kTriangulations[6].size == 14 && kTriangulations[7].size == 42);
 
-// 8.9.2 Rest of the mesh: its triangles. Those of a vertex are linked through their
-// corners, so that one leaves in constant time; corner k of triangle i is 3 * i
-// + k. Each has the vertices of the other two, so that a walk along a vertex's
-// corners looks at nothing else.
+// 8.9.2 Rest of the mesh: its triangles. Those of a vertex are linked through their corners, so
+// that one is removed in constant time; corner k of triangle i is 3 * i + k. Each corner holds
+// the vertices of the other two, so that a walk along a vertex's corners reads nothing else.
 class Rest {
  public:
   Rest(std::uint32_t num_vertices, std::span<const Triangle> triangles)
@@ -101,7 +99,7 @@ class Rest {
     return corners_[corner].others;
   }
 
-  // Triangle i has been taken out before, or is new.
+  // Triangle i was removed before, or is new.
   void add(std::uint32_t i, const Triangle& t) {
     link(3 * i, t[0], {t[1], t[2]});
     link(3 * i + 1, t[1], {t[2], t[0]});
@@ -147,8 +145,8 @@ struct Ring {
   std::span<const std::uint32_t> span() const { return std::span(vertices).first(size); }
 };
 
-// What is around a ring: edges that a triangulation may not have (8.9.5), and vertices for
-// outer_ring (8.9.6).
+// The surroundings of a ring: edges that a triangulation must not have (8.9.5), and vertices
+// for outer_ring (8.9.6).
 struct Surroundings {
   EdgeSet barred = 0;
   std::size_t num_vertices = 0;
@@ -183,7 +181,7 @@ class LayerMaker {
   std::vector<std::uint8_t> locked_in_pass_;  // [num_vertices]
   std::vector<std::uint32_t> removed_;        // in order
   std::vector<std::size_t> removed_before_;   // [pass - 1]: how many before that pass
-  // Of the vertices removed in this pass, in order: noted for outer_ring.
+  // Vertices removed in this pass, in order, for outer_ring.
   std::vector<std::uint32_t> around_;
   std::vector<std::uint32_t> around_end_;
   // [num_vertices]: 0, except within a function that sets it: place in a fan or
@@ -261,7 +259,7 @@ void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
   static constexpr auto kEdgesToPlaces = edges_to_places();
   EdgeSet sides = ring.closed ? edge(0, ring.size - 1) : 0;
   for (std::size_t i = 0; i + 1 < ring.size; ++i) sides |= edge(i, i + 1);
-  constexpr std::uint8_t kNoPlace = kMaxRing + 1;  // looked at before, but not of the ring
+  constexpr std::uint8_t kNoPlace = kMaxRing + 1;  // visited, but not in the ring
   place_[v] = kNoPlace;
   for (std::size_t i = 0; i < ring.size; ++i) {
     place_[ring.vertices[i]] = static_cast<std::uint8_t>(i + 1);
@@ -323,7 +321,7 @@ const Triangulation* LayerMaker::choose_triangulation(const Ring& ring, EdgeSet 
   return best;
 }
 
-// 8.9.6 Removal of a vertex: false if it has to stay.
+// 8.9.6 Removal of a vertex: false if it must stay.
 bool LayerMaker::remove_vertex(std::uint32_t v) {
   const std::optional<Ring> ring = find_ring(v);
   if (!ring) return false;
@@ -367,7 +365,7 @@ void LayerMaker::remove_layer(std::vector<std::uint32_t>& rest) {
   set_outer_rings(std::span(removed_).subspan(before));
 }
 
-// 8.9.6 Removal of a vertex: LowerLayersOnly( v, list ), which is what is there after the pass.
+// 8.9.6 Removal of a vertex: LowerLayersOnly( v, list ): what remains after the pass.
 void LayerMaker::set_outer_rings(std::span<const std::uint32_t> removed) {
   std::size_t begin = 0;
   for (std::size_t i = 0; i < removed.size(); ++i) {
@@ -383,8 +381,7 @@ void LayerMaker::set_outer_rings(std::span<const std::uint32_t> removed) {
   }
 }
 
-// 8.9.1 General: each pass but the last takes out a sixteenth, and three
-// vertices stay.
+// 8.9.1 General: each pass but the last removes a sixteenth, and three vertices stay.
 constexpr std::uint32_t max_layers(std::uint32_t num_vertices) {
   std::uint32_t layers = 1;
   for (; num_vertices > 3; num_vertices -= (num_vertices + 15) / 16) ++layers;
@@ -392,7 +389,7 @@ constexpr std::uint32_t max_layers(std::uint32_t num_vertices) {
 }
 static_assert(max_layers(1U << 23) == kMaxLayers);
 
-// 8.9.7 Order of the layers, and base: until here, layer_of_vertex is the pass.
+// 8.9.7 Order of the layers, and base: up to here, layer_of_vertex is the pass.
 void LayerMaker::order_layers(const std::vector<std::uint32_t>& base) {
   layers_.num_layers = num_passes_ + 1U;
   assert(layers_.num_layers <= kMaxLayers);  // so that a pass fits into 8 bits

@@ -24,7 +24,7 @@ class VertexLists {
     return std::span<const std::uint32_t>(items_).subspan(first_[v], size_[v]);
   }
   std::size_t size() const { return first_.size(); }
-  // Once for a vertex at most; the lists of the others are empty. At most 255 items.
+  // At most once per vertex; unset lists are empty. At most 255 items.
   void set(std::uint32_t v, std::span<const std::uint32_t> items);
 
  private:
@@ -47,8 +47,7 @@ struct VertexLayers {
 //   triangles     at most 2^24, of any kind; indices < num_vertices
 //
 // The vertices of ring[v] and outer_ring[v] come before v in layer_order, and are of lower
-// layers if v is not of the base. Takes time and memory in proportion to vertices and
-// triangles.
+// layers if v is not of the base. Time and memory are linear in vertices and triangles.
 VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
 }  // namespace rlpc

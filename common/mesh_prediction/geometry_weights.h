@@ -1,5 +1,5 @@
-// 8.11 Geometry weights: from the place of a vertex among its rings in the rest shape, the
-// weights with which it is predicted from them.
+// 8.11 Geometry weights: the weights with which a vertex is predicted from its rings, derived
+// from their positions in the rest shape.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ inline constexpr int kWeightFractionBits = 14;
 
 class GeometryWeights {
  public:
-  // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh is
-  // one with layers.
+  // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh must
+  // have layers.
   GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 

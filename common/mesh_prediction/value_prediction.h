@@ -1,5 +1,4 @@
-// 8.10.3 Prediction of a value: spatial values of a vertex, from those of the vertices before
-// it.
+// 8.10.3 Prediction of a value: spatial values of a vertex from those of preceding vertices.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// 8.13 Influences of a vertex: what its ring tells about them. The parser and the writer drive
-// it in the same way.
+// 8.13 Influences of a vertex, predicted from its ring. The parser and the writer drive it in
+// the same way.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ namespace rlpc {
 // From StartInfluences( ) to EndInfluences( ), for one vertex after the other.
 class InfluencePrediction {
  public:
-  // influences [num_vertices]: of the vertices so far; must outlive it.
+  // influences [num_vertices]: of the preceding vertices; must outlive it.
   InfluencePrediction(std::span<const Influences> influences, std::uint32_t num_bones,
                       int weight_bits)
       : influences_(influences), num_bones_(num_bones), total_(1 << weight_bits) {}
 
-  void start(std::span<const std::uint32_t> ring);  // it must stay until finish()
+  void start(std::span<const std::uint32_t> ring);  // must stay valid until finish()
 
-  // Extra bones: those that are no candidates.
+  // Extra bones: those that are not candidates.
   bool can_add_bone() const {
     return num_extra_ < kMaxExtraBones && left_ > 0 &&
            static_cast<std::size_t>(num_extra_) + candidates_.size() < num_bones_;
@@ -30,7 +30,7 @@ class InfluencePrediction {
   int weight_left() const { return left_; }
   void add_extra_bone(std::uint32_t bone, int weight);  // 0 < weight <= weight_left()
 
-  // Candidates 1 to num_candidates() - 1, in order; the first one gets what is left.
+  // Candidates 1 to num_candidates() - 1, in order; the first one gets the remaining weight.
   std::size_t num_candidates() const { return candidates_.size(); }
   std::uint16_t candidate(std::size_t k) const { return candidates_[k].bone; }
   bool has_residual() const { return left_ > 0 && found_.size < kMaxInfluences - 1; }

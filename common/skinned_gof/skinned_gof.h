@@ -1,5 +1,5 @@
-// 6.11 and 6.12: a GOF of the Main profile, bones and slices. What the parser hands to
-// reconstruction, and the analysis to the writer.
+// 6.11 and 6.12: a skinned GOF with its slices. Passed from the parser to reconstruction, and
+// from the analysis to the writer.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ inline constexpr int kMaxTemporalPredictor = 7;
 using TrackResiduals = std::vector<Vec3i>;
 
 struct Bone {
-  std::int32_t parent = -1;  // a bone before
+  std::int32_t parent = -1;  // an earlier bone
   Vec3i pivot{};             // 1/16 grid units, a signed number of position_bits + 5 bits
   bool rotation_flag = false;
   std::uint32_t rotation_step_idx = 0;
@@ -68,8 +68,7 @@ struct Trajectory {
   TrackResiduals residual;
 };
 
-// What absent slices would hold is zero; influences are then predicted (8.14.1), which
-// reconstruction does.
+// Values of absent slices are zero; reconstruction then predicts the influences (8.14.1).
 struct SkinnedGof : GofHeader {
   SkinnedGof() { kind = GofKind::kSkinned; }
 

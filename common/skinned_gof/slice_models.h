@@ -1,4 +1,4 @@
-// Models and contexts of a GOF of bones (clause 9.8). The parser and the writer drive them in
+// Models and contexts of a skinned GOF (clause 9.8). The parser and the writer drive them in
 // the same way.
 #pragma once
 
@@ -29,7 +29,7 @@ struct BoneModels {
   ResidualModels origin;
 };
 
-// 9.8.1: of the slices of a GOF, but for those of spatial residuals.
+// 9.8.1: of the slices of a GOF, except those of spatial residuals.
 struct SliceModels {
   std::array<BitModel, kMaxTemporalPredictor> temporal_predictor;
   std::array<BitModel, kMaxExtraBones> extra_bone_flag;
@@ -44,7 +44,7 @@ class VertexContexts {
  public:
   VertexContexts(const CodedMesh& mesh, std::size_t num_factors);
 
-  // Before the residuals of a vertex, which follow factor by factor.
+  // Call before the residuals of a vertex, which follow factor by factor.
   void start(std::uint32_t v);
   // Of the next residual.
   std::uint32_t expected() const {

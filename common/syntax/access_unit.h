@@ -1,5 +1,5 @@
-// One GOF of a stream as parsed: the GOF unit, the slice units behind it, and its hash. Made by
-// decoder/parse/access_unit_parser.h; whoever looks at a GOF looks here, and make_recon()
+// One GOF of a stream as parsed: the GOF unit, its slice units, and its hash. Made by
+// decoder/parse/access_unit_parser.h; all inspection of GOFs goes through it, and make_recon()
 // (decoder/recon/gof_recon.h) decodes it.
 #pragma once
 
@@ -29,10 +29,10 @@ struct SliceEntry {
 struct AccessUnit {
   AnyGof gof;
   std::vector<SliceEntry> slices;  // in the order of the stream
-  std::optional<GofHash> hash;     // none: there is no hash unit, or it was not wanted
+  std::optional<GofHash> hash;     // none: no hash unit, or not requested
   std::uint64_t gof_bytes = 0;     // of the GOF unit
-  // Slices were left out on request (SliceCut): they are not among `slices`, and the hash is
-  // not that of the positions that are left.
+  // Slices were dropped on request (SliceCut): they are not among `slices`, and the hash does
+  // not match the remaining positions.
   bool is_cut = false;
 
   const GofHeader& header() const {

@@ -1,4 +1,4 @@
-// 6.5 gof( ): what every kind of GOF begins with.
+// 6.5 gof( ): the beginning of every kind of GOF.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 namespace rlpc {
 
 enum class GofKind : std::uint8_t {
-  kClusters,  // 6.5: clusters in local frames
-  kSkinned,   // 6.11: bones, and trajectories of what they leave
+  kClusters,  // 6.5: clusters in local coordinate frames
+  kSkinned,   // 6.11: bones, and trajectories for the residual
 };
 
-// What it is made of, for people.
+// Its main elements, for messages: "clusters", "bones".
 constexpr const char* kind_name(GofKind kind) {
   return kind == GofKind::kSkinned ? "bones" : "clusters";
 }

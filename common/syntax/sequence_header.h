@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Each minor version adds a profile: they have the same numbers.
+// Each minor version adds a profile of the same number.
 inline constexpr std::uint32_t kProfileBaseline = 0;
 inline constexpr std::uint32_t kProfileMain = 1;
 

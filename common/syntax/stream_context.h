@@ -1,4 +1,4 @@
-// What all GOFs of a stream are parsed and reconstructed with.
+// What parsing and reconstruction of all GOFs of a stream share.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace rlpc {
 struct StreamContext {
   SequenceHeader header;
   Topology topology;
-  std::optional<CodedMeshes> meshes;  // if the profile has GOFs of bones
+  std::optional<CodedMeshes> meshes;  // if the profile has skinned GOFs
 
   StreamContext() = default;
   StreamContext(const StreamContext&) = delete;

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// 6.1: the first byte is no text, and a transfer that rewrites line ends is noticed.
+// 6.1: the first byte is not text, and a transfer that converts line ends is detected.
 inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
                                                         'C',  0x0D, 0x0A, 0x1A};
 

@@ -1,4 +1,4 @@
-// 6.1, 6.2 and 6.7 to 6.9, writing side: what the encoder writes, and whoever cuts a stream.
+// 6.1, 6.2 and 6.7 to 6.9, writing side, for the encoder and the sub-stream extractor.
 #pragma once
 
 #include <cstdint>

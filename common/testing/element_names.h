@@ -1,4 +1,4 @@
-// What a trace says, as text for tests: "name value value\nname value ...".
+// A trace as text, for tests: "name value value\nname value ...".
 #pragma once
 
 #include <cstdint>

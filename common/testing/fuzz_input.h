@@ -1,4 +1,5 @@
-// What the fuzz targets share: numbers from the front of an input, and checks in every build.
+// Shared by the fuzz targets: reads numbers off the front of an input, and checks in every
+// build.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 
 namespace rlpc {
 
-// Takes an input apart from its front; past the end there are zeros, and no bytes.
+// Consumes an input from its front; past the end, numbers are zero and byte strings empty.
 class FuzzInput {
  public:
   FuzzInput(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}

@@ -1,4 +1,4 @@
-// Random legal GOFs of bones, for tests. Fields take the ends of their ranges often.
+// Random legal skinned GOFs, for tests. Fields are often at the ends of their ranges.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class RandomSkinnedGof {
   static constexpr int kResidualBits = 28;  // of a magnitude
   static_assert(kMaxResidual == (1U << kResidualBits) - 1);
 
-  // Knuth's linear congruential generator, of which the high bits serve.
+  // The high bits of Knuth's linear congruential generator.
   std::uint32_t random() {
     state_ = state_ * 6364136223846793005U + 1442695040888963407U;
     return static_cast<std::uint32_t>(state_ >> 33);
@@ -60,7 +60,7 @@ class RandomSkinnedGof {
     if (kind == 1) return most;
     return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
   }
-  // Within so many bits, but now and then of any size.
+  // Within this many bits, but occasionally of any size.
   std::int32_t residual(int bits) {
     if (random() % 64 == 0) bits = kResidualBits;
     const std::uint32_t range = std::uint32_t{1} << bits;
@@ -156,8 +156,7 @@ class RandomSkinnedGof {
     return t;
   }
 
-  // The slices that are there, none to all: each group has at most the layers of the one
-  // before.
+  // The slices present, none to all: each group has at most as many layers as the previous one.
   void make_slices(const CodedMesh& mesh, const SkinnedGofSizes& sizes) {
     gof.num_component_groups = below(sizes.max_groups + 1);
     gof.slice_layers.clear();
@@ -191,7 +190,7 @@ class RandomSkinnedGof {
     return sum;
   }
 
-  // As a parser finds them; those of absent layers as they are predicted.
+  // As parsed; predicted for absent layers.
   void make_influences(const CodedMesh& mesh) {
     gof.influences.assign(mesh.num_vertices(), {});
     const auto num_bones = static_cast<std::uint32_t>(gof.bones.size());

@@ -1,4 +1,4 @@
-// A section (9.3) bin by bin, also such as no writer makes: for tests of parsers.
+// A section (9.3) bin by bin, including ones that no writer produces, for tests of parsers.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Units of a GOF of bones element by element, also such as no writer makes: for tests of
-// parsers. Residuals are 0.
+// Units of a skinned GOF element by element, including ones that no writer produces, for tests
+// of parsers. Residuals are 0.
 #pragma once
 
 #include <array>
@@ -119,7 +119,7 @@ class SliceRecipe : public SectionRecipe {
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
   }
-  // Of the first vertex: bones and weights less 1, of so many bits each.
+  // Of the first vertex: bones, and weights minus 1, of this many bits each.
   void extra_bones(std::span<const std::pair<std::uint32_t, std::uint32_t>> bones,
                    int bone_bits, int weight_bits) {
     for (std::size_t i = 0; i < bones.size(); ++i) {

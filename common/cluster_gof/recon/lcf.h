@@ -1,4 +1,4 @@
-// Local coordinate frames (clause 8.4): from the positions of three seed vertices, in integers.
+// Local coordinate frames (clause 8.4): from the integer positions of three seed vertices.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct Lcf {
   std::array<Vec3l, 3> axis;  // x, y, z; unit vectors with 30 fractional bits
 };
 
-// 8.4.1 Frame of a seed triangle. |p| <= 2^23. Degenerate triangles have the results of 8.4.2.
+// 8.4.1 Frame of a seed triangle. |p| <= 2^23. Degenerate triangles yield the result of 8.4.2.
 Lcf make_lcf(const Vec3i& p1, const Vec3i& p2, const Vec3i& p3);
 
 // 8.4.3 World position of local coordinates; |local| <= 2^30.

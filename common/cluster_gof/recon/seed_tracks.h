@@ -11,13 +11,13 @@ namespace rlpc {
 
 using Track = std::vector<Vec3i>;  // [num_gof_frames], grid units
 
-// 8.2.1 Prediction of a seed position: one coordinate of track `index` in frame f, from the
-// frames before, from the anchor track and, in frame 0, from the track before. `tracks` holds
-// what is known so far.
+// 8.2.1 Prediction of a seed position: one coordinate of track `index` in frame f, from
+// previous frames, from the anchor track and, in frame 0, from the previous track. `tracks`
+// holds the positions known so far.
 std::int64_t predict_seed(const ClusterGof& gof, const std::vector<Track>& tracks,
                           std::size_t index, std::uint32_t f, std::size_t c);
 
-// All tracks; positions are clipped to position_bits, so that this cannot fail.
+// All tracks. Cannot fail: positions are clipped to position_bits.
 std::vector<Track> recon_seed_tracks(const ClusterGof& gof, int position_bits);
 
 }  // namespace rlpc

@@ -13,7 +13,7 @@ constexpr int kScaledBits = 28;  // floor of the logarithm of the largest coordi
 constexpr int kResidualBits = 31;
 constexpr int kOriginBits = 31;
 
-// Coordinate c of a series of which all values before frame f are known.
+// Coordinate c of a series whose values before frame f are known.
 template <class Series>
 std::int64_t predict_coordinate(const Series& series, std::size_t c, int order) {
   return predict_series([&](std::uint32_t f) { return series[f][c]; },
@@ -92,7 +92,7 @@ Quaternion BoneTracker::predicted_rotation() const {
   return normalize_quaternion(sums);
 }
 
-// Where the parent takes the pivot in the next frame.
+// Position of the pivot when moved by the parent in the next frame.
 Vec3l BoneTracker::anchor() const {
   if (parent_ == nullptr) return motion_.pivot;
   return moved_point(parent_->poses[motion_.poses.size()], parent_->pivot, motion_.pivot);
@@ -147,7 +147,7 @@ void BoneTracker::add(const Vec3i& rotation_residual, const Vec3i& origin_residu
 
 std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames) {
   std::vector<BoneMotion> motions;
-  motions.reserve(bones.size());  // trackers keep pointers to those of parents
+  motions.reserve(bones.size());  // trackers point to those of parents
   for (const Bone& bone : bones) {
     BoneTracker tracker(
         bone, bone.parent < 0 ? nullptr : &motions[static_cast<std::size_t>(bone.parent)]);

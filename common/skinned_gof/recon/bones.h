@@ -1,4 +1,4 @@
-// 8.12 Bones: rigid motions, from their residuals, in integers.
+// 8.12 Bones: rigid motions from residuals, in integers.
 #pragma once
 
 #include <array>
@@ -43,18 +43,18 @@ struct BoneMotion {
 // 8.12.3 Moved point; |point| < 2^31.
 Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point);
 
-// 8.12.2 Motion of a bone, frame by frame: the decoder adds the residuals of the stream, and
-// the encoder chooses them from what is predicted.
+// 8.12.2 Motion of a bone, frame by frame: the decoder adds the residuals of the stream, the
+// encoder derives them from the predictions.
 class BoneTracker {
  public:
-  // parent: the motion of the parent, which has all poses; null if there is none.
+  // parent: the complete motion of the parent; null if there is none.
   BoneTracker(const Bone& bone, const BoneMotion* parent);
 
-  // Prediction for the next frame: the rotation relative to the parent, and the origin that its
-  // parent and its own offset before give.
+  // Prediction for the next frame: the rotation relative to the parent, and the origin that
+  // follows from the parent and the previous offset.
   Quaternion predicted_rotation() const;
   Vec3l predicted_origin() const;
-  // Adds the next frame; residuals of what the bone has no flag for are not looked at.
+  // Adds the next frame; residuals that the flags of the bone exclude are ignored.
   void add(const Vec3i& rotation_residual, const Vec3i& origin_residual);
 
   const BoneMotion& motion() const { return motion_; }

@@ -152,7 +152,7 @@ void SkinnedRecon::add_influences(std::span<const Influences> influences,
     }
   }
   first_run_.push_back(runs_.size());
-  // The loops may read a vector past the end.
+  // The kernels may read one vector past the end.
   for (auto& list : arm_) list.resize(list.size() + 3);
   weight_.resize(weight_.size() + 3);
 }
@@ -186,11 +186,11 @@ void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
   }
 }
 
-// Where their bones take the rest positions of a tile, times the sum of the weights.
+// Rest positions of a tile as moved by their bones, times the sum of the weights.
 void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   const auto runs =
       std::span(runs_).subspan(first_run_[tile], first_run_[tile + 1] - first_run_[tile]);
-  // All vertices follow one bone alone: their places are those of the run.
+  // All vertices follow a single bone: the run holds their positions.
   const std::size_t n = std::min(kTileValues, num_vertices_ - tile * kTileValues);
   const bool alone = runs.size() == 1 && runs[0].end - runs[0].first == n;
   if (!alone) {

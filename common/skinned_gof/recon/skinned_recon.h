@@ -1,5 +1,5 @@
-// 8.10 and 8.14: a GOF of bones, from residuals to integer positions, frame by frame. Used by
-// the decoder and, closing its loop, by the encoder.
+// 8.10 and 8.14: a skinned GOF, from residuals to integer positions, frame by frame. Used by
+// the decoder, and by the encoder for closed-loop coding.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace rlpc {
 
-// 8.10.2 Spatial values: what a residual of the rest positions, or of trajectories, adds at a
-// vertex of a layer.
+// 8.10.2 Spatial values: the contribution of a residual of rest positions, or of trajectories,
+// at a vertex of a layer.
 inline std::int64_t rest_difference(const SkinnedGof& gof, std::int32_t residual,
                                     int layer_step) {
   return round2(std::int64_t{residual} * layer_step * gof.rest_step, 4);
@@ -37,13 +37,13 @@ std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& 
 // absent; [num_vertices].
 std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedGof& gof);
 
-// 8.14.2 PredictTrajectory( series, f ), from the values of the frames so far.
+// 8.14.2 PredictTrajectory( series, f ), from the values of the preceding frames.
 Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values);
 // 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
 std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory);
 
-// 8.14.3 Positions: where its bones take a point, by their weights; 4 fractional bits,
-// |point| < 2^31. The plain twin of what SkinnedRecon does for many vertices.
+// 8.14.3 Positions: a point moved by its bones, by their weights; 4 fractional bits, |point| <
+// 2^31. The plain twin of what SkinnedRecon does for many vertices.
 Vec3l skinned_point(const Influences& influences, int weight_bits,
                     std::span<const BoneMotion> bones, std::uint32_t f, const Vec3l& point);
 
