@@ -188,7 +188,7 @@ class GltfErrors(ToolsTest):
         self.refused(['"Dance"', '"Sway", "Visit"'], TULIP.read_bytes(), "--animation", "Dance")
         elephant = INPUTS / "elephant.obj"
         for source in ([elephant], [elephant, "--points", INPUTS / "elephant.pc2"], [INPUTS]):
-            self.fails(1, "only .glb and .gltf", "rlpcenc", *source, "--animation", "Walk", "-o",
+            self.fails(1, "--animation is for .glb and .gltf files", "rlpcenc", *source, "--animation", "Walk", "-o",
                        self.path("a.rlpc"))
 
     def test_standard_input_is_named(self):

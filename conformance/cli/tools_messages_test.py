@@ -108,7 +108,7 @@ class Messages(ToolsTest):
                                      ("turned.obj", "turned.pc2", False)):
             said = self.ok("rlpcenc", self.path(mesh), "--points", self.path(points), "--dry-run",
                            "--kg", 1, "--preset", "fast").err
-            self.assertEqual("one is Y-up, the other Z-up" in said, differ, (mesh, points, said))
+            self.assertEqual("(one is Y-up, the other Z-up); the stream gets" in said, differ, (mesh, points, said))
 
     def test_choices_of_the_encoder_are_told_when_asked(self):
         self.clip(4)

@@ -47,7 +47,7 @@ rlpc_frame_format default_format() {
   return format;
 }
 
-// None: one of the choices is none of those there are.
+// None: a value outside its enumeration.
 std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   EncoderSettings settings;
   switch (options.profile) {

@@ -11,18 +11,18 @@
 //   if (status != RLPC_OK) fprintf(stderr, "%s\n", rlpc_encoder_error_text(encoder));
 //   rlpc_encoder_close(encoder);
 //
-// Frames go in one by one; memory stays within one group of frames (GOF) and its analysis. Each
-// GOF is encoded, and its bytes are given to the caller, when its last frame is there; that
-// call takes nearly all of the time. Each GOF meets the target by itself, and so does the whole
-// stream (frame_encoder.h says how). The same frames and options give the same bytes on every
-// machine. Nothing throws or ends the process. A handle is used by one thread at a time;
-// different handles are independent.
+// Frames go in one by one; memory is bounded by one group of frames (GOF) and its analysis.
+// Each GOF is encoded, and its bytes are passed to the caller, with its last frame; that call
+// takes nearly all of the time. Each GOF meets the target by itself, and so does the whole
+// stream (see frame_encoder.h). The same frames and options give the same bytes on every
+// machine. Nothing throws or aborts. A handle is used by one thread at a time; different
+// handles are independent.
 //
-// Memory: frames, bytes and reports are in buffers of the caller or only shown to him, who has
-// nothing to free but the handle, which can stand in memory of the caller as well (place). What
-// the analysis needs it takes with the allocator of C++; it cannot be given another one. If
-// memory ends, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which gives
-// all of it back.
+// Memory: frames and reports are in the caller's buffers, and output is passed to a callback;
+// the handle is the only thing to free, and it can live in the caller's memory as well (place).
+// The analysis allocates with C++ operator new, without a hook for other allocators. If memory
+// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
+// everything.
 #pragma once
 
 #include <stddef.h>
@@ -34,20 +34,20 @@
 extern "C" {
 #endif
 
-// NOLINTBEGIN(readability-identifier-naming): names as they are usual in C.
+// NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef struct rlpc_encoder rlpc_encoder;
 
-// What has to be known before the first frame.
+// What must be known before the first frame.
 typedef struct rlpc_frame_format {
   size_t struct_size;             // rlpc_frame_format_init sets it
   uint32_t num_vertices;          // at least 1
   uint32_t num_triangles;         // 0: a point cloud
   const uint32_t* indices;        // 3 * num_triangles, each below num_vertices; copied
-  uint32_t num_frames;            // at least 1; as many have to come
-  uint32_t frame_rate_numerator;  // frames per second: 30 / 1 by default
+  uint32_t num_frames;            // at least 1; exactly this many frames must follow
+  uint32_t frame_rate_numerator;  // frames per second; default 30 / 1
   uint32_t frame_rate_denominator;
-  // Within 2^100, and no coordinate of any frame is outside. A box that is far too large makes
-  // the grid coarser.
+  // Bounding box of all frames, within 2^100. A box that is much too large makes the grid
+  // coarser.
   float box_min[3];
   float box_max[3];
 } rlpc_frame_format;
@@ -69,27 +69,27 @@ typedef enum rlpc_hash_mode {
 } rlpc_hash_mode;
 
 typedef struct rlpc_encode_options {
-  size_t struct_size;    // rlpc_encode_options_init sets it
-  uint32_t profile;      // RLPC_MAIN by default
-  uint32_t preset;       // RLPC_MEDIUM
-  uint32_t target;       // RLPC_TARGET_KG: reached from below, within 2 % where it can be
-  double target_value;   // 0.1; above zero and finite
-  uint32_t gof_frames;   // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
-  uint32_t components;   // of a GOF (Main) or cluster (Baseline), up to 1024; 0: chosen
-  uint32_t keep_order;   // 1: restore the order of vertices that the frames have here; or 0
-  uint32_t hash_mode;    // RLPC_HASH_GOF
-  uint32_t least_level;  // 1; more where an error asks for it
-  // JSON text to carry along, not checked, up to 1 MiB; null: none. Copied.
+  size_t struct_size;   // rlpc_encode_options_init sets it
+  uint32_t profile;     // default RLPC_MAIN
+  uint32_t preset;      // default RLPC_MEDIUM
+  uint32_t target;      // default RLPC_TARGET_KG; approached from below, within 2 % if possible
+  double target_value;  // default 0.1; above zero and finite
+  uint32_t gof_frames;  // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
+  uint32_t components;  // per GOF (Main) or cluster (Baseline), up to 1024; 0: chosen
+  uint32_t keep_order;  // 1: decoders restore the vertex order of the input; 0: they do not
+  uint32_t hash_mode;   // default RLPC_HASH_GOF
+  uint32_t least_level;  // default 1; more where an error message asks for it
+  // JSON text to carry along, not validated, up to 1 MiB; null: none. Copied.
   const char* metadata;
-  // Memory for the handle, of rlpc_encoder_bytes() bytes and aligned as that of malloc, which
-  // must stay until the handle is closed. Null: it is allocated.
+  // Memory for the handle: rlpc_encoder_bytes() bytes, aligned as by malloc, valid until the
+  // handle is closed. Null: allocated by the library.
   void* place;
   size_t place_bytes;
-  uint64_t max_memory_bytes;  // beyond it: RLPC_LIMIT_EXCEEDED. 32 GiB by default; estimated
+  uint64_t max_memory_bytes;  // if exceeded: RLPC_LIMIT_EXCEEDED; default 32 GiB; estimated
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
-  size_t struct_size;  // as given to rlpc_encoder_finish
+  size_t struct_size;  // as passed to rlpc_encoder_finish
   uint64_t num_bytes;
   double bpvf;  // bits per vertex and frame, everything counted
   double kg_error_percent;
@@ -97,46 +97,46 @@ typedef struct rlpc_encode_report {
   double max_error;
   uint32_t num_gofs;
   uint32_t level;
-  uint32_t target_met;  // 1: by every GOF
+  uint32_t target_met;  // 1: in every GOF
 } rlpc_encode_report;
 
-// Takes the next bytes of the stream. Returns 0, or another value if they could not be written.
+// Receives the next bytes of the stream. Returns 0 on success.
 typedef int (*rlpc_write_function)(void* user, const void* bytes, size_t num_bytes);
 // NOLINTEND(readability-identifier-naming)
 
-// Set all to the defaults, or zero. struct_size: that of the structure.
+// Set all members to their defaults, or zero. struct_size: sizeof the structure.
 RLPC_API void rlpc_frame_format_init(rlpc_frame_format* format, size_t struct_size);
 RLPC_API void rlpc_encode_options_init(rlpc_encode_options* options, size_t struct_size);
 
-// What a handle takes in memory of the caller.
+// Size of a handle, for rlpc_encode_options.place.
 RLPC_API size_t rlpc_encoder_bytes(void);
 
-// Begins a stream. options may be null. *encoder is a handle also if that fails, for its error
-// text, and is to be closed; it is null if an argument is null or wrong, or without memory for
-// a handle. RLPC_BAD_INPUT: no such stream can be; RLPC_LIMIT_EXCEEDED: encoding it may need
-// more than max_memory_bytes.
+// Begins a stream. options may be null. On failure, *encoder is still a handle, for its error
+// text, and must be closed; it is null only if an argument is null or invalid, or if there is
+// no memory for a handle. RLPC_BAD_INPUT: no stream can represent this; RLPC_LIMIT_EXCEEDED:
+// encoding may need more than max_memory_bytes.
 RLPC_API rlpc_status rlpc_encoder_create(const rlpc_frame_format* format,
                                          const rlpc_encode_options* options,
                                          rlpc_write_function write, void* user,
                                          rlpc_encoder** encoder);
-// A stream that is not finished is no whole stream. encoder may be null.
+// Without rlpc_encoder_finish the stream is incomplete. encoder may be null.
 RLPC_API void rlpc_encoder_close(rlpc_encoder* encoder);
 
-// Of the last call that failed; "" if none did. Until the next call for the handle.
+// The error of the last failed call; "" if none failed. Valid until the next call on the
+// handle.
 RLPC_API const char* rlpc_encoder_error_text(const rlpc_encoder* encoder);
 
 // The next frame: x, y and z of each vertex, in units. num_values: 3 * num_vertices.
 // RLPC_BAD_INPUT: a coordinate outside the box, or more frames than announced; RLPC_IO_FAILED:
-// the caller's function failed. These errors stand: later calls return them again.
+// the callback failed. These errors are sticky.
 RLPC_API rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz,
                                             size_t num_values);
-// After the last frame: ends the stream. RLPC_BAD_INPUT: there are fewer frames than announced.
-// report may be null, else struct_size is sizeof *report.
+// After the last frame: ends the stream. RLPC_BAD_INPUT: fewer frames than announced. report
+// may be null, otherwise struct_size is sizeof *report.
 RLPC_API rlpc_status rlpc_encoder_finish(rlpc_encoder* encoder, rlpc_encode_report* report,
                                          size_t struct_size);
-// After rlpc_encoder_finish: of each vertex as it is decoded, its index in the frames given
-// here (unless keep_order was set, with which they come out in the order of these). num_values:
-// num_vertices.
+// After rlpc_encoder_finish: the input index of each decoded vertex. (With keep_order, vertices
+// are decoded in input order.) num_values: num_vertices.
 RLPC_API rlpc_status rlpc_encoder_vertex_order(rlpc_encoder* encoder, uint32_t* input_vertex,
                                                size_t num_values);
 

@@ -71,9 +71,10 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
   const std::string& path = options.path;
   const InputFormat* const format = format_of(path);
   if (format == nullptr && is_stream(path)) {
-    return InputError{name_of_input(path) +
-                      ": is an RLPC stream already; rlpcdec decodes it, and rlpcinfo --extract "
-                      "makes a smaller one of it"};
+    return InputError{
+        name_of_input(path) +
+        ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo --extract makes "
+        "it smaller"};
   }
   if (format == nullptr) {
     return InputError{name_of_input(path) +
@@ -105,9 +106,9 @@ std::optional<InputError> check_gltf_options(const InputOptions& options) {
   if ((options.animation.empty() && options.weld) || has_clips(options)) return std::nullopt;
   return InputError{name_of_input(options.path) +
                     (options.weld
-                         ? ": only .glb and .gltf files have animations to choose from"
-                         : ": only of .glb and .gltf files are vertices joined; all are kept "
-                           "here without asking")};
+                         ? ": --animation is for .glb and .gltf files"
+                         : ": --no-weld is for .glb and .gltf files; other formats are never "
+                           "welded")};
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
@@ -122,7 +123,7 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
         path, options.points, options.frame_rate, options.max_memory_bytes);
   }
   if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
-  // A file of exactly this name comes first, whatever characters are in it.
+  // A file with exactly this name takes precedence over a pattern.
   const std::string name = fs::path(path).filename().string();
   if (!exists && name.find('%') != name.npos) {
     return open_listed(list_mesh_pattern(path), options);

@@ -15,11 +15,11 @@
 
 namespace rlpc {
 
-// One line for the user: the file, the line, byte or frame in it, what was expected and what to
-// do about it.
+// One line for the user: the file; the line, byte or frame in it; what was expected, and what
+// to do.
 struct InputError {
   std::string message;
-  bool is_limit = false;  // nothing is wrong but that a limit of the caller is lower
+  bool is_limit = false;  // the input may be fine, but exceeds a limit of the caller
 };
 template <class T>
 using InputResult = Result<T, InputError>;
@@ -46,12 +46,12 @@ class FrameSource {
   FrameRate frame_rate() const { return shape_.frame_rate; }
   // Every index is below num_vertices(). May be empty: a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
-  // For the user, a line each: what of the input was left out or joined.
+  // For the user, one line each: what was dropped or merged.
   const std::vector<std::string>& notes() const { return shape_.notes; }
-  // All that is read, also what the input only points to.
+  // All files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
 
-  // What the source keeps in memory, about.
+  // Memory held by the source, estimated.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
 
   // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
@@ -67,7 +67,7 @@ class FrameSource {
   Shape shape_;
 };
 
-// The limit of memory, if nobody says otherwise.
+// The default memory limit.
 inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 
 // What to read:
@@ -82,36 +82,36 @@ inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 //   x.rlpd                      decoder output (Annex A)
 //   x.glb, x.gltf               the scene of a glTF 2.0 document, moved by its animations
 //   -                           standard input: any of these files
-// A name without a known extension: by how the file begins.
+// Without a known extension, the format is detected from the contents.
 //
-// Frame rate: `frame_rate` if given; else that of the .rlpd header, or of a comment
-// "# frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), which
-// our own writers leave there; else that of the times of an MDD file; else 30. The sample rate
-// of a PC2 file is not a frame rate: it counts frames per sample, is 1 in nearly every file
-// whatever the speed of the animation, and is not used. Animations of glTF are sampled at the
-// frame rate.
+// Frame rate: `frame_rate` if given; otherwise that of the .rlpd header, or of a comment "#
+// frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), which our
+// own writers leave there; otherwise that of the times of an MDD file; otherwise 30. The sample
+// rate of a PC2 file is not a frame rate: it counts frames per sample, is 1 in nearly every
+// file regardless of the speed, and is not used. Animations of glTF are sampled at the frame
+// rate.
 struct InputOptions {
   std::string path;
   std::string points;  // empty: none
   std::optional<FrameRate> frame_rate;
   std::string animation{};  // of glTF: a name, an index from 0, or "all"; empty: the first
-  bool weld = true;         // of glTF: join vertices that coincide in every frame
-  // What needs more is an error; estimated. Files may claim much more than they have.
+  bool weld = true;         // of glTF: merge vertices that coincide in every frame
+  // Input that needs more is an error; estimated. Files may claim far more than they hold.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };
 
 // Checks what can be checked without reading every frame; read_frame() checks the rest.
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options);
 
-// Whether the input may have several animations to choose from, and vertices to weld.
+// Whether the format may hold several animations, and vertices to weld.
 bool has_clips(const InputOptions& options);
-// Error: options of glTF (animation, no welding) are set for other input.
+// An error if glTF options (animation, no welding) are set for other input.
 std::optional<InputError> check_gltf_options(const InputOptions& options);
 
 // "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
 InputResult<FrameRate> parse_frame_rate(std::string_view text);
 
-// The rate that is meant by a number of about five digits: a whole one, N * 1000 / 1001, or
+// The rate meant by a number with about five digits: an integer, N * 1000 / 1001, or
 // thousandths. None outside 2 to 1000.
 std::optional<FrameRate> frame_rate_near(double frames_per_second);
 

@@ -214,7 +214,7 @@ TEST_F(FrameSourceTest, TellsAPointCacheByWhatIsInIt) {
   for (const std::string& bytes : {std::string(), good.substr(0, 87), good + "x", "x" + good,
                                    mdd(2, 3, 3, values), mdd(3, 0, 0, {})}) {
     expect_error({mesh, put("cache", bytes), {}},
-                 "nor does it fit " + mesh + ", of 3 vertices, as MDD");
+                 "nor an MDD one of the 3 vertices of " + mesh);
   }
 }
 
@@ -222,9 +222,9 @@ TEST_F(FrameSourceTest, RefusesOptionsOfGltfForOtherFiles) {
   const std::string mesh = put("a.obj", kTriangle);
   const std::string points = put("a.pc2", pc2(3, 1, std::vector<float>(9)));
   for (const std::string& cache : {std::string(), points}) {
-    expect_error({mesh, cache, {}, "Walk"},
-                 mesh + ": only .glb and .gltf files have animation");
-    expect_error({mesh, cache, {}, "", false}, mesh + ": only of .glb and .gltf files are");
+    expect_error({mesh, cache, {}, "Walk"}, mesh + ": --animation is for .glb and .gltf files");
+    expect_error({mesh, cache, {}, "", false},
+                 mesh + ": --no-weld is for .glb and .gltf files");
   }
 }
 

@@ -1,4 +1,4 @@
-// A regular file, or standard input as "-", that is read at offsets; every failure names it.
+// A regular file, or standard input as "-", read at offsets; every error names it.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ namespace rlpc {
 
 class InputFile {
  public:
-  // Standard input is read whole when it is first opened, up to max_memory_bytes, and may be
+  // Standard input is read completely when first opened, up to max_memory_bytes, and may be
   // opened again.
   static InputResult<InputFile> open(const std::string& path,
                                      std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-  const std::string& path() const { return path_; }  // as name_of_input() gives it
+  const std::string& path() const { return path_; }  // as from name_of_input()
   std::uint64_t size() const { return size_; }
-  // What is kept of it in memory.
+  // Memory held.
   std::uint64_t memory_bytes() const { return stream_ ? 0 : size_; }
   // Fills `bytes`; offset + bytes.size() <= size().
   std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
@@ -35,26 +35,26 @@ class InputFile {
   std::unique_ptr<std::ifstream> stream_;  // none: standard input
 };
 
-// Without white space at its start.
+// Without leading white space.
 inline std::string_view after_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == text.npos ? std::string_view() : text.substr(first);
 }
 
-// The first bytes, 64 at most; none if it cannot be read. Of standard input, no more is read.
+// The first bytes, at most 64; none if it cannot be read. Reads no more of standard input.
 std::string beginning_of(const std::string& path);
 
-// `size` bytes from `offset`, which lie in the file.
+// `size` bytes from `offset`, within the file.
 InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size);
 
-// The whole file. Refuses an empty one, and one of more than max_memory_bytes.
+// The whole file. Refuses empty files, and those of more than max_memory_bytes.
 InputResult<std::string> read_whole_file(const std::string& path,
                                          std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-// For messages: what takes more memory than there may be.
+// For messages: the memory limit is exceeded.
 std::string memory_problem(std::uint64_t max_memory_bytes);
 
-// Error for the first value of a frame that is NaN or infinite.
+// An error for the first NaN or infinite value of a frame.
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
                                        std::span<const float> xyz);
 

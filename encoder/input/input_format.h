@@ -1,5 +1,5 @@
-// The formats that input is read from. A format is a definition beside its reader, and a line
-// in input_format.cpp.
+// The input formats. A format is a definition next to its reader, and a line in
+// input_format.cpp.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct InputFormat {
 
   Holds holds;
   std::span<const std::string_view> extensions;  // lower case, ".obj"
-  // Whether a file of this format may begin so, 64 bytes at most; null: the contents do not
-  // tell.
+  // Whether a file of this format may begin with these bytes, at most 64; null: not
+  // recognisable by its contents.
   bool (*begins)(std::string_view beginning) = nullptr;
   bool has_clips = false;  // --animation and welding apply
 
@@ -37,19 +37,19 @@ struct InputFormat {
       const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) = nullptr;
 };
 
-// Those that the beginning of a file tells most surely come first.
+// The most reliably recognised formats come first.
 std::span<const InputFormat* const> input_formats();
 
-// By the extension, otherwise by the contents; null: neither is of a known format.
+// By the extension, otherwise by the contents; null: unknown.
 const InputFormat* format_of(const std::string& path);
 // By the extension alone.
 const InputFormat* format_of_extension(const std::string& path);
 
-// ".obj, .off or .ply": of the formats that hold such.
+// ".obj, .off or .ply": the extensions of formats of these kinds.
 std::string extensions_text(std::initializer_list<InputFormat::Holds> holds);
 
-// A file that exists beside `path`, with its name but an extension of a format that holds such;
-// empty: there is none.
+// An existing file next to `path` that differs only in its extension, one of a format of this
+// kind; empty: none.
 std::string sibling_of(const std::string& path, InputFormat::Holds holds);
 
 }  // namespace rlpc

@@ -25,8 +25,8 @@ InputResult<SingleMesh> read_mesh(const std::string& path, std::uint64_t max_mem
   const bool known = format != nullptr && format->parse != nullptr;
   const InputError unknown{name + ": not a mesh (" +
                            extensions_text({InputFormat::Holds::kMesh}) +
-                           "), neither by name nor by contents"};
-  // Standard input is not read for that.
+                           "), by neither name nor contents"};
+  // Does not read all of standard input for this.
   if (path == "-" && !known && !beginning_of(path).empty()) return unknown;
   const auto text = read_whole_file(path, max_memory_bytes);
   if (!text) return text.error();

@@ -1,4 +1,4 @@
-// One mesh from one file: what a frame of a sequence is, and what a point cache moves.
+// One mesh from one file: a frame of a sequence, or the mesh of a point cache.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,12 @@ struct SingleMesh {
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
 };
 
-// What a mesh may take in memory, beside the text that it is read from.
+// Memory limits of a mesh, in addition to the text that it is read from.
 struct MeshLimit {
   std::uint64_t of_all = kUsualEncoderBytes;  // for messages
   std::uint64_t of_mesh = kUsualEncoderBytes;
 
-  // Whether a vector of the mesh can have one element more: it takes three times its memory
-  // while it grows.
+  // Whether a vector of the mesh may grow by one element: growing takes three times its memory.
   template <class T>
   bool leaves_room(const SingleMesh& mesh, const std::vector<T>& grows) const {
     if (grows.size() < grows.capacity()) return true;

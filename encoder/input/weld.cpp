@@ -21,7 +21,7 @@ Position position(std::span<const float> xyz, std::uint32_t vertex) {
   return {xyz[first], xyz[first + 1], xyz[first + 2]};
 }
 
-// A group of vertices that were together so far, and a place where some of them are now.
+// A group of vertices that coincided so far, and a position where some of them are now.
 struct Part {
   std::uint32_t leader = 0;
   Position place{};
@@ -46,7 +46,7 @@ void split(std::span<const float> xyz, std::vector<std::uint32_t>& leader) {
   for (std::uint32_t v = 0; v < leader.size(); ++v) {
     const Position place = position(xyz, v);
     if (place == position(xyz, leader[v])) continue;
-    // The first to leave leads all that leave to the same place.
+    // The first to leave leads all that move to the same position.
     leader[v] = leader_of.try_emplace({leader[v], place}, v).first->second;
   }
 }

@@ -1,5 +1,5 @@
-// One vertex in place of several that are in the same place in every frame, as files have them
-// along the seams of normals and textures.
+// Merges vertices that coincide in every frame, as files have them along seams of normals and
+// textures.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace rlpc {
 
-// Reads all frames. Vertices keep their order, by the first of those that are joined. Drops
+// Reads all frames. Vertices keep their order, that of the first of each group. Drops
 // degenerate triangles.
 InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source);
 
-// Leaves out triangles with fewer than three different corners, and notes how many they were.
+// Drops triangles with fewer than three distinct corners, and adds a note with their number.
 void drop_degenerate(FrameSource::Shape& shape);
 
 }  // namespace rlpc

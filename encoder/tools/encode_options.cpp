@@ -317,7 +317,7 @@ void add_options(CLI::App& app, CommandLine& line) {
            RLPC_VERSION);
 }
 
-// Settings that take more than CLI11's own conversions; what is wrong with them.
+// Settings beyond CLI11's conversions; returns what is wrong with them.
 std::optional<std::string> finish_settings(const CommandLine& line) {
   EncodeOptions& o = line.options;
   EncoderSettings& s = o.settings;
@@ -386,7 +386,7 @@ std::optional<InputError> read_metadata(const CommandLine& line) {
   if (metadata.starts_with("\xEF\xBB\xBF")) {
     return InputError{line.metadata_path + ": begins with a byte order mark; JSON has none"};
   }
-  // The library takes a zero byte for the end.
+  // The JSON library takes a zero byte for the end.
   if (metadata.find('\0') != std::string::npos || !nlohmann::json::accept(metadata)) {
     return InputError{line.metadata_path + ": not valid JSON in UTF-8"};
   }

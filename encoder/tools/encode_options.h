@@ -12,8 +12,8 @@ namespace rlpc {
 struct EncodeOptions {
   InputOptions input;
   std::string output;     // "-": standard output
-  std::string order_map;  // likewise; empty: none
-  std::string quality;    // its word, if the target was given by one
+  std::string order_map;  // the same; empty: none
+  std::string quality;    // the word given, if any
   bool dry_run = false;
   bool json = false;
   bool verbose = false;
@@ -23,12 +23,11 @@ struct EncodeOptions {
 
 enum EncodeExitCode : int { kEncoded = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };
 
-// Reads the command line, and the metadata file that it names. Returns the exit code where
-// there is nothing left to do: after --help, or after it has said on standard error what is
-// wrong.
+// Reads the command line, and the metadata file that it names. Returns the exit code if nothing
+// is left to do: after --help, or after reporting an error.
 std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& options);
 
-// Says on standard error what went wrong; returns `code`.
+// Prints the message on standard error; returns `code`.
 int complain(const std::string& message, EncodeExitCode code = kFailed);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Figures as JSON for machines; the names are those of every tool.
+// Figures as JSON, under the same names in all programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// What both rlpcenc and rlpccmp report of a comparison. Infinite values become null.
+// Shared by rlpcenc and rlpccmp. Infinite values become null.
 inline nlohmann::ordered_json metrics_json(const Metrics& m) {
   return {{"kg_error_percent", m.kg_error_percent},
           {"rms_error", m.rms_error},

@@ -59,7 +59,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               r.trials, s(r.trials));
 }
 
-// Whether floats so far from the origin are farther apart than the error.
+// Whether floats this far from the origin are spaced wider than the error.
 bool is_far_away(const EncodeReport& report) {
   double farthest = 0.0;
   for (const std::int32_t origin : report.header.grid.origin) {
@@ -70,10 +70,10 @@ bool is_far_away(const EncodeReport& report) {
          kFloatSteps * report.metrics.rms_error;
 }
 
-// Where the target is met, but an encoding that comes closer was not found.
+// Reports a target that is met by a wide margin.
 void tell_if_far_below(const Target& target, const EncodeReport& report) {
   constexpr double kNear = 0.95;
-  constexpr double kNoError = 0.002;  // per cent: about what the finest grid leaves
+  constexpr double kNoError = 0.002;  // per cent: about the error of the finest grid
   const bool is_exact = report.metrics.kg_error_percent < kNoError;
   if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
     complain(
@@ -113,7 +113,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
       kTargetMissed);
 }
 
-// A target whose error should not be visible. Errors are about proportional to KG errors.
+// A target whose error should not be visible. RMS errors are about proportional to KG errors.
 std::string finer(const EncodeOptions& o, const Visibility& v) {
   const Target& target = o.settings.target;
   if (target.kind == Target::kNone) return "larger --qu and --qc";
@@ -130,7 +130,7 @@ std::string finer(const EncodeOptions& o, const Visibility& v) {
   return (target.kind == Target::kKg ? "--kg " : "--max-error ") + std::string(text);
 }
 
-// With --quality preview, or where the target was not met, this is no news.
+// Not with --quality preview, nor if the target was missed: it is obvious then.
 void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
   std::fprintf(
@@ -175,7 +175,7 @@ std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& repo
   return map.close();
 }
 
-// Encodes to the file, and writes the order of vertices where it is asked for.
+// Encodes to the file, and writes the vertex order if asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
   auto stream = OutputFile::create(o.output);
   if (!stream) return InputError{stream.error().message};
@@ -200,14 +200,14 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   if (!failure && !report) return report;
   if (!failure) failure = stream->close();
   if (!failure && map) failure = write_order(*map, *report);
-  const HoldInterrupts hold;  // both files are there, or none
+  const HoldInterrupts hold;  // both files appear, or none
   if (!failure) failure = stream->commit();
   if (!failure && map) failure = map->commit();
   if (failure) return InputError{failure->message};
   return report;
 }
 
-// Where INPUT may not be what was meant.
+// Doubts whether INPUT is what was meant.
 std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
   std::vector<std::string> notes;
   if (source.triangles().empty())
@@ -220,7 +220,7 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
   return notes;
 }
 
-// A file of the input, also one that it only points to, that would be written over.
+// An output that would overwrite a file of the input, even one that the input refers to.
 std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& read : source.files()) {
@@ -250,8 +250,8 @@ int run(const EncodeOptions& o) {
   return tell(o, **source, {std::move(*report), frames});
 }
 
-// Blocks as large as a GOF's go back to the system when they are freed. glibc would keep them,
-// and a second one grow beside the first.
+// Large blocks, as of a GOF, are returned to the system when freed. glibc would keep them, and
+// let a second heap grow next to the first.
 void return_large_blocks() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);

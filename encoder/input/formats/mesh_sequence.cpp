@@ -35,7 +35,7 @@ InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
   std::error_code ec;
   fs::directory_iterator it(folder.empty() ? fs::path(".") : folder, ec);
   while (!ec && it != fs::directory_iterator()) {
-    std::error_code unknown;  // a link that leads nowhere is told of when it is read
+    std::error_code unknown;  // a dangling link is reported when it is read
     if (!it->is_directory(unknown)) names.push_back(it->path().filename().string());
     it.increment(ec);
   }
@@ -69,7 +69,7 @@ struct NumberedName {
     return prefix + digits + suffix;
   }
 
-  // The number for which with() gives this name.
+  // The number for which with() yields this name.
   std::optional<std::uint64_t> number_of(const std::string& name) const {
     if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
     std::uint64_t number = 0;
@@ -91,14 +91,15 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
     result.width = 10 * result.width + static_cast<std::size_t>(name[pos++] - '0');
   }
   if (pos == name.size() || name[pos] != 'd' || result.width > 19) return std::nullopt;
-  if (!zeros && result.width > 0) return std::nullopt;  // pads with blanks: nobody means that
+  if (!zeros && result.width > 0)
+    return std::nullopt;  // pads with blanks, which is never meant
   result.prefix = name.substr(0, percent);
   result.suffix = name.substr(pos + 1);
   if (result.suffix.find('%') != name.npos) return std::nullopt;
   return result;
 }
 
-// A file name about its last number.
+// A file name split at its last number.
 struct NameParts {
   std::string_view before;
   std::optional<std::uint64_t> number;
@@ -117,7 +118,7 @@ NameParts parts_of(std::string_view path) {
   return {name.substr(0, first), number, name.substr(end)};
 }
 
-// What looks as if it were not meant.
+// Warnings about suspicious sequences.
 std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
   std::size_t gaps = 0;
   std::string first_gap;
@@ -133,10 +134,10 @@ std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
   }
   if (gaps == 0) return {};
   if (gaps == 1) {
-    return {"there is no frame between " + first_gap + "; they follow each other"};
+    return {"there is no frame between " + first_gap + "; the gap is closed"};
   }
   return {"the numbers of the frames have " + std::to_string(gaps) +
-          " gaps, the first between " + first_gap + "; frames follow each other without them"};
+          " gaps, the first between " + first_gap + "; the gaps are closed"};
 }
 
 class MeshSequence : public FrameSource {
@@ -204,7 +205,7 @@ bool natural_less(std::string_view a, std::string_view b) {
       if (m.size() != n.size()) return m.size() < n.size();
       if (m != n) return m < n;
     } else {
-      // As bytes: char has a sign on some machines.
+      // As bytes: char is signed on some machines.
       if (a[i] != b[j])
         return static_cast<std::uint8_t>(a[i]) < static_cast<std::uint8_t>(b[j]);
       ++i;
@@ -212,7 +213,7 @@ bool natural_less(std::string_view a, std::string_view b) {
     }
   }
   if (i < a.size() || j < b.size()) return i == a.size();
-  return a < b;  // equal but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
 InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {

@@ -12,17 +12,17 @@
 
 namespace rlpc {
 
-// Files of a sequence in frame order. None found, a gap in a numbered sequence, or a folder
-// of several formats, is an error.
+// Files of a sequence in frame order. Finding none, a gap in a numbered sequence, or several
+// formats in a folder is an error.
 InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder);
 InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob);
 InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern);
 
-// Orders runs of digits by their value: "frame2" before "frame10".
+// Orders runs of digits by value: "frame2" before "frame10".
 bool natural_less(std::string_view a, std::string_view b);
 
-// One file per frame, at least one. The first is read now, each other when its frame is asked
-// for; its vertex count and triangles must then equal those of the first.
+// One file per frame, at least one. The first is read now, the others on demand; their vertex
+// counts and triangles must equal those of the first.
 InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
     std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);

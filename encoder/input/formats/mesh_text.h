@@ -1,4 +1,4 @@
-// Words and numbers of the mesh formats that are text.
+// Words and numbers of text mesh formats.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class TextWords {
   std::uint64_t line() const { return line_; }
   // The next word of this line; empty at its end.
   std::string_view next();
-  // The next word of this line or of the first after it that has one; empty at the end.
+  // The next word of this or a later line; empty at the end.
   std::string_view next_of_any_line();
-  // What is left of this line, comment included.
+  // The rest of this line, including a comment.
   std::string_view rest();
   void next_line();
   // Bytes from the start of the text.
@@ -39,13 +39,13 @@ class TextWords {
   std::uint64_t line_;
 };
 
-// In quotes, printable, and not too long for an error message.
+// Quoted, printable, and shortened for an error message.
 std::string quoted(std::string_view word);
 
-// All of `word` as a finite float, rounded correctly; else `problem` says what it is instead.
+// All of `word` as a finite float, rounded correctly; otherwise `problem` says what is wrong.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
 
-// The fewest digits that parse_coordinate() makes the same number of.
+// The shortest text that parse_coordinate() reads as the same number.
 std::string shortest_text(float x);
 
 }  // namespace rlpc

@@ -55,7 +55,7 @@ class ObjParser {
            std::to_string(num_vertices()) + "; is the file complete?";
   }
 
-  // "v x y z", whatever follows.
+  // "v x y z"; the rest of the line is ignored.
   void read_vertex() {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");

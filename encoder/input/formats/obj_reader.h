@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// `name` stands in error messages.
+// name: for error messages.
 InputResult<SingleMesh> parse_obj(std::string_view text, const std::string& name,
                                   const MeshLimit& limit = {});
 

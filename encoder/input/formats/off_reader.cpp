@@ -26,8 +26,8 @@ class OffParser {
     const std::uint32_t vertices = read_number("the number of vertices");
     const std::uint32_t faces = read_number("the number of faces");
     if (vertices == 0) fail("no vertices");
-    // The third number of the line counts edges; nobody relies on it.
-    // "0 0 0" and a line end; "3 0 0 0" of a face is longer.
+    // The third number of the line counts edges, and is ignored. "0 0 0" and a line end; "3 0 0
+    // 0" of a face is longer.
     if ((std::uint64_t{vertices} + faces) * 6 > std::uint64_t{bytes_} + 1) {
       fail(to_string(vertices) + " vertices and " + to_string(faces) +
            " faces do not fit the " + to_string(bytes_) +
@@ -37,7 +37,7 @@ class OffParser {
     for (std::uint32_t f = 0; f < faces && !error_; ++f) read_face(vertices);
     if (!error_) {
       words_.next_line();
-      if (!words_.next_of_any_line().empty()) fail("goes on after the last face");
+      if (!words_.next_of_any_line().empty()) fail("has data after the last face");
     }
     if (error_) return *error_;
     return std::move(mesh_);
@@ -51,11 +51,11 @@ class OffParser {
   void check_keyword(std::string_view keyword) {
     if (!looks_like_off(keyword)) return fail("does not begin with OFF; not an OFF file");
     if (keyword.find_first_of("4n") != keyword.npos) {
-      fail(quoted(keyword) + ": vertices in other than three dimensions are not read");
+      fail(quoted(keyword) + ": only vertices in three dimensions are supported");
     }
   }
 
-  // Of the line of counts, or at the start of a face.
+  // On the line of counts, or at the start of a face.
   std::uint32_t read_number(const std::string& what) {
     return parse_number(words_.next_of_any_line(), what);
   }
@@ -66,7 +66,7 @@ class OffParser {
     const auto [end, ec] = std::from_chars(word.data(), last, value);
     if (ec == std::errc() && end == last) return value;
     if (word == "BINARY") {
-      fail("binary OFF files are not read; save it as text, or as PLY");
+      fail("binary OFF files are not supported; save it as text, or as PLY");
     } else if (words_.at_end()) {
       fail("the file ends before " + what + "; is it complete?");
     } else {
@@ -75,7 +75,7 @@ class OffParser {
     return 0;
   }
 
-  // "x y z", whatever follows; blank lines and comments before it.
+  // "x y z", the rest of the line is ignored; skips blank lines and comments.
   void read_vertex() {
     words_.next_line();
     std::string_view word = words_.next_of_any_line();
@@ -94,7 +94,7 @@ class OffParser {
     }
   }
 
-  // "n a b c ...", whatever follows: a fan from the first corner.
+  // "n a b c ...", the rest of the line is ignored: a fan from the first corner.
   void read_face(std::uint32_t vertices) {
     words_.next_line();
     const std::uint32_t corners = read_number("the number of corners of a face");

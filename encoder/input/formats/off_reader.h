@@ -10,10 +10,10 @@
 
 namespace rlpc {
 
-// Does the text begin with OFF, or OFF after letters for what else a vertex has (STCN4n)?
+// Whether the text begins with OFF, possibly after letters for further vertex data (STCN4n).
 bool looks_like_off(std::string_view text);
 
-// `name` stands in error messages.
+// name: for error messages.
 InputResult<SingleMesh> parse_off(std::string_view text, const std::string& name,
                                   const MeshLimit& limit = {});
 

@@ -47,7 +47,7 @@ TEST(OffReader, NamesTheLineOfABadValue) {
                "a.off:4: vertex index 1 is out of range 0 to 0");
   expect_error("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", "a.off:4: \"-1\": expected a vertex index");
   expect_error("OFF\n1 1 0\n0 0 0\n2 0 0 0\n", "a.off:4: a face of 2 corners");
-  expect_error(kQuad + "3 0 1 2\n", "a.off:8: goes on after the last face");
+  expect_error(kQuad + "3 0 1 2\n", "a.off:8: has data after the last face");
 }
 
 TEST(OffReader, RefusesCountsThatDoNotFitTheFile) {
@@ -62,8 +62,8 @@ TEST(OffReader, RefusesCountsThatDoNotFitTheFile) {
 TEST(OffReader, RefusesOtherKinds) {
   expect_error("", "does not begin with OFF");
   expect_error("OFFER\n", "does not begin with OFF");
-  expect_error("OFF BINARY\n", "binary OFF files are not read");
-  expect_error("4OFF\n1 0 0\n0 0 0 1\n", "other than three dimensions");
+  expect_error("OFF BINARY\n", "binary OFF files are not supported");
+  expect_error("4OFF\n1 0 0\n0 0 0 1\n", "only vertices in three dimensions");
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class HeaderParser {
     if (!text_.starts_with("ply\n") && !text_.starts_with("ply\r")) {
       return InputError{name_ + ":1: does not begin with a line \"ply\"; not a PLY file"};
     }
-    // A binary body begins right after the last line end, so there must be no doubt about it.
+    // A binary body begins right after the last line end, which must be unambiguous.
     line_end_ = text_[3] == '\n' ? "\n" : text_.substr(3, 2) == "\r\n" ? "\r\n" : "\r";
     take_line();
     while (!error_ && !at_end_header_) parse_line();
@@ -94,7 +94,8 @@ class HeaderParser {
       at_end_header_ = true;
     } else if (keyword != "obj_info") {
       fail(quoted(keyword) +
-           " begins no line of a PLY header; expected format, element, property, comment or "
+           " does not begin a line of a PLY header; expected format, element, property, "
+           "comment or "
            "end_header");
     }
   }
@@ -139,7 +140,7 @@ class HeaderParser {
     if (type == "list") {
       property.length = parse_type(words.next());
       if (property.length && is_ply_float(*property.length)) {
-        fail("a list with a length that is no integer");
+        fail("a list whose length is not an integer");
       }
       type = words.next();
     }
@@ -155,7 +156,7 @@ class HeaderParser {
     for (const TypeName& t : kTypeNames) {
       if (t.name == name) return t.type;
     }
-    fail(quoted(name) + " is no type of PLY; expected for example float, uchar or int");
+    fail(quoted(name) + " is not a PLY type; expected for example float, uchar or int");
     return PlyType::kF32;
   }
 

@@ -1,4 +1,4 @@
-// The header of a PLY file: text that says what follows, and how.
+// The header of a PLY file: text that declares the contents and their format.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ struct PlyHeader {
   std::uint64_t body_line = 0;
 };
 
-// `name` stands in error messages.
+// name: for error messages.
 InputResult<PlyHeader> parse_ply_header(std::string_view text, const std::string& name);
 
 }  // namespace rlpc

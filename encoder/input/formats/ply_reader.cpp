@@ -19,17 +19,17 @@ namespace {
 
 using std::to_string;
 
-// The values of a text body, one after another. After a problem: zeros.
+// The values of a text body, in order; zeros after an error.
 class TextBody {
  public:
   TextBody(std::string_view text, const PlyHeader& header)
       : words_(text.substr(header.body), header.body_line), bytes_(text.size() - header.body) {}
 
-  // In error messages: where the last value was.
+  // The position of the last value, for error messages.
   std::string place() const { return ":" + to_string(line_); }
   const std::optional<std::string>& problem() const { return problem_; }
   std::uint64_t bytes_left() const { return bytes_ - words_.position(); }
-  // A value and a blank or line end, which the last one of the file may do without.
+  // A value and a blank or line end, which is optional at the end of the file.
   static std::uint64_t least_bytes(PlyType) { return 2; }
   static std::uint64_t spare_bytes() { return 1; }
 
@@ -55,7 +55,7 @@ class TextBody {
 
   void expect_end() {
     if (!words_.next_of_any_line().empty())
-      problem_ = "goes on after what the header announces";
+      problem_ = "has data after what the header announces";
     line_ = words_.line();
   }
 
@@ -74,7 +74,7 @@ class TextBody {
   std::optional<std::string> problem_;
 };
 
-// The same of a binary body.
+// The same for a binary body.
 class BinaryBody {
  public:
   BinaryBody(std::string_view text, const PlyHeader& header)
@@ -124,7 +124,7 @@ class BinaryBody {
 
   void expect_end() {
     last_ = pos_;
-    if (pos_ < text_.size()) problem_ = "goes on after what the header announces";
+    if (pos_ < text_.size()) problem_ = "has data after what the header announces";
   }
 
  private:
@@ -192,7 +192,7 @@ class PlyReader {
     return p.name == "vertex_indices" || p.name == "vertex_index";
   }
 
-  // Before memory is made: can there be as many as the header says, and are they of use?
+  // Before allocating: whether the counts of the header are possible and usable.
   std::optional<InputError> check(const PlyElement& element) const {
     std::uint64_t row_bytes = 0;
     for (const PlyProperty& p : element.properties) {
@@ -224,7 +224,7 @@ class PlyReader {
         return InputError{name_ + ": element \"face\" has no list of integers vertex_indices"};
       }
     } else if (element.name == "tristrips") {
-      return InputError{name_ + ": triangle strips are not read; export triangles"};
+      return InputError{name_ + ": triangle strips are not supported; export triangles"};
     }
     return std::nullopt;
   }

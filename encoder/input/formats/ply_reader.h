@@ -1,8 +1,7 @@
 // PLY: the positions and polygons of the elements "vertex" and "face"; everything else is
 // skipped. Text and binary of both byte orders.
 //
-// As strict as the OBJ reader; and the file must hold what its header announces, no more and no
-// less.
+// As strict as the OBJ reader; and the file must hold exactly what its header announces.
 #pragma once
 
 #include <string>
@@ -13,7 +12,7 @@
 
 namespace rlpc {
 
-// `name` stands in error messages.
+// name: for error messages.
 InputResult<SingleMesh> parse_ply(std::string_view text, const std::string& name,
                                   const MeshLimit& limit = {});
 

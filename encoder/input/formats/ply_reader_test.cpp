@@ -115,14 +115,14 @@ TEST(PlyReader, NamesLineOrByteOfABadValue) {
   expect_error(replaced(kText, "4 0 1 2 3", "2 0 1"), "a.ply:14: a face of 2 corners");
   expect_error(replaced(kText, "4 0 1 2 3", "-1"), "a.ply:14: a list of -1 values");
   expect_error(replaced(kText, "4 0 1 2 3", "4 0 1 2.5 3"), "\"2.5\" is not an integer");
-  expect_error(kText + "5\n", "a.ply:15: goes on after what the header announces");
+  expect_error(kText + "5\n", "a.ply:15: has data after what the header announces");
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const bool little_endian : {true, false}) {
     expect_error(binary(little_endian, nan),
                  "a.ply: byte " + std::to_string(binary(little_endian).size() - 21) +
                      ": a coordinate is not a number");
     expect_error(binary(little_endian, 0, 0xFFFFFFFF), ": vertex index -1 is out of range");
-    expect_error(binary(little_endian) + "x", "goes on after what the header announces");
+    expect_error(binary(little_endian) + "x", "has data after what the header announces");
   }
 }
 
@@ -145,14 +145,15 @@ TEST(PlyReader, RefusesBrokenHeaders) {
   expect_error(replaced(kText, "ascii", "binary"), "a.ply:2: format \"binary\"");
   expect_error(replaced(kText, "1.0", "2.0"), "PLY version \"2.0\"");
   expect_error(replaced(kText, "format ascii 1.0\n", ""), "no line \"format\"");
-  expect_error(replaced(kText, "float y", "quad y"), "a.ply:5: \"quad\" is no type of PLY");
+  expect_error(replaced(kText, "float y", "quad y"), "a.ply:5: \"quad\" is not a PLY type");
   expect_error(replaced(kText, "float y", "float x"), "a second property \"x\"");
   expect_error(replaced(kText, "float y", "float w"), "element \"vertex\" has no number y");
-  expect_error(replaced(kText, "list uchar", "list float"), "no integer");
+  expect_error(replaced(kText, "list uchar", "list float"), "not an integer");
   expect_error(replaced(kText, "uchar int", "uchar float"), "no list of integers");
   expect_error(replaced(kText, "element face", "element vertex"), "a second element");
-  expect_error(replaced(kText, "element face 1", "elements face 1"), "\"elements\" begins no");
-  expect_error(replaced(kText, "element face", "element tristrips"), "strips are not read");
+  expect_error(replaced(kText, "element face 1", "elements face 1"), "\"elements\" does not begin");
+  expect_error(replaced(kText, "element face", "element tristrips"),
+               "strips are not supported");
   expect_error("ply\nformat ascii 1.0\nproperty int x\n", "before the first element");
   expect_error("ply\nformat ascii 1.0\nelement many 9\nend_header\n", "has no property");
 }

@@ -26,14 +26,14 @@ constexpr std::size_t kPc2HeaderBytes = 32;
 constexpr std::size_t kMddHeaderBytes = 8;
 constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
 
-// What a header says.
+// The contents of a header.
 struct Layout {
   bool big_endian = false;
   std::int32_t points = 0;
   std::int32_t frames = 0;
   std::uint64_t first_byte = 0;  // of the positions
-  // Start and sample rate of PC2 are numbers. They are not used, but say that a file is
-  // damaged.
+  // Start and sample rate of a PC2 file are finite. They are not used, but otherwise the file
+  // is probably damaged.
   bool has_rate = true;
 };
 
@@ -88,7 +88,7 @@ std::optional<InputError> check_layout(const InputFile& file, const Layout& layo
     return InputError{path + ": " + to_string(layout.frames) +
                       " samples; expected at least 1 frame"};
   }
-  // points is the size of a mesh in memory, so this fits 64 bits.
+  // `points` is the size of a mesh in memory, so this fits 64 bits.
   const std::uint64_t expected =
       layout.first_byte +
       std::uint64_t{num_vertices} * 12 * static_cast<std::uint64_t>(layout.frames);
@@ -104,10 +104,9 @@ std::optional<InputError> check_layout(const InputFile& file, const Layout& layo
 InputError is_no_cache(const std::string& name, const std::string& mesh_path,
                        std::uint32_t num_vertices) {
   return InputError{name +
-                    ": does not begin with POINTCACHE2, so it is no PC2 point cache; nor does "
-                    "it fit " +
-                    name_of_input(mesh_path) + ", of " + to_string(num_vertices) +
-                    " vertices, as MDD"};
+                    ": not a PC2 point cache, which begins with POINTCACHE2, nor an MDD one of "
+                    "the " +
+                    to_string(num_vertices) + " vertices of " + name_of_input(mesh_path)};
 }
 
 InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
@@ -121,22 +120,22 @@ InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
   if (is_pc2 || extension == ".pc2") return read_pc2_header(file);
   auto layout = read_mdd_header(file);
   if (extension == ".mdd") return layout;
-  // Nothing tells MDD but that the numbers fit.
+  // MDD is recognised only by matching numbers.
   if (layout && !check_layout(file, *layout, mesh_path, num_vertices)) return layout;
   return is_no_cache(file.path(), mesh_path, num_vertices);
 }
 
-// Standard input, of which no more has been read: it is PC2, or may be MDD.
+// The beginning of standard input: PC2, or possibly MDD.
 bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
   if (begin.starts_with(kPc2Magic)) return true;
   return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
 }
 
-// What the times of an MDD file tell.
+// The times of an MDD file.
 struct FrameTimes {
-  // Of seconds, evenly spaced. Others are numbers of frames, or not meant.
+  // If they are evenly spaced seconds; other times are frame numbers, or meaningless.
   std::optional<FrameRate> rate;
-  bool may_be_times = true;  // numbers that do not descend
+  bool may_be_times = true;  // finite and not descending
 };
 
 InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
@@ -169,8 +168,8 @@ float load_value(std::span<const char> bytes, std::size_t offset, const Layout& 
   return layout.big_endian ? load_f32_be(bytes, offset) : load_f32(bytes, offset);
 }
 
-// Whether the first frame is the mesh turned from Y up to Z up, or back, and not the mesh
-// itself.
+// Whether the first frame is not the mesh itself, but the mesh turned from Y-up to Z-up or
+// back.
 InputResult<bool> has_other_axes(InputFile& file, const Layout& layout,
                                  const std::vector<float>& mesh) {
   struct Axes {
@@ -247,7 +246,7 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   std::vector<std::string> notes;
   if (!layout->has_rate) {
     notes.push_back("start and sample rate in " + file->path() +
-                    " are not finite; they are not used anyway, but is the file damaged?");
+                    " are not finite; they are not used, but the file may be damaged");
   }
   if (layout->big_endian) {
     const auto times = read_times(*file, *layout, max_memory_bytes);
@@ -262,8 +261,8 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   const auto other_axes = has_other_axes(*file, *layout, mesh->xyz);
   if (!other_axes) return other_axes.error();
   if (*other_axes) {
-    notes.push_back("the axes of " + file->path() +
-                    " are others: one is Y-up, the other Z-up; the result has those of " +
+    notes.push_back(file->path() +
+                    " has other axes (one is Y-up, the other Z-up); the stream gets those of " +
                     file->path());
   }
   auto shape =

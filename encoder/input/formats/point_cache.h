@@ -4,7 +4,7 @@
 // samples; then x, y, z of each point of each sample; 32-bit, little-endian.
 // MDD: int32 frames, int32 points, a float time for each frame; then x, y, z of each point of
 // each frame; 32-bit, big-endian.
-// Start, sample rate and times are not used (see InputOptions).
+// Start and sample rate are not used (see InputOptions).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace rlpc {
 
-// PC2 is told by how the file begins, MDD by the extension; a file without either (standard
-// input) is MDD if its header fits the mesh and its length.
+// PC2 is recognised by its beginning, MDD by its extension; anything else (standard input) is
+// MDD if its header matches the mesh and the file size.
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
     const std::optional<FrameRate>& frame_rate,

@@ -19,7 +19,7 @@ using std::to_string;
 
 constexpr std::size_t kHeaderBytes = 44;
 
-// Annex A, the fixed part.
+// Annex A: the fixed part of the header.
 struct RlpdHeader {
   std::uint32_t num_vertices = 0;
   std::uint32_t num_triangles = 0;
@@ -147,7 +147,7 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
   if (!header) return header.error();
   const auto frames = count_frames(*file, *header);
   if (!frames) return frames.error();
-  // As bytes and as triangles.
+  // Held as bytes and as triangles.
   const std::uint64_t of_mesh = 24 * std::uint64_t{header->num_triangles};
   if (of_mesh + file->memory_bytes() > max_memory_bytes) {
     return InputError{file->path() + ": " + memory_problem(max_memory_bytes)};

@@ -24,7 +24,7 @@ void check_ascending(const std::vector<float>& times, std::uint32_t accessor,
   }
 }
 
-// Every value has a direction to turn to.
+// No value may be the zero quaternion.
 void check_rotations(const GltfTrack& track, std::uint32_t accessor, GltfErrors& errors) {
   const bool cubic = track.interpolation == GltfInterpolation::kCubicSpline;
   for (std::size_t i = cubic ? 1 : 0; i < track.values.size() / 4; i += cubic ? 3 : 1) {
@@ -102,7 +102,7 @@ class ClipReader {
     return track;
   }
 
-  // As many values as the times ask for.
+  // Checks that there are as many values as the times require.
   void check_count(const GltfAnimation::Channel& channel, const GltfTrack& track) {
     const GltfAnimation::Sampler& sampler = animation_.samplers[channel.sampler];
     const bool cubic = track.interpolation == GltfInterpolation::kCubicSpline;

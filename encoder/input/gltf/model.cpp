@@ -80,7 +80,7 @@ class ModelReader {
     }
   }
 
-  // Adds what a node of the scene shows.
+  // Adds the mesh of a node of the scene.
   void add_mesh(std::uint32_t node) {
     const std::uint32_t mesh = *document_.nodes[node].mesh;
     const std::optional<std::uint32_t> skin = document_.nodes[node].skin;
@@ -116,7 +116,7 @@ class ModelReader {
     }
   }
 
-  // With what the source and the welding take for each of its vertices and triangles.
+  // Includes what the source and welding need per vertex and triangle.
   bool takes_instance(const GltfPrimitive& primitive, std::uint64_t num_vertices,
                       std::size_t geometry) {
     constexpr std::uint64_t kOfVertex = 128;
@@ -127,7 +127,7 @@ class ModelReader {
                                             kOfTriangle * num_triangles);
   }
 
-  // Nodes that show the same share it.
+  // Shared by nodes with the same mesh and skin.
   std::size_t geometry_of(const GltfPrimitive& primitive, std::optional<std::uint32_t> skin) {
     const auto [known, is_new] =
         geometries_.try_emplace({&primitive, skin}, model_.geometries.size());
@@ -151,7 +151,7 @@ class ModelReader {
   std::uint64_t num_without_triangles_ = 0;
 };
 
-// Extras may be anything, so that nothing in them is an error.
+// Extras may be anything: nothing in them is an error.
 std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
   const nlohmann::json* value = &root;
   for (const char* const key : {"asset", "extras", "frame_rate"}) {

@@ -1,4 +1,4 @@
-// A glTF document, read whole: what is needed to place its vertices at any time.
+// A glTF document read completely: all that determines its vertices at any time.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// What a document may ask for, beside memory. A few bytes of it can stand for any number of
-// frames, zeros or instances, so that its size bounds nothing.
+// Limits of a document, in addition to memory. A few bytes can stand for any number of frames,
+// zeros or instances, so its size bounds nothing.
 struct GltfLimits {
   std::uint64_t max_vertices = 3 * std::uint64_t{kLevels.back().max_triangles};  // not welded
   std::uint64_t max_triangles = 3 * std::uint64_t{kLevels.back().max_triangles};
@@ -30,7 +30,7 @@ struct GltfModel {
     std::vector<std::uint32_t> joints;  // nodes
     std::vector<Affine> inverse_bind;   // as many
   };
-  // A primitive, where a node puts it.
+  // A primitive, placed by a node.
   struct Instance {
     std::uint32_t node = 0;
     std::optional<std::uint32_t> skin;
@@ -39,18 +39,18 @@ struct GltfModel {
   };
 
   std::vector<GltfNode> nodes;
-  // Of the targets of each mesh, where a node has none of its own.
+  // Default weights of the targets of each mesh, for nodes without their own.
   std::vector<std::vector<double>> weights;
   GltfScene scene;
   std::vector<Skin> skins;
-  std::vector<GltfClip> clips;  // in the order in which they are played
+  std::vector<GltfClip> clips;  // in playing order
   std::vector<GltfGeometry> geometries;
   std::vector<Instance> instances;
   std::uint64_t num_vertices = 0;
-  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer does
+  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer puts it
   std::vector<std::string> notes;       // as FrameSource has them
   std::vector<std::string> files;       // likewise
-  std::uint64_t memory_bytes = 0;       // of it and of the source that it becomes, about
+  std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated
 };
 
 // `animation` as in InputOptions.

@@ -4,7 +4,7 @@ namespace rlpc {
 
 namespace {
 
-// What tracks change of a node.
+// The properties of a node that tracks change.
 struct Place {
   GltfVec3 translation;
   GltfQuaternion rotation;

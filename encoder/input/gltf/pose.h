@@ -1,4 +1,4 @@
-// Where the nodes of a glTF document are at a time of a clip.
+// The nodes of a glTF document at a time of a clip.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace rlpc {
 
 struct GltfPose {
   std::vector<Affine> to_scene;  // of each node
-  // Of the nodes whose weights the clip moves, [num_targets] of their meshes.
+  // For nodes whose weights the clip animates: [num_targets] of their meshes.
   std::map<std::uint32_t, std::vector<double>> weights;
 };
 
-// The document as it is, moved by the clip; null: by none.
+// The pose of the document, moved by the clip; null: not moved.
 GltfPose pose_of(const std::vector<GltfNode>& nodes, const GltfScene& scene,
                  const GltfClip* clip, double time);
 

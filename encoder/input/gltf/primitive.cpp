@@ -32,7 +32,7 @@ class GeometryReader {
   }
 
  private:
-  // One element for each vertex?
+  // Checks that there is one element per vertex.
   bool has_count(std::uint32_t accessor) {
     const std::uint64_t count = values_.accessor(primitive_.positions).count;
     if (values_.accessor(accessor).count == count) return true;
@@ -42,7 +42,7 @@ class GeometryReader {
     return false;
   }
 
-  // Vectors take three times their memory while they grow, here and below.
+  // A growing vector takes three times its memory, here and below.
   bool takes_deltas(std::uint32_t accessor) {
     const GltfAccessor& a = values_.accessor(accessor);
     const std::uint64_t count = a.base ? a.count : a.sparse ? a.sparse->count : 0;
@@ -77,7 +77,7 @@ class GeometryReader {
           geometry.influences.push_back({joints[set][i], weights[set][i]});
         }
       }
-      // As viewers do with a vertex that has no weight at all.
+      // Follows viewers for a vertex without any weight.
       if (geometry.influences.size() == first) {
         geometry.influences.push_back({joints[0][4 * v], 1.0F});
       }
@@ -103,7 +103,7 @@ class GeometryReader {
     }
   }
 
-  // Vertices in the order in which triangles are made of them.
+  // Vertices in the order in which they form triangles.
   std::vector<std::uint32_t> corners(std::uint32_t num_vertices) {
     if (!primitive_.indices) {
       std::vector<std::uint32_t> all(num_vertices);
@@ -185,7 +185,7 @@ void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& po
   for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {
     const GltfVec3 p{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
     GltfVec3 sum{};
-    double total = 0.0;  // weights in integers, or rounded, do not add up to 1
+    double total = 0.0;  // integer or rounded weights do not add up to 1
     for (auto i = geometry.first_influence[v]; i < geometry.first_influence[v + 1]; ++i) {
       const GltfInfluence& influence = geometry.influences[static_cast<std::size_t>(i)];
       const GltfVec3 moved = joints[influence.joint](p);

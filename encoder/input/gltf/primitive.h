@@ -1,4 +1,4 @@
-// Vertices and triangles of one primitive of a glTF mesh, and where they are in a pose.
+// Vertices and triangles of one primitive of a glTF mesh, and their positions in a pose.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ struct GltfGeometry {
 
   std::vector<float> base;      // xyz per vertex
   std::vector<Target> targets;  // those that move a vertex
-  // Of vertex v: influences[first_influence[v]] up to, not including, that of v + 1. Both are
-  // empty without a skin. Each vertex has one or more.
+  // Of vertex v: from influences[first_influence[v]] up to, not including, that of v + 1; at
+  // least one. Both are empty without a skin.
   std::vector<GltfInfluence> influences;
   std::vector<std::uint64_t> first_influence;
   std::vector<Triangle> triangles;
@@ -35,18 +35,17 @@ struct GltfGeometry {
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };
 
-// `num_joints` of the skin that moves it; 0: none, and influences are not read. Joints and
-// indices are in range; whole only if there are no errors.
+// num_joints: of its skin; 0: none, and influences are not read. Joints and indices are in
+// range. Complete only if there are no errors.
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
                                 GltfValues& values, GltfErrors& errors);
 
-// Base and targets, before any node or joint moves them: 3 per vertex. Weights are those of all
+// Base plus weighted targets, before nodes or joints are applied: 3 per vertex. Weights: of all
 // targets of the mesh.
 void morph(const GltfGeometry& geometry, std::span<const double> weights,
            std::vector<double>& positions);
 
-// To the scene, by the map of a node, or by those of the joints in the shares of their weights.
-// out: 3 per vertex.
+// To the scene, by the map of a node, or by the weighted maps of the joints. out: 3 per vertex.
 void place(const std::vector<double>& positions, const Affine& node, std::span<float> out);
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,
                      const std::vector<Affine>& joints, std::span<float> out);

@@ -23,7 +23,7 @@ std::vector<std::optional<std::uint32_t>> find_parents(const std::vector<GltfNod
   return parent;
 }
 
-// The nodes below `roots`, each before its children, and these in their order.
+// The nodes below `roots`, each before its children, which keep their order.
 std::vector<std::uint32_t> depth_first(const std::vector<GltfNode>& nodes,
                                        const std::vector<std::uint32_t>& roots) {
   std::vector<std::uint32_t> order;
@@ -38,14 +38,14 @@ std::vector<std::uint32_t> depth_first(const std::vector<GltfNode>& nodes,
   return order;
 }
 
-// Of nodes that all have one parent at most, and are not all below a root: one that is its own
+// If all nodes have at most one parent, and not all are below a root: one that is its own
 // ancestor.
 std::uint32_t node_of_cycle(const GltfScene& scene) {
   std::vector<bool> reached(scene.parent.size());
   for (const std::uint32_t node : scene.parents_first) reached[node] = true;
   std::uint32_t node = 0;
   while (reached[node]) ++node;
-  // No way up ends, so that each node on it leads into the cycle.
+  // No path upwards ends, so each leads into a cycle.
   while (!reached[node]) {
     reached[node] = true;
     node = *scene.parent[node];

@@ -1,4 +1,4 @@
-// The nodes of a glTF document as trees, and what of them is in the scene.
+// The nodes of a glTF document as trees, and those in the scene.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ namespace {
 
 using std::to_string;
 
-// First frame of each clip in the sequence, and the number of all.
+// First frame of each clip in the sequence, then the total number.
 InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
                                                      const FrameRate& rate,
                                                      const std::string& path,
@@ -41,8 +41,7 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
   return first;
 }
 
-// Where nodes mirror, triangles turn, so that they still show the same side
-// (glTF 2.0, 3.7.2.1).
+// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1).
 std::vector<Triangle> triangles_of(const GltfModel& model, const GltfPose& pose) {
   std::vector<Triangle> triangles;
   for (const GltfModel::Instance& instance : model.instances) {
@@ -111,7 +110,7 @@ class GltfSource : public FrameSource {
 
   std::string path_;
   GltfModel model_;
-  std::vector<std::uint32_t> first_frame_;  // of each clip, then the number of all
+  std::vector<std::uint32_t> first_frame_;  // of each clip, then the total number
   std::vector<double> positions_;
 };
 

@@ -9,12 +9,11 @@
 
 namespace rlpc {
 
-// Vertices are in the order of the scene, depth first, until they are welded; each frame is
-// evaluated when it is asked for. The frames of an animation are at its first time and then
-// every 1 / frame_rate (default 30) up to its last; those of `all` animations follow each
-// other. Without animations: one frame.
+// Vertices are in the order of the scene, depth first, before welding; frames are evaluated on
+// demand. An animation is sampled from its first time to its last, every 1 / frame_rate
+// (default 30); `all` animations follow each other. Without animations: one frame.
 //
-// Points and lines are left out. Extensions that change the mesh are refused if required.
+// Points and lines are dropped. Required extensions that change the mesh are refused.
 InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits = {});
 

@@ -14,7 +14,7 @@ namespace {
 // A time among the keys of a track: `part` of the way from `key` to the next one.
 struct Place {
   std::size_t key = 0;
-  double part = 0.0;      // 0 at the last key, and where the value stays
+  double part = 0.0;      // 0 at the last key, and where the value is held
   double duration = 0.0;  // from key to key
 };
 

@@ -1,4 +1,4 @@
-// Animation of one property of one node: values at times, and what is between them.
+// Animation of one property of one node: keys and their interpolation.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ struct GltfTrack {
   std::vector<float> values;  // per time `width`; cubic: in-tangent, value, out-tangent
 };
 
-// Before the first time and after the last, the value stays. out: [width].
+// The value is held before the first key and after the last. out: [width].
 void sample(const GltfTrack& track, double time, std::span<double> out);
 
-// Of a track of unit quaternions, a unit quaternion: linear is spherical, the shorter way
+// A unit quaternion from a track of unit quaternions: linear means spherical, the shorter way
 // round.
 GltfQuaternion sample_rotation(const GltfTrack& track, double time);
 
-// Of any length but 0, which gives no rotation.
+// Of any length; 0 yields no rotation.
 GltfQuaternion unit_quaternion(const GltfQuaternion& q);
 
 }  // namespace rlpc

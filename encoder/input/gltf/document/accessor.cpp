@@ -89,7 +89,7 @@ class AccessorReader {
     return sparse;
   }
 
-  // Where `count` elements of `size` bytes are; `counted` has the count.
+  // The place of `count` elements of `size` bytes; `counted` is the value with the count.
   GltfRange range(const GltfValue& value, const GltfValue& counted, std::uint64_t count,
                   std::uint64_t size) const {
     const std::uint32_t number = value["bufferView"].index(views_.size(), "bufferViews");

@@ -1,4 +1,4 @@
-// Accessors of a glTF document, by way of its buffer views, as ranges of its buffers.
+// Accessors of a glTF document, resolved through buffer views to ranges of buffers.
 #pragma once
 
 #include <cstdint>
@@ -46,10 +46,10 @@ struct GltfAccessor {
   bool normalized = false;
   std::uint64_t count = 0;
   std::optional<GltfRange> base;  // none: zeros
-  std::optional<Sparse> sparse;   // elements in place of those of the base
+  std::optional<Sparse> sparse;   // elements that replace those of the base
 };
 
-// Each lies in its buffers, if there are no errors.
+// Each lies within its buffers, if there are no errors.
 std::vector<GltfAccessor> read_gltf_accessors(const GltfValue& root,
                                               const std::vector<GltfBuffer>& buffers,
                                               GltfErrors& errors);

@@ -1,4 +1,4 @@
-// Affine maps of space, in double.
+// Affine maps of space, in double precision.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ inline Affine operator*(const Affine& a, const Affine& b) {
   return product;
 }
 
-// Scales, then turns (unit quaternion), then moves.
+// Scales, then rotates (unit quaternion), then translates.
 inline Affine affine_of(const GltfVec3& translation, const GltfQuaternion& q,
                         const GltfVec3& scale) {
   const auto [x, y, z, w] = q;
@@ -53,7 +53,7 @@ inline Affine affine_of(const GltfVec3& translation, const GltfQuaternion& q,
   return map;
 }
 
-// Of a 4 x 4 matrix, column after column, whose last row is taken for 0, 0, 0, 1.
+// From a column-major 4 x 4 matrix, whose last row is taken as 0, 0, 0, 1.
 inline Affine affine_of_columns(const std::vector<double>& columns) {
   assert(columns.size() == 16);
   Affine map;

@@ -64,12 +64,12 @@ std::string percent_decoded(std::string_view uri) {
   return text;
 }
 
-// Does it stay in its folder, or go below?
+// Whether it stays in its folder, or goes below.
 bool stays_inside(const fs::path& path) {
   return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
 }
 
-// Not so where a link on the way leads out. What is not there does.
+// False if a link on the way leads out. True of paths that do not exist.
 bool is_below(const fs::path& path, const fs::path& folder) {
   std::error_code missing;
   const fs::path real = fs::canonical(path, missing);

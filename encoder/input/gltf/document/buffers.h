@@ -1,4 +1,4 @@
-// The bytes of a glTF document: in its binary chunk, in data URIs, in files beside it.
+// The bytes of a glTF document: in its binary chunk, in data URIs, in other files.
 #pragma once
 
 #include <cstdint>
@@ -14,28 +14,28 @@
 namespace rlpc {
 
 struct GltfBuffer {
-  std::uint64_t size = 0;          // byteLength: what the document claims
+  std::uint64_t size = 0;          // byteLength, as claimed by the document
   std::optional<std::string> uri;  // none: the binary chunk
 };
 
-// Opens what is asked for when it is asked for. Files are read in the folder of the document
-// (of standard input: the current one) and below it only, also by way of links: a document
-// cannot make the tools read anything else.
+// Opens buffers on demand. Reads only files in the folder of the document (for standard input,
+// the current folder) or below it, also through links: a document cannot make the programs read
+// anything else.
 class GltfBuffers {
  public:
   GltfBuffers(std::vector<GltfBuffer> buffers, GltfFile& file, GltfErrors& errors);
 
-  // Bytes that the document and its buffers really have, as far as they can be found.
+  // Bytes that the document and its buffers really hold, as far as known.
   std::uint64_t bytes_at_hand() const { return bytes_at_hand_; }
-  // Is all of a buffer there? To be asked before memory is made for what is in it.
+  // Whether a buffer is complete. To be called before allocating memory for its contents.
   bool available(std::uint32_t buffer);
-  // The buffer is available, and offset + bytes.size() not more than its size.
+  // The buffer must be available, and offset + bytes.size() at most its size.
   void read(std::uint32_t buffer, std::uint64_t offset, std::span<char> bytes);
-  // The document, and the files that it points to, of those asked for.
+  // The document, and the files used so far that it refers to.
   std::vector<std::string> files() const;
 
  private:
-  // Where the bytes of a buffer are: in `file` from `offset` on, or in `text`.
+  // The bytes of a buffer: in `file` from `offset` on, or in `text`.
   struct Place {
     InputFile* file = nullptr;
     std::uint64_t offset = 0;
@@ -51,7 +51,7 @@ class GltfBuffers {
   GltfFile& file_;
   GltfErrors& errors_;
   std::map<std::string, InputFile> others_;  // by path
-  std::map<std::uint32_t, Place> places_;    // of the buffers asked for
+  std::map<std::uint32_t, Place> places_;    // of the buffers used so far
   std::uint64_t bytes_at_hand_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using std::to_string;
 
-// Those that the positions do not depend on; and integers as positions, which are read here.
+// Extensions that do not affect positions; and integer positions, which are supported.
 bool is_supported(const std::string& extension) {
   static const char* const kHarmless[] = {
       "KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",
@@ -30,7 +30,7 @@ void check_extensions(const GltfValue& required) {
   }
 }
 
-// The file can be read without these, but shows something else.
+// The file can be read without these, but looks different.
 std::vector<std::string> left_out(const GltfValue& used) {
   std::vector<std::string> found;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -50,7 +50,7 @@ bool any_named(const GltfValue& values) {
   return false;
 }
 
-// What a document has that a stream does not carry, as users call it.
+// Contents that a stream does not carry, as users call them.
 std::vector<std::string> dropped(const GltfValue& root) {
   struct Attribute {
     const char* name;
@@ -94,7 +94,7 @@ void check_version(const GltfValue& asset) {
   if (asset["minVersion"].text("2.0") != "2.0") asset["minVersion"].fail("\"2.0\"");
 }
 
-// Counts of the arrays that others refer to.
+// Sizes of the arrays that indices refer to.
 struct Counts {
   explicit Counts(const GltfValue& root)
       : accessors(root["accessors"].size()),
@@ -150,7 +150,7 @@ GltfMesh read_mesh(const GltfValue& value, const Counts& counts) {
     if (targets.size() != mesh.num_targets) {
       targets.fail(to_string(mesh.num_targets) + " targets, as the first primitive has");
     }
-    // Without positions there is nothing to see.
+    // Nothing is visible without positions.
     if (!primitives[i]["attributes"]["POSITION"].exists()) continue;
     mesh.primitives.push_back(read_primitive(primitives[i], counts));
   }

@@ -1,6 +1,5 @@
-// What a glTF document says, as far as positions follow from it. Indices are in range, and
-// accessors lie in their buffers; whether a buffer is there, and what is in it, is another
-// matter.
+// The parts of a glTF document that determine positions. Indices are in range, and accessors
+// within their buffers; the buffers themselves have not been read.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +29,8 @@ struct GltfPrimitive {
   GltfMode mode = GltfMode::kTriangles;
   std::optional<std::uint32_t> indices;  // accessors, here and below
   std::uint32_t positions = 0;
-  bool is_compressed = false;  // by an extension, and perhaps for those alone who know it
-  std::vector<std::optional<std::uint32_t>> targets;  // without positions: nothing moves
+  bool is_compressed = false;  // by an extension; perhaps readable only with it
+  std::vector<std::optional<std::uint32_t>> targets;  // without positions: no motion
   std::vector<std::uint32_t> joints;                  // as many as weights
   std::vector<std::uint32_t> weights;
 
@@ -48,11 +47,11 @@ struct GltfNode {
   std::optional<std::uint32_t> mesh;
   std::optional<std::uint32_t> skin;
   std::vector<std::uint32_t> children;
-  std::optional<Affine> matrix;  // in place of the next three
+  std::optional<Affine> matrix;  // instead of the next three
   GltfVec3 translation{0, 0, 0};
   GltfQuaternion rotation{0, 0, 0, 1};  // of length 1
   GltfVec3 scale{1, 1, 1};
-  std::optional<std::vector<double>> weights;  // in place of those of the mesh
+  std::optional<std::vector<double>> weights;  // instead of those of the mesh
 };
 
 struct GltfSkin {
@@ -78,7 +77,7 @@ struct GltfAnimation {
   std::string name;
   std::vector<Sampler> samplers;
   std::vector<Channel> channels;
-  std::uint32_t num_unknown = 0;  // channels that move what is no node
+  std::uint32_t num_unknown = 0;  // channels whose target is not a node
 };
 
 struct GltfDocument {
@@ -88,14 +87,15 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
   std::vector<GltfAnimation> animations;
-  std::optional<std::vector<std::uint32_t>> scene;  // its nodes; none: all that have no parent
+  std::optional<std::vector<std::uint32_t>>
+      scene;  // its nodes; none: all nodes without a parent
   // Extensions that are not read, though they would change shapes or motions.
   std::vector<std::string> extensions_left_out;
-  // What it has beside positions and their motion: "UVs", "materials".
+  // Contents other than positions and their motion: "UVs", "materials".
   std::vector<std::string> dropped;
 };
 
-// Whole only if there are no errors.
+// Complete only if there are no errors.
 GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors);
 
 }  // namespace rlpc

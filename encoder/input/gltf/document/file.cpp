@@ -30,7 +30,7 @@ InputResult<bool> is_binary(InputFile& file) {
   return std::string_view(magic.data(), magic.size()) == "glTF";
 }
 
-// The chunks of a .glb; all of the file, and nothing but them. Unknown ones are skipped.
+// The chunks of a .glb, which must cover the file exactly. Unknown ones are skipped.
 InputResult<Chunks> find_chunks(InputFile& file) {
   const auto fail = [&](const std::string& what) {
     return InputError{file.path() + ": " + what};
@@ -73,8 +73,8 @@ InputResult<Chunks> find_chunks(InputFile& file) {
   return chunks;
 }
 
-// Values of JSON stand behind brackets, commas and colons; each takes no more than this, in an
-// array or map that has room to grow. An object is at most a node of the scene.
+// JSON values follow brackets, commas and colons; each takes at most this much, including the
+// spare capacity of arrays and maps. An object becomes at most a node of the scene.
 std::uint64_t bytes_of_document(std::string_view text) {
   constexpr std::uint64_t kOfValue = 112;
   constexpr std::uint64_t kOfObject = 1200;
@@ -87,7 +87,7 @@ std::uint64_t bytes_of_document(std::string_view text) {
   return bytes;
 }
 
-// Without the name of the library's class and number at the front of its messages.
+// Strips the class and number that the library puts before its messages.
 std::string message_of(const nlohmann::json::exception& error) {
   const std::string_view text = error.what();
   const std::size_t end = text.find("] ");
@@ -115,7 +115,7 @@ InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_
   if (!text) return text.error();
   const std::uint64_t document_bytes = bytes_of_document(*text);
   if (document_bytes > max_memory_bytes - file->memory_bytes()) return too_large;
-  // Parsing and destruction keep their own stacks: no depth of nesting can exhaust ours.
+  // Parsing and destruction use stacks of their own: deep nesting cannot exhaust ours.
   try {
     auto json = std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text));
     return GltfFile{std::move(*file), std::move(json), chunks.binary, document_bytes};

@@ -21,11 +21,11 @@ struct GltfFile {
   InputFile file;
   std::shared_ptr<const nlohmann::json> json;
   std::optional<Chunk> binary;  // of a .glb, within the file
-  // That the document takes while it is read, at most: as JSON and as a GltfDocument.
+  // Maximum memory of the document while it is read: as JSON and as a GltfDocument.
   std::uint64_t document_bytes = 0;
 };
 
-// The content tells which of the two it is, not the name.
+// Distinguished by contents, not by name.
 InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

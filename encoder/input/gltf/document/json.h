@@ -1,8 +1,7 @@
-// Values of a glTF document that know their place in it.
+// Values of a glTF document that know their path in it.
 //
-// A reader asks for what the specification of glTF 2.0 promises. The first promise that is
-// broken is kept as an error; the value then read is a legal one, so that readers need no check
-// after each step, only one before they use what they have read.
+// Readers ask for what glTF 2.0 requires. The first violation is kept as an error, and the read
+// yields a legal value, so that readers check only once, before they use the result.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +37,7 @@ class GltfErrors {
 // A value, or the place where one is missing. Refers to the document and the errors.
 class GltfValue {
  public:
-  // Sums of such, and products with small numbers, fit.
+  // Sums of these, and products with small numbers, fit 64 bits.
   static constexpr std::uint64_t kMaxInteger = std::uint64_t{1} << 53;
   struct Range {
     std::uint64_t min;
@@ -49,9 +48,9 @@ class GltfValue {
 
   bool exists() const { return json_ != nullptr; }
   const std::string& path() const { return path_; }  // "accessors[3].count"
-  // Of an object; a member that is missing, or of something missing, does not exist.
+  // A member of an object; missing members, also of missing values, do not exist.
   GltfValue operator[](std::string_view member) const;
-  // Of an array: i < size().
+  // An element of an array: i < size().
   GltfValue operator[](std::size_t i) const;
   // Elements of an array; 0 if it does not exist.
   std::size_t size() const;
@@ -60,9 +59,9 @@ class GltfValue {
   std::uint64_t integer(Range range, std::optional<std::uint64_t> absent = {}) const;
   bool boolean(bool absent) const;
   std::string text(const std::optional<std::string>& absent = {}) const;
-  // As many as `count`; `absent` if it does not exist.
+  // Exactly `count` numbers; `absent` if it does not exist.
   std::vector<double> numbers(std::size_t count, const std::vector<double>& absent) const;
-  // Below `count`, which is that of the array `of`.
+  // Below `count`, the size of the array `of`.
   std::uint32_t index(std::size_t count, const char* of) const;
   std::optional<std::uint32_t> index_if_any(std::size_t count, const char* of) const;
 
@@ -78,7 +77,7 @@ class GltfValue {
   GltfErrors* errors_;
 };
 
-// In double quotes, as in JSON; long ones are cut.
+// In double quotes, as in JSON; long ones are shortened.
 std::string gltf_quoted(const std::string& text);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// What a glTF document takes in memory, counted before it is taken.
+// Memory of a glTF document, counted before it is allocated.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class GltfMemory {
   GltfMemory(std::uint64_t max_bytes, GltfErrors& errors)
       : max_bytes_(max_bytes), errors_(errors) {}
 
-  // False if there would be more than the limit; an error then names the place.
+  // False, with an error that names the place, if the limit would be exceeded.
   bool take(const std::string& place, std::uint64_t bytes) {
     if (bytes <= max_bytes_ - taken_) {
       taken_ += bytes;

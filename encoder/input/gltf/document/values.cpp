@@ -79,7 +79,7 @@ bool GltfValues::has_float_type(std::uint32_t accessor, std::string_view type,
 
 bool GltfValues::take(std::uint32_t accessor, std::uint64_t elements) {
   const GltfAccessor& a = accessors_[accessor];
-  // First, as it tells how many bytes there are.
+  // First, as it determines the number of bytes.
   const auto missing = [&](const GltfRange& range) {
     return !buffers_.available(range.buffer);
   };
@@ -134,7 +134,7 @@ void GltfValues::each_sparse(std::uint32_t accessor, const Visit& visit) {
                });
 }
 
-// Elements that are in no buffer are left out; sparse ones come again, with what they are.
+// Skips elements without a buffer; sparse ones are visited again, with their values.
 template <class Visit>
 void GltfValues::each(std::uint32_t accessor, const Visit& visit) {
   const GltfAccessor& a = accessors_[accessor];

@@ -1,5 +1,5 @@
-// What is in the accessors of a glTF document. Values are finite, and of the types that the
-// specification allows where they are used; the first that is not is an error.
+// The contents of accessors of a glTF document. Values must be finite, and of the types allowed
+// for their use; the first violation is an error.
 #pragma once
 
 #include <array>
@@ -14,33 +14,33 @@
 
 namespace rlpc {
 
-// How far a target moves a vertex.
+// The displacement of a vertex by a target.
 struct GltfDelta {
   std::uint32_t vertex = 0;
   std::array<float, 3> move{};
 };
 
-// Each function gives nothing after an error.
+// Functions return empty results after an error.
 class GltfValues {
  public:
   enum class Integers : std::uint8_t { kNo, kToo };
 
-  // Over all accessors that are read, values are at most `spare_values` and 16 for each byte
-  // that is there: a small document can neither claim much nor say the same over and over.
+  // In total, at most `spare_values` values are read, plus 16 per byte present: a small
+  // document can neither claim much nor repeat the same data many times.
   GltfValues(const std::vector<GltfAccessor>& accessors, GltfBuffers& buffers,
              std::uint64_t spare_values, GltfMemory& memory, GltfErrors& errors);
 
   const GltfAccessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  // For what becomes of values.
+  // For what is built from values.
   GltfMemory& memory() { return memory_; }
 
-  // [count][width]; integers become floats, exactly but for normalised ones.
+  // [count][width]; integers become floats, exactly unless normalised.
   std::vector<float> floats(std::uint32_t accessor, std::string_view type, Integers integers);
   // [count][width], unsigned.
   std::vector<std::uint32_t> integers(std::uint32_t accessor, std::string_view type);
-  // Of a VEC3, those that are not zero; vertices ascend.
+  // Of a VEC3, those that are not zero; ascending vertices.
   std::vector<GltfDelta> deltas(std::uint32_t accessor);
-  // Of a MAT4, with the last row taken for 0, 0, 0, 1.
+  // Of a MAT4, with the last row taken as 0, 0, 0, 1.
   std::vector<Affine> matrices(std::uint32_t accessor);
 
  private:
