@@ -1,4 +1,4 @@
-// rlpcval: everything that is wrong with an .rlpc stream, why, and what to do.
+// rlpcval: all violations in an .rlpc stream, their causes and remedies.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -50,7 +50,7 @@ const char* name_of_unit(std::uint8_t type_byte) {
   return "of unknown type";
 }
 
-// Breaks lines between words; all lines are indented.
+// Wraps lines between words, all indented.
 void print_wrapped(std::FILE* out, std::string_view text) {
   constexpr std::string_view kIndent = "  ";
   std::string line(kIndent);

@@ -1,4 +1,4 @@
-// Findings of the validator for people and for machines.
+// Findings of the validator, as text and as JSON.
 #pragma once
 
 #include <cstdio>

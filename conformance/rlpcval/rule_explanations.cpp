@@ -18,7 +18,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The bit writer flushes its last byte with old contents or fills it with ones.",
      "Fill with zero bits up to the next byte. If the bits look like data, an element before "
      "was written too short or twice."},
-    {"R-BIT-03", "9.2", "The payload goes on where its syntax has ended.",
+    {"R-BIT-03", "9.2", "The payload continues after the end of its syntax.",
      "Padding to a multiple of 4 or 8 bytes, an element that this version does not have, or a "
      "unit_size that counts the CRC.",
      "Write exactly the bytes of the syntax table; units need no padding."},
@@ -30,22 +30,22 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-BON-01", "7.11", "The step of rest positions is above 65536.",
      "The step was computed in grid units, or for a grid far finer than the target needs; or "
      "reading is out of step.",
-     "The step counts sixteenths of a grid unit. Take a coarser grid if it has to be so "
+     "The step counts sixteenths of a grid unit. Use a coarser grid if it must be so "
      "large."},
     {"R-BON-02", "7.11", "There are more than 255 component groups.",
-     "Each trajectory was given a group of its own.",
+     "Each trajectory was put into a group of its own.",
      "Put several trajectories into one group; groups are what a stream can be cut to."},
     {"R-BON-03", "7.11", "A layer group has no layers.",
      "There are more layer groups than layers, or the number of layers was not taken from 8.9: "
      "it depends on the connectivity alone, and is the same in all GOFs.",
-     "Share out exactly NumLayers layers; the last group takes what is left. Compare NumLayers "
+     "Distribute exactly NumLayers layers; the last group takes the rest. Compare NumLayers "
      "with that of another decoder if the numbers look right."},
-    {"R-BON-04", "7.11.2", "The parent of a bone is no bone before it.",
+    {"R-BON-04", "7.11.2", "The parent of a bone is not an earlier bone.",
      "Bones were written in the order of the input, or the index of the parent was written "
      "without adding 1.",
      "Sort bones so that parents come first; 0 is for a bone without parent."},
     {"R-BON-05", "7.11.2", "The step of rotations or origins has an index above 239.",
-     "A step was written in place of its index, or the index was computed in another unit.",
+     "A step was written instead of its index, or the index was computed in another unit.",
      "See 8.12.1: eight indices double the step."},
     {"R-CON-01", "7.4.1", "There are more degenerate triangles than triangles.",
      "num_triangles of the sequence header counts the regular triangles alone.",
@@ -99,7 +99,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Shorten the last GOF to the frames that are left, or correct num_frames_minus1."},
     {"R-GOF-03", "7.5", "fraction_bits is above 24.",
      "The scale of the factors was chosen without regard to the range.",
-     "Take fewer fraction bits, and larger steps for the spatial values."},
+     "Use fewer fraction bits, and larger steps for the spatial values."},
     {"R-GOF-04", "7.5", "The step of seed residuals is above 65536.",
      "The step was computed in other units than those of the grid, or for a grid far finer "
      "than "
@@ -117,27 +117,29 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "A degenerate triangle of the mesh was taken as seed triangle.",
      "Choose three different vertices; equal positions are allowed, equal indices are not."},
     {"R-GOF-08", "7.5.3", "A vertex belongs to a cluster that does not exist.",
-     "cluster_idx counts from 1, or clusters were removed after vertices had been given to "
+     "cluster_idx counts from 1, or clusters were removed after vertices had been assigned to "
      "them.",
      "Number clusters from 0 to num_clusters_minus1 after the last change."},
     {"R-GOF-09", "7.5.5",
      "The number of components of a cluster is negative or above the level.",
-     "num_components_delta was taken from another cluster than the one before; or the level is "
+     "num_components_delta is not relative to the previous cluster; or the level is "
      "too low.",
-     "The delta is that from the cluster before, from 0 for the first; raise level_idc if the "
-     "cluster needs so many."},
-    {"R-GOF-10", "7.5.7", "ScaleIdx leaves 0 to 127.",
-     "The difference was taken from another component than the one before, or the first one "
-     "not from 0.",
-     "Take differences from the component before, across clusters too."},
-    {"R-GOF-11", "7.5.7", "SpatialBits leaves 1 to 24.",
-     "The spatial values need more than 24 bits, or the difference was taken from another "
+     "The delta is relative to the previous cluster, to 0 for the first; raise level_idc if "
+     "the "
+     "cluster needs that many."},
+    {"R-GOF-10", "7.5.7", "ScaleIdx is outside 0 to 127.",
+     "The difference is not relative to the previous component, or the first one "
+     "not to 0.",
+     "Take differences from the previous component, also across clusters."},
+    {"R-GOF-11", "7.5.7", "SpatialBits is outside 1 to 24.",
+     "The spatial values need more than 24 bits, or the difference is not relative to the "
+     "previous "
      "component.",
-     "Take a larger step for spatial values; the first difference is from 1."},
-    {"R-GOF-12", "7.5.7", "TemporalBits leaves 1 to 26.",
+     "Use a larger step for spatial values; the first difference is from 1."},
+    {"R-GOF-12", "7.5.7", "TemporalBits is outside 1 to 26.",
      "The temporal factor needs more than 26 bits after scaling, or the difference was taken "
      "from another component.",
-     "Take fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
+     "Use fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
     {"R-HDR-01", "7.3", "The profile is not known to this version.",
      "The stream is of a later version, or reserved values were used.",
      "Write profile_idc 0 (Baseline) with version 1.0, 1 (Main) with version 1.1, or validate "
@@ -148,46 +150,45 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-HDR-03", "7.3", "A part of the frame rate is above 2^32 - 1.",
      "A floating-point rate was turned into a fraction without reducing it, or the 0 of an "
      "unknown rate became -1.",
-     "Reduce the fraction; 1/1 will do where the rate is not known."},
+     "Reduce the fraction; write 1/1 if the rate is unknown."},
     {"R-HDR-04", "7.3", "The step of the grid is not a power of two from 2^-150 to 2^120.",
-     "The exponent has the wrong sign, or that of a value in another unit.",
+     "The exponent has the wrong sign, or belongs to a value in another unit.",
      "Choose the step so that the coordinates are normal 32-bit numbers."},
     {"R-HDR-05", "7.3", "The origin of the grid is more than 2^26 steps away.",
      "A small object far from the origin of space: the step is too fine for the distance.",
-     "Take a coarser step, or move the animation towards the origin."},
+     "Use a coarser step, or move the animation towards the origin."},
     {"R-HDR-06", "7.3", "Positions have fewer than 2 or more than 24 bits.",
      "The bits of the grid were computed from a bounding box without regard to the range.",
-     "Take a coarser step of the grid, or at least 2 bits for an object without size."},
-    {"R-HSH-01", "7.7",
-     "A GOF hash unit has not one hash for the GOF, or not one for each of its frames.",
-     "per_frame_flag does not fit what was written, or the unit belongs to another GOF.",
-     "With per_frame_flag 1, write 4 bytes for each frame of the GOF before; else 4 bytes."},
-    {"R-HSH-02", "7.7", "The decoded positions do not have the hash that the stream gives.",
-     "The encoder reconstructs otherwise than clause 8 (rounding, clipping, order of "
+     "Use a coarser step of the grid, or at least 2 bits for an object without size."},
+    {"R-HSH-01", "7.7", "A GOF hash unit has neither one hash for the GOF, nor one per frame.",
+     "per_frame_flag does not match what was written, or the unit belongs to another GOF.",
+     "With per_frame_flag 1, write 4 bytes per frame of the preceding GOF; otherwise 4 bytes."},
+    {"R-HSH-02", "7.7", "The decoded positions do not match the hash in the stream.",
+     "The encoder's reconstruction deviates from clause 8 (rounding, clipping, order of "
      "predictions), hashes its input, or hashes in output order.",
      "Compare the reconstruction frame by frame with that of a decoder; the hash is over "
      "32-bit "
      "integers, low byte first, in decoded order."},
     {"R-HSH-03", "7.2", "A GOF hash unit does not follow a GOF unit directly.",
      "Another unit was written between them, or a second hash unit for the same GOF.",
-     "Write the hash unit right behind its GOF, and the slices of that; metadata goes before "
+     "Write the hash unit right after its GOF and its slices; metadata goes before "
      "the "
-     "GOF or behind all of them."},
+     "GOF or after all of them."},
     {"R-IDX-01", "7.9", "The GOF index does not list all frames of the sequence once.",
      "The index was written before the last GOF, or num_index_gofs_minus1 is not one less than "
      "the number of GOFs.",
-     "Write the index when all GOFs are written, with one entry for each."},
+     "Write the index after all GOFs, with one entry for each."},
     {"R-IDX-02", "7.9", "An offset of the GOF index is above 2^32 - 2.",
      "The stream has more than 4 GB before its first GOF, or a GOF is that large.",
-     "Leave the index out (index_distance 0), or take smaller GOFs."},
-    {"R-IDX-03", "7.9", "The GOF index does not say where the GOF units are.",
+     "Omit the index (index_distance 0), or use smaller GOFs."},
+    {"R-IDX-03", "7.9", "The GOF index does not match the GOF units.",
      "index_gof_bytes leaves out GOF hash units, unit headers or CRCs; or units were inserted "
      "or "
      "removed after the index was made.",
      "Count from the start of a GOF unit to the start of the next GOF unit, with all that is "
      "in "
-     "between; remake the index when units change."},
-    {"R-IDX-04", "7.9", "A GOF index unit that no decoder finds.",
+     "between; rebuild the index when units change."},
+    {"R-IDX-04", "7.9", "No decoder finds this GOF index unit.",
      "index_distance is 0, the index is not directly before the end_of_sequence unit, or there "
      "are several.",
      "Write one index directly before the end, and its size into index_distance."},
@@ -202,25 +203,25 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-LVL-04", "7.5",
      "A GOF has more frames, or more vertices times frames, than its level allows.",
      "The whole animation was written as one GOF.",
-     "Take shorter GOFs, or raise level_idc (Table B-1)."},
+     "Use shorter GOFs, or raise level_idc (Table B-1)."},
     {"R-LVL-05", "7.5.5", "A GOF has more factors than its level allows.",
      "Many components, bones or trajectories over many vertices and frames.",
-     "Take fewer of them or shorter GOFs, or raise level_idc (Table B-1)."},
+     "Use fewer of them or shorter GOFs, or raise level_idc (Table B-1)."},
     {"R-LVL-06", "7.5", "A GOF has more clusters, or bones, than its level allows.",
      "Their number was chosen without regard to the level.",
-     "Take fewer of them, or raise level_idc; no level has more than 1024."},
+     "Use fewer of them, or raise level_idc; no level has more than 1024."},
     {"R-LVL-07", "7.2", "A critical unit is larger than its level allows.",
      "The size of the unit was never compared with the level; or unit_size is damaged.",
-     "Take shorter GOFs, or raise level_idc (Table B-1)."},
-    {"R-MET-01", "7.10", "Metadata are larger than 1 MiB.",
-     "Something else than a description was put into the metadata.",
-     "Keep metadata below 1048576 bytes; large data belong beside the stream."},
-    {"R-MET-02", "7.10", "The metadata are not exactly one zlib stream of metadata_size bytes.",
+     "Use shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-MET-01", "7.10", "The metadata is larger than 1 MiB.",
+     "More than a description was put into the metadata.",
+     "Keep metadata below 1048576 bytes; large data belongs outside the stream."},
+    {"R-MET-02", "7.10", "The metadata is not exactly one zlib stream of metadata_size bytes.",
      "Raw deflate or gzip was written instead of zlib; metadata_size is the compressed size; "
      "or "
-     "bytes are left over behind the zlib stream.",
+     "bytes follow the zlib stream.",
      "Write metadata_size of the text before compression, then the output of compress( )."},
-    {"R-MET-03", "7.10", "The metadata are no JSON text in UTF-8.",
+    {"R-MET-03", "7.10", "The metadata is not a JSON text in UTF-8.",
      "Text in another encoding, a byte order mark, a terminating zero byte, a trailing comma, "
      "or single quotes.",
      "Let a JSON library write the text, in UTF-8 without a byte order mark."},
@@ -234,26 +235,27 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-RNG-02", "9.3.2", "A section begins with four bytes of 255.",
      "A carry of the range encoder was lost, or the section was overwritten.",
      "Propagate carries into the bytes already written."},
-    {"R-SLI-01", "7.12", "A slice is of a component group or a layer group that there is not.",
-     "The groups of the GOF unit before were counted otherwise: 0 is for influences and rest "
+    {"R-SLI-01", "7.12",
+     "A slice belongs to a component group or a layer group that does not exist.",
+     "The groups were counted differently from the GOF unit: 0 is for influences and rest "
      "positions, component groups count from 1, layer groups from 0.",
-     "Compare num_component_groups and num_layer_groups_minus1 of the GOF unit before."},
-    {"R-SLI-02", "7.12", "A slice stands where it must not, or one that it needs is missing.",
-     "A slice was left out, repeated or reordered, but others that depend on it were kept.",
-     "All layer groups of component group 0 come first, then those of group 1, and so on. Who "
-     "cuts a stream leaves out, with a slice, those of higher layer groups of its component "
-     "group, and those of higher component groups of its layer group."},
+     "Compare num_component_groups and num_layer_groups_minus1 of the GOF unit."},
+    {"R-SLI-02", "7.12", "A slice is out of place, or one that it needs is missing.",
+     "A slice was dropped, repeated or moved, but others that depend on it were kept.",
+     "All layer groups of component group 0 come first, then those of group 1, and so on. To "
+     "cut a stream, drop with a slice those of higher layer groups of its component "
+     "group, and those of higher component groups in its layer group."},
     {"R-SLI-03", "7.12.1",
      "A component group has no trajectories, or the GOF more than its level allows.",
      "An empty group was written, or the number of trajectories was never compared with the "
      "level.",
-     "Leave out empty groups; take fewer trajectories, or raise level_idc (Table B-1)."},
-    {"R-SLI-04", "7.12.2", "An extra bone is none, or influences the vertex already.",
+     "Omit empty groups; use fewer trajectories, or raise level_idc (Table B-1)."},
+    {"R-SLI-04", "7.12.2", "An extra bone does not exist, or already influences the vertex.",
      "Bones that vertices of the ring have were written as extra bones, or the candidates are "
      "not those of 8.13.",
      "Compare the candidates of the vertex with those of another decoder; they come from the "
      "decoded influences of its ring."},
-    {"R-SLI-05", "7.12.2", "The weights of the extra bones of a vertex are too large together.",
+    {"R-SLI-05", "7.12.2", "The weights of the extra bones of a vertex add up to too much.",
      "Weights were rounded one by one, so that their sum is above 2^weight_bits.",
      "Round weights so that their sum is right, extra bones first."},
     {"R-STR-01", "7.1", "The file does not begin with the signature of RLPC.",
@@ -266,25 +268,25 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The minor version of the stream is not known, or is not that of its profile.",
      "The stream uses a later minor version, or the encoder always writes its own version.",
      "Write the lowest version that has the tools in use, or validate with a later version."},
-    {"R-UNT-01", "7.2", "A unit has to follow, but the stream ends.",
+    {"R-UNT-01", "7.2", "The stream ends where another unit must follow.",
      "The file was cut off between units, or the end_of_sequence unit was not written.",
      "End every stream with an end_of_sequence unit."},
     {"R-UNT-02", "7.2", "A unit goes past the end of the stream.",
      "The file was cut off, or unit_size is wrong: byte order, or counted with header and CRC.",
      "unit_size is the payload alone, most significant byte first."},
-    {"R-UNT-03", "7.2", "The CRC of a unit does not hold.",
+    {"R-UNT-03", "7.2", "The CRC of a unit does not match.",
      "The bytes were damaged; or the CRC was computed without the unit header, with another "
      "polynomial, or written low byte first.",
      "CRC-32 of zlib over type, size and payload, written most significant byte first."},
     {"R-UNT-04", "7.2", "A critical unit has a type that this version does not know.",
      "The stream is of a later version; or a private unit was written as a critical one.",
      "Private units are ancillary ones: set ancillary_flag."},
-    {"R-UNT-05", "7.2", "A unit stands where it must not.",
+    {"R-UNT-05", "7.2", "A unit is out of place.",
      "Units are written in another order than that of Table 7-1, or twice.",
-     "Order: sequence header, connectivity, vertex order, GOFs, those of bones with their "
-     "slices right behind them, end of sequence."},
-    {"R-VOR-01", "7.6", "The vertex order leads to an index that no vertex has.",
-     "The differences were taken from another list than VertexOrder, or reading is out of "
+     "Order: sequence header, connectivity, vertex order, GOFs, skinned ones with their "
+     "slices right after them, end of sequence."},
+    {"R-VOR-01", "7.6", "The vertex order contains an index that no vertex has.",
+     "The differences were not taken from VertexOrder, or reading is out of "
      "step.",
      "Write VertexOrder[ v ], the index in the output of vertex v in decoded order."},
     {"R-VOR-02", "7.6", "Two vertices have the same place in the output.",
@@ -295,30 +297,30 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
 
 constexpr std::array kWarnings = std::to_array<RuleExplanation>({
     {"W-BON-01", "7.11.2", "A bone moves no vertex.",
-     "Bones that lost their last vertex to others were kept; they cost bits and give nothing.",
+     "Bones that lost their last vertex to others were kept; they cost bits to no effect.",
      "Remove bones that influence no vertex, and are above none that does, before the GOF is "
      "written."},
     {"W-GOF-01", "7.5.3", "A cluster has no coded vertices.",
-     "Clusters that became empty were kept; they cost bits and give nothing.",
+     "Clusters that became empty were kept; they cost bits to no effect.",
      "Remove empty clusters before the GOF is written."},
     {"W-GOF-02", "7.5.7", "A component is zero everywhere.",
      "All its temporal or all its spatial residuals became zero by quantisation.",
-     "Leave out components that quantise to zero."},
-    {"W-HDR-01", "7.3", "The frame rate is not what animations have.",
-     "Numerator and denominator are exchanged, or the rate is the time of a frame.",
+     "Omit components that quantise to zero."},
+    {"W-HDR-01", "7.3", "The frame rate is implausible.",
+     "Numerator and denominator are exchanged, or the rate is the duration of a frame.",
      "Frames per second: 30/1, or 30000/1001."},
-    {"W-HSH-01", "7.7", "GOFs have no hash.", "The encoder was told to leave them out.",
-     "Write a hash for each GOF: decoders cannot notice a difference without one."},
+    {"W-HSH-01", "7.7", "GOFs have no hash.", "The encoder was told to omit them.",
+     "Write a hash for each GOF: decoders cannot detect differences without one."},
     {"W-IDX-01", "7.9", "Many GOFs, but no GOF index.", "The encoder writes none.",
-     "Write one: finding a frame takes a walk over all units."},
+     "Write one: without it, finding a frame means walking over all units."},
     {"W-LVL-01", "7.3", "The level is higher than the stream needs.",
      "The encoder always writes the same level.",
-     "Write the lowest level whose limits hold, so that more decoders can take the stream."},
-    {"W-MET-01", "7.10", "Several metadata units: only the last one holds.",
+     "Write the lowest level whose limits hold, so that more decoders accept the stream."},
+    {"W-MET-01", "7.10", "Several metadata units: only the last one counts.",
      "A tool added metadata without removing the old ones.", "Keep one metadata unit."},
     {"W-SLI-01", "7.12.1", "A trajectory is zero in all frames.",
      "All its residuals became zero by quantisation.",
-     "Leave out trajectories that quantise to zero."},
+     "Omit trajectories that quantise to zero."},
     {"W-UNT-01", "7.2", "An ancillary unit of a type that this version does not know.",
      "A private unit, a unit of a later version, or a damaged type.",
      "Decoders skip it; make sure that nothing depends on it."},

@@ -1,4 +1,4 @@
-// What the findings of the validator mean, for the author of the encoder.
+// Explanations of the findings of the validator, for authors of encoders.
 #pragma once
 
 #include <span>
@@ -14,12 +14,12 @@ struct RuleExplanation {
   const char* remedy;       // what to do
 };
 
-// One entry for each rule of spec/rules.json, ascending.
+// One entry per rule of spec/rules.json, ascending.
 std::span<const RuleExplanation> rule_explanations();
-// One for each warning.
+// One entry per warning.
 std::span<const RuleExplanation> warning_explanations();
 
-// Of a rule or a warning; null if there is none.
+// The entry of a rule or a warning; null if unknown.
 const RuleExplanation* explain(std::string_view id);
 
 }  // namespace rlpc

@@ -30,8 +30,8 @@ void StreamValidator::run() {
   if (unsupported_) report_.complete = false;
 }
 
-// An unsupported stream is not called invalid: what a later version makes of the rest is not
-// known. Behind damage, it is damage that looks like a later version.
+// An unsupported stream is not called invalid, as the syntax of a later version is unknown.
+// After damage, an apparent later version is damage itself.
 bool StreamValidator::is_foreign() const {
   return unsupported_ && report_.count(Severity::kError) == 0;
 }
@@ -44,7 +44,7 @@ void StreamValidator::walk() {
     }
     findings_.in_unit(std::nullopt);
     findings_.suspect(false);
-    // That bytes follow the end was said; they are looked at only if they are units.
+    // Bytes after the end have been reported; they are examined only if they are units.
     if (ended_ && !units_.is_unit(offset)) return;
     const auto unit = units_.header_at(offset);
     bool sound = false;
@@ -57,8 +57,8 @@ void StreamValidator::walk() {
   }
 }
 
-// Behind the unit at `offset`; or where units are again, if there is none or its size cannot be
-// right.
+// The offset after the unit at `offset`; or of the next units found, if there is none or its
+// size cannot be right.
 std::optional<std::uint64_t> StreamValidator::place_after(std::uint64_t offset,
                                                           const std::optional<UnitHeader>& unit,
                                                           bool sound) {
@@ -81,8 +81,8 @@ void StreamValidator::lose_units() {
   report_.complete = false;
 }
 
-// 6.1 leading_units( ) and gof_units( ): Table 7-1. What follows a misplaced unit is not called
-// misplaced for that.
+// 6.1 leading_units( ) and gof_units( ): Table 7-1. Units after a misplaced one are not
+// reported as misplaced for that reason.
 bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
   const auto seen = [&](UnitType type) { return seen_[static_cast<std::uint8_t>(type)] > 0; };
   if (report_.units == 0) return unit.type() == UnitType::kSequenceHeader;
@@ -152,7 +152,7 @@ bool StreamValidator::visit(const UnitHeader& unit) {
     findings_.suspect(false);
   }
   const bool sound = units_.crc_holds(unit);
-  // A new type in a sound unit, and not a damaged one.
+  // A new type in an intact unit, not a damaged type.
   if (!known && sound) unsupported_ = true;
   if (unsupported_) {
     report_.complete = false;

@@ -1,5 +1,5 @@
 // Fixed-length and Exp-Golomb codes of clause 9.2 for the validator: a value out of range is
-// reported and reading goes on, so that all values of a header are checked.
+// reported and reading continues, so that all values of a header are checked.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// Whether the decoding process checks what is read.
+// Whether the decoding process checks the elements read.
 enum class Checked : std::uint8_t { kByDecoding, kNotByDecoding };
 
 class ElementReader {
@@ -26,11 +26,12 @@ class ElementReader {
   void byte_alignment();
   void expect_end();
 
-  // Reports a rule at the element read last, unless it could not be read. True if all is well.
+  // Reports a rule at the last element, unless that could not be read. True if `condition`
+  // holds.
   bool require(bool condition, const char* rule, const std::string& allowed);
   bool supported(bool condition, const char* rule, const std::string& allowed);
 
-  // False once a code did not lie within the payload, or was none; values are 0 from then on.
+  // False once a code was invalid or extended past the payload; values are 0 from then on.
   bool readable() const { return readable_; }
   std::uint64_t bit_pos() const { return first_bit_ + pos_; }
   std::uint32_t failures() const { return failures_; }

@@ -1,4 +1,4 @@
-// Collects what the validator finds, with the unit that it is looking at.
+// Collects findings, with the current unit.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@ class FindingList {
   FindingList(ValidationReport& report, std::size_t max_findings)
       : report_(report), max_findings_(max_findings) {}
 
-  // What follows is about this unit.
+  // Later findings are about this unit.
   void in_unit(const std::optional<FindingUnit>& unit) { unit_ = unit; }
-  // What follows may be a consequence of what was found before.
+  // Later findings may be consequences of earlier ones.
   void suspect(bool suspect) { suspect_ = suspect; }
   bool suspect() const { return suspect_; }
 
-  // A requirement on which the decoding process depends: a decoder stops at the first.
+  // A violation that the decoding process checks: a decoder stops at the first.
   void error(const Error& error, std::string detail = "");
-  // A requirement that decoding in order does not check (4.6).
+  // A violation that sequential decoding does not check (4.6).
   void unchecked(const char* rule, const char* element, std::uint64_t bit_pos,
                  std::string detail);
   void warning(const char* id, const char* element, std::uint64_t bit_pos, std::string detail);
 
-  // Errors and unsupported features so far, those that were not listed too.
+  // Errors and unsupported features so far, including those not listed.
   std::uint64_t failures() const { return failures_; }
 
  private:

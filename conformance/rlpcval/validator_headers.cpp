@@ -18,7 +18,7 @@ std::string level_allows(std::uint32_t level_idc, std::uint64_t limit, const cha
   return "level " + std::to_string(level_idc) + " allows " + std::to_string(limit) + what;
 }
 
-// The grid does not influence decoding, nor does the frame rate.
+// Neither the grid nor the frame rate influences decoding.
 void check_rate_and_grid(ElementReader& r, SequenceHeader& h) {
   const auto rate = [&](const char* element) {
     const std::int64_t value = r.ue(element);
@@ -103,7 +103,7 @@ bool check_gof_frames(ElementReader& r, const SequenceHeader& header,
     good &= r.require(frames <= left, "R-GOF-02",
                       "the sequence has " + std::to_string(left) + " frames left");
   }
-  // In the order of the decoding process: not where R-GOF-02 failed.
+  // In the order of the decoding process: skipped if R-GOF-02 failed.
   if (!good) return false;
   const auto values = static_cast<std::uint64_t>(frames) * header.num_vertices;
   good = r.require(frames <= level.max_gof_frames && values <= level.max_gof_values, "R-LVL-04",

@@ -23,7 +23,7 @@ struct HeaderCheck {
 HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor);
 
 struct SliceCounts {
-  std::uint32_t component_groups = 0;  // and influences, which are none of them
+  std::uint32_t component_groups = 0;  // and the influences, which are not factors
   std::uint32_t layer_groups = 1;
 };
 
@@ -31,8 +31,8 @@ struct GofHeaderCheck {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;       // 0: not known
   std::optional<GofKind> kind;        // if it could be read, or inferred
-  bool section_readable = false;      // nothing but first_frame may be wrong
-  std::optional<SliceCounts> slices;  // of a GOF of bones, if known
+  bool section_readable = false;      // only first_frame may be wrong
+  std::optional<SliceCounts> slices;  // of a skinned GOF, if known
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:

@@ -1,4 +1,4 @@
-// What units hold: 6.3 to 6.12, and the hash check of 8.6.2.
+// Contents of units: 6.3 to 6.12, and the hash check of 8.6.2.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -30,7 +30,7 @@ std::string hex(std::uint32_t value) {
   return text;
 }
 
-// What the rest of a stream is read with is kept, up to the limits of the caller.
+// Keeps what the rest of the stream is read with, up to the caller's limits.
 std::uint64_t memory_of(const SequenceHeader& h) {
   const std::uint64_t of_vertex = h.profile_idc == kProfileMain ? 400 : 100;
   return std::uint64_t{h.num_vertices} * of_vertex + std::uint64_t{h.num_triangles} * 120;
@@ -77,7 +77,7 @@ bool StreamValidator::can_read() {
 
 // 6.3 sequence_header( )
 void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& payload) {
-  if (lead_.header) return;  // it stands in the wrong place, that was said
+  if (lead_.header) return;  // in the wrong place, already reported
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
   lead_.header = check_sequence_header(r, units_.version_minor());
   lead_.header_bit_pos = unit.payload_offset() * 8;
@@ -139,7 +139,7 @@ void StreamValidator::vertex_order(const UnitHeader& unit, const Payload& payloa
   if (!order) findings_.error(order.error());
 }
 
-// What is known of a GOF before it is read.
+// What is known of a GOF before reading it.
 void StreamValidator::begin_gof(const UnitHeader& unit) {
   index_.gofs.push_back({unit.offset, 0});
   gof_ = {};
@@ -154,7 +154,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   const bool damaged = findings_.suspect();
   findings_.suspect(damaged || frames_suspect_);
-  // One GOF too many was said; it may be a copy of any other.
+  // A surplus GOF has been reported; it may be a copy of any other.
   const bool surplus = gof_.expected_first_frame == lead_.header->header.num_frames;
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
   const std::uint32_t num_layers =
@@ -216,7 +216,7 @@ void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   }
   needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, unit.size);
   if (read) return;
-  // What slices behind it hold depends on it.
+  // The contents of later slices depend on it.
   report_.complete = false;
   gof_.suspect = true;
   gof_.parser.reset();
@@ -238,7 +238,7 @@ void StreamValidator::end_slices() {
 // 6.7 gof_hash( )
 void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   if (!gof_.unit) {
-    // Behind a gap, the GOF may be what was lost.
+    // After a gap, the GOF may have been lost.
     if (previous_) {
       findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
                           "no GOF unit, and no slice of one, ends where it starts");

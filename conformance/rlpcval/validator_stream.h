@@ -1,4 +1,4 @@
-// The walk of the validator through one stream; validator.h is what others use.
+// The validator's walk through one stream; the interface is validator.h.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ class StreamValidator {
  private:
   using Payload = std::vector<std::uint8_t>;
 
-  // validator.cpp: units, and where they stand.
+  // validator.cpp: units and their order.
   void walk();
   bool is_foreign() const;
   // False if the bytes of the unit are damaged.
@@ -41,7 +41,7 @@ class StreamValidator {
                                            const std::optional<UnitHeader>& unit, bool sound);
   void lose_units();
 
-  // validator_payloads.cpp: what units hold.
+  // validator_payloads.cpp: contents of units.
   void read_payload(const UnitHeader& unit, bool sound);
   void sequence_header(const UnitHeader& unit, const Payload& payload);
   void check_limits();
@@ -51,17 +51,17 @@ class StreamValidator {
   void gof(const UnitHeader& unit, const Payload& payload);
   void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
-  // No slice can follow any more: the access unit is complete, but for its hash.
+  // No further slice can follow: the access unit is complete except for its hash.
   void end_slices();
   void gof_hash(const UnitHeader& unit, const Payload& payload);
   void compare_hashes(const UnitHeader& unit, const GofHash& hash);
   void gof_index(const UnitHeader& unit, const Payload& payload);
   void metadata(const UnitHeader& unit, const Payload& payload);
   void end_of_sequence(const UnitHeader& unit, const Payload& payload);
-  // Whether units can be read that need the sequence header; says so if not.
+  // Whether units that need the sequence header can be read; reports it if not.
   bool can_read();
 
-  // validator_summary.cpp: what shows only with the whole stream.
+  // validator_summary.cpp: findings that need the whole stream.
   void compare_index(const GofIndexCheck& index);
   void warn_of_stream();
   void warn_of_level();
@@ -98,7 +98,7 @@ class StreamValidator {
     std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
     std::uint32_t num_frames = 0;                       // 0: not known
     bool suspect = false;
-    bool may_have_slices = false;  // it is one of bones, or that is not known
+    bool may_have_slices = false;  // it is a skinned GOF, or unknown
     std::optional<SliceCounts> slice_counts;
     std::unique_ptr<AccessUnitParser> parser;  // if its units so far could be read
     std::optional<AccessUnit> access_unit;     // if all could be read
@@ -106,7 +106,7 @@ class StreamValidator {
   CurrentGof gof_;
   std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
   bool frames_suspect_ = false;
-  Level needed_{};  // the most that any GOF takes
+  Level needed_{};  // the maximum over all GOFs
 
   struct Index {
     std::vector<GofLocation> gofs;  // all GOF units; first_frame only if known

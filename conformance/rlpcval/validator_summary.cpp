@@ -1,4 +1,4 @@
-// What shows only with the whole stream: a wrong index, and what is legal but surely not meant.
+// Findings that need the whole stream: a wrong index, and what is legal but surely not meant.
 #include <algorithm>
 #include <string>
 
@@ -9,7 +9,7 @@ namespace {
 
 // Below this number of GOFs, an index saves nothing.
 constexpr std::size_t kManyGofs = 16;
-// Frames per second that animations have: from one in ten seconds to a thousand.
+// Plausible frames per second: from one in ten seconds to a thousand.
 constexpr std::uint64_t kMinFrameSeconds = 10;
 constexpr std::uint64_t kMaxFrameRate = 1000;
 

@@ -1,5 +1,5 @@
-// 6.1 and 6.2 as the validator reads them: signature, unit headers, payloads, CRCs; and where
-// the next unit is when a size cannot be right.
+// 6.1 and 6.2 as the validator reads them: signature, unit headers, payloads, CRCs; and the
+// search for the next unit if a size cannot be right.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,22 @@ class StreamUnits {
   StreamUnits(ByteSource& source, FindingList& findings, std::uint64_t max_memory_bytes)
       : source_(source), findings_(findings), max_memory_bytes_(max_memory_bytes) {}
 
-  // Signature and version. False if there is no use in reading on.
+  // Signature and version. False if reading on is pointless.
   bool stream_header();
   // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
   void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
-  // The unit at a byte offset; nothing if its header or its end is not there.
+  // The unit at a byte offset; none if its header or its end is missing.
   std::optional<UnitHeader> header_at(std::uint64_t offset);
   // Compares unit_crc, block by block.
   bool crc_holds(const UnitHeader& unit);
-  // Nothing if it cannot be read, or takes more memory than allowed.
+  // None if it cannot be read, or needs more memory than allowed.
   std::optional<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
 
-  // Whether units follow from `offset` on, one behind the other, up to an end_of_sequence unit
-  // at the very end.
+  // Whether a chain of units runs from `offset` to an end_of_sequence unit at the very end.
   bool begins_chain(std::uint64_t offset);
-  // The first place from `offset` on where such a chain begins with a unit whose CRC holds.
+  // The first offset from `offset` on where such a chain begins with a unit whose CRC matches.
   std::optional<std::uint64_t> next_chain(std::uint64_t offset);
-  // Whether a unit of a possible type, with a fitting CRC, is at the offset.
+  // Whether a unit of a possible type, with a matching CRC, is at the offset.
   bool is_unit(std::uint64_t offset);
 
   // As far as it is known.

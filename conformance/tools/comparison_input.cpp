@@ -33,7 +33,7 @@ class StreamSource final : public FrameSource {
       xyz[i] = float_position(decoder_.header().grid, i % 3, positions_[i]);
     }
     if (frame + 1 == num_frames()) {
-      // The rest of the stream must be as it should, too.
+      // The rest of the stream must be valid, too.
       if (const auto ok = decoder_.next_frame(positions_); !ok) return complain(ok.error());
     }
     return check_finite(path_, frame, xyz);
@@ -71,7 +71,7 @@ InputResult<ComparisonInput> open_stream(const std::string& path,
   return input;
 }
 
-// With the point cache beside it, if that explains why there are fewer frames than `frames`.
+// Adds the point cache next to it, if that explains why there are fewer frames than `frames`.
 InputResult<ComparisonInput> add_cache(ComparisonInput input, const InputOptions& options,
                                        std::uint32_t frames) {
   if (input.frames->num_frames() != 1 || frames == 1) return input;

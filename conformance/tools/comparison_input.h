@@ -1,4 +1,4 @@
-// One side of a comparison: everything that the encoder reads, and streams, decoded on the way.
+// One side of a comparison: any input of the encoder, or a stream, decoded on the fly.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,8 @@ namespace rlpc {
 struct ComparisonInput {
   std::unique_ptr<FrameSource> frames;
   std::string name;                // for people: "cow.obj with cow.pc2"
-  std::uint64_t stream_bytes = 0;  // size of an .rlpc file; 0: it is none
-  // Vertices stand in the order of the connectivity process, not in that of the input of the
-  // encoder.
+  std::uint64_t stream_bytes = 0;  // size of an .rlpc file; 0: not a stream
+  // Vertices are in the order of the connectivity process, not of the encoder's input.
   bool traversal_order = false;
 };
 

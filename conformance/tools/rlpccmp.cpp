@@ -1,4 +1,4 @@
-// rlpccmp: how far a decoded animation is from the original, and at what rate.
+// rlpccmp: error of a decoded animation against the original, and its rate.
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -167,8 +167,8 @@ int complain(const std::string& message) {
   return kFailed;
 }
 
-// Frames are fed in the vertex order of A, as the encoder feeds its own. `view`: takes those
-// that it shows; null: none.
+// Feeds frames in the vertex order of A, as the encoder does. `view`: receives the frames that
+// it shows; null: none.
 rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
                                             const std::vector<std::uint32_t>& map,
                                             rlpc::MeshView* view, bool progress) {
@@ -197,7 +197,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   return rlpc::Distortion{metrics.result(), surface.result()};
 }
 
-// The shortest digits that give the value back.
+// The shortest text that reads back as the same value.
 std::string digits(double value) {
   char text[64];
   const auto [end, ec] = std::to_chars(text, text + sizeof text, value);

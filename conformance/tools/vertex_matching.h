@@ -1,4 +1,4 @@
-// Which vertex of a decoded animation is which of the original.
+// Matches the vertices of a decoded animation to those of the original.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 namespace rlpc {
 
 // Per vertex of B its index in A. From the file that `rlpcenc --order-map` wrote, if `map_path`
-// is not empty; else the vertices stand in the same order. Either way the triangles of both
-// must then be the same. Where they cannot tell, because a stream is in the order of the
-// connectivity process, they must be the same list.
+// is not empty; otherwise the vertices are taken to be in the same order. In both cases the
+// triangles must then be the same; where that proves nothing, because a stream is in the order
+// of the connectivity process, in the same order as well.
 InputResult<std::vector<std::uint32_t>> match_vertices(const ComparisonPair& pair,
                                                        const std::string& map_path);
 

@@ -44,8 +44,7 @@ class JsonScanner {
 
   std::string_view text_;
   std::size_t pos_ = 0;
-  std::vector<char>
-      open_;  // the closing brackets that are due; texts nest as deep as they like
+  std::vector<char> open_;  // the closing brackets due; nesting depth is not limited
 };
 
 bool JsonScanner::take_digits() {
@@ -85,7 +84,7 @@ bool JsonScanner::escape() {
   return true;
 }
 
-// RFC 3629: neither longer than necessary, nor a surrogate, nor above U+10FFFF.
+// RFC 3629: not overlong, not a surrogate, not above U+10FFFF.
 bool JsonScanner::utf8_character() {
   const int lead = next();
   if (lead < 0x80) return ++pos_, true;
@@ -139,7 +138,7 @@ bool JsonScanner::key() {
   return take(':');
 }
 
-// A value, or the beginning of one that holds others.
+// A value, or the beginning of an array or object.
 bool JsonScanner::begin_value(bool& complete) {
   skip_space();
   const bool object = next() == '{';
@@ -153,7 +152,7 @@ bool JsonScanner::begin_value(bool& complete) {
   return !object || key();
 }
 
-// What stands behind a value; not complete if another one is due.
+// What follows a value; incomplete if another one is due.
 bool JsonScanner::end_value(bool& complete) {
   for (;;) {
     skip_space();

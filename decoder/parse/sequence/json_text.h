@@ -7,10 +7,10 @@
 
 namespace rlpc {
 
-// Offset of the first byte that no JSON text can have there, or nothing if all is well.
+// Offset of the first byte that makes the text invalid; none if it is valid.
 //
-// Note: a parser of a JSON library will not do. They stop at a zero byte, skip a byte order
-// mark and refuse large numbers, of which RFC 8259 allows only the last.
+// Note: the parser of a JSON library does not suffice. It stops at a zero byte, skips a byte
+// order mark and refuses large numbers; RFC 8259 permits only the last.
 std::optional<std::size_t> find_json_error(std::string_view text);
 
 }  // namespace rlpc
