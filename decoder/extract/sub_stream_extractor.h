@@ -17,15 +17,15 @@
 
 namespace rlpc {
 
-// Writes access units, with new hashes where slices are left out, and the GOF index directly
-// before the end of the sequence. Other units stay as they are, in their order, but for hash
-// units that follow no GOF (R-HSH-03) and GOF indices elsewhere (R-IDX-04), which are dropped.
-// Where nothing is left out, a conforming stream stays as it is; only the last index_gof_bytes
-// may become larger: it leads to the index.
+// Writes access units, with new hashes where slices are dropped, and the GOF index directly
+// before the end of the sequence. Other units are copied in their order, except hash units that
+// follow no GOF (R-HSH-03) and GOF indices elsewhere (R-IDX-04), which are dropped. If no slice
+// is dropped, a conforming stream is copied; only the last index_gof_bytes may grow, to reach
+// the index.
 class SubStreamExtractor {
  public:
-  // Checks all of the stream, its hashes and metadata too: no cut stream comes of a damaged
-  // one, and every cut stream conforms.
+  // Checks the whole stream, including hashes and metadata: damaged streams yield no
+  // sub-stream, and every sub-stream conforms.
   static Result<SubStreamExtractor> open(std::unique_ptr<ByteSource> source,
                                          const SliceCut& cut, const DecodeLimits& limits = {});
 
@@ -42,7 +42,7 @@ class SubStreamExtractor {
   }
   bool cuts_any() const;
 
-  // The next bytes of the cut stream; empty at its end.
+  // The next bytes of the output; empty at its end.
   Result<Bytes> next();
 
  private:
@@ -63,11 +63,11 @@ class SubStreamExtractor {
 
   std::uint64_t offset_ = 0;   // in the input
   std::uint64_t written_ = 0;  // bytes of the output so far
-  // The access unit that the unit before belongs to.
+  // The access unit that the previous unit belongs to.
   struct OpenAccessUnit {
     UnitHeader unit;  // of its GOF
     const GofSummary* gof = nullptr;
-    SliceGroups groups;          // which stay
+    SliceGroups groups;          // which are kept
     std::size_t num_slices = 0;  // so far
   };
   std::optional<OpenAccessUnit> access_unit_;
