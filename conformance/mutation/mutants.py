@@ -214,7 +214,7 @@ add_executable(rlpcdec ${sources})
 target_include_directories(rlpcdec PRIVATE ${CMAKE_SOURCE_DIR})
 target_precompile_headers(rlpcdec PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
 # Loading them takes longer than most files without.
-list(FILTER sources EXCLUDE REGEX "/(rlpcdec|[a-z]*_verbs?)\\\\.cpp")
+list(FILTER sources EXCLUDE REGEX "/(rlpcdec|command_line|[a-z]*_verbs?)\\\\.cpp")
 set_source_files_properties(${sources} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 target_link_libraries(rlpcdec PRIVATE ZLIB::ZLIB CLI11::CLI11 nlohmann_json::nlohmann_json)
 """
