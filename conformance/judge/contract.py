@@ -1,4 +1,4 @@
-"""A decoder as the contract has it: a command line (conformance/VALIDATE.md)."""
+"""A decoder under the contract: a command line (conformance/VALIDATE.md)."""
 
 import dataclasses
 import json
@@ -17,12 +17,12 @@ DECODED, REJECTED, UNSUPPORTED, LIMIT = 0, 1, 2, 3
 
 
 class ContractError(Exception):
-    """A decoder that does not answer --rlpc-conformance as it should."""
+    """A decoder with an invalid answer to --rlpc-conformance."""
 
 
 @dataclasses.dataclass
 class Run:
-    """One decoding. verdict is None if the line is missing or malformed; complaint says how."""
+    """One decoding. verdict is None if the line is missing or malformed; see complaint."""
 
     finished: sandbox.Finished
     verdict: dict
@@ -74,7 +74,7 @@ class Decoder:
     def declares(self, stream):
         """Whether the stream is within the profiles and levels that the decoder declares.
 
-        A level includes all lower ones (B.2). What a broken stream does not tell is no excuse.
+        A level includes all lower ones (B.2). A damaged stream that hides them is no excuse.
         """
         highest = max(self.answer["levels"], default=0)
         return (stream.spec in self.answer["spec"]
@@ -82,7 +82,7 @@ class Decoder:
                 and (stream.level is None or stream.level <= highest))
 
     def decode(self, stream, form, folder):
-        """Decodes a copy of the stream file, under a name that tells nothing."""
+        """Decodes a copy of the stream file, under a neutral name."""
         folder = pathlib.Path(folder)
         copy = folder / "in.rlpc"
         shutil.copyfile(stream.path, copy)
@@ -97,12 +97,12 @@ class Decoder:
         return Run(done, verdict, complaint, output)
 
     def decode_command(self, stream, form="rlpd"):
-        """The command line that repeats a decoding, for people."""
+        """The command line that repeats a decoding, for users."""
         return f"{self.command} decode {shlex.quote(str(stream.path))} out.{form}"
 
 
 def read_verdict(done):
-    """(verdict, None), or (None, what is wrong) with the last line of standard error."""
+    """(verdict, None), or (None, complaint about the last line of standard error)."""
     if done.code not in (REJECTED, UNSUPPORTED, LIMIT):
         return None, None
     lines = done.stderr.splitlines()

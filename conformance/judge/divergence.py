@@ -1,4 +1,4 @@
-"""Where an output first differs from the reference, in the order of the file."""
+"""The first difference of an output from the reference, in file order."""
 
 import contextlib
 import pathlib
@@ -14,7 +14,7 @@ SPECDEC = [sys.executable, "-B",
 
 
 class Reference:
-    """Outputs of a decoder that is trusted, made when first asked for and kept until the end."""
+    """Outputs of a trusted decoder, made on demand and kept until the end."""
 
     def __init__(self, folder, command=None, timeout=600):
         self.name = command or "specdec"
@@ -25,8 +25,8 @@ class Reference:
         self._known = {}  # SHA-256 of a stream: (path or None, complaint)
 
     def output(self, stream):
-        """(path of the .rlpd file, None), or (None, why there is none)."""
-        with self._lock:  # one at a time: it is slow, and rarely wanted
+        """(path of the .rlpd file, None), or (None, reason)."""
+        with self._lock:  # one at a time: slow, and rarely needed
             if stream.sha256 not in self._known:
                 self._known[stream.sha256] = self._make(stream)
             return self._known[stream.sha256]
@@ -46,7 +46,7 @@ class Reference:
 def first_difference(got, expected):
     """A dictionary with "kind" header, triangle, vertex or frame-count; None if there is none.
 
-    got and expected are paths of .rlpd files; the latter is one.
+    got and expected are paths; expected is a valid .rlpd file.
     """
     with rlpd.Reader(expected) as right:
         with contextlib.ExitStack() as stack:

@@ -1,4 +1,4 @@
-"""What a stream of an encoder has to be, checked on its inputs."""
+"""Checks the streams of an encoder against its inputs."""
 
 import dataclasses
 import math
@@ -22,7 +22,7 @@ COLUMNS = (
     ("error", "error", "no vertex is farther from the input than was asked"),
 )
 PLACES = ("{mesh}", "{points}", "{out}", "{error}")
-# Bounds of the error, as parts of the diagonal of the first frame.
+# Error bounds, as fractions of the diagonal of the first frame.
 COARSE, FINE = 1 / 100, 1 / 2000
 _ROUNDING = 1 + 1e-9  # of the sums here
 
@@ -36,7 +36,7 @@ class Case:
 
 
 def cases_of(folder, frames):
-    """Each animation of the folder with two bounds; and its first frame alone."""
+    """Each animation of the folder with two bounds, and its first frame alone."""
     cases = []
     for mesh in sorted(pathlib.Path(folder).glob("*.obj")):
         points = mesh.with_suffix(".pc2")
@@ -54,14 +54,14 @@ def cases_of(folder, frames):
 
 
 def find_validator(encoder):
-    """The command of rlpcval, beside the program of the encoder or on the path; or None."""
+    """The command of rlpcval, next to the encoder or on the path; or None."""
     program = pathlib.Path(sandbox.command_words(encoder)[0])
     beside = program.with_name("rlpcval")
     return shlex.quote(str(beside)) if beside.is_file() else shutil.which("rlpcval")
 
 
 class Checker:
-    """Checks cases, one after the other. validator may be None: streams are not validated."""
+    """Checks cases one by one. validator may be None: streams are not validated."""
 
     def __init__(self, encoder, validator, reference, timeout):
         self._words = sandbox.command_words(encoder)
@@ -77,7 +77,7 @@ class Checker:
         self._timeout = timeout
 
     def check(self, case, folder):
-        """The judgement of one case; later checks are not run where one failed."""
+        """The judgement of one case; stops at the first failed check."""
         judgement = Judgement("PASS", cells={key: NOT_RUN for key, *_ in COLUMNS})
         stream = self._encode(case, folder, judgement)
         if stream is None:
@@ -143,7 +143,7 @@ class Checker:
         return None
 
     def _read_order(self, case, folder, judgement):
-        """Of each decoded vertex, its index in the input."""
+        """The input index of each decoded vertex."""
         count = case.animation.num_vertices
         if not any("{order}" in word for word in self._words):
             return range(count)
@@ -198,7 +198,7 @@ def _turned(corners):
 
 
 def _largest_error(animation, reader, order):
-    """(distance, frame, vertex of the input) where the decoded position is farthest off."""
+    """(distance, frame, input vertex) of the largest error."""
     step, origin = reader.header[7], reader.header[8:]
     worst = (-1.0, 0, 0)
     for f in range(animation.num_frames):

@@ -1,6 +1,6 @@
-"""What a decoder is to make of a stream, as the specification decodes it.
+"""The expected result for a stream, as the specification decodes it.
 
-The judge does without: for those who write suites, and for tests.
+Not used by the judge, but for writing suites and by tests.
 """
 
 import pathlib
@@ -13,7 +13,7 @@ import specdec  # noqa: E402
 
 
 def expectation_of(data, program):
-    """What the specification makes of a stream: the decoded part of its sidecar.
+    """The specification's result for a stream: the decoded part of its sidecar.
 
     "expect" is accept, reject or unsupported; with accept come frames, sha256_int, sha256_f32 and
     frame_sha256, else rule, bit, frames_before and sha256_int (None: nothing is output).

@@ -1,4 +1,4 @@
-"""What a decoder's run over a stream is worth: an outcome, and a cell for each grade."""
+"""Grades a decoding: an outcome, and a cell for each grade."""
 
 import dataclasses
 import tempfile
@@ -53,7 +53,7 @@ class Grader:
         return judgement
 
     def _outcome(self, stream, run):
-        """The judgement of the exit code; output is looked at where it should be right."""
+        """Judges the exit code, and the output if it must be right."""
         done, expect = run.finished, stream.expect
         if done.code is None:
             return Judgement("CRASH", "timeout", done.ending())
@@ -90,8 +90,8 @@ class Grader:
         """After a refusal, where it was due."""
         exists = run.output.is_file()
         digest = rlpd.digest_of(run.output) if exists else rlpd.Digest()
-        exists = exists and digest.size > 0  # an empty OUT is as good as none
-        if stream.expect == "either":  # where a decoder notices is left open
+        exists = exists and digest.size > 0  # an empty OUT counts as none
+        if stream.expect == "either":  # a decoder may notice anywhere
             hashes = digest.frame_sha256
             if not exists or (not digest.complaint()
                               and hashes == stream.frame_sha256[:len(hashes)]):
@@ -135,7 +135,7 @@ class Grader:
 
     def _rule_cell(self, stream, judgement, run):
         if run.finished.code == UNSUPPORTED and not self._decoder.declares(stream):
-            return NOT_SUPPORTED  # for its level, say, before what is unsupported by all
+            return NOT_SUPPORTED  # for example its level, before what nobody supports
         return _rule_cell(stream, judgement, run)
 
     def _float_cell(self, stream, judgement, state):
@@ -172,7 +172,7 @@ def _must(stream):
 
 
 def _rule_cell(stream, judgement, run):
-    """Of a stream that was refused, or may be, as it should."""
+    """For a stream that was refused correctly, or may be refused."""
     if run.finished.code == DECODED:
         return PASS
     rules = [stream.rule] if stream.rule else stream.rules
@@ -192,7 +192,7 @@ def _rule_cell(stream, judgement, run):
 
 
 def describe(found):
-    """A first difference in a line."""
+    """The first difference as one line of text."""
     place = {"header": "header, {field}", "triangle": "triangle {triangle}",
              "vertex": "frame {frame}, vertex {vertex}",
              "frame-count": "from frame {frame} on"}[found["kind"]].format(**found)
@@ -212,7 +212,7 @@ def not_run(stream, reason):
 
 
 def grade(rows, name):
-    """The grade as a dictionary (report.schema.json): counts over the streams it is about."""
+    """The grade as a dictionary (report.schema.json): counts over its streams."""
     counts = dict.fromkeys((PASS, FAIL, NOT_SUPPORTED, NOT_DECLARED, NOT_RUN), 0)
     for row in rows:
         states = {row["cells"][column] for column in GRADES[name]} - {NONE}
@@ -241,15 +241,15 @@ def grade(rows, name):
 
 
 def _decodes_any(rows):
-    """No grade without streams that decode, unless there are none to decode."""
+    """A grade requires streams that decode, unless the suite has none."""
     states = {row["cells"]["int"] for row in rows} - {NONE}
     return not states or PASS in states
 
 
 def everything_passed(grades, wanted=None):
-    """Whether the exit code is 0: `wanted` passed, or all that the decoder declares.
+    """Whether the exit code is 0: `wanted` passed, or everything that the decoder declares.
 
-    R-diagnostic counts only where it is wanted, as a decoder need not name rules.
+    R-diagnostic counts only if `wanted`, as a decoder need not name rules.
     """
     status = {g["grade"]: g["status"] for g in grades if g["of"]}
     if wanted:

@@ -9,7 +9,7 @@ _HEADER = struct.Struct("<12siiffi")
 
 
 class InputError(Exception):
-    """An input file that is not as expected."""
+    """An invalid input file."""
 
 
 class Animation:
@@ -37,7 +37,7 @@ class Animation:
         pathlib.Path(path).write_bytes(header + self._data)
 
     def diagonal(self):
-        """Of the box around the first frame."""
+        """The diagonal of the bounding box of the first frame."""
         values = self.frame(0)
         sides = [max(values[c::3]) - min(values[c::3]) for c in range(3)]
         return sum(side * side for side in sides) ** 0.5

@@ -1,4 +1,4 @@
-"""Reports: one dictionary (report.schema.json), and what is written from it."""
+"""Reports: one dictionary (report.schema.json), and the formats written from it."""
 
 import collections
 import json
@@ -83,7 +83,7 @@ def _escaped(value):
 
 
 def junit(report):
-    """One test case for each row; what did not run or is unsupported is skipped."""
+    """One test case per row; rows not run or unsupported are skipped."""
     kinds = [kind_of(row["outcome"]) for row in report["rows"]]
     root = ElementTree.Element(
         "testsuite", name=report["title"], tests=str(len(kinds)), failures=str(kinds.count("FAIL")),
@@ -107,12 +107,12 @@ def junit(report):
 
 
 def _printable(value):
-    """Without the control characters that XML does not have."""
+    """Removes control characters that XML forbids."""
     return "".join(c if c >= " " or c in "\n\t" else "\ufffd" for c in value)
 
 
 def check_places(options):
-    """OSError where a report that is asked for could not be written in the end."""
+    """Raises OSError early if a requested report could not be written in the end."""
     for path in (options.json, options.junit, options.markdown, options.html):
         folder = os.path.dirname(path or "") or "."
         if not os.access(folder, os.W_OK | os.X_OK):
@@ -120,7 +120,7 @@ def check_places(options):
 
 
 def write(report, options):
-    """The files that were asked for: options has json, junit, markdown and html."""
+    """Writes the requested files: options has json, junit, markdown and html."""
     if options.json:
         suite.write_file(options.json, json.dumps(report, indent=1, ensure_ascii=False) + "\n")
     for path, form in ((options.junit, junit), (options.markdown, markdown), (options.html, html)):
@@ -137,7 +137,7 @@ def add_options(parser):
 
 
 class Progress:
-    """A line that counts, for people at a terminal."""
+    """A progress line, on a terminal."""
 
     def __init__(self, total):
         self._total = total

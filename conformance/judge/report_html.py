@@ -1,4 +1,4 @@
-"""A report as one HTML page that needs nothing else: no network, and no script to be read."""
+"""A report as a self-contained HTML page: no network, readable without scripts."""
 
 import html as escaping
 import json

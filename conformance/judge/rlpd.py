@@ -15,7 +15,7 @@ _LARGEST_FRAME = 12 << 23  # of the highest level
 
 
 class RlpdError(Exception):
-    """Bytes that are no .rlpd file."""
+    """Bytes that are not an .rlpd file."""
 
 
 def f32_bytes(origin, step, values):
@@ -45,9 +45,9 @@ def integers(data, kind="i"):
 
 
 class Digest:
-    """Takes an .rlpd file in pieces; knows its hash, and that of each frame.
+    """Consumes an .rlpd file in pieces; computes its hash, and that of each frame.
 
-    on_frame(number, bytes), if given, is called with each whole frame.
+    on_frame(number, bytes), if given, is called with each complete frame.
     """
 
     def __init__(self, with_f32=False, on_frame=None):
@@ -75,7 +75,7 @@ class Digest:
         del self._rest[:skipped]
         size = self.frame_bytes()
         if not 0 < size <= _LARGEST_FRAME:
-            del self._rest[1:]  # nonsense: not worth the memory
+            del self._rest[1:]  # implausible: not kept in memory
             return
         while not self._in_mesh and len(self._rest) >= size:
             self._take_frame(bytes(self._rest[:size]))
@@ -92,14 +92,14 @@ class Digest:
         return 12 * self.header[2] if self.header else 0
 
     def sha256(self):
-        """Of all bytes; None if there were none."""
+        """The hash of all bytes; None if there were none."""
         return self._whole.hexdigest() if self.size else None
 
     def sha256_f32(self):
         return self._f32.hexdigest()
 
     def complaint(self):
-        """What makes it no .rlpd file, or None."""
+        """Why it is not an .rlpd file, or None."""
         if self.header is None:
             return f"OUT has {self.size} bytes, which is less than a header"
         if self.header[0] != b"RLPD" or self.header[1] != 1:
@@ -129,7 +129,7 @@ def file_sha256(path):
 
 
 class Reader:
-    """An .rlpd file whose parts are wanted one by one."""
+    """An .rlpd file, read part by part."""
 
     def __init__(self, path):
         self.path = path
@@ -148,7 +148,7 @@ class Reader:
         self._file.close()
 
     def triangles(self):
-        """The vertex indices of all triangles, in a row."""
+        """The vertex indices of all triangles, as one sequence."""
         self._file.seek(_HEADER.size)
         return integers(self._file.read(12 * self.num_triangles))
 

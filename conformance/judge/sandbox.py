@@ -1,4 +1,4 @@
-"""Runs a command in a folder, with limits of time and memory, and nothing left behind."""
+"""Runs a command in a folder, with limits on time and memory, leaving nothing behind."""
 
 import dataclasses
 import os
@@ -12,8 +12,8 @@ import time
 # A decoder that never stops writing must not fill the disk.
 MAX_FILE_BYTES = 1 << 32
 _TAIL = 1 << 16
-# sh sets the limits and becomes the command; so no code runs between fork and exec here.
-# Where there is a tighter limit already, that stays.
+# sh sets the limits and execs the command, so that no code runs between fork and exec here. A
+# tighter limit already in place is kept.
 _LIMITED = ('ulimit -c 0; ulimit -f "$1" 2>/dev/null; [ "$2" = 0 ] || ulimit -v "$2" 2>/dev/null; '
             'shift 2; exec "$@"')
 
@@ -36,7 +36,7 @@ class Finished:
     stderr: str  # the end of it
 
     def ending(self):
-        """In words, such as "exit code 1" or "killed by SIGSEGV"."""
+        """As text, such as "exit code 1" or "killed by SIGSEGV"."""
         if self.code is None:
             return f"no end after {self.seconds:.0f} s"
         if self.code < 0:
@@ -52,7 +52,7 @@ def signal_name(number):
 
 
 def command_words(text):
-    """The words of a command line, as fit for another folder: files get absolute paths."""
+    """The words of a command line, usable from another folder: files get absolute paths."""
     try:
         words = shlex.split(text)
     except ValueError as error:
@@ -94,7 +94,7 @@ def run(words, folder, timeout, max_bytes=0):
 
 
 def stop_all():
-    """Kills whatever runs, and lets nothing start any more; for an interrupt."""
+    """Kills all running commands, and lets no more start; for interrupts."""
     with _lock:
         _stopped.set()
         for pid in _running:
@@ -103,7 +103,7 @@ def stop_all():
 
 def _kill_group(pid):
     try:
-        os.killpg(pid, signal.SIGKILL)  # also what the command has started
+        os.killpg(pid, signal.SIGKILL)  # including its children
     except ProcessLookupError:
         pass
 

@@ -1,4 +1,4 @@
-"""The part of JSON Schema that conformance/schema uses, with complaints that name the place.
+"""The subset of JSON Schema used by conformance/schema, with complaints that name the place.
 
 Keywords: type, enum, pattern, minimum, properties, required, additionalProperties, items. A
 schema with any other keyword is refused, so that none is ignored by mistake.
@@ -16,7 +16,7 @@ _KEYWORDS = {"title", "type", "enum", "pattern", "minimum", "properties", "requi
 
 
 class SchemaError(Exception):
-    """A value that its schema does not allow."""
+    """A value that violates its schema."""
 
 
 def load(name):
@@ -25,13 +25,13 @@ def load(name):
 
 
 def check(value, schema, place="the value"):
-    """Raises SchemaError with the first thing that is wrong."""
+    """Raises SchemaError with the first violation."""
     for complaint in complaints(value, schema, place):
         raise SchemaError(complaint)
 
 
 def complaints(value, schema, place):
-    """Yields a sentence for each thing that is wrong."""
+    """Yields a sentence per violation."""
     unknown = set(schema) - _KEYWORDS
     if unknown:
         raise ValueError(f"the schema of {place} has keywords not known here: {sorted(unknown)}")
@@ -69,7 +69,7 @@ def _complaints_of_object(value, schema, place):
 
 def _is_of(value, types):
     names = [types] if isinstance(types, str) else types
-    if isinstance(value, bool):  # to Python, a bool is an int
+    if isinstance(value, bool):  # in Python, a bool is an int
         return "boolean" in names
     return any(isinstance(value, _TYPES[name]) for name in names)
 

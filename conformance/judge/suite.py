@@ -10,7 +10,7 @@ import pathlib
 import schema
 
 CONTRACT = 1
-TIERS = ("smoke", "core", "stress")  # each includes those before
+TIERS = ("smoke", "core", "stress")  # each includes the previous ones
 FOLDER_OF = {"accept": "accept", "reject": "reject", "unsupported": "reject", "either": "either"}
 INDEX = "SUITE.json"
 _IN_INDEX = ("id", "expect", "tier", "profile", "level", "sha256")
@@ -19,7 +19,7 @@ _ENDED_EARLY = ("rule", "bit", "frames_before", "sha256_int")
 
 
 class SuiteError(Exception):
-    """A suite that cannot be used; the text says which file, and why."""
+    """An unusable suite; the text names the file and the reason."""
 
 
 @dataclasses.dataclass
@@ -55,7 +55,7 @@ def _read_json(path, name):
 
 
 def check_sidecar(sidecar, place):
-    """What the schema cannot say; place begins the complaints."""
+    """Checks beyond the schema; complaints begin with `place`."""
     expect = sidecar["expect"]
     needed = _DECODED if expect in ("accept", "either") else _ENDED_EARLY
     for name in needed:
@@ -72,7 +72,7 @@ def check_sidecar(sidecar, place):
 
 
 def load_stream(path):
-    """The stream and its sidecar; the bytes must be those that the sidecar is about."""
+    """The stream and its sidecar, which must match."""
     path = pathlib.Path(path)
     sidecar = _read_json(path.with_suffix(".json"), "sidecar")
     check_sidecar(sidecar, path.with_suffix(".json"))
@@ -125,7 +125,7 @@ def index_of(folder, name, spec):
 
 
 def select(streams, tier="stress", profile=None, only=None):
-    """The streams of a tier and those below it; superseded ones are left out."""
+    """The streams of a tier and those below it, without superseded ones."""
     tiers = TIERS[:TIERS.index(tier) + 1]
     return [s for s in streams
             if s.superseded_by is None and s.tier in tiers
@@ -134,7 +134,7 @@ def select(streams, tier="stress", profile=None, only=None):
 
 
 def write_file(path, data):
-    """Writes bytes or text beside its place, then renames."""
+    """Writes bytes or text to a temporary file, then renames it."""
     path = pathlib.Path(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:

@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
 """Decodes .rlpc streams by running the pseudo-code of the specification.
 
-  specdec --rlpc-conformance                          what it decodes, as JSON
+  specdec --rlpc-conformance                      capabilities, as JSON
   specdec decode IN.rlpc OUT.rlpd [--max-mem BYTES] [--trace] [--check-widths]
 
-  --max-mem BYTES   give up when the process needs more memory than that
+  --max-mem BYTES   give up when the process needs more memory
   --trace           print every syntax element: bit position, name, value
-  --check-widths    fail if an intermediate value does not fit 64 bits (slow)
+  --check-widths    fail if an intermediate value exceeds 64 bits (slow)
   --spec FOLDER     the specification (default: spec/ of the project)
-  --cache FOLDER    before the verb: keep the translated pseudo-code there, for later runs
+  --cache FOLDER    before the verb: keep the translated pseudo-code there
 
-OUT.rlpd holds exactly the frames before an error. Exit code: 0 decoded; 1 not a conforming
-stream; 2 not supported; 3 more memory needed than allowed; 4 a file could not be read or
-written; 64 usage; 70 the specification has an error. On 1 to 3, the last line of standard error
-is  rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
+OUT.rlpd holds exactly the frames before an error. Exit code: 0 decoded; 1 not a
+conforming stream; 2 not supported; 3 more memory needed than allowed; 4 a file
+could not be read or written; 64 wrong usage; 70 the specification has an error.
+On 1 to 3, the last line of standard error is
+rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
 """
 
 import argparse

@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""The scripts answer --help on one screen: what they do, and an example or the options."""
+
+import os
+import pathlib
+import subprocess
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LINES, COLUMNS = 48, 80
+LARGER = {"compare": (64, 100)}  # it has as many options as a program
+OTHERS = ("conformance/judge/run", "conformance/judge/encode", "conformance/judge/export_fluster",
+          "conformance/rlpcgen/rlpcgen", "conformance/rlpccov/rlpccov",
+          "conformance/specdec/specdec.py")
+
+
+def scripts():
+    own = [path for path in sorted((ROOT / "scripts").iterdir())
+           if path.is_file() and os.access(path, os.X_OK)]
+    return [*own, *(ROOT / other for other in OTHERS)]
+
+
+class Help(unittest.TestCase):
+    def test_every_script_has_a_page(self):
+        self.assertGreater(len(scripts()), 15)
+        for script in scripts():
+            done = subprocess.run([script, "--help"], capture_output=True, text=True, check=False,
+                                  env={**os.environ, "COLUMNS": str(COLUMNS)})
+            self.assertEqual((done.returncode, done.stderr), (0, ""), script)
+            most_lines, most_columns = LARGER.get(script.name, (LINES, COLUMNS))
+            lines = done.stdout.splitlines()
+            self.assertGreater(len(lines), 2, script)
+            self.assertLessEqual(len(lines), most_lines, script)
+            for line in lines:
+                self.assertLessEqual(len(line), most_columns, (script, line))
+
+
+if __name__ == "__main__":
+    unittest.main()
