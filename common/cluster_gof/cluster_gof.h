@@ -1,4 +1,4 @@
-// 6.5 Cluster GOF: passed from the parser to reconstruction, and from the analysis to the
+// A cluster GOF (6.5), passed from the parser to reconstruction, and from the analysis to the
 // writer.
 #pragma once
 

@@ -120,6 +120,14 @@ void SkinnedGofParser::bone_section(BitReader& r) {
   section.finish();
 }
 
+void SkinnedGofParser::SliceState::start(std::uint32_t num_frames) {
+  models = {};
+  previous = {};
+  trajectory_mean.assign(num_frames, 0);
+  contexts.reset();
+  last_group = 0;
+}
+
 // 6.11 bones_of_gof( )
 Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) {
   gof_ = {};
@@ -143,14 +151,9 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   bone_section(r);
   if (r.error()) return *r.error();
 
-  models_ = {};
-  previous_ = {};
-  previous_.scale_idx = 0;
-  trajectory_mean_.assign(gof_.num_frames, 0);
-  contexts_.reset();
-  last_group_ = 0;
-  end_component_group_ = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
-  end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  state_.start(gof_.num_frames);
+  kept_.end_component_group = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
+  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
   is_cut_ = false;
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
   gof_.influences.assign(header_.num_vertices, {});
@@ -160,7 +163,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
 
 // 8.14.1 MayFollow( group, index )
 bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
-  if (group < last_group_ || layers != gof_.slice_layers[group]) return false;
+  if (group < state_.last_group || layers != gof_.slice_layers[group]) return false;
   return group == 0 || gof_.slice_layers[group - 1] > layers;
 }
 
@@ -170,6 +173,7 @@ class SkinnedGofParser::SliceParser {
   SliceParser(SkinnedGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
       : parser_(parser),
         gof_(parser.gof_),
+        state_(parser.state_),
         section_(r, "slice_section"),
         group_(group),
         layers_(layers) {}
@@ -186,6 +190,7 @@ class SkinnedGofParser::SliceParser {
 
   SkinnedGofParser& parser_;
   SkinnedGof& gof_;
+  SliceState& state_;
   SectionReader section_;
   std::uint32_t group_;
   std::uint32_t layers_;
@@ -195,7 +200,7 @@ class SkinnedGofParser::SliceParser {
 void SkinnedGofParser::SliceParser::group_components() {
   const Level& level = parser_.header_.level();
   const auto left = static_cast<std::int64_t>(level.max_components - gof_.trajectories.size());
-  SliceModels& models = parser_.models_;
+  SliceModels& models = state_.models;
   const int count = parse_header_field(section_, models.header, models.header_mean,
                                        HeaderField::kNumComponents, 1, {1, left},
                                        "num_group_components_minus1", "R-SLI-03");
@@ -203,10 +208,11 @@ void SkinnedGofParser::SliceParser::group_components() {
   const std::uint64_t num_components =
       gof_.trajectories.size() + static_cast<std::size_t>(count);
   if (num_components > parser_.cut_.max_components) {
-    parser_.end_component_group_ = group_;
+    parser_.kept_.end_component_group = group_;
     return;
   }
-  if (num_components == parser_.cut_.max_components) parser_.end_component_group_ = group_ + 1;
+  if (num_components == parser_.cut_.max_components)
+    parser_.kept_.end_component_group = group_ + 1;
   parser_.num_factors_ += static_cast<std::uint64_t>(count) *
                           (parser_.header_.num_vertices + 3 * std::uint64_t{gof_.num_frames});
   if (parser_.num_factors_ > level.max_gof_factors) {
@@ -223,31 +229,31 @@ void SkinnedGofParser::SliceParser::group_components() {
 
 // 6.12.1 trajectory( )
 void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
-  Trajectory& before = parser_.previous_;
-  parse_component_header(section_, parser_.models_.header, parser_.models_.header_mean, before,
+  Trajectory& before = state_.previous;
+  parse_component_header(section_, state_.models.header, state_.models.header_mean, before,
                          trajectory);
   if (failed()) return;
   before.scale_idx = trajectory.scale_idx;
   before.spatial_bits = trajectory.spatial_bits;
   before.temporal_bits = trajectory.temporal_bits;
   trajectory.temporal_predictor =
-      section_.truncated_unary(parser_.models_.temporal_predictor, "temporal_predictor");
+      section_.truncated_unary(state_.models.temporal_predictor, "temporal_predictor");
   for (int k = 0; k < trajectory.temporal_predictor - kMaxPredictorOrder; ++k) {
     const std::uint32_t weight = section_.bypass(9, "temporal_weight");
     trajectory.temporal_weight[static_cast<std::size_t>(k)] =
         static_cast<std::int16_t>(static_cast<int>(weight) - kTemporalWeightOffset);
   }
-  trajectory.residual = parse_track(section_, parser_.models_.temporal,
-                                    parser_.trajectory_mean_, "trajectory_residual");
+  trajectory.residual = parse_track(section_, state_.models.temporal, state_.trajectory_mean,
+                                    "trajectory_residual");
 }
 
 // 9.8.1 StartSlice( )
 void SkinnedGofParser::SliceParser::start() {
   if (layers_ > 0) return;
   if (group_ > 1) {
-    parser_.vertex_models_ = std::make_unique<VertexModels>(*parser_.models_of_group_);
+    state_.vertex_models = std::make_unique<VertexModels>(*state_.models_of_group);
   } else {
-    parser_.vertex_models_ = std::make_unique<VertexModels>();
+    state_.vertex_models = std::make_unique<VertexModels>();
   }
   if (group_ > 0) {
     gof_.group_end.push_back(kRestFactors + gof_.trajectories.size());
@@ -256,14 +262,14 @@ void SkinnedGofParser::SliceParser::start() {
   }
   const std::size_t size =
       gof_.group_end[group_] - (group_ > 0 ? gof_.group_end[group_ - 1] : 0);
-  parser_.contexts_.emplace(*parser_.mesh_, size);
+  state_.contexts.emplace(*parser_.mesh_, size);
 }
 
 // 6.12.2 influences( v )
 void SkinnedGofParser::SliceParser::influences(std::uint32_t v,
                                                InfluencePrediction& prediction) {
   prediction.start(parser_.mesh_->ring(v));
-  SliceModels& models = parser_.models_;
+  SliceModels& models = state_.models;
   while (prediction.can_add_bone()) {
     const auto extra = static_cast<std::size_t>(prediction.num_extra_bones());
     if (!section_.bin(models.extra_bone_flag[extra], "extra_bone_flag")) break;
@@ -294,7 +300,7 @@ void SkinnedGofParser::SliceParser::influences(std::uint32_t v,
 void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
   std::vector<std::int32_t>& residuals = gof_.vertex_residual[group_];
   const std::size_t size = residuals.size() / parser_.header_.num_vertices;
-  VertexContexts& contexts = *parser_.contexts_;
+  VertexContexts& contexts = *state_.contexts;
   contexts.start(v);
   struct Context {
     VertexContexts& contexts;
@@ -303,13 +309,13 @@ void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
     std::uint32_t expected() const { return contexts.expected(); }
     void update(std::int32_t value) { contexts.update(value); }
   };
-  section_.residuals(Context{contexts, *parser_.vertex_models_},
+  section_.residuals(Context{contexts, *state_.vertex_models},
                      std::span(residuals).subspan(v * size, size), "vertex_residual");
 }
 
 void SkinnedGofParser::SliceParser::parse() {
   if (group_ > 0 && layers_ == 0 && !failed()) group_components();
-  if (failed() || group_ >= parser_.end_component_group_) return;
+  if (failed() || group_ >= parser_.kept_.end_component_group) return;
   start();
   InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
                                  gof_.weight_bits);
@@ -327,10 +333,10 @@ void SkinnedGofParser::SliceParser::parse() {
   if (failed()) return;
   // 9.8.1 EndSlice( )
   if (layers_ == 0) {
-    parser_.models_of_group_ = std::make_unique<VertexModels>(*parser_.vertex_models_);
+    state_.models_of_group = std::make_unique<VertexModels>(*state_.vertex_models);
   }
   gof_.slice_layers[group_] = layers_ + 1;
-  parser_.last_group_ = group_;
+  state_.last_group = group_;
 }
 
 // 6.12 slice_unit( )
@@ -342,7 +348,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
            "R-SLI-01");
   if (r.error()) return *r.error();
   last_slice_.reset();
-  if (group >= end_component_group_ || layers >= end_layer_group_) {
+  if (!kept_.has(group, layers)) {
     is_cut_ = true;
     return true;
   }
@@ -355,7 +361,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   SliceParser(*this, r, group, layers).parse();
   if (r.error()) return *r.error();
   // The number of trajectories in a group is known only from its slice.
-  if (group >= end_component_group_) {
+  if (group >= kept_.end_component_group) {
     is_cut_ = true;
     return true;
   }

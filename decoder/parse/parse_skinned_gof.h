@@ -54,17 +54,28 @@ class SkinnedGofParser {
   const CodedMesh* mesh_ = nullptr;
   SkinnedGof gof_;
   std::uint64_t num_factors_ = 0;
-  // Models that are kept from slice to slice (9.8.1).
-  SliceModels models_;
-  Trajectory previous_;  // header of the previous trajectory
-  std::vector<std::uint32_t> trajectory_mean_;
-  std::unique_ptr<VertexModels> vertex_models_;
-  std::unique_ptr<VertexModels> models_of_group_;
-  std::optional<VertexContexts> contexts_;  // of the group that is being read
-  std::uint32_t last_group_ = 0;
+  // From slice to slice (9.8.1).
+  struct SliceState {
+    void start(std::uint32_t num_frames);
+
+    SliceModels models;
+    Trajectory previous;  // header of the previous trajectory
+    std::vector<std::uint32_t> trajectory_mean;
+    std::unique_ptr<VertexModels> vertex_models;
+    std::unique_ptr<VertexModels> models_of_group;
+    std::optional<VertexContexts> contexts;  // of the current group
+    std::uint32_t last_group = 0;
+  };
+  SliceState state_;
   // Groups from these on are dropped.
-  std::uint32_t end_component_group_ = 0;
-  std::uint32_t end_layer_group_ = 0;
+  struct CutGroups {
+    std::uint32_t end_component_group = 0;
+    std::uint32_t end_layer_group = 0;
+    bool has(std::uint32_t group, std::uint32_t layers) const {
+      return group < end_component_group && layers < end_layer_group;
+    }
+  };
+  CutGroups kept_;
   bool is_cut_ = false;
   std::optional<SliceEntry> last_slice_;
 };

@@ -1,4 +1,4 @@
-// 6.2 Units: finds them, reads them, checks their CRC.
+// Units (6.2): finds them, reads them, checks their CRC.
 #pragma once
 
 #include <algorithm>

@@ -25,13 +25,7 @@ using Move = std::function<Point(const Point&, double)>;
 // A bumpy tube along x, in grid steps, whose points move as they are told.
 struct Animation {
   explicit Animation(const Move& move, std::uint32_t num_frames = 20)
-      : triangles(tube()),
-        topology(make_topology(kVertices, triangles)),
-        layers(make_layers(kVertices, triangles)) {
-    for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
-                                        Prediction::kParallelograms, Prediction::kLayers}) {
-      meshes.emplace_back(prediction, topology, layers);
-    }
+      : triangles(tube()), topology(make_topology(kVertices, triangles)) {
     header.num_vertices = frames.num_vertices = kVertices;
     header.position_bits = 20;
     frames.num_frames = num_frames;
@@ -62,14 +56,12 @@ struct Animation {
 
   // The settings are kept by reference.
   SkinnedContext context(const EncoderSettings& settings) const {
-    return {header, settings, triangles, meshes};
+    return {header, settings, triangles, CodedMeshes(topology, triangles)};
   }
 
   SequenceHeader header;
   std::vector<Triangle> triangles;
   Topology topology;
-  VertexLayers layers;
-  std::vector<CodedMesh> meshes;
   GofFrames frames;
 };
 

@@ -1,6 +1,5 @@
 #include "encoder/skinned_gof/skinned_gof_kind.h"
 
-#include "common/mesh/vertex_layers.h"
 #include "encoder/skinned_gof/search/skinned_context.h"
 #include "encoder/skinned_gof/skinned_gof_coder.h"
 
@@ -10,13 +9,8 @@ namespace {
 class SkinnedGofKind : public GofEncoder {
  public:
   SkinnedGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
-      : layers_(make_layers(mesh.header.num_vertices, mesh.triangles)),
-        context_{mesh.header, settings, mesh.triangles, {}} {
-    for (const Prediction prediction : {Prediction::kNone, Prediction::kParallelogram,
-                                        Prediction::kParallelograms, Prediction::kLayers}) {
-      context_.meshes.emplace_back(prediction, mesh.topology, layers_);
-    }
-  }
+      : context_{mesh.header, settings, mesh.triangles,
+                 CodedMeshes(mesh.topology, mesh.triangles)} {}
 
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
     return std::make_unique<SkinnedGofCoder>(context_, frames);
@@ -29,7 +23,6 @@ class SkinnedGofKind : public GofEncoder {
   }
 
  private:
-  VertexLayers layers_;
   SkinnedContext context_;
 };
 

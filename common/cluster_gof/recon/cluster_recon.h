@@ -25,7 +25,7 @@ class SpatialPrediction {
                     std::span<const std::uint16_t> cluster_of_vertex,
                     std::span<const std::uint32_t> local_index);
 
-  // 8.3.3 Prediction of the spatial value at index i from the values before it.
+  // 8.3.3 Prediction of a spatial value, at index i from the values before it.
   std::int64_t predict(SpatialPredictor predictor, std::span<const std::int32_t> plane,
                        std::size_t i) const;
 

@@ -151,7 +151,8 @@ TEST(PlyReader, RefusesBrokenHeaders) {
   expect_error(replaced(kText, "list uchar", "list float"), "not an integer");
   expect_error(replaced(kText, "uchar int", "uchar float"), "no list of integers");
   expect_error(replaced(kText, "element face", "element vertex"), "a second element");
-  expect_error(replaced(kText, "element face 1", "elements face 1"), "\"elements\" does not begin");
+  expect_error(replaced(kText, "element face 1", "elements face 1"),
+               "\"elements\" does not begin");
   expect_error(replaced(kText, "element face", "element tristrips"),
                "strips are not supported");
   expect_error("ply\nformat ascii 1.0\nproperty int x\n", "before the first element");

@@ -1,11 +1,9 @@
 // What the skinned GOFs of a sequence have in common.
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
-#include "common/mesh/coded_mesh.h"
+#include "common/mesh/coded_meshes.h"
 #include "common/mesh/mesh.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/rlpc_encoder.h"
@@ -17,11 +15,7 @@ struct SkinnedContext {
   const SequenceHeader& header;  // of which the grid may change
   const EncoderSettings& settings;
   std::span<const Triangle> triangles;  // decoded order
-  std::vector<CodedMesh> meshes;        // by Prediction
-
-  const CodedMesh& mesh(Prediction prediction) const {
-    return meshes[static_cast<std::size_t>(prediction)];
-  }
+  CodedMeshes meshes;
 };
 
 // The tools that are tried first.

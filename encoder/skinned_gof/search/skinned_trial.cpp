@@ -37,7 +37,7 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial) {
 }
 
 SkinnedAnalysis SkinnedTrials::analyse(const SkinnedCandidate& candidate) const {
-  return analyse_skinned_gof(context_.mesh(candidate.settings.prediction),
+  return analyse_skinned_gof(context_.meshes[candidate.settings.prediction],
                              context_.header.position_bits, frames_, candidate.rig,
                              candidate.settings, step_);
 }
@@ -73,7 +73,7 @@ SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
 
 EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
                               const SkinnedSettings& settings, double step) {
-  const CodedMesh& mesh = context.mesh(settings.prediction);
+  const CodedMesh& mesh = context.meshes[settings.prediction];
   const int position_bits = context.header.position_bits;
   const SkinnedGof gof = code_skinned_gof(mesh, analysis, settings, step);
   EncodedGof encoded;
