@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kMaxTrials = 18;            // fixed: a search ends
+constexpr int kMaxTrials = 18;            // tuned: encodings of a search, at most
 constexpr double kTolerance = 0.02;       // fixed: of the target, below it; promised to users
 constexpr double kFinestStep = 0.5;       // fixed: grid steps
 constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps

@@ -96,12 +96,16 @@ OVERRIDE = """#pragma once
 #include <cstdlib>
 #include <cstring>
 namespace rlpc {
-// RLPC_TUNED is "ID=VALUE": the value of that constant, else the one it has.
+// RLPC_TUNED is "ID=VALUE;...": the values of these constants; others have their own.
 inline double tuned_override(const char* id, double value) {
-  const char* text = std::getenv("RLPC_TUNED");
   const std::size_t size = std::strlen(id);
-  if (text == nullptr || std::strncmp(text, id, size) != 0 || text[size] != '=') return value;
-  return std::strtod(text + size + 1, nullptr);
+  for (const char* at = std::getenv("RLPC_TUNED"); at != nullptr; at = std::strchr(at, ';')) {
+    if (*at == ';') ++at;
+    if (std::strncmp(at, id, size) == 0 && at[size] == '=') {
+      return std::strtod(at + size + 1, nullptr);
+    }
+  }
+  return value;
 }
 }  // namespace rlpc
 """

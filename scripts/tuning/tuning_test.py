@@ -87,7 +87,7 @@ class FakeEncoder:
 
     def run(self, case, override=""):
         self.asked.append(override)
-        size = 1100 if override == "some_file.kTry=1e9" else 1000
+        size = 1100 if override.endswith("some_file.kTry=1e9") else 1000
         return worth.Result(round(size * 0.1 / case.target), 0.99 * case.target, 1.0)
 
 
@@ -97,13 +97,14 @@ class Measure(unittest.TestCase):
                      if c.name == "kTry"]
         case = worth.Case(pathlib.Path("a.obj"), ("--kg", "0.1"))
         encoder = FakeEncoder()
-        table = worth.measure(encoder, [case], constants, lambda *_: None)
-        self.assertEqual(encoder.asked[:2], ["", ""])
+        table = worth.measure(encoder, [case], constants, "all=1", lambda *_: None)
+        self.assertEqual(encoder.asked[:3], ["all=1", "all=1", "all=1;some_file.kTry=1e9"])
         row = table["some_file.kTry"]
         self.assertAlmostEqual(row["off"][0], 0.1)
         self.assertIsNone(row["half"][0])
-        page = worth.markdown(constants, table)
-        self.assertIn("| `some_file.kTry` | 0.72 | +10.00 / +0 | = / +0 | = / +0 | a trial |", page)
+        page = worth.markdown(constants, {"some_file.kTry": {**row, "with": "two"}})
+        self.assertIn("| `some_file.kTry` | 0.72 | +10.00 / +0 | = / +0 | = / +0 | two | a trial |",
+                      page)
         self.assertEqual(worth.rows(page), ["some_file.kTry"])
 
     def test_the_table_goes_between_its_marks(self):
