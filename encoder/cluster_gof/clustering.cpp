@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kNeighbours = 6;  // of a point, to find a triangle among
+constexpr std::size_t kNeighbours = 6;  // fixed: of a vertex of a regular mesh
 
 double distance2(const double* a, const double* b) {
   double sum = 0.0;

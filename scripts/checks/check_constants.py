@@ -24,6 +24,8 @@ PAGE = "encoder/skinned_gof/search/README.md"
 PLAIN = {"0.0", "0.5", "1.0", "2.0", "3.0", "8.0", "12.0", "100.0"}
 
 _CONSTANT = re.compile(r"\bconstexpr\b[^;(){}=]*?\b(k[A-Z]\w*)\s*(=[^;]*|\{[^;]*\});")
+# On the first line; of a list, which fills it, on the next.
+_FIXED = re.compile(r"[^\n]*(?:\{\n\s*)?// fixed: \S")
 _NUMBER = re.compile(r"(?<![\w.'])(?:\d[\d']*|0x[\da-fA-F.]+(?:p[+-]?\d+)?)(?![\w.'])")
 _FRACTION = re.compile(
     r"(?<![\w.])(?:0x[\da-fA-F.]+p[+-]?\d+|\d[\d']*\.[\d']*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)"
@@ -39,8 +41,7 @@ def untagged(path, text):
         spans.append(match.span())
         line_start = text.rfind("\n", 0, match.start()) + 1
         start = line_start + len(text[line_start:]) - len(text[line_start:].lstrip(" "))
-        first_line = text[start:text.index("\n", start)]
-        if start in tagged or re.search(r"// fixed: \S", first_line):
+        if start in tagged or _FIXED.match(text, start):
             continue
         if not (_NUMBER.search(match[2]) or _FRACTION.search(match[2])):
             continue

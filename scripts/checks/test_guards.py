@@ -14,6 +14,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_clauses  # noqa: E402
+import check_constants  # noqa: E402
 import check_float  # noqa: E402
 import check_headers_first  # noqa: E402
 import check_layers  # noqa: E402
@@ -68,7 +69,7 @@ class RealTree(unittest.TestCase):
     @contextlib.contextmanager
     def without(self, folder):
         """The tree without a folder."""
-        away = self.root / "away"
+        away = self.root / ("away-" + folder.replace("/", "-"))
         (self.root / folder).rename(away)
         try:
             yield
@@ -241,6 +242,62 @@ class HeadersFirst(RealTree):
         self.complaint(check_headers_first.check, "encoder/write/write_stream.cpp",
                        lambda text: "#include <vector>\n" + text,
                        "encoder/write/write_stream.cpp", '"encoder/write/write_stream.h"')
+
+
+class Constants(RealTree):
+    SOURCE = "encoder/skinned_gof/search/bone_search.cpp"
+
+    def plant(self, line, *expected, name=SOURCE):
+        self.assertTrue((self.root / name).is_file(), name)
+        self.complaint(check_constants.check, name, lambda text: text + line + "\n", name, *expected)
+
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_constants.check(self.root)[0], [])
+
+    def test_a_constant_says_whether_it_is_tuned(self):
+        for line in ("constexpr double kMagic = 0.37;", "constexpr int kMagic = 7;",
+                     "constexpr double kMagic = 0.37;  // found by trial",
+                     "constexpr double kMagic = 0.37;  // tuned:",
+                     "constexpr std::array<int, 2> kMagic{1, 2};",
+                     "constexpr double kMagic =\n    0.37;"):
+            with self.subTest(line=line):
+                self.plant(line, "kMagic says neither")
+
+    def test_every_folder_of_the_search_is_looked_at(self):
+        for name in ("encoder/gof/component_cost.h", "encoder/sequence/target_search.cpp",
+                     "encoder/cluster_gof/cluster_gof_search.cpp",
+                     "encoder/skinned_gof/skinned_gof_coder.cpp",
+                     "encoder/skinned_gof/fit/bone_solver.cpp",
+                     "encoder/skinned_gof/quantise/temporal_values.cpp"):
+            with self.subTest(name=name):
+                self.plant("constexpr double kMagic = 0.37;", "kMagic says neither", name=name)
+
+    def test_numbers_have_names(self):
+        for line in ("double f(double x) { return 0.37 * x; }", "double x = 1e-6;"):
+            with self.subTest(line=line):
+                self.plant(line, "is no named constant")
+
+    def test_plain_formulas_and_fixed_constants_are_free(self):
+        for line in ("double f(double x) { return 0.5 * x / 12.0; }",
+                     "constexpr double kUnit = 0.37;  // fixed: format",
+                     "// 0.37 is no number of the code"):
+            with self.subTest(line=line), self.planted(self.SOURCE,
+                                                       lambda t, l=line: t + l + "\n"):
+                self.assertEqual(check_constants.check(self.root)[0], [])
+
+    def test_the_page_has_a_row_for_each_and_no_other(self):
+        self.complaint(check_constants.check, self.SOURCE,
+                       lambda text: text + "constexpr double kMagic = 0.37;  // tuned: by magic\n",
+                       check_constants.PAGE, "no row for bone_search.kMagic")
+        self.complaint(check_constants.check, check_constants.PAGE,
+                       lambda text: text + "| `bone_search.kGone` | 1 | | | | gone |\n",
+                       "bone_search.kGone is no tuned constant")
+
+    def test_an_encoder_without_tags_is_told(self):
+        with self.without("encoder/skinned_gof"), self.without("encoder/cluster_gof"), \
+                self.without("encoder/gof"), self.without("encoder/sequence"):
+            found = check_constants.check(self.root)[0]
+        self.assertIn("no tuned constant is found: the check sees nothing", found)
 
 
 class Specification(RealTree):
