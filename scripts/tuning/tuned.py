@@ -90,6 +90,9 @@ def variants(constant):
     return {column: v for column, v in values.items() if v != constant.value}
 
 
+# Encodings of a search, at most; not tuned, but 1 ends a search with its first encoding.
+TRIALS = "target_search.kMaxTrials"
+
 # Reads what the script asks for; in the scratch copy only.
 OVERRIDE_HEADER = "encoder/tuned_override.h"
 OVERRIDE = """#pragma once
@@ -112,11 +115,11 @@ inline double tuned_override(const char* id, double value) {
 
 
 def instrumented(path, text):
-    """The text with its tuned numbers read when the program starts."""
+    """The text with its tuned numbers, and TRIALS, read when the program starts."""
     parts = []
     end = 0
     for c in declarations(path, text):
-        if c.tag != "tuned" or not c.is_number:
+        if not c.is_number or (c.tag != "tuned" and c.id != TRIALS):
             continue
         storage = c.storage
         if storage.startswith("static"):  # a member of a class

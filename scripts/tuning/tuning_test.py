@@ -127,7 +127,8 @@ class Copy(unittest.TestCase):
             self.assertIn(scratch / "CMakeLists.txt", copied)
             changed = [p.read_text() for p in copied if p.suffix in (".h", ".cpp")]
             self.assertEqual(sum(text.count("tuned_override(\"") for text in changed),
-                             sum(c.is_number for c in tuned.tuned(root)))
+                             sum(c.is_number for c in tuned.tuned(root)) + 1)
+            self.assertEqual(sum(f'tuned_override("{tuned.TRIALS}"' in text for text in changed), 1)
             (scratch / "gone.cpp").write_text("")
             worth.copy_sources(root, scratch)
             self.assertEqual(copied, {p: p.stat().st_mtime_ns for p in scratch.rglob("*")

@@ -16,7 +16,7 @@ import tuned
 
 COLUMNS = ("off", "half", "double")
 # Ends a search for a target with its first encoding.
-FIRST_TRIAL = "target_search.kMaxTrials=1"
+FIRST_TRIAL = f"{tuned.TRIALS}=1"
 
 
 class Failure(Exception):
