@@ -11,6 +11,7 @@
 #include "encoder/cluster_gof/clustering.h"
 #include "encoder/cluster_gof/quantise_components.h"
 #include "encoder/gof/gof_frames.h"
+#include "encoder/gof/residual_choice.h"
 #include "encoder/gof/sequence_mesh.h"
 #include "encoder/math/principal_components.h"
 
@@ -39,8 +40,6 @@ struct ClusterCodingSettings {
   Allocation allocation = Allocation::kSlope;
   std::uint32_t components = 0;  // per cluster: all but kSlope
   double dead_zone = kDeadZone;
-
-  static constexpr double kDeadZone = 0.06;  // tuned (off: 0): of components, in steps
 };
 
 struct ClusterAnalysis {

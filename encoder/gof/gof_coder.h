@@ -15,6 +15,9 @@ namespace rlpc {
 // Sets the decoded positions of frame f of a GOF, as a decoder has them; [num_vertices][3].
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
 
+// An analysis serves steps up to this factor from the one that it is made for.
+inline constexpr double kAnalysisServes = 1.44;  // tuned (off: 1): steps of an analysis
+
 // One encoding of a GOF.
 struct EncodedGof {
   struct Unit {

@@ -11,9 +11,6 @@ namespace rlpc {
 // and rate are in balance where a bit costs as much error as it saves: 2 ln 2 D = 0.1155 s^2.
 inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 
-// Multiples for values from which others are predicted: a coarser one predicts worse.
-inline constexpr double kLambdaOfTracks = 0.1;    // tuned (off: 0.1155): residuals of tracks
-inline constexpr double kLambdaOfFactors = 0.06;  // tuned (off: 0.1155): residuals of vertices
 // The choice of clusters and of their components.
 inline constexpr double kLambdaOfClusters =
     0.18;  // tuned (off: 0.1155): clusters and their components

@@ -16,6 +16,9 @@
 
 namespace rlpc {
 
+// Where rates are not compared, residuals are rounded up from 1/2 and this part of a step.
+inline constexpr double kDeadZone = 0.06;  // tuned (off: 0): of rounding
+
 // To the next magnitude from 1 - round_up above the last; wanted is in steps.
 inline std::int32_t rounded_residual(double wanted, double round_up) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
@@ -24,11 +27,10 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
-// wanted is in steps. lambda: squared steps per bit, at most kLambda.
+// wanted is in steps.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
-                                     double wanted, double lambda) {
+                                     double wanted) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
-  constexpr double kNearlyUp = 0.95;  // tuned (off: 1): above, rates are not compared
   const double steps = std::min(std::abs(wanted), kMost);
   auto magnitude = static_cast<std::int32_t>(steps);
   const double part = steps - magnitude;
@@ -37,11 +39,9 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
     write_residual(estimate, models, expected, of);
     return estimate.bits();
   };
-  if (part > kNearlyUp) {
-    ++magnitude;
-  } else if (part >= 0.5) {
+  if (part >= 0.5) {
     const double more_error = part * part - (1.0 - part) * (1.0 - part);
-    if (lambda * (bits(magnitude + 1) - bits(magnitude)) < more_error) ++magnitude;
+    if (kLambda * (bits(magnitude + 1) - bits(magnitude)) < more_error) ++magnitude;
   }
   return wanted < 0.0 ? -magnitude : magnitude;
 }
@@ -57,7 +57,7 @@ class VertexResidualChoice {
   std::int32_t next(double wanted) {
     ResidualModels& models = (*models_)[contexts_.activity()];
     const std::uint32_t expected = contexts_.expected();
-    const std::int32_t residual = cheaper_residual(models, expected, wanted, kLambdaOfFactors);
+    const std::int32_t residual = cheaper_residual(models, expected, wanted);
     BitCost cost;  // adapts the models
     write_residual(cost, models, expected, residual);
     contexts_.update(residual);

@@ -18,12 +18,11 @@ ResidualModels quiet_models() {
   return models;
 }
 
-TEST(CheaperResidual, IsTheNearestIfBitsAreWorthNothing) {
+TEST(CheaperResidual, IsTheNearestBelowHalfAStep) {
   ResidualModels models = quiet_models();
   for (int i = -100; i < 100; ++i) {
-    const double wanted = 0.03 * i;
-    if (i % 50 == 0) continue;  // halves
-    EXPECT_EQ(cheaper_residual(models, 0, wanted, 0.0), std::lround(wanted)) << wanted;
+    const double wanted = i + (i < 0 ? -0.49 : 0.49);
+    EXPECT_EQ(cheaper_residual(models, 0, wanted), i) << wanted;
   }
 }
 
@@ -31,7 +30,7 @@ TEST(CheaperResidual, IsNeverAStepOff) {
   ResidualModels models = quiet_models();
   for (int i = -300; i < 300; ++i) {
     const double wanted = 0.171875 * i;
-    const std::int32_t residual = cheaper_residual(models, 0, wanted, kLambda);
+    const std::int32_t residual = cheaper_residual(models, 0, wanted);
     EXPECT_LT(std::abs(wanted - residual), 1.0) << wanted;
   }
 }
@@ -39,10 +38,9 @@ TEST(CheaperResidual, IsNeverAStepOff) {
 TEST(CheaperResidual, StaysAtZeroWhereOthersAreExpensive) {
   ResidualModels fresh;
   ResidualModels quiet = quiet_models();
-  EXPECT_EQ(cheaper_residual(fresh, 0, 0.75, 0.06), 1);
-  EXPECT_EQ(cheaper_residual(quiet, 0, 0.65, 0.06), 0);
-  EXPECT_EQ(cheaper_residual(quiet, 0, -0.65, 0.06), 0);
-  EXPECT_EQ(cheaper_residual(quiet, 0, -0.97, 0.06), -1);
+  EXPECT_EQ(cheaper_residual(fresh, 0, 0.85), 1);
+  EXPECT_EQ(cheaper_residual(quiet, 0, 0.65), 0);
+  EXPECT_EQ(cheaper_residual(quiet, 0, -0.65), 0);
 }
 
 TEST(RoundedResidual, RoundsMagnitudes) {
@@ -55,8 +53,8 @@ TEST(RoundedResidual, RoundsMagnitudes) {
 
 TEST(CheaperResidual, HasALargestMagnitude) {
   ResidualModels models;
-  EXPECT_LE(cheaper_residual(models, 1000, 1e300, 0.06), kMaxResidual);
-  EXPECT_GE(cheaper_residual(models, 1000, -1e300, 0.06), -std::int64_t{kMaxResidual});
+  EXPECT_LE(cheaper_residual(models, 1000, 1e300), kMaxResidual);
+  EXPECT_GE(cheaper_residual(models, 1000, -1e300), -std::int64_t{kMaxResidual});
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "encoder/math/det_math.h"
+#include "encoder/gof/gof_coder.h"
 
 namespace rlpc {
 namespace {
@@ -78,28 +78,15 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread) {
   const double steps_per_unit = exact_exp2(-header.grid.log2_step);
-  constexpr double kStepOfError = 6.0;      // tuned: first step per error of a coordinate
-  constexpr double kStepOfErrorMain = 9.0;  // tuned: likewise, Main profile at the usual error
-  constexpr double kUsualError = 0.1;       // fixed: KG error, per cent
-  constexpr double kOmission = 0.2;  // tuned (off: 0): rise, as more components are left out
-  constexpr double kServes = 1.2;    // tuned (off: 1): steps that an analysis serves
-  // Fast: analyses for finer steps than are needed cost less than others.
-  constexpr double kFinestFast = 0.9;  // tuned: finest step of an analysis, fast
-  constexpr double kMadeForFast =
-      1.25;  // tuned (off: 1): step of an analysis is this much finer
-  constexpr double kCoarsestFast = 1.65;     // tuned: coarsest step of an analysis, fast
-  constexpr double kStepOfErrorFast = 0.92;  // tuned (off: 1): first step, fast
-  double step_of_error = kStepOfError;
-  AnalysisRange range{.finest = 1.0 / kServes, .made_for = 1.0, .coarsest = kServes};
-  if (header.profile_idc == kProfileMain && settings.target.kind == Target::kKg) {
-    const double error = settings.target.value / kUsualError;
-    step_of_error = kStepOfErrorMain * det_exp2(kOmission * det_log2(error));
-  }
-  if (header.profile_idc == kProfileMain && settings.preset == Preset::kFast) {
-    range = {.finest = kFinestFast, .made_for = kMadeForFast, .coarsest = kCoarsestFast};
-    step_of_error *= kStepOfErrorFast;
-  }
-  return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error, range};
+  constexpr double kStepOfError = 9.0;  // tuned: first step per error of a coordinate
+  // What finer rest positions cost they gain where residuals are not weighed.
+  constexpr double kFinerFast = 1.25;  // tuned (off: 1): an analysis is made for a finer step
+  const bool fast = header.profile_idc == kProfileMain && settings.preset == Preset::kFast;
+  const double finer = fast ? kFinerFast : 1.0;
+  const AnalysisRange range{.finest = finer / kAnalysisServes,
+                            .made_for = finer,
+                            .coarsest = finer * kAnalysisServes};
+  return {settings.target, rms_spread * steps_per_unit, steps_per_unit, kStepOfError, range};
 }
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {

@@ -8,25 +8,23 @@
 namespace rlpc {
 namespace {
 
-constexpr int kMaxTrials = 18;            // tuned: encodings of a search, at most
+constexpr int kMaxTrials = 18;            // fixed: a search ends
 constexpr double kTolerance = 0.02;       // fixed: of the target, below it; promised to users
 constexpr double kFinestStep = 0.5;       // fixed: grid steps
 constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
 constexpr double kFarthest = 50.0;        // fixed: from one step to the next, as a factor
-// Exponents of the power law that are believed, relative to the usual one.
-constexpr double kFlattest = 0.5;  // tuned (off: 0.01): least exponent
-constexpr double kSteepest = 2.0;  // tuned (off: 100): largest exponent
+// The largest exponent that is believed, relative to the usual one; its inverse is the least.
+constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
 // Largest errors jump from step to step. Where they do, a narrower bracket tells nothing: some
 // steps beyond it are tried instead, as one of them may do as well by chance.
-constexpr double kNarrow = 1.006;          // tuned (off: 1): bracket of steps that is narrow
-constexpr int kSamples = 8;                // tuned (off: 0): steps tried beyond
-constexpr double kBetweenSamples = 0.006;  // tuned: from one to the next
+constexpr double kNarrow = 1.0 + kTolerance / 4.0;  // fixed: by the tolerance
+constexpr int kSamples = 8;                         // tuned (off: 0): steps tried beyond
 
-constexpr double kErrorExponent = 0.85;  // tuned (off: 1): errors are this power of the step
-constexpr double kRateExponent = -0.5;   // tuned (off: -1): rates are this power of the step
+constexpr double kRateExponent = -0.5;  // tuned (off: -1): rates are this power of the step
 
+// Errors are proportional to the step.
 double usual_exponent(const Target& target) {
-  return target.kind == Target::kBpvf ? kRateExponent : kErrorExponent;
+  return target.kind == Target::kBpvf ? kRateExponent : 1.0;
 }
 
 }  // namespace
@@ -47,10 +45,9 @@ TargetSearch::TargetSearch(const Target& target, double spread, double steps_per
 }
 
 void TargetSearch::begin_at(const Expected& expected) {
-  constexpr double kFar = 2.5;  // tuned (off: 1): how far expectations are believed
   if (target_.kind == Target::kNone) return;
   frozen_ = analysis_step();
-  step_ = std::clamp(step_for(target_.value, expected), step_ / kFar, step_ * kFar);
+  step_ = step_for(target_.value, expected);
 }
 
 bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& expected) {
@@ -105,12 +102,11 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   const bool jumps =
       target_.kind == Target::kMaxError && bracket_.closed() && bracket_.within(kNarrow);
   if (jumps || sampled_from_ > 0.0) return sample_beyond_jump();
-  constexpr double kInside = 0.4;  // tuned (off: 0.5): of the tolerance, where a step aims
-  const double aim = target_.value * (1.0 - kInside * kTolerance);
+  const double aim = target_.value * (1.0 - 0.5 * kTolerance);
   if (bracket_.closed()) return narrow_bracket(aim);
   constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
-  power_law_.add(step_, value, kFlattest, kSteepest);
+  power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
   const double factor = std::clamp(factor_to(aim, value, expected), 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // as fine or as coarse as it goes
@@ -121,7 +117,7 @@ void TargetSearch::sample_beyond_jump() {
   if (sampled_from_ == 0.0) sampled_from_ = bracket_.coarse_step();
   ++samples_;
   if (samples_ > kSamples) finished_ = true;
-  step_ = std::min(sampled_from_ * (1.0 + kBetweenSamples * samples_), kCoarsestStep);
+  step_ = std::min(sampled_from_ * (1.0 + (kNarrow - 1.0) * samples_), kCoarsestStep);
 }
 
 // By interpolation; every third step halves the bracket whatever the values say.
@@ -139,11 +135,10 @@ void TargetSearch::narrow_bracket(double aim) {
 double TargetSearch::factor_to(double aim, double value, const Expected& expected) const {
   const double rise = det_log2(aim / value);
   if (!expected || !(expected(step_) > 0.0)) return det_exp2(rise / power_law_.exponent());
-  constexpr double kMore = 1.08;  // tuned (off: 1): expected rise per real one
   const double usual = power_law_.usual_exponent();
-  const double flat = det_exp2(rise / (kFlattest * usual));
+  const double flat = det_exp2(rise * kSteepest / usual);
   const double steep = det_exp2(rise / (kSteepest * usual));
-  return std::clamp(step_for(expected(step_) * det_exp2(kMore * rise), expected) / step_,
+  return std::clamp(step_for(expected(step_) * aim / value, expected) / step_,
                     std::min(flat, steep), std::max(flat, steep));
 }
 

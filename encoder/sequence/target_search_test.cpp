@@ -180,9 +180,7 @@ int trials_with(const TargetSearch::Expected& expected, double value, double fac
   search.begin_at(expected);
   Outcome outcome;
   while (!search.finished() && outcome.trials < kEnough) {
-    // A little flatter than the expectation that is right, as those of GOFs are.
-    const double measured =
-        factor * value * std::pow(expected_error(search.step()) / value, 0.94);
+    const double measured = factor * expected_error(search.step());
     ++outcome.trials;
     const std::uint64_t bytes = bytes_with(search.step());
     if (search.report(measured, bytes, expected)) outcome.best = measured;

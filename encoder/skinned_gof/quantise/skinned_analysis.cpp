@@ -7,6 +7,7 @@
 
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/gof_coder.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
@@ -106,9 +107,8 @@ class SkinnedAnalyser {
       gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
     }
     code_rest();
-    // Steps that are tried later may be finer (AnalysisRange).
-    constexpr double kReserve = 0.69;  // tuned (off: 1): energy that components may lack
-    const double least = kReserve * least_energy(step_, gof, frames_.num_vertices);
+    // Steps that are tried later may be finer.
+    const double least = least_energy(step_ / kAnalysisServes, frames_.num_vertices);
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);
   }
@@ -287,19 +287,10 @@ class SkinnedAnalyser {
 
 }  // namespace
 
-double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices) {
-  // In squared errors of a coded value, per vertex.
-  constexpr double kLeast = 0.4;  // tuned (off: 0): energy of a component, at least
-  // One bone leaves trajectories of all vertices, of which many are worth their bits: those of
-  // long vectors need more.
-  constexpr double kOfSpatial = 0.25;   // tuned (off: 0): energy, for a vertex, without bones
-  constexpr double kOfTemporal = 12.0;  // tuned (off: 0): energy, for a frame, without bones
-  constexpr double kMost = 1.2;         // tuned (off: 1e9): energy of a component, at most
-  const double share = static_cast<double>(gof.num_frames) / num_vertices;
-  const double values = gof.bones.size() > 1
-                            ? kLeast
-                            : std::clamp(kOfSpatial + kOfTemporal * share, kLeast, kMost);
-  return values * step * step / 12.0 * num_vertices;
+double least_energy(double step, std::uint32_t num_vertices) {
+  // Of a trajectory with hardly a residual that is not zero.
+  constexpr double kOfVertex = 0.06;  // tuned (off: 0): squared steps that a factor is worth
+  return kOfVertex * step * step * num_vertices;
 }
 
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,

@@ -58,6 +58,6 @@ SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const SkinnedSettings& settings, double step);
 
 // Energy below which a trajectory costs more than it saves, whatever its temporal vector costs.
-double least_energy(double step, const SkinnedGof& gof, std::uint32_t num_vertices);
+double least_energy(double step, std::uint32_t num_vertices);
 
 }  // namespace rlpc

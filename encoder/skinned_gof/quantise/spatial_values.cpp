@@ -78,7 +78,7 @@ class SpatialFactors {
 class ResidualRounding {
  public:
   ResidualRounding(const CodedMesh& mesh, std::size_t count, Rounding rounding)
-      : round_up_(rounding == Rounding::kNearest ? 0.5 : kRoundUpOfDeadZone) {
+      : round_up_(rounding == Rounding::kNearest ? 0.5 : 0.5 - kDeadZone) {
     if (rounding == Rounding::kCheapest) choice_.emplace(mesh, count);
   }
   void start(std::uint32_t v) {
@@ -90,9 +90,6 @@ class ResidualRounding {
   }
 
  private:
-  static constexpr double kRoundUpOfDeadZone =
-      0.42;  // tuned (off: 0.5): rounding of factors, fast
-
   double round_up_;
   std::optional<VertexResidualChoice> choice_;
 };

@@ -17,10 +17,6 @@ namespace {
 
 // What bones leave is in few places, where neighbours tell little about it.
 constexpr double kTemporalErrorOfBones = 2.0;  // tuned (off: 1): of temporal values, with bones
-// Of a vertex for a trajectory, at least, in squared steps.
-constexpr double kSpatialCost = 0.02;         // tuned (off: 0): cost of a vertex, without bones
-constexpr double kSpatialCostOfBones = 0.06;  // tuned (off: 0): cost of a vertex, with bones
-
 // Products of steps, in eighths of an octave, have a scale_idx up to this one.
 constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
 // Wanted values up to this one fit their width, whatever they are rounded to.
@@ -49,17 +45,10 @@ class TemporalCoder {
         state_(analysis.gof.num_frames) {}
 
   TemporalValues code(const TemporalLimits& limits) {
-    constexpr int kMostInVain = 4;  // tuned (off: 1): components that are not worth their bits
     TemporalValues values;
-    const std::vector<double>& energy = analysis_.pc.energy;
-    const double least =
-        least_energy(step_, analysis_.gof, static_cast<std::uint32_t>(num_vertices_));
-    int in_vain = 0;
     std::size_t& l = values.num_tried;
-    for (; l < analysis_.pc.temporal.size(); ++l) {
-      const bool enough = values.size() == limits.max_trajectories || in_vain == kMostInVain;
-      if (enough || energy[l] <= least) break;
-      in_vain = code(l, limits.least_eighths, values) ? 0 : in_vain + 1;
+    for (; l < analysis_.pc.temporal.size() && values.size() < limits.max_trajectories; ++l) {
+      if (!code(l, limits.least_eighths, values)) break;
     }
     return values;
   }
@@ -110,8 +99,8 @@ class TemporalCoder {
   // The energy that a trajectory must save: what its temporal values cost, and its spatial
   // factors cost and leave.
   double least_worth(double bits) const {
-    const double of_vertex = has_bones() ? kSpatialCostOfBones : kSpatialCost;
-    return step_ * step_ * (kLambda * bits + of_vertex * static_cast<double>(num_vertices_));
+    return lambda(step_) * bits +
+           least_energy(step_, static_cast<std::uint32_t>(num_vertices_));
   }
 
   bool has_bones() const { return analysis_.gof.bones.size() > 1; }

@@ -40,11 +40,9 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
       }
     }
   }
-  // What is predicted from has quantisation errors.
-  constexpr double kNoise =
-      0.25;  // tuned (off: 0): squared steps of noise in weights of tracks
+  // What is predicted from has quantisation errors, in each coordinate.
   for (std::size_t i = 0; i < n; ++i) {
-    m.a[i][i] += kNoise * step * step * static_cast<double>(values.size());
+    m.a[i][i] += 3.0 * step * step / 12.0 * static_cast<double>(values.size());
   }
   const auto solution = solve_small(m, n);
   if (!solution.is_unique) return false;
@@ -68,9 +66,8 @@ class ResidualChoice {
     Vec3i residual{};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t expected = context_.expected(frame_, c);
-      residual[c] = nearest_
-                        ? rounded_residual(wanted[c], 0.5)
-                        : cheaper_residual(state_.models, expected, wanted[c], kLambdaOfTracks);
+      residual[c] = nearest_ ? rounded_residual(wanted[c], 0.5)
+                             : cheaper_residual(state_.models, expected, wanted[c]);
       const double error = wanted[c] - residual[c];
       error_ += error * error;
       write_residual(bits_, state_.models, expected, residual[c]);
@@ -91,9 +88,7 @@ class ResidualChoice {
   double error_ = 0.0;
 };
 
-double lagrangian_cost(const TrackCost& cost) {
-  return cost.error + kLambdaOfTracks * cost.bits;
-}
+double lagrangian_cost(const TrackCost& cost) { return cost.error + kLambda * cost.bits; }
 
 // Nothing as soon as they cost no less than another coding.
 std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,

@@ -8,51 +8,19 @@ namespace rlpc {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kMinVerticesOfBone = 8;  // tuned (off: 1): fewer do not make a bone
-constexpr std::uint32_t kUsualInfluences = 4;    // tuned (off: 1): bones of a vertex
 // With more than two, bones overlap, and neither they nor weights are smooth.
-constexpr std::uint32_t kSearchInfluences = 2;  // tuned (off: 1): likewise, of a search
-// Parts of the error of one bone that does not turn which one that turns leaves.
-constexpr double kRigidPart = 0.5;     // tuned (off: 1): below, one bone turns
-constexpr double kFlexiblePart = 1.0;  // tuned: above, one bone does not turn
-// Expected costs at which bones are looked for: relative to those expected without bones, to
-// the real ones without, and to the real ones once the first bones are there.
-constexpr double kTryFactor = 0.72;           // tuned (off: 1e9): expected, to expected without
-constexpr double kTryFactorOfReal = 0.85;     // tuned (off: 1e9): expected, to real without
-constexpr double kTryFactorUnsettled = 0.93;  // tuned (off: 1e9): with the first bones
-constexpr double kTryFactorSettled = 0.9;     // tuned (off: 1e9): once these have settled
-constexpr double kSure = 0.3;                 // tuned (off: 0): below, one bone is not tried
-// What makes the real cost without bones low, such as vertices at rest, is there with bones,
-// too.
-constexpr double kStrongEstimate = 0.5;  // tuned (off: 0): below, estimates beat real costs
-// Thresholds are so much higher where a trial takes little time.
-constexpr std::uint32_t kSmallMesh = 1000;     // tuned (off: 0): vertices
-constexpr double kHopeOfSmallMesh = 1.35;      // tuned (off: 1): thresholds, of a small mesh
-constexpr double kHopeOfFewValues = 1.07;      // tuned (off: 1): thresholds, of few values
-constexpr std::uint64_t kFewValues = 200'000;  // tuned (off: 0): vertices times frames
-// Numbers of bones to be tried, by expected costs relative to the least.
-constexpr double kNearLeast = 0.06;   // tuned (off: 1e9): of influences that are tried
-constexpr double kWorthATrial = 0.2;  // tuned (off: 1e9): of a number that is tried
-constexpr double kFarAbove = 0.1;     // tuned (off: 1e9): real costs that will not fall again
-// So many bones tell whether more are worth looking at.
-constexpr std::uint32_t kEnoughBones = 20;  // tuned (off: 1000000): bones in a sample
-constexpr double kHopeless = 0.92;          // tuned (off: 1e9): expected of these, to stop
+constexpr std::uint32_t kSearchInfluences =
+    2;  // tuned (off: 1): bones of a vertex, of a search
+// Expected costs relative to the least: how far off they may be.
+constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): bones that are tried
 
 // Numbers of bones worth comparing.
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};  // tuned: bones
 constexpr std::array<std::uint32_t, 9> kManyBones{5,  10, 15, 20, 24,
                                                   28, 36, 48, 64};  // tuned: slow
 
-// Of a small sample, for estimates.
-constexpr std::uint32_t kQuickFrames = 24;     // tuned: frames
-constexpr std::uint32_t kQuickVertices = 700;  // tuned: vertices
-constexpr int kQuickExchanges = 2;             // tuned (off: 0): of bones
-
-double threshold_factor_of(const GofFrames& frames) {
-  if (frames.num_vertices <= kSmallMesh) return kHopeOfSmallMesh;
-  const std::uint64_t values = std::uint64_t{frames.num_vertices} * frames.num_frames;
-  return values <= kFewValues ? kHopeOfFewValues : 1.0;
-}
+// Of the sample for estimates: this part of the frames and of the vertices of the usual one.
+constexpr std::uint32_t kQuickPart = 4;  // tuned (off: 1): of a sample
 
 // One bone that does not turn: it follows the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
@@ -77,12 +45,6 @@ Rig translation_rig(const GofFrames& frames) {
   return rig;
 }
 
-// The part of a translation's error that one turning bone leaves.
-double part_left(const BoneFit& one) {
-  const double translation = one.translation_error();
-  return translation > 0.0 ? one.rms_error() / translation : 1.0;  // nothing moves
-}
-
 }  // namespace
 
 BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames,
@@ -91,10 +53,9 @@ BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames,
       frames_(frames),
       trials_(trials),
       settings_(usual_settings(context.settings)),
-      max_influences_(context.settings.main.influences == 0 ? kUsualInfluences
+      max_influences_(context.settings.main.influences == 0 ? std::uint32_t{kMaxExtraBones}
                                                             : context.settings.main.influences),
-      search_influences_(std::min(kSearchInfluences, max_influences_)),
-      threshold_factor_(threshold_factor_of(frames)) {}
+      search_influences_(std::min(kSearchInfluences, max_influences_)) {}
 
 BoneFit BoneSearch::fit(std::size_t influences) const {
   return {frames_, context_.triangles, {.max_influences = influences, .step = trials_.step()}};
@@ -106,17 +67,12 @@ BoneFit BoneSearch::quick_fit(std::size_t influences) const {
           context_.triangles,
           {.max_influences = influences,
            .step = trials_.step(),
-           .sample_frames = kQuickFrames,
-           .sample_vertices = kQuickVertices,
-           .exchanges = kQuickExchanges}};
-}
-
-bool BoneSearch::can_have(std::uint32_t count) const {
-  return count * kMinVerticesOfBone <= frames_.num_vertices;
+           .sample_frames = BoneFitOptions::kSampleFrames / kQuickPart,
+           .sample_vertices = BoneFitOptions::kSampleVertices / kQuickPart}};
 }
 
 bool BoneSearch::grow(BoneFit& fit, std::uint32_t count) const {
-  if (!can_have(count) || !fit.grow(count)) return false;
+  if (!fit.grow(count)) return false;
   fit.settle();
   return true;
 }
@@ -127,17 +83,13 @@ SkinnedTrial BoneSearch::run(Rig rig, const BoneCounts& counts) const {
 
 Rig BoneSearch::guess_one_bone() const {
   const BoneFit one = quick_fit(1);
-  return part_left(one) < kRigidPart ? one.rig(1) : translation_rig(frames_);
+  const bool turns = one.expected_cost() < one.expected_translation_cost();
+  return turns ? one.rig(1) : translation_rig(frames_);
 }
 
 SkinnedTrial BoneSearch::try_one_bone() const {
-  const BoneFit one = quick_fit(1);
-  const double part = part_left(one);
-  const bool slow = context_.settings.preset == Preset::kSlow;
-  BestTrial best;
-  if (slow || part >= kRigidPart) best = run(translation_rig(frames_), {});
-  if (slow || part < kFlexiblePart) best = cheaper(std::move(best), run(one.rig(1), {}));
-  return std::move(*best);
+  SkinnedTrial best = run(translation_rig(frames_), {});
+  return std::move(*cheaper(std::move(best), run(quick_fit(1).rig(1), {})));
 }
 
 BestTrial BoneSearch::try_asked() const {
@@ -156,14 +108,13 @@ BoneSearch::Estimate BoneSearch::estimate(std::size_t influences) const {
   BoneFit quick = quick_fit(influences);
   best.translation = quick.expected_translation_cost();
   for (const std::uint32_t count : kFewBones) {
-    if (!grow(quick, count)) break;
+    if (!quick.grow(count)) break;
     const double expected = quick.expected_cost();
     best.costs.push_back(expected);
     if (expected < best.cost) {
       best.cost = expected;
       best.count = count;
     }
-    if (count >= kEnoughBones && best.cost > kHopeless * best.translation) break;
   }
   return best;
 }
@@ -174,11 +125,7 @@ BoneSearch::Estimates BoneSearch::estimates() const {
   result.of_influences.resize(search_influences_);
   for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
     Estimate of = estimate(influences);
-    result.translation = of.translation;
-    if (of.cost > std::min(threshold_factor_ * kTryFactor * of.translation,
-                           (1.0 + kNearLeast) * result.least)) {
-      break;
-    }
+    if (of.cost >= std::min(of.translation, (1.0 + kTryMargin) * result.least)) break;
     result.least = std::min(result.least, of.cost);
     result.of_influences[influences - 1] = std::move(of);
   }
@@ -187,29 +134,23 @@ BoneSearch::Estimates BoneSearch::estimates() const {
 
 SkinnedTrial BoneSearch::search() const {
   if (context_.settings.main.bones > 0) return std::move(*try_asked());
-  const bool slow = context_.settings.preset == Preset::kSlow;
-  const Estimates expected = estimates();
-  BestTrial best;
-  double without = expected.translation;
-  if (expected.least > kSure * expected.translation || slow) {
-    best = try_one_bone();
-    without = best->cost;
-  }
-  for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-    const Estimate& of = expected.of_influences[influences - 1];
-    const bool strong = of.cost < kStrongEstimate * of.translation;
-    const double against = strong ? std::max(without, of.translation) : without;
-    if (of.cost <= std::min((1.0 + kNearLeast) * expected.least,
-                            threshold_factor_ * kTryFactorOfReal * against)) {
-      best = try_estimated(std::move(best), influences, of, against);
-    }
-    if (slow) {
+  BestTrial best = try_one_bone();
+  if (context_.settings.preset == Preset::kSlow) {
+    for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
       BoneFit full = fit(influences);
       if (!grow(full, kManyBones.front())) break;
       best = try_counts(std::move(best), full, influences, kManyBones, kManyBones.back());
     }
+    return std::move(*best);
   }
-  return best ? std::move(*best) : try_one_bone();
+  const double without = best->cost;
+  const Estimates expected = estimates();
+  for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
+    const Estimate& of = expected.of_influences[influences - 1];
+    if (of.count == 0 || of.cost > (1.0 + kTryMargin) * expected.least) continue;
+    best = try_estimated(std::move(best), influences, of, without);
+  }
+  return std::move(*best);
 }
 
 SkinnedTrial BoneSearch::search_near(const BoneCounts& counts, bool finer) const {
@@ -231,15 +172,10 @@ BestTrial BoneSearch::try_estimated(BestTrial best, std::uint32_t influences,
                                     const Estimate& estimate, double without) const {
   BoneFit full = fit(influences);
   std::size_t first = 0;
-  const auto is_below = [&](double part) {
-    const double correction = full.expected_cost() / estimate.costs[first];
-    return correction * estimate.cost < threshold_factor_ * part * without;
-  };
   do {
-    if (!can_have(kFewBones[first]) || !full.grow(kFewBones[first])) return best;
-    if (!is_below(kTryFactorUnsettled)) return best;
-    full.settle();
-    if (!is_below(kTryFactorSettled)) return best;
+    if (!grow(full, kFewBones[first])) return best;
+    const double correction = full.expected_cost() / estimate.costs[first];
+    if (correction * estimate.cost >= without) return best;
   } while (2 * kFewBones[first] < estimate.count && ++first < estimate.costs.size());
   return try_counts(std::move(best), full, influences, std::span(kFewBones).subspan(first),
                     estimate.count);
@@ -256,12 +192,12 @@ BestTrial BoneSearch::try_counts(BestTrial best, BoneFit& full, std::uint32_t in
     if (count != counts.front() && !grow(full, count)) break;
     const double now = full.expected_cost();
     expected = std::min(expected, now);
-    if (now > threshold_factor_ * (1.0 + kWorthATrial) * expected) continue;
+    if (now > (1.0 + kTryMargin) * expected) continue;
     SkinnedTrial trial =
         run(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
     const double real = trial.cost;
     best = cheaper(std::move(best), std::move(trial));
-    if (real > before && (count >= likely || real > (1.0 + kFarAbove) * best->cost)) break;
+    if (real > before && count >= likely) break;
     before = real;
   }
   return best;

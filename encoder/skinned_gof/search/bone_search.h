@@ -21,7 +21,7 @@ class BoneSearch {
   BoneSearch(const SkinnedContext& context, const GofFrames& frames,
              const SkinnedTrials& trials);
 
-  // One bone that turns, if that makes much of a difference, else one that does not; unseen.
+  // One bone that turns, if that is expected to cost less, else one that does not; unseen.
   Rig guess_one_bone() const;
   // The best of all numbers of bones.
   SkinnedTrial search() const;
@@ -42,12 +42,10 @@ class BoneSearch {
   struct Estimates {
     std::vector<Estimate> of_influences;  // [influences - 1]
     double least = std::numeric_limits<double>::infinity();
-    double translation = 0.0;
   };
 
   BoneFit fit(std::size_t influences) const;
   BoneFit quick_fit(std::size_t influences) const;
-  bool can_have(std::uint32_t count) const;
   bool grow(BoneFit& fit, std::uint32_t count) const;
   SkinnedTrial run(Rig rig, const BoneCounts& counts) const;
   Estimate estimate(std::size_t influences) const;
@@ -65,7 +63,6 @@ class BoneSearch {
   SkinnedSettings settings_;
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // at most so many while bones are looked for
-  double threshold_factor_;          // the higher, the less bones have to promise to be tried
 };
 
 }  // namespace rlpc
