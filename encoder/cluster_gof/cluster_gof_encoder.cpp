@@ -292,7 +292,7 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
   }
   std::vector<std::size_t> chosen(count);
   if (settings.allocation == Allocation::kSlope) {
-    const double lambda = kLambdaOfClusters * settings.step * settings.step;
+    const double lambda = rlpc::lambda(settings.step);
     for (std::size_t i = 0; i < count; ++i) chosen[i] = allocate_by_slope(curves[i], lambda);
   } else if (settings.allocation == Allocation::kFixed) {
     for (std::size_t i = 0; i < count; ++i) chosen[i] = components[i].size();

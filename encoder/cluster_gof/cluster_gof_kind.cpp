@@ -10,24 +10,18 @@
 namespace rlpc {
 namespace {
 
-constexpr double kStepOfClusters = 0.8;  // tuned (off: 1): leaves about the error of bones
 // One PCA of all vertices does well unless it needs this part of all trajectories that can be.
 constexpr double kHighRank = 0.4;  // tuned (off: 0): below, clusters are not tried
 constexpr std::uint32_t kVerticesOfCluster = 56;  // tuned: of many small ones, as a sample
 constexpr std::uint32_t kFewestClusters = 2;      // fixed: of many
 constexpr std::uint32_t kMostClusters = 96;       // fixed: the most that are searched
-constexpr std::uint32_t kSmallMesh =
-    1000;  // tuned (off: 0): vertices that one cluster may suit
 
 class ClusterGofCoder : public GofCoder {
  public:
-  ClusterGofCoder(const ClusterGofCoding& coding, double step_factor)
-      : coding_(coding), step_factor_(step_factor) {}
+  explicit ClusterGofCoder(const ClusterGofCoding& coding) : coding_(coding) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   EncodedGof encode(double step, double analysis_step) override {
-    step *= step_factor_;
-    analysis_step *= step_factor_;
     if (!clusters_) clusters_ = search_clusters(coding_, step);
     return coding_.encode(step, analysis_.get(analysis_step, [&] {
       return coding_.analyse(analysis_step, clusters_->choice.world, clusters_->clustering);
@@ -37,7 +31,6 @@ class ClusterGofCoder : public GofCoder {
 
  private:
   ClusterGofCoding coding_;
-  double step_factor_;
   std::optional<FoundClusters> clusters_;
   StepCache<ClusterGofAnalysis> analysis_;
 };
@@ -45,36 +38,27 @@ class ClusterGofCoder : public GofCoder {
 class ClusterGofKind : public GofEncoder {
  public:
   ClusterGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
-      : mesh_(mesh),
-        settings_(settings),
-        step_factor_(settings.profile == Profile::kMain ? kStepOfClusters : 1.0) {}
+      : mesh_(mesh), settings_(settings) {}
 
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
-    return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames),
-                                             step_factor_);
+    return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames));
   }
 
-  // Of many small clusters or, of a small mesh, one of all.
+  // Of many small clusters.
   std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
                                       double step) const override {
     const std::uint32_t most = std::min(frames.num_vertices, 3 * frames.num_frames);
     if (best.components < kHighRank * most) return std::nullopt;
     const ClusterGofCoding coding(mesh_, settings_, frames);
-    const auto cost = [&](const ClusterChoice& choice) {
-      MotionClusters motion = coding.motion();
-      return lagrangian_cost(coding.encode(step_factor_ * step, choice, motion), frames, step);
-    };
-    double least = cost(
-        {std::clamp(frames.num_vertices / kVerticesOfCluster, kFewestClusters, kMostClusters),
-         false});
-    if (frames.num_vertices <= kSmallMesh) least = std::min(least, cost({1, true}));
-    return least;
+    const std::uint32_t count =
+        std::clamp(frames.num_vertices / kVerticesOfCluster, kFewestClusters, kMostClusters);
+    MotionClusters motion = coding.motion();
+    return lagrangian_cost(coding.encode(step, {count, false}, motion), frames, step);
   }
 
  private:
   const SequenceMesh& mesh_;
   const EncoderSettings& settings_;
-  double step_factor_;
 };
 
 }  // namespace

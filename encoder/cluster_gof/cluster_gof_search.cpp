@@ -12,10 +12,10 @@ namespace {
 // Numbers of clusters worth comparing; finer ones gain little.
 constexpr std::array<std::uint32_t, 13> kCounts{1,  2,  3,  4,  6,  8, 12,
                                                 16, 24, 32, 48, 64, 96};  // tuned: of clusters
-constexpr std::size_t kFirstCount = 5;  // tuned (off: 0): of these, where a climb begins
-constexpr std::uint32_t kVerticesPerCluster = 8;  // tuned (off: 1): fewer do not make a cluster
-constexpr double kFastDivisor = 3.0;     // tuned: root of the vertices per cluster, fast
-constexpr std::uint32_t kMostFast = 32;  // tuned: clusters, fast
+constexpr std::size_t kFirstCount = 5;      // tuned (off: 0): of these, where a climb begins
+constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
+constexpr double kFastDivisor = 3.0;        // tuned: root of the vertices per cluster, fast
+constexpr std::uint32_t kMostFast = 32;     // tuned: clusters, fast
 
 class ClusterSearch {
  public:
@@ -32,14 +32,14 @@ class ClusterSearch {
     const EncodedGof encoded = coding_.encode(step_, choice, motion_);
     const double error = squared_error(coding_.frames(), encoded.frame);
     const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
-    return error + kLambdaOfClusters * step_ * step_ * bits;
+    return error + lambda(step_) * bits;
   }
 
   // Climbs from a middling number of clusters while the cost falls.
   std::uint32_t choose_count(bool world) {
     std::size_t last = 0;
     while (last + 1 < kCounts.size() &&
-           kCounts[last + 1] * kVerticesPerCluster <= coding_.frames().num_vertices) {
+           kCounts[last + 1] * kSeedVertices < coding_.frames().num_vertices) {
       ++last;
     }
     std::array<double, kCounts.size()> known{};

@@ -8,6 +8,9 @@
 
 namespace rlpc {
 
+// What is expected to cost up to so much more than the least may be the best.
+inline constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): of what is encoded
+
 // Lagrangian cost of coding the component, or of leaving it out where that is cheaper.
 //
 //   energy         of the component, in squared grid steps

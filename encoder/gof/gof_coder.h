@@ -17,6 +17,11 @@ using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> 
 
 // An analysis serves steps up to this factor from the one that it is made for.
 inline constexpr double kAnalysisServes = 1.44;  // tuned (off: 1): steps of an analysis
+inline bool analysis_serves(double made_for, double step) {
+  return step <= kAnalysisServes * made_for && made_for <= kAnalysisServes * step;
+}
+// Beyond, kinds, bones and tools are chosen again, but not for ever.
+inline constexpr int kMostChoices = 3;  // tuned (off: 1): for one GOF
 
 // One encoding of a GOF.
 struct EncodedGof {

@@ -2,17 +2,10 @@
 
 #include <utility>
 
+#include "encoder/gof/component_cost.h"
 #include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
-namespace {
-
-// Expected costs relative to the least so far.
-constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): up to here, a kind is encoded
-constexpr double kHopelessMargin =
-    0.15;  // tuned (off: 1e9): beyond, kinds are never compared again
-
-}  // namespace
 
 GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Preset preset)
     : kinds_(kinds), frames_(frames), preset_(preset), coders_(kinds.size()) {
@@ -21,12 +14,10 @@ GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Pre
 
 // Whether kinds should be compared for a step.
 bool GofKindSearch::is_far(double step) const {
-  constexpr double kFar = 1.25;  // tuned (off: 1e9): step at which kinds are compared again
-  constexpr int kMostTimes = 4;  // tuned (off: 1): comparisons of one GOF
   if (kinds_.size() == 1) return false;
   if (compared_.times == 0) return true;
-  if (compared_.is_settled || compared_.times == kMostTimes) return false;
-  return step > kFar * compared_.step || step * kFar < compared_.step;
+  if (compared_.is_settled || compared_.times == kMostChoices) return false;
+  return !analysis_serves(compared_.step, step);
 }
 
 void GofKindSearch::analyse(double analysis_step) { coders_[chosen_]->analyse(analysis_step); }
@@ -50,9 +41,10 @@ bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, doub
     return true;
   }
   const auto expected = kind.estimate_cost(frames_, best, step);
-  const double cost = expected ? lagrangian_cost(best, frames_, step) : 0.0;
-  if (!expected || *expected <= (1.0 + kHopelessMargin) * cost) compared_.is_settled = false;
-  return expected && *expected < (1.0 + kTryMargin) * cost;
+  const bool close =
+      expected && *expected < (1.0 + kTryMargin) * lagrangian_cost(best, frames_, step);
+  if (!expected || close) compared_.is_settled = false;
+  return close;
 }
 
 EncodedGof GofKindSearch::compare(double step, double analysis_step) {

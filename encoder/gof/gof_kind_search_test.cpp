@@ -111,15 +111,16 @@ TEST(GofKindSearch, SlowEncodesAllWithoutAsking) {
 }
 
 TEST(GofKindSearch, ComparesAgainFarAwayUnlessItIsSettled) {
-  for (const double expected : {1.12, 1.2}) {
+  for (const double expected : {1.05, 1.2}) {
     Fixture f;
     f.add(100, std::nullopt);
     f.add(50, expected);
     GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
     Fixture::bytes(search, 10.0);
-    EXPECT_EQ(search.needs_frames(20.0, 20.0), expected < 1.15);
+    EXPECT_EQ(f.calls[1]->encodings, expected < 1.1 ? 1 : 0);
+    EXPECT_EQ(search.needs_frames(20.0, 20.0), expected < 1.1);
     Fixture::bytes(search, 20.0);
-    EXPECT_EQ(f.calls[1]->estimates, expected < 1.15 ? 2 : 1);
+    EXPECT_EQ(f.calls[1]->estimates, expected < 1.1 ? 2 : 1);
   }
 }
 

@@ -11,10 +11,6 @@ namespace rlpc {
 // and rate are in balance where a bit costs as much error as it saves: 2 ln 2 D = 0.1155 s^2.
 inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 
-// The choice of clusters and of their components.
-inline constexpr double kLambdaOfClusters =
-    0.18;  // tuned (off: 0.1155): clusters and their components
-
 // Squared error that is worth a bit.
 inline double lambda(double step) { return kLambda * step * step; }
 

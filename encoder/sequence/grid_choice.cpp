@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxCoordinate = 0x1p100;  // fixed: larger ones overflow squares
 constexpr int kDefaultPositionBits = 20;    // fixed: a grid that is never too coarse
-constexpr double kStepsPerError = 32.0;  // tuned: grid steps in the smallest error that matters
+constexpr double kStepsPerError = 32.0;  // fixed: rounding adds 1e-4 of the least squared error
 constexpr double kMargin =
     1.02;  // fixed: room, so that decoded positions are hardly ever clipped
 

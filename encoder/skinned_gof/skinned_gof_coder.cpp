@@ -10,11 +10,9 @@ namespace rlpc {
 
 // Whether bones and tools should be chosen for a step.
 bool SkinnedGofCoder::must_choose(double analysis_step) const {
-  constexpr double kFar = 1.6;   // tuned (off: 1e9): step at which bones are chosen again
-  constexpr int kMostTimes = 3;  // tuned (off: 1): choices for one GOF
   if (choice_.times == 0) return true;
-  if (choice_.times >= kMostTimes) return false;
-  return analysis_step > kFar * choice_.step || analysis_step * kFar < choice_.step;
+  if (choice_.times >= kMostChoices) return false;
+  return !analysis_serves(choice_.step, analysis_step);
 }
 
 void SkinnedGofCoder::choose(double step) {

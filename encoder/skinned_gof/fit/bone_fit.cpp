@@ -13,9 +13,8 @@
 namespace rlpc {
 namespace {
 
-constexpr double kInfluenceBits = 7.0;  // tuned (off: 0): of a weight
-constexpr double kPinnedPart =
-    0.5;  // tuned (off: 1): bits of a pinned bone, of those of a free one
+// Of a weight, and whether it is there.
+constexpr double kInfluenceBits = 7.0;  // fixed: those of the usual weight_bits, and one
 
 // Evenly spaced, from the first to the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
@@ -61,7 +60,7 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
 // A vertex, then those around it; two rings where one is small.
 std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
   constexpr std::size_t kSmall = 6;     // tuned (off: 1): vertices of a patch of one ring
-  constexpr std::size_t kLargest = 24;  // tuned: vertices of a patch
+  constexpr std::size_t kLargest = 24;  // fixed: memory, where all triangles share a vertex
   std::vector<std::uint32_t> patch{vertex};
   const auto add = [&](std::uint32_t v) {
     if (patch.size() < kLargest && std::find(patch.begin(), patch.end(), v) == patch.end()) {
@@ -291,7 +290,7 @@ Rig BoneFit::rig(std::size_t max_influences) const {
     moments.add(rest_of(rig, v), rig.weights[v]);
   }
   BoneMotions motions = fit_frames(settled.motions(), moments, rig);
-  const double pin_error = (1.0 - kPinnedPart) * cost_of_bone();
+  const double pin_error = 0.5 * cost_of_bone();  // three of six values per pose
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
   put_in_tree_order(tree, motions, rig);
   return rig;

@@ -26,8 +26,8 @@ struct SkinnedSettings {
   Prediction prediction = Prediction::kLayers;
   int weight_bits = kWeightBits;
   int damping_log2 = kDampingLog2;
-  int outer_weight = kOuterWeight;
-  int outer_scale = kOuterScale;
+  int outer_weight = kOuterRing;
+  int outer_scale = kOuterRing;
   bool layer_steps = true;       // finer steps in coarser layers
   bool temporal_weights = true;  // not only the orders of 8.2.2
   Rounding rounding = Rounding::kCheapest;
@@ -38,8 +38,7 @@ struct SkinnedSettings {
 
   static constexpr int kWeightBits = 6;   // tuned: of an influence
   static constexpr int kDampingLog2 = 8;  // tuned (off: 0): of geometry weights
-  static constexpr int kOuterWeight = 3;  // tuned (off: 0): of the outer ring
-  static constexpr int kOuterScale = 3;   // tuned (off: 0): of the outer ring
+  static constexpr int kOuterRing = 3;    // tuned (off: 0): weight and scale of the outer ring
 };
 
 // Bones, influences and rest positions of a GOF, quantised, and the principal components of

