@@ -70,11 +70,13 @@ TEST_P(EachPreset, MainReachesWhatBaselineReaches) {
 }
 
 TEST_P(EachPreset, BonesThatAreAskedForStay) {
+  int missed = 0;
   for (const Case& c : kCases) {
     EncoderSettings settings = settings_for(c, Profile::kMain, GetParam());
     settings.main.clusters = false;
-    EXPECT_FALSE(encode_case(c, settings).target_met) << "no case for a last resort";
+    missed += encode_case(c, settings).target_met ? 0 : 1;
   }
+  EXPECT_GT(missed, 0) << "no case for a last resort";
 }
 
 TEST(LastResort, FramesThatComeOneByOneReachTheTarget) {

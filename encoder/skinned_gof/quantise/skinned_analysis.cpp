@@ -288,8 +288,8 @@ class SkinnedAnalyser {
 }  // namespace
 
 double least_energy(double step, std::uint32_t num_vertices) {
-  // Of a trajectory with hardly a residual that is not zero, against the error that coding every
-  // factor would add, step^2 / 12; trajectories are local.
+  // Of a trajectory with hardly a residual that is not zero, against the error that coding
+  // every factor would add, step^2 / 12; trajectories are local.
   constexpr double kOfVertex = 0.6;  // tuned (off: 0): of that error, what a factor is worth
   return kOfVertex * step * step / 12.0 * num_vertices;
 }
