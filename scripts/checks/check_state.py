@@ -2,7 +2,11 @@
 """Annex E says how long the variables of the pseudo-code in spec/*.md live.
 
 Table E-1 has each variable that a function assigns to, in a row whose function gives it a value;
-Table E-2 each syntax element that another function reads than the one that gives it its value.
+Table E-2 each syntax element that another function reads than those that read it from the stream,
+in a row with the function that reads it. The rows of Table E-2 are written by hand, but for the
+clauses of their functions and the column of elements.
+
+  --write    brings these up to date
 """
 
 import argparse
@@ -15,7 +19,10 @@ import check_index
 import cpp_source
 
 ANNEX = pathlib.Path("spec", "annex-e-state.md")
-_ROW = re.compile(r"^\| ([^|]+) \|(?: (\w+)\( \) \(([A-Z\d.]+)\) \|)? ([^|]+) \|$", re.MULTILINE)
+_VARIABLES_ROW = re.compile(r"^\| ([^|]+) \| (\w+)\( \) \(([A-Z\d.]+)\) \| ([^|]+) \|$",
+                            re.MULTILINE)
+_ELEMENTS = re.compile(r"(<!-- begin: elements\b.*-->\n)([^<]*)(<!-- end: elements -->\n)")
+_ELEMENTS_ROW = re.compile(r"^\| ([^|]+) \| (\w+\( \)[^|]*) \|[^|]*\|$", re.MULTILINE)
 
 
 def _functions(root):
@@ -33,53 +40,97 @@ def _begun(tree):
 
 
 def _outlive(functions):
-    """Syntax elements that another function reads than those that read them from the stream."""
-    readers, sources = {}, {}
+    """{function: syntax elements that it reads from the stream and others use}, all elements"""
+    users, elements = {}, {}
     for name, (tree, _) in functions.items():
-        for element, read in check_index.set_in(tree):
-            if read:
-                sources.setdefault(element, set()).add(name)
+        elements[name] = _elements(tree)
         for variable in check_index.read_in(tree):
-            readers.setdefault(variable, set()).add(name)
-    return {e for e, found in sources.items() if readers.get(e, set()) - found}, set(sources)
+            users.setdefault(variable, set()).add(name)
+    every = {element for found in elements.values() for element in found}
+    sources = {e: {name for name, found in elements.items() if e in found} for e in every}
+    return {name: [e for e in found if users.get(e, set()) - sources[e]]
+            for name, found in elements.items()}, every
 
 
-def check(root):
-    if not (root / ANNEX).is_file():
-        return [f"there is no {ANNEX}"], ""
-    text = (root / ANNEX).read_text(encoding="utf-8")
-    functions = _functions(root)
-    outlive, elements = _outlive(functions)
+def _elements(tree):
+    """The syntax elements that a function reads from the stream, in order, each once."""
+    assignments = sorted((node for node in ast.walk(tree) if isinstance(node, ast.Assign)),
+                         key=lambda node: node.lineno)
+    return list(dict.fromkeys(element for node in assignments
+                              for element, is_read in check_index.set_in(node) if is_read))
+
+
+def updated(root):
+    """(the text of the annex with Table E-2 as it has to be, complaints)"""
+    text, functions = (root / ANNEX).read_text(encoding="utf-8"), _functions(root)
+    outlive, _ = _outlive(functions)
+    complaints, listed = [], []
+
+    def row(match):
+        readers = re.findall(r"(\w+)\( \)", match.group(2))
+        listed.extend(readers)
+        names = dict.fromkeys(e for name in readers for e in outlive.get(name, ()))
+        places = ", ".join(f"{name}( )" + (f" ({functions[name][1]})" if name in functions else "")
+                           for name in readers)
+        return f"| {match.group(1)} | {places} | {', '.join(names)} |"
+
+    text, count = _ELEMENTS.subn(
+        lambda marks: marks.group(1) + _ELEMENTS_ROW.sub(row, marks.group(2)) + marks.group(3), text)
+    if count != 1:
+        complaints.append("no marks `begin: elements`, `end: elements`, once each")
+    table = _ELEMENTS.search(text)
+    complaints += [f"a row without a function: {line}"
+                   for line in (table.group(2).splitlines()[2:] if table else ())
+                   if not _ELEMENTS_ROW.match(line)]
+    complaints += [f"{name}( ) is in two rows" for name in sorted(set(listed))
+                   if listed.count(name) > 1]
+    complaints += [f"{name}( ) reads no element that outlives it" for name in listed
+                   if not outlive.get(name)]
+    complaints += [f"{name}( ) reads {', '.join(found)}, and has no row"
+                   for name, found in outlive.items() if found and name not in listed]
+    return text, complaints
+
+
+def _check_variables(text, functions):
+    """Complaints of Table E-1, and the variables that it lists."""
+    _, elements = _outlive(functions)
     kept = {name for tree, _ in functions.values() for name, _ in check_index.set_in(tree)
             if name is not None} - elements
     listed, complaints = set(), []
-    for lives, function, clause, names in _ROW.findall(text):
-        if lives.startswith("-") or lives == "lives for":
-            continue
+    for _, function, clause, names in _VARIABLES_ROW.findall(text):
         names = names.split(", ")
         listed.update(names)
-        if not function:
-            complaints += [f"{name} does not outlive the function that reads it"
-                           for name in names if name not in outlive]
-            continue
         tree, at = functions.get(function, (None, None))
         if at != clause:
             complaints.append(f"{clause} has no {function}( )")
             continue
         complaints += [f"{function}( ) gives {name} no value" for name in names
                        if name not in set(_begun(tree))]
-    complaints += [f"{name} is missing" for name in sorted((kept | outlive) - listed)]
-    complaints += [f"{name} is nothing that lives" for name in sorted(listed - kept - outlive)
-                   if name not in elements]
-    return ([f"{ANNEX}: {c}" for c in complaints],
-            f"{ANNEX} lists {len(listed)} variables and syntax elements")
+    complaints += [f"{name} is missing" for name in sorted(kept - listed)]
+    complaints += [f"{name} is nothing that lives" for name in sorted(listed - kept)]
+    return complaints, listed
+
+
+def check(root):
+    if not (root / ANNEX).is_file():
+        return [f"there is no {ANNEX}"], ""
+    text = (root / ANNEX).read_text(encoding="utf-8")
+    fresh, complaints = updated(root)
+    more, listed = _check_variables(_ELEMENTS.sub("", text), _functions(root))
+    if text != fresh:
+        complaints.append("Table E-2 is not up to date: scripts/index")
+    return ([f"{ANNEX}: {c}" for c in complaints + more],
+            f"{ANNEX} lists {len(listed)} variables, and the syntax elements that outlive a function")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
+    parser.add_argument("--write", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
+    if options.write:
+        (options.root / ANNEX).write_text(updated(options.root)[0], encoding="utf-8")
     return cpp_source.report("state", *check(options.root))
 
 

@@ -11,12 +11,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_clauses  # noqa: E402
 import check_headers_first  # noqa: E402
-import check_index  # noqa: E402
 import check_labels  # noqa: E402
 import check_pages  # noqa: E402
 import check_rules  # noqa: E402
 import check_stability  # noqa: E402
-import check_state  # noqa: E402
 import cpp_source  # noqa: E402
 
 
@@ -281,68 +279,6 @@ class Rules(TreeTest):
     def test_rule_without_sentence(self):
         self.assert_one(check_rules.check, self.tree(self.TEXT + "\nx should be 1. {R-ABC-03}\n"),
                         "spec/07.md:5", "R-ABC-03")
-
-
-class Index(TreeTest):
-    TREE = {"spec/06.md": "# 6 Syntax\n## 6.1 Head\n```rlpc\ndef head():\n    Sizes = []\n"
-                          "    for i in range(2):\n        size_flag = u(1)\n"
-                          "        Sizes.append(size_flag)\n    Forget()\n```\n",
-            "spec/07.md": "# 7 Semantics\n## 7.1 Head\nHere.\n### 7.1.2 Size\n**size_flag** is one.\n",
-            "spec/08.md": "# 8 Decoding\n## 8.2 End\n```rlpc\ndef Forget():\n    a = 1\n"
-                          "    Sizes[0] = a\n    size_flag = 0\n    Last = a + Sizes[1]\n```\n"}
-    TABLES = {"functions": "| function | clause |\n|---|---|\n"
-                           "| Forget( ) | 8.2 |\n| head( ) | 6.1 |\n",
-              "elements": "| syntax element | syntax | semantics |\n|---|---|---|\n"
-                          "| size_flag | 6.1 | 7.1.2 |\n",
-              "variables": "| variable | set in | read in |\n|---|---|---|\n"
-                           "| Last | 8.2 |  |\n| Sizes | 6.1, 8.2 | 8.2 |\n"}
-
-    def tree(self, **changed):
-        annex = "".join(f"<!-- begin: {name} (x) -->\n{table}<!-- end: {name} -->\n"
-                        for name, table in {**self.TABLES, **changed}.items())
-        return {**self.TREE, str(check_index.ANNEX): "# Annex D Index\n" + annex}
-
-    def test_names_are_listed(self):
-        self.assert_clean(check_index.check, self.tree())
-
-    def test_tables_that_are_not_up_to_date(self):
-        self.assert_one(check_index.check, self.tree(variables=""), "not up to date")
-        more = self.TABLES["functions"] + "| Gone( ) | 8.3 |\n"
-        self.assert_one(check_index.check, self.tree(functions=more), "not up to date")
-
-    def test_a_table_without_marks(self):
-        tree = self.tree()
-        tree[str(check_index.ANNEX)] = tree[str(check_index.ANNEX)].replace("end: el", "end: l")
-        self.assert_one(check_index.check, tree, "no marks `begin: elements`")
-
-    def test_an_element_that_is_explained_nowhere(self):
-        tree = {**self.tree(elements=self.TABLES["elements"].replace("7.1.2", "")),
-                "spec/07.md": "# 7 Semantics\n"}
-        self.assert_one(check_index.check, tree, "size_flag is in bold nowhere")
-
-
-class State(TreeTest):
-    SPEC = ("# 6 Syntax\n## 6.1 Head\n```rlpc\ndef head():\n    Sizes = []\n    near_flag = u(1)\n"
-            "    far_flag = u(1)\n    Sizes.append(near_flag)\n    Use()\n```\n"
-            "## 6.2 Use\n```rlpc\ndef Use():\n    Sizes[0] = far_flag\n```\n")
-    ANNEX = "| a unit | head( ) (6.1) | Sizes |\n| a unit | far_flag |\n"
-
-    def tree(self, annex):
-        return {"spec/06.md": self.SPEC, str(check_state.ANNEX): annex}
-
-    def test_all_that_outlives_its_function_is_listed(self):
-        self.assert_clean(check_state.check, self.tree(self.ANNEX))
-        for name in ("Sizes", "far_flag"):
-            rows = [row for row in self.ANNEX.splitlines(True) if name not in row]
-            self.assert_one(check_state.check, self.tree("".join(rows)), f"{name} is missing")
-
-    def test_rows_that_are_wrong(self):
-        for more, complaint in {"| a unit | head( ) (6.1) | Lost |\n": "gives Lost no value",
-                                "| a unit | near_flag |\n": "near_flag does not outlive",
-                                "| a unit | Use( ) (6.2) | Sizes |\n": "Use( ) gives Sizes no",
-                                "| a unit | Use( ) (6.1) | Sizes |\n": "6.1 has no Use( )"}.items():
-            found = self.complaints(check_state.check, self.tree(self.ANNEX + more))
-            self.assertIn(complaint, " ".join(found))
 
 
 class Stability(TreeTest):
