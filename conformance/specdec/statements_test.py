@@ -90,6 +90,25 @@ class Statements(unittest.TestCase):
             v[name](*(0, 1, 5, 3)[:inner.__code__.co_argcount])
             self.assertEqual(depth[1], 2, name)
 
+    def test_names_that_serve_both_kinds_of_gof(self):
+        calls = self.calls()
+        of_clusters = self.reached(calls, {"clusters_of_gof", "DecodeGof"}, {"DecodeBones"})
+        of_bones = self.reached(calls, {"bones_of_gof", "slice_unit", "DecodeBones"})
+        both = self.set_in(of_clusters) & self.set_in(of_bones)
+        annex = (ROOT / "spec" / "annex-e-state.md").read_text(encoding="utf-8")
+        tables, stated = annex.split("## E.3")
+        shared = {name for life, names in re.findall(r"^\| ([^|]+) \|.*\| ([^|]+) \|$", tables,
+                                                     re.MULTILINE)
+                  if not re.match("the stream|a section|a GOF, from its last slice", life)
+                  for name in names.split(", ")}
+        names = stated.split("\n\n")[1].split(" are used in ")[0].replace(" and ", ", ")
+        self.assertEqual(set(re.split(r",\s+", names)), both & shared)
+
+    def set_in(self, functions):
+        return {part.id for name in functions for part in ast.walk(PROGRAM.functions[name][0])
+                if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+                and spec_program.is_global(part.id)}
+
     def test_gofs_without_slices(self):
         for path in sorted(MAIN.glob("BON/*.rlpc")) + sorted(MAIN.glob("LAY/*.rlpc")):
             data = path.read_bytes()
