@@ -30,7 +30,7 @@ typedef enum rlpc_status {
 // number.
 RLPC_API const char* rlpc_status_text(int status);
 
-// The version of the library, such as "1.1.6".
+// The version of the library, such as "1.2.0".
 RLPC_API const char* rlpc_version(void);
 
 #ifdef __cplusplus

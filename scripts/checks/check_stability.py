@@ -4,12 +4,12 @@
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
   calls just those versions and supplements released that have one.
 * The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
-  has the digests by version of the project (CMakeLists.txt); what the encoder makes of a profile
-  is kept from its release on. They may change with the version, or with an erratum
-  (spec/errata.md) that the new entry names.
+  has the digests by version of the project (CMakeLists.txt). They may change with the version, or
+  with an erratum (spec/errata.md) that the new entry names. While CHANGELOG.md calls a version
+  unreleased, its entry may be replaced: each change of the encoder's bytes is made on purpose.
 
   --bin FOLDER   where rlpcenc is; without it, the encoder is not run
-  --write        add an entry for the encoder as it is now
+  --write        add an entry for the encoder as it is now, or replace that of an unreleased version
   --erratum E    with --write: the erratum that explains the change
 """
 
@@ -86,11 +86,22 @@ def committed_entries(root):
     return json.loads(done.stdout) if done.returncode == 0 else []
 
 
-def entries(root):
-    """Complaints about the list itself: entries are only added, each change has its reason."""
-    now, before = entries_of(root), committed_entries(root)
-    if now[:len(before)] != before:
-        yield f"{DIGESTS}: entries of the last commit were changed; they may only be added to"
+def unreleased(root):
+    """The version that CHANGELOG.md calls unreleased; None if all of them are released."""
+    found = re.search(r"^## (\d+\.\d+\.\d+) - unreleased$",
+                      (root / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    return found[1] if found else None
+
+
+def entries(root, before):
+    """Complaints about the list itself: entries are only added, each change has its reason.
+
+    before: the entries of the last commit.
+    """
+    now = entries_of(root)
+    kept = [e for e in before if e["version"] != unreleased(root)]
+    if now[:len(kept)] != kept:
+        yield f"{DIGESTS}: entries of released versions were changed; they may only be added to"
     errata = (root / "spec" / "errata.md").read_text(encoding="utf-8")
     for i, entry in enumerate(now):
         erratum = entry["erratum"]
@@ -112,8 +123,10 @@ def encoder(root, bin_folder):
     different = sorted(k for k in now.keys() | found[-1]["digests"].keys()
                        if now.get(k) != found[-1]["digests"].get(k))
     for name in different:
+        remedy = ("--write" if version == unreleased(root) else
+                  "raise the version in CMakeLists.txt or write an erratum, then --write")
         yield (f"the encoder writes other bytes than version {version} did: {name}. If that is "
-               "meant, raise the version in CMakeLists.txt or write an erratum, then --write")
+               f"meant, {remedy}")
 
 
 def project_version(root):
@@ -122,7 +135,7 @@ def project_version(root):
 
 
 def write(root, bin_folder, erratum):
-    found = entries_of(root)
+    found = [e for e in entries_of(root) if e["version"] != unreleased(root)]
     found.append({"version": project_version(root), "erratum": erratum,
                   "digests": encoder_digests(root, bin_folder)})
     (root / DIGESTS).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
@@ -138,7 +151,7 @@ def main():
     options = parser.parse_args()
     if options.write:
         write(options.root, options.bin.resolve(), options.erratum)
-    complaints = list(released(options.root)) + list(entries(options.root))
+    complaints = list(released(options.root)) + list(entries(options.root, committed_entries(options.root)))
     if options.bin is not None:
         complaints += encoder(options.root, options.bin.resolve())
     for complaint in complaints:

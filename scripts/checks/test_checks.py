@@ -294,7 +294,7 @@ class Stability(TreeTest):
 
     @staticmethod
     def entries(root):
-        return [list(check_stability.entries(root))]
+        return [list(check_stability.entries(root, before=[]))]
 
     def test_what_is_released_stays(self):
         self.assert_clean(self.released, self.RELEASED)
@@ -321,12 +321,25 @@ class Stability(TreeTest):
     def test_another_state_of_the_encoder_has_a_reason(self):
         def tree(*errata, text="# Errata\n"):
             listed = "[" + ", ".join(self.ENTRY % e for e in errata) + "]"
-            return {check_stability.DIGESTS: listed, "spec/errata.md": text}
+            return {check_stability.DIGESTS: listed, "spec/errata.md": text,
+                    "CHANGELOG.md": "## 1.0.0 - 2026-11-21\n"}
 
         self.assert_clean(self.entries, tree("null"))
         self.assert_one(self.entries, tree("null", "null"), "names no erratum")
         self.assert_one(self.entries, tree("null", '"E-001"'), "E-001 is not in")
         self.assert_clean(self.entries, tree("null", '"E-001"', text="### E-001 Rounding\n"))
+
+    def test_only_the_entry_of_an_unreleased_version_is_replaced(self):
+        before = [{"version": "1.0.0", "erratum": None, "digests": {"a": "1"}}]
+
+        def entries(root):
+            return [list(check_stability.entries(root, before))]
+
+        tree = {check_stability.DIGESTS: "[" + self.ENTRY % "null" + "]",
+                "spec/errata.md": "# Errata\n", "CHANGELOG.md": "## 1.0.0 - unreleased\n"}
+        self.assert_clean(entries, tree)
+        self.assert_one(entries, {**tree, "CHANGELOG.md": "## 1.0.0 - 2026-11-21\n"},
+                        "entries of released versions were changed")
 
 
 if __name__ == "__main__":
