@@ -308,7 +308,7 @@ class Reports(unittest.TestCase):
                                       ["draco per frame", "- / 16.0 (-)"]])
         table = report.readme_bd_rates([SEQUENCE, SEQUENCE], self.curves, self.POINTS, 0.1)
         row = ["a & b: 100 vertices, 10 frames", "4.00", "+100 %", "-"]
-        self.assertEqual(table.rows, [row, row, ["mean", *row[1:]]])
+        self.assertEqual(table.rows, [row, row, ["geometric mean", *row[1:]]])
         self.assertTrue(all(len(line) == len(table.head) for line in table.rows))
 
     def test_a_column_for_each_gof(self):

@@ -270,7 +270,7 @@ def readme_bd_rates(sequences, curves, points, kg):
              number(bpvf_at(curves[0], points, s, kg)),
              *(_whole_percent(column[i]) for column in columns)]
             for i, s in enumerate(sequences)]
-    rows.append(["mean", number(arithmetic.geometric_mean(bpvf_at(curves[0], points, s, kg)
+    rows.append(["geometric mean", number(arithmetic.geometric_mean(bpvf_at(curves[0], points, s, kg)
                                                           for s in sequences)),
                  *(_whole_percent(mean_bd_rate(column)) for column in columns)])
     return Table("", ["BD-rate", f"{curves[0].title}: bpvf at {kg:g} %",
