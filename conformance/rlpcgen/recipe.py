@@ -1,37 +1,4 @@
-"""Recipes: readable text from which a stream is written byte for byte.
-
-    title: Two clusters, one of them in the frame of its seed triangle
-    features: lcf
-    tier: core
-
-    unit SEQUENCE_HEADER
-      num_vertices_minus1 = 11
-      num_frames_minus1 = 3
-    unit CONNECTIVITY
-      gates = T A 3*P C
-    unit GOF
-      num_clusters_minus1 = 1
-      lcf_flag = 1 0
-      seed_vertex[0] = 0 1 2
-      seed_residual[0][0] = 100 -20 0
-      seed_residual = random(-5, 5) ...
-      num_components = 1 0
-      component 0
-        scale_idx = 40
-        temporal_residual = 3*10 ...
-    unit END_OF_SEQUENCE
-
-`name = values` gives a syntax element its values in the order in which the stream has them, counted
-from the beginning of its unit or component; with indices, those of that part only, which come
-first. `n*v` is n times v, `random(low, high)` a number, and `...` at the end repeats what stands
-before it. What is not given is 0, or what fits: see DEFAULTS of recipe_source.py.
-
-`repeat N of M`, between units, has the last M units N times in all, with other random numbers each
-time.
-
-A recipe that says `twin: ID` has the units of that recipe and changes them: `change N NAME` adds
-to unit N, counted from 0; `insert N NAME` puts a unit before it, and `drop N` leaves it out.
-"""
+"""Parses recipes, the readable texts from which streams are written. RECIPES.md describes the format."""
 
 import dataclasses
 import pathlib
