@@ -1,11 +1,10 @@
 // Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread.
 //
-// Also multiply-adds per second: of decoding, and of the sums of 8.5.3 by each of the loops
-// that the machine can run, of which the first is the plain one.
+// It also reports multiply-adds per second: for decoding, and for the sums of 8.5.3 with each
+// loop that the machine can run, the plain loop first.
 //
-// Animations: the bundled ones and, where they are present beside the project, two of the
-// literature. Peak memory is that of the tools doing
-// the same.
+// Animations: the bundled ones and, where they are present beside the project, two from the
+// literature. Peak memory is measured on the programs doing the same work.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -78,19 +77,18 @@ std::uint64_t decode(const Bytes& stream, bool verify_hashes) {
   rlpc::DecoderOptions options;
   options.verify_hashes = verify_hashes;
   auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
-  if (!decoder) stop("a stream of our own does not open");
+  if (!decoder) stop("the encoded stream does not open");
   std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
   for (;;) {
     const auto more = decoder->next_frame(positions);
-    if (!more) stop("a stream of our own does not decode");
+    if (!more) stop("the encoded stream does not decode");
     if (!*more) break;
     benchmark::DoNotOptimize(positions.data());
   }
   return std::uint64_t{decoder->header().num_vertices} * decoder->header().num_frames;
 }
 
-// Multiply-adds that the sums of a vertex take, over all frames of a stream of the Main
-// profile.
+// Multiply-adds per vertex in the sums, over all frames of a stream of the Main profile.
 class MultiplyAddCounter final : public rlpc::Trace {
  public:
   void begin(const char*, std::uint64_t) override {}
@@ -110,12 +108,13 @@ double multiply_adds(const Bytes& stream) {
   rlpc::DecoderOptions options;
   options.trace = &counter;
   auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
-  if (!decoder || !decoder->parse_rest()) stop("a stream of our own does not parse");
+  if (!decoder || !decoder->parse_rest()) stop("the encoded stream does not parse");
   return static_cast<double>(counter.count()) * decoder->header().num_vertices;
 }
 
-// Runs the tools for their peak memory. A process counts the memory of the one that it was
-// forked from as its own, so a small process, forked before anything else, does it on request.
+// Runs the programs to measure their peak memory. A process is charged with the memory of the
+// process that forked it, so a small process, forked before anything else, runs the programs
+// on request.
 class Launcher {
  public:
   Launcher() {
@@ -131,7 +130,7 @@ class Launcher {
     answers_ = answers[0];
   }
 
-  // MB; `command` is for the shell.
+  // Peak memory of a shell command, in MB.
   double peak_megabytes(const std::string& command) const {
     const std::string line = std::string(RLPC_TOOL_DIR) + "/" + command;
     std::array<char, kMaxCommand> request{};
@@ -146,7 +145,7 @@ class Launcher {
   }
 
  private:
-  static constexpr std::size_t kMaxCommand = 2048;  // a pipe takes that much at once
+  static constexpr std::size_t kMaxCommand = 2048;  // a pipe accepts this much in one write
 
   [[noreturn]] static void serve(int requests, int answers) {
     std::array<char, kMaxCommand> request{};
@@ -202,7 +201,7 @@ void bench_decode(benchmark::State& state, const Animation& animation, double kg
   std::filesystem::remove(file);
 }
 
-// `options` are those of rlpcenc that mean `settings`.
+// `options`: options of rlpcenc that are equivalent to `settings`.
 void bench_encode(benchmark::State& state, const Animation& animation,
                   const rlpc::EncoderSettings& settings, const std::string& options) {
   Bytes stream;

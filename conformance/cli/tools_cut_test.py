@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Streams of the Main profile without some of their slices: rlpcinfo --extract and rlpcdec.
+"""Cuts of streams of the Main profile: rlpcinfo --extract, and rlpcdec with the same limits.
 
     tools_cut_test.py --bin BUILD/bin [unittest arguments, such as Cutting]
 """
@@ -32,7 +32,7 @@ def units_of(stream):
 
 
 def expected_slices(gof, components, layers):
-    """Slices of an entry of rlpcinfo --json that stay: counted without any code of the tools."""
+    """The slices of a GOF (rlpcinfo --json) that a cut keeps, counted without the tools."""
     if "num_bones" not in gof:
         return []
     groups, sizes = {0}, gof["layer_group_size"]
@@ -77,10 +77,10 @@ class CutTest(ToolsTest):
 
 class Cutting(CutTest):
     SEEDS = 40
-    SPECDEC_SEEDS = 12  # whose cut streams the specification decodes too
+    SPECDEC_SEEDS = 12  # seeds whose cut streams specdec decodes as well
 
     def check(self, seed, components, layers):
-        """Cuts a random stream; whether slices were left out."""
+        """Cuts a random stream; returns whether slices were dropped."""
         path, cut = self.random_stream(seed), self.path("cut.rlpc")
         report = self.extract(path, f"components={components},layers={layers}", "--json").json()
         entries = self.ok("rlpcinfo", path, "--json").json()["gofs"]
@@ -97,7 +97,7 @@ class Cutting(CutTest):
         self.assertEqual([code for code, _ in after if code != SLICE],
                          [code for code, _ in before if code != SLICE])
         left = iter(before)
-        for unit in after:  # the rest in the order and with the bytes that they had
+        for unit in after:  # all others keep their order and their bytes
             if unit[0] not in (GOF_INDEX, GOF_HASH, END):
                 self.assertIn(unit, left)
         self.assertEqual(report["after"]["bytes"], cut.stat().st_size)
@@ -147,14 +147,14 @@ class Cutting(CutTest):
     def test_what_rlpcinfo_says_beforehand_is_what_comes_out(self):
         path = self.rich_stream()
         info = self.ok("rlpcinfo", path, "--json").json()
-        # Layers that no GOF can do without.
+        # The largest number of layers that some GOF must keep.
         least = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
                     for gof in info["gofs"] if "num_bones" in gof)
         for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers")):
             for g, gof in enumerate(info["gofs"]):
                 for choice in gof.get(key, []):
                     if name == "layers" and choice[name] == 0:
-                        continue  # not one slice
+                        continue  # no slices are kept
                     report = self.extract(path, f"{name}={choice[name]}", "--json").json()
                     self.assertEqual(report["gofs"][g]["after"]["bytes"], choice["bytes"])
                     self.assertEqual(report["request_met"],
@@ -179,7 +179,7 @@ class Cutting(CutTest):
                       self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 9999).err)
 
     def test_as_many_groups_as_are_asked_for(self):
-        """One for each layer, and each trajectory, if there are fewer."""
+        """At most one group per layer, and one per trajectory."""
         for asked in ((4, 2), (2, 5), (255, 1), (1, 255)):
             self.encode(self.path("a.rlpc"), "--gof", 30, "--layer-groups", asked[0],
                         "--component-groups", asked[1])
@@ -190,7 +190,7 @@ class Cutting(CutTest):
                                  min(asked[0], sum(gof["layer_group_size"])))
                 sizes = [s["num_trajectories"] for s in gof["slices"]
                          if s["layer_group_idx"] == 0]
-                self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # beside the rest
+                self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # without group 0
             self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
 
     def test_what_is_cut_cannot_be_verified(self):
@@ -199,7 +199,7 @@ class Cutting(CutTest):
             self.fails(64, "--verify excludes " + cut, "rlpcdec", path, "--verify", cut, 1)
 
     def test_gofs_of_clusters_stay_whole(self):
-        """What comes of a stream of the suite is another one of it."""
+        """Cutting a stream of the suite gives another stream of the suite."""
         streams = ROOT / "streams/v1.1/accept/MIX"
         said = self.extract(streams / "MIX-0201a.rlpc", "components=2,layers=1").out.decode()
         self.assertEqual(self.path("cut.rlpc").read_bytes(),

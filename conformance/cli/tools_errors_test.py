@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tools when something is wrong: with the input, with the output, with a stream.
+"""How the tools report errors of the input, the output and the stream.
 
     tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
 """
@@ -22,7 +22,7 @@ TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 
 class BadInput(ToolsTest):
-    """An exit code and one line that names the file; nothing is left at the output."""
+    """Expects the exit code, one line that names the file, and no output file."""
 
     def refused(self, words, *arguments):
         self.path("out.rlpc").unlink(missing_ok=True)
@@ -36,7 +36,7 @@ class BadInput(ToolsTest):
                        "--threads", threads)
 
     def accepted(self, *arguments):
-        """Encodes, decodes, compares; the report."""
+        """Encodes, decodes and compares; returns the report."""
         report = self.ok("rlpcenc", *arguments, "-o", self.path("out.rlpc"), "--keep-order",
                          "--json").json()
         self.ok("rlpcdec", self.path("out.rlpc"), "-o", self.path("decoded.rlpd"))
@@ -176,7 +176,7 @@ class BadInput(ToolsTest):
 
 
 class BadOutput(ToolsTest):
-    """What could not be written whole is not there at all, and what was there before stays."""
+    """An output that cannot be completed is not created, and an existing file is kept."""
 
     def encode_to(self, output, **options):
         return run("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
@@ -220,7 +220,7 @@ class BadOutput(ToolsTest):
                      self.path("none/x"))
         self.assertEqual(result.code, 1, result.err)
         self.assertIn("none/x", result.err)
-        self.assertEqual(self.files(), [])  # it was known before the work
+        self.assertEqual(self.files(), [])  # detected before encoding
         result = run("rlpccmp", INPUTS / "elephant.pc2", INPUTS / "elephant.pc2", "--csv",
                      self.path("none/x"))
         self.assertEqual(result.code, 2, result.err)
@@ -244,7 +244,7 @@ class BadOutput(ToolsTest):
 
 
 class BadStreams(ToolsTest):
-    """conformance/roundtrip/robustness_test.cpp damages every byte; here, what the tools make of it."""
+    """How the tools report damage; conformance/roundtrip/robustness_test.cpp damages every byte."""
 
     def setUp(self):
         super().setUp()

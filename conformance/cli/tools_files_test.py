@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tools and files: what they write over, what they leave behind, where it goes.
+"""The tools and their files: what they overwrite and leave behind, and where output goes.
 
     tools_files_test.py --bin BUILD/bin [unittest arguments, such as Interrupts]
 """
@@ -76,7 +76,7 @@ class Interrupts(ToolsTest):
 
 
 class SamePlaces(ToolsTest):
-    """Nothing is written over what is read, or over another output."""
+    """No output overwrites an input or another output."""
 
     def setUp(self):
         super().setUp()
@@ -115,7 +115,7 @@ class SamePlaces(ToolsTest):
             self.fails(64, "choose another name", "rlpccmp", source, source, "--csv", frame)
         self.assertEqual(frame.read_bytes(), last)
         self.assertFalse(out.exists())
-        # The mesh beside the cache, which nobody named.
+        # The mesh beside the cache, which the command line does not name.
         self.fails(64, "choose another name", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
                    "--csv", self.path("clip.obj"))
         buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
@@ -138,12 +138,12 @@ class SamePlaces(ToolsTest):
         self.refused("is an input, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
         self.refused("is an input, too", "rlpcdec", stream, "--html", stream)
         self.refused("is an input, too", "rlpcinfo", stream, "--html", stream)
-        # The mesh that nobody named.
+        # The mesh beside the output, which the command line does not name.
         self.refused("clip.obj: already exists", "rlpcdec", stream, "-o", self.path("clip.pc2"),
                      code=4)
         self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",
                      "pc2", code=4)
-        for _ in range(2):  # its own mesh is replaced
+        for _ in range(2):  # a mesh that rlpcdec wrote is replaced
             self.ok("rlpcdec", stream, "-o", self.path("b.mdd"))
 
     def test_of_the_comparison(self):
@@ -159,7 +159,7 @@ class SamePlaces(ToolsTest):
 
 
 class Places(ToolsTest):
-    """Where files go, and who may read them."""
+    """Where output files are created, and with which permissions."""
 
     def setUp(self):
         super().setUp()
@@ -200,7 +200,7 @@ class Places(ToolsTest):
             target = self.path("far") / self.path(name).name
             self.path(name).unlink(missing_ok=True)
             self.path(name).symlink_to(target)
-            for _ in range(2):  # nothing is there; and then, something
+            for _ in range(2):  # without, then with an existing file
                 self.ok(*command)
                 self.assertTrue(self.path(name).is_symlink(), command)
                 self.assertGreater(target.stat().st_size, 0, command)
@@ -217,7 +217,7 @@ class Places(ToolsTest):
 
 
 class Names(ToolsTest):
-    """Names that would do something to a terminal, and such as are no UTF-8."""
+    """File names with control characters, or that are not UTF-8."""
 
     BAD = ("e\x1b[31m\x07", "line\nrlpcdec: all is well", "csi\udc9b31m", "bidi\u202egpj",
            "del\x7f", "nel\u0085")
@@ -228,7 +228,7 @@ class Names(ToolsTest):
         self.encode(self.path("a.rlpc"), "--kg", 1)
 
     def shown(self, code, tool, *arguments):
-        """What is on standard output and error is printable, a line at a time."""
+        """Standard output and error are printable, line by line."""
         done = subprocess.run([Tools.folder / tool, *arguments], capture_output=True, check=False)
         self.assertEqual(done.returncode, code, done.stderr)
         text = (done.stdout + done.stderr).decode()  # UTF-8

@@ -17,7 +17,7 @@ ENCODE = ["--preset", "fast", "--kg", 0.5, "--quiet"]
 
 
 def ply(xyz, polygons, encoding):
-    """A frame with a colour for each vertex, and the polygons as they are."""
+    """A frame with vertex colours; polygons stay polygons."""
     header = (f"ply\nformat {encoding} 1.0\nelement vertex {len(xyz) // 3}\n"
               "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
               f"element face {len(polygons)}\nproperty list uchar int vertex_indices\nend_header\n")
@@ -142,10 +142,10 @@ class FormatsIn(ToolsTest):
 
 
 class PointClouds(ToolsTest):
-    """Clusters and local frames need no triangles: their seeds are neighbours in space."""
+    """Clusters and local frames need no triangles: seeds are then neighbours in space."""
 
     def roundtrip(self, *options):
-        """Bytes, and the cluster count and LCF flags of the only GOF."""
+        """(bytes, cluster count, LCF flags) of the only GOF."""
         stream, cloud = self.path("cloud.rlpc"), self.path("cloud.obj")
         report = self.ok("rlpcenc", cloud, "--points", self.path("clip.pc2"), "-o", stream, "--json",
                          "--keep-order", "--profile", "baseline", "--kg", 0.5, *options).json()
@@ -240,7 +240,7 @@ class FormatsOut(ToolsTest):
                 source = [self.path("a.obj"), "--points", out]
             self.ok("rlpcenc", *source, "-o", self.path("b.rlpc"), *ENCODE)
             streams.append(self.path("b.rlpc").read_bytes())
-        # Not only the positions: frame rate and triangles too.
+        # Frame rate and triangles are compared as well.
         self.assertEqual(streams, streams[:1] * len(OUTPUTS))
 
     def test_standard_output(self):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What programs of others make of the .glb files that rlpcdec writes. They are npm packages, and
-Chromium: where one is missing, its test is skipped.
+"""The .glb files of rlpcdec in third-party programs: the Khronos validator, and three.js in
+Chromium. A test is skipped if its program is not installed.
 
     tools_glb_test.py --bin BUILD/bin [unittest arguments, such as GltfValidator]
 """
@@ -19,13 +19,13 @@ from tools_testing import INPUTS, ROOT, ToolsTest, main, read_obj, read_pc2
 
 
 def node(script, *args):
-    """JavaScript, where npm packages are found in the folder above or by NODE_PATH."""
+    """Runs JavaScript, which finds npm packages in a parent folder or by NODE_PATH."""
     return subprocess.run(["node", "-e", script, *map(str, args)], cwd=ROOT, capture_output=True,
                           text=True, check=True).stdout
 
 
 def main_file(package):
-    """Of an npm package; None: node or the package is not there."""
+    """The main file of an npm package; None if node or the package is missing."""
     if not shutil.which("node"):
         return None
     try:
@@ -48,7 +48,7 @@ class GltfValidator(ToolsTest):
 
     def test_of_the_streams_of_the_suite(self):
         if main_file("gltf-validator") is None:
-            self.skipTest("needs node, and the npm package gltf-validator where it looks for it "
+            self.skipTest("needs node, and the npm package gltf-validator where node finds it "
                           "(npm install gltf-validator, or NODE_PATH)")
         files = []
         for number, stream in enumerate(sorted((ROOT / "streams").glob("v1.*/accept/*/*.rlpc"))):
@@ -61,7 +61,7 @@ class GltfValidator(ToolsTest):
             self.assertEqual(wrong, [], file)
 
     def ran(self, stream, file):
-        """False: a stream whose positions no float holds."""
+        """Returns False if the positions are too large for floats."""
         try:
             self.ok("rlpcdec", stream, "-o", file, "--quiet")
         except AssertionError as error:
@@ -71,7 +71,7 @@ class GltfValidator(ToolsTest):
         return True
 
 
-# Plays the animation up to each of the times; posts its length, and where vertices are then.
+# Plays the animation up to each time; posts its duration, and the positions of vertices.
 PAGE = """<!DOCTYPE html>
 <script type="importmap">
 {"imports": {"three": "/three/build/three.module.js", "three/addons/": "/three/examples/jsm/"}}
@@ -102,7 +102,7 @@ await fetch('/answer', {method: 'POST', body: JSON.stringify(answer)});
 
 
 class Server(http.server.ThreadingHTTPServer):
-    """The page, what it asks for, and what it answers."""
+    """Serves the page and the files it requests, and receives its answer."""
 
     def __init__(self, three, task, file):
         super().__init__(("127.0.0.1", 0), Handler)
@@ -141,7 +141,7 @@ class ThreeJs(ToolsTest):
         main_js = main_file("three")
         self.browser = shutil.which("chromium")
         if main_js is None or self.browser is None:
-            self.skipTest("needs chromium, node, and the npm package three where it looks for it "
+            self.skipTest("needs chromium, node, and the npm package three where node finds it "
                           "(npm install three, or NODE_PATH)")
         self.three = main_js.parents[1]
 
@@ -152,7 +152,7 @@ class ThreeJs(ToolsTest):
                        "--disable-background-networking", "--disable-component-update",
                        f"--user-data-dir={home}/profile"]
             if os.geteuid() == 0:
-                options.append("--no-sandbox")  # it cannot work there
+                options.append("--no-sandbox")  # Chromium has no sandbox for root
             with subprocess.Popen([self.browser, *options,
                                    f"http://127.0.0.1:{server.server_port}/"],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as browser:

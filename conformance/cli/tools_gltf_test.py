@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "conformance" / "tools"))
 import make_gltf  # noqa: E402
 
 TULIP = INPUTS / "tulip.glb"
-# Vertices in the order of the scene, before any are joined.
+# Vertices in the order of the scene, before welding.
 CUP, STEM, SOIL, BEE = 4 * 13, 13 * 9, 8, 24
 FRAMES = {"Sway": 61, "Visit": 46}
 EXACT = ["--no-weld", "--keep-order", "--max-error", 0.0005, "--preset", "fast", "--quiet"]

@@ -11,9 +11,9 @@ SOURCES = {"rlpcenc": "encoder/tools/encode_options.cpp",
            "rlpcinfo": "decoder/tools/rlpcinfo.cpp",
            "rlpcval": "conformance/rlpcval/rlpcval.cpp",
            "rlpccmp": "conformance/tools/rlpccmp.cpp"}
-# What CLI11 says by itself of types, validators, defaults and other options.
+# Text that CLI11 adds for types, validators, defaults and other options.
 NOISE = re.compile(r"TEXT|FLOAT|INT\b|REQUIRED|Excludes|Needs|:FILE|:SIZE|:\{|\[\d|[A-Z]=|\bEnv:")
-# Names at the beginning of a string literal: of options, also of those that a function adds.
+# Option names at the beginning of a string literal, including options that a function adds.
 DECLARED = re.compile(r'"(?:-\w,)?(--[a-z][a-z-]+)(?:,(--[a-z][a-z-]+))?"')
 
 

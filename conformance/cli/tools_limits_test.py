@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the tools take of a machine, whatever they are given: memory, and what they write.
+"""The resources that the tools use, whatever the input: memory, and bytes written.
 
     tools_limits_test.py --bin BUILD/bin [unittest arguments, such as Endless]
 """
@@ -20,8 +20,8 @@ class MeasuredTest(ToolsTest):
     SLACK = 20 * MIB
 
     def measured(self, tool, *arguments, feed=None):
-        """The result, and the most memory that the tool took. feed: called with the file that is
-        its standard input, which it may close before all is written."""
+        """(result, peak memory of the tool). feed(file) writes its standard input, which the tool
+        may close early."""
         out, err = self.path("stdout"), self.path("stderr")
         with open(out, "wb") as stdout, open(err, "wb") as stderr:
             with subprocess.Popen([Tools.folder / tool, *map(str, arguments)], stdout=stdout,
@@ -50,14 +50,14 @@ class MeasuredTest(ToolsTest):
         text = result.err + result.out.decode(errors="replace")
         for word in [words] if isinstance(words, str) else words:
             self.assertIn(word, text)
-        # Of a tool that does nothing, and what is counted of this interpreter, which starts it.
+        # The peak of a tool that does nothing, which includes memory of this interpreter.
         usual = self.measured(tool, "--version")[1]
-        if b"__asan_init" not in (Tools.folder / tool).read_bytes():  # which takes much itself
+        if b"__asan_init" not in (Tools.folder / tool).read_bytes():  # it needs much itself
             self.assertLess(memory, usual + most + self.SLACK, f"{tool} {arguments}")
 
 
 def endless(begin, block=bytes(MIB)):
-    """Writes up to 2 GB, unless nobody reads that."""
+    """Writes up to 2 GB, or until the reader closes the pipe."""
     def feed(pipe):
         pipe.write(begin)
         for _ in range(2000):
@@ -66,7 +66,7 @@ def endless(begin, block=bytes(MIB)):
 
 
 class Endless(MeasuredTest):
-    """Input without an end: what is no stream or mesh is refused at once, else up to a limit."""
+    """Endless input is refused: at once if it is neither stream nor mesh, otherwise at a limit."""
 
     def setUp(self):
         super().setUp()
@@ -102,7 +102,7 @@ class Endless(MeasuredTest):
         self.encode(self.path("a.rlpc"), "--kg", 1)
         stream = self.path("a.rlpc").read_bytes()
         feed = lambda pipe: pipe.write(stream)  # noqa: E731
-        need = 400 * 538 + 120 * 1074  # of the mesh, about
+        need = 400 * 538 + 120 * 1074  # approximate size of the mesh
         self.takes(0, 3, "limit", "rlpcdec", "-", "--verify", "--max-memory",
                    len(stream) + 1000, feed=feed)
         self.takes(0, 3, "limit", "rlpcdec", "-", "--verify", "--max-memory", len(stream) - 1,
@@ -149,7 +149,7 @@ class Endless(MeasuredTest):
 
 
 class Expansion(ToolsTest):
-    """A few bytes may be a stream of millions of positions; nobody has to write them."""
+    """A few bytes can encode millions of positions; limits keep them from being written."""
 
     def setUp(self):
         super().setUp()
@@ -184,7 +184,7 @@ class Expansion(ToolsTest):
 
 
 class EncoderMemory(MeasuredTest):
-    """rlpcenc refuses what may need more than --max-memory, before it takes that."""
+    """rlpcenc refuses input that may need more than --max-memory, before allocating it."""
 
     def refused(self, most, words, *arguments):
         self.takes(most, 1, ["--max-memory", *words], "rlpcenc", *arguments, "-o",
@@ -192,7 +192,7 @@ class EncoderMemory(MeasuredTest):
         self.assertFalse(self.path("out.rlpc").exists())
 
     def gltf(self, **parts):
-        """One triangle, and what else a test adds."""
+        """One triangle, plus what a test adds."""
         self.path("data.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
         document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
                     "nodes": [{"mesh": 0}],
@@ -213,12 +213,12 @@ class EncoderMemory(MeasuredTest):
         self.refused(200 * MIB, ["a.gltf"], document, "--max-memory", "200MB")
 
     def test_json(self):
-        """Brackets alone become objects of many bytes."""
+        """Each JSON bracket becomes an object of many bytes."""
         document = self.gltf(extras=[{}] * 2000000)
         self.refused(20 * MIB, ["a.gltf"], document, "--max-memory", "100MB")
 
     def test_text(self):
-        """Polygons of one character a corner."""
+        """Polygons with one character per corner."""
         mesh = self.path("fan.obj")
         mesh.write_text("v 0 0 0\n" * 3 + "f" + " 1" * 10000000 + "\n")
         self.refused(100 * MIB, ["fan.obj:4"], mesh, "--max-memory", "100MB")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Messages that say what is wrong and what to do: each of these once sent somebody astray."""
+"""Messages that say what is wrong and what to do: each of these once misled a user."""
 
 import re
 import shutil
@@ -35,7 +35,7 @@ class Messages(ToolsTest):
             self.assertRegex(result.err, words)
         needed = re.search(r"(\d+) KiB of", self.fails(
             3, "", "rlpcinfo", stream, "--max-memory", "50KB").err).group(1)
-        # One less is too little for the mesh; with as much, the mesh fits.
+        # With one KiB less the mesh does not fit; with that limit it does.
         less = run("rlpcinfo", stream, "--max-memory", 1024 * (int(needed) - 1))
         self.assertIn(f"at least {needed} KiB", less.err)
         enough = run("rlpcinfo", stream, "--max-memory", 1024 * int(needed))

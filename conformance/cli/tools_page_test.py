@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pages of rlpcinfo and rlpccmp: what is in them, and what a browser makes of them.
+"""The pages of rlpcinfo and rlpccmp: their contents, and how a browser shows them.
 
     tools_page_test.py --bin BUILD/bin [unittest arguments, such as PagesInBrowser]
 """
@@ -20,7 +20,7 @@ BROWSER = shutil.which("chromium")
 
 class PageTest(ToolsTest):
     def has(self, words, page, present=True):
-        """As assertIn, but pages are long."""
+        """Like assertIn, without printing the whole page."""
         self.assertTrue((words in page) == present, words)
 
     def compare(self, name="elephant", *options):
@@ -141,7 +141,7 @@ class Pages(PageTest):
 
 
 def png_pixels(path):
-    """(width, height, set of some of the bytes of its rows): is anything there?"""
+    """(width, height, a sample of its bytes), to see whether anything is drawn."""
     data = path.read_bytes()
     width, height = struct.unpack_from(">II", data, 16)
     at, packed = 8, b""
@@ -152,10 +152,10 @@ def png_pixels(path):
     return width, height, set(zlib.decompress(packed)[::97])
 
 
-@unittest.skipUnless(BROWSER, "no chromium here (Debian package chromium): pages are not tried")
+@unittest.skipUnless(BROWSER, "chromium is not installed (Debian package chromium)")
 class PagesInBrowser(PageTest):
     def browse(self, page, fragment, *args):
-        """Standard output; nothing may be logged by the page."""
+        """Standard output of the browser; fails if the page logs anything."""
         done = subprocess.run(
             [BROWSER, "--headless", "--no-sandbox", "--hide-scrollbars", "--use-angle=swiftshader",
              "--enable-unsafe-swiftshader", "--enable-logging=stderr",
@@ -190,7 +190,7 @@ class PagesInBrowser(PageTest):
             self.assertEqual(len(covered), 1 + len(more))
 
     def framed(self, box):
-        """Large, whole, and in the middle."""
+        """The mesh is drawn large, completely and in the middle."""
         left, top, right, bottom = box
         self.assertGreater(max(right - left, bottom - top), 0.6, box)
         self.assertGreater(min(left, top, 1 - right, 1 - bottom), 0.01, box)
@@ -198,7 +198,7 @@ class PagesInBrowser(PageTest):
         self.assertLess(abs(top + bottom - 1), 0.2, box)
 
     def test_what_moves_away_or_grows_stays_in_view(self):
-        """Of the cow, which jumps and stretches, all was in view, tiny and low."""
+        """A mesh that jumps and stretches was once drawn tiny, at the bottom of the view."""
         frames = [[5 * f + x for x in xyz] for f, xyz in enumerate(self.clip(3)[1])]
         frames.append([4 * x for x in frames[0]])
         write_pc2(self.path("clip.pc2"), frames)
@@ -230,7 +230,7 @@ class PagesInBrowser(PageTest):
         self.assertEqual(len(pictures), 4)
 
     def test_pages_fit_a_narrow_window(self):
-        """In a frame, as windows have a least width."""
+        """Shown in an iframe, as windows have a minimum width."""
         self.compare()
         self.inform(self.path("a.rlpc"))
         for page in ("a.html", "info.html"):
@@ -260,7 +260,7 @@ class PagesInBrowser(PageTest):
         self.assertTrue(shots[0] == shots[1], "the pictures differ")
 
     def test_charts_tell_values(self):
-        """A pointer over the first chart, as the page itself would see it."""
+        """Simulates a pointer over the first chart."""
         self.compare()
         page = self.path("a.html")
         page.write_text(page.read_text().replace("</body>", """<script>

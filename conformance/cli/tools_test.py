@@ -162,7 +162,7 @@ class RoundTrip(ToolsTest):
             text = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", *options).err
             return report["frames_compared"], report["hashes_verified"], text
 
-        expected = {  # of all frames; of 5 to 24, where one GOF of 20 frames has parts of two
+        expected = {  # of all frames; of frames 5 to 24, which are parts of two GOFs of 20 frames
             "none": ((0, False, "no hashes"), (0, False, "not verified")),
             "gof": ((60, True, "hashes agree"), (0, False, "not verified")),
             "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),
@@ -369,9 +369,9 @@ class Figures(ToolsTest):
 
 
 class Targets(ToolsTest):
-    """Reached from below: most of them within 2 %, none by much less. (Few values of a small
-    animation lie at the edges of what is coded, so that its error moves in jumps. And a largest
-    error is farther below where that saves bytes.)"""
+    """Targets are approached from below, most of them to within 2 %. (The error of a small
+    animation moves in jumps, as few of its values are at the edge of being coded. The largest
+    error may stay farther below where that saves bytes.)"""
 
     def check(self, option, targets, value_of, names=NAMES, *options, near=0.98):
         reached = []

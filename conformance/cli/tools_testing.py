@@ -1,4 +1,4 @@
-"""What the tests of the tools have in common: running them, and files to run them on."""
+"""Shared by the tests of the tools: running them, and files to run them on."""
 
 import argparse
 import array
@@ -44,7 +44,7 @@ def _run(tool, args, options):
 
 
 def check_encoded(args, result):
-    """Whatever rlpcenc writes, rlpcval finds no error in it."""
+    """Requires that rlpcval finds no error in what rlpcenc wrote."""
     places = [args[i + 1] for i, arg in enumerate(args[:-1]) if arg in ("-o", "--output")]
     if not places or (places[0] != "-" and not pathlib.Path(places[0]).is_file()):
         return  # --help, or a device
@@ -105,7 +105,7 @@ def read_rlpd(path):
 
 
 def limited(size):
-    """Before the tool starts: files may grow to `size` bytes; beyond, writing fails (EFBIG)."""
+    """To be called before a tool starts: writing a file beyond `size` bytes fails (EFBIG)."""
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
             "restore_signals": False}
 
@@ -124,7 +124,7 @@ class ToolsTest(unittest.TestCase):
         return result
 
     def fails(self, code, words, tool, *args, **options):
-        """The exit code is `code`, and all of `words` are in what it says, on one line."""
+        """Expects the exit code, and a message of one line that contains all of `words`."""
         result = run(tool, *args, **options)
         self.assertEqual(result.code, code, f"{tool} {args}: {result.err}")
         for word in [words] if isinstance(words, str) else words:

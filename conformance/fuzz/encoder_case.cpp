@@ -52,7 +52,7 @@ class CaseMaker {
     kOwnBox = 16,
     kTwice = 32,
     kAnyIndices = 64,
-    kOtherCount = 128,  // of frames than there are
+    kOtherCount = 128,  // announces another number of frames
   };
 
   bool has(Flag flag) const { return (flags_ & flag) != 0; }
@@ -64,7 +64,7 @@ class CaseMaker {
     std::memcpy(&value, &bits, sizeof value);
     return value;
   }
-  // Of `count` values that there are, seldom another one.
+  // One of `count` legal values, rarely another one.
   std::uint32_t choice(std::uint32_t count, std::uint32_t first = 0) {
     const std::uint32_t b = byte();
     return b < 250 ? first + b % count : b - 250 + first + count;
@@ -121,7 +121,7 @@ void CaseMaker::read_options() {
   case_.frame_rate = {byte() + 1, byte()};
 }
 
-// Those of the options, and what only rlpc_encoder.h has.
+// Settings that the options have, and those that only rlpc_encoder.h has.
 EncoderSettings CaseMaker::read_settings() {
   const rlpc_encode_options& o = case_.options;
   EncoderSettings s;
@@ -145,7 +145,7 @@ EncoderSettings CaseMaker::read_settings() {
   b.qu = static_cast<int>(number(23));
   b.qc = static_cast<int>(number(23));
   b.qdelta = static_cast<int>(number(27));
-  // Quantisers as given need no target, and a target searches them.
+  // Given quantisers exclude a target, which would search them.
   if ((switches & 12) == 4) s.target = {Target::kNone, 0.0};
   if ((switches & 12) == 0) b.qu = b.qc = 0;
   b.frame_mode = static_cast<FrameMode>(number(3));
@@ -164,7 +164,7 @@ EncoderSettings CaseMaker::read_settings() {
   m.clusters = (more & 32) == 0;
   m.component_groups = number(6);
   m.layer_groups = number(6);
-  // The tools of the other profile are refused: mostly without them.
+  // The tools of the other profile are refused, so most cases do not set them.
   if (s.profile == Profile::kBaseline || (switches & 192) == 192) s.baseline = b;
   if (s.profile == Profile::kMain || (switches & 192) == 192) s.main = m;
   return s;
@@ -224,7 +224,8 @@ void CaseMaker::read_frames() {
   const std::vector<double> shape = read_shape();
   const double scale = std::exp2(signed_byte());
   const std::uint32_t far = byte();
-  const double offset = far < 128 ? 0.0 : std::exp2((far - 128.0) / 4.0);  // in shapes
+  const double offset =
+      far < 128 ? 0.0 : std::exp2((far - 128.0) / 4.0);  // in sizes of the shape
   const std::uint32_t count = byte() % (kMaxCaseFrames + 1);
   std::vector<double> now = shape;
   for (std::uint32_t f = 0; f < count; ++f) {
@@ -235,7 +236,7 @@ void CaseMaker::read_frames() {
     for (std::size_t i = 0; i < shape.size(); ++i) {
       const double x = shape[i - i % 3];
       switch (kind) {
-        case 0:  // as before
+        case 0:  // unchanged
           break;
         case 1:  // bent
           now[i] = shape[i] + (i % 3 == 2 ? std::sin(a + 2.0 * x) : 0.0);
@@ -273,7 +274,7 @@ void CaseMaker::read_frames() {
   case_.num_frames = has(kOtherCount) ? byte() % (kMaxCaseFrames + 1) : count;
 }
 
-// Around all that is finite, or another one.
+// The box of all finite coordinates, or another one.
 void CaseMaker::read_box() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (std::size_t c = 0; c < 3; ++c) {
@@ -306,7 +307,7 @@ void CaseMaker::read_box() {
   }
 }
 
-// What every FrameSource promises.
+// The contract of FrameSource.
 void CaseMaker::keep_to_source() {
   case_.num_vertices = std::max(case_.num_vertices, 1U);
   for (std::uint32_t& v : case_.indices) v %= case_.num_vertices;

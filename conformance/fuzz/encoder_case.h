@@ -1,5 +1,5 @@
-// Animations and settings for the encoder, made of any bytes: what is legal, what is not, and
-// what is at the edge.
+// Animations and settings for the encoder, derived from arbitrary bytes: legal ones, illegal
+// ones, and edge cases.
 #pragma once
 
 #include <array>
@@ -25,22 +25,22 @@ struct EncoderCase {
   std::array<float, 3> box_min{};
   std::array<float, 3> box_max{};
 
-  // By the interface in C, frame by frame; without the members that are pointers.
+  // For the C interface, which takes frames one by one; `metadata` replaces the pointer.
   rlpc_encode_options options{};
   std::string metadata;
   bool placed = false;
   std::uint32_t failing_write = 0;  // the call that fails, from 1; 0: none
-  // In place of the options: settings for the sequence as a whole, of rlpc_encoder.h.
+  // If present, these replace the options: rlpc_encoder.h encodes the sequence as a whole.
   std::optional<EncoderSettings> settings;
-  bool twice = false;  // to compare the bytes
+  bool twice = false;  // encode twice and compare the bytes
 
-  // By what the headers say.
+  // According to the public headers.
   bool has_known_options() const;
-  bool is_legal() const;  // all but the frames
+  bool is_legal() const;  // apart from the frames
   bool is_legal_frame(std::size_t frame) const;
 };
 
-// Flags, then 26 bytes of settings, the mesh, the frames; what is missing is 0.
+// Flags, then 26 bytes of settings, the mesh, the frames; missing bytes are 0.
 EncoderCase make_encoder_case(std::span<const std::uint8_t> bytes);
 
 }  // namespace rlpc

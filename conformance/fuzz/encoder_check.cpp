@@ -32,7 +32,7 @@ void require_equal(const A& found, const B& wanted, const std::string& of) {
   throw Complaint{of + " is " + std::to_string(found) + ", not " + std::to_string(wanted)};
 }
 
-// Sums in another order.
+// Equal up to the order of summation.
 bool nearly(double a, double b) {
   return a == b || std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
@@ -104,7 +104,7 @@ void check_conforming(const EncoderCase& c, const EncodedCase& encoded) {
             std::string("breaks ") + f.id + " (" + f.element + "): " + f.detail);
   }
   require(report.complete && !report.stopped && report.header.has_value(),
-          "not all was checked");
+          "the validator did not check everything");
   require_equal(report.bytes, encoded.bytes.size(), "the validator's count of bytes");
   require_equal(report.gofs, encoded.report.num_gofs, "num_gofs");
   require_equal(report.header->level_idc, encoded.report.level, "level");
@@ -159,7 +159,8 @@ Distortion decode_frames(const EncoderCase& c, const OpenDecoder& decoder,
     distortion.add_frame(c.frames[f], decoded);
   }
   std::vector<float> again(values);
-  require(rlpc_decoder_next_floats(decoder.get(), again.data(), values) == RLPC_END, "no end");
+  require(rlpc_decoder_next_floats(decoder.get(), again.data(), values) == RLPC_END,
+          "frames after the last one");
   require(rlpc_decoder_seek(decoder.get(), c.num_frames - 1) == RLPC_OK &&
               rlpc_decoder_next_floats(decoder.get(), again.data(), values) == RLPC_OK &&
               again == xyz,
@@ -178,8 +179,8 @@ void check_report(const EncoderCase& c, const EncodedCase& encoded,
        {std::tuple{"kg_error_percent", report.kg_error_percent, distortion.kg_error_percent()},
         std::tuple{"rms_error", report.rms_error, distortion.rms_error()},
         std::tuple{"max_error", report.max_error, distortion.max_error}}) {
-    require(nearly(reported, measured), std::string(name) + " is said to be " +
-                                            std::to_string(reported) + ", and is " +
+    require(nearly(reported, measured), std::string(name) + " is reported as " +
+                                            std::to_string(reported) + ", but is " +
                                             std::to_string(measured));
   }
   if (report.target_met == 0) return;
@@ -191,7 +192,7 @@ void check_report(const EncoderCase& c, const EncodedCase& encoded,
                          : target.kind == Target::kMaxError ? distortion.max_error
                                                             : 0.0;
   require(target.kind == Target::kNone || reached <= target.value * (1.0 + 1e-9),
-          "a target is said to be met, and is not: " + std::to_string(reached));
+          "a target is reported as met, but is not: " + std::to_string(reached));
 }
 
 }  // namespace
@@ -203,7 +204,7 @@ std::string check_encoded(const EncoderCase& c, const EncodedCase& encoded) {
     std::sort(sorted.begin(), sorted.end());
     std::vector<std::uint32_t> all(c.num_vertices);
     std::iota(all.begin(), all.end(), 0U);
-    require(sorted == all, "input_vertex is no permutation");
+    require(sorted == all, "input_vertex is not a permutation");
     if (c.settings ? c.settings->keep_order : c.options.keep_order != 0) order = all;
     check_conforming(c, encoded);
     const OpenDecoder decoder(encoded.bytes);
@@ -217,7 +218,7 @@ std::string check_encoded(const EncoderCase& c, const EncodedCase& encoded) {
 
 namespace {
 
-// An encoder by its interface in C, and the calls of its sink.
+// An encoder behind its C interface, and the calls of its sink.
 class CaseEncoder {
  public:
   explicit CaseEncoder(const EncoderCase& c) : case_(c) {}
@@ -225,7 +226,7 @@ class CaseEncoder {
   CaseEncoder& operator=(const CaseEncoder&) = delete;
   ~CaseEncoder() { rlpc_encoder_close(handle_); }
 
-  // The stream, or none where an error was due.
+  // The stream; none if an error was expected.
   std::optional<EncodedCase> run() {
     const rlpc_status created = create();
     require(created == due_of_create(), describe("create", created));
@@ -239,17 +240,17 @@ class CaseEncoder {
     }
     std::uint32_t unfinished = 0;
     require(rlpc_encoder_vertex_order(handle_, &unfinished, 1) == RLPC_BAD_ARGUMENT,
-            "an order of vertices before the end");
+            "a vertex order before the end");
     const rlpc_status status =
         rlpc_encoder_finish(handle_, &encoded_.report, sizeof encoded_.report);
     const bool whole = case_.frames.size() == case_.num_frames;
     if (!is_due(status, whole)) throw Complaint{describe("finish", status)};
     if (status != RLPC_OK) return stay_broken(status);
-    require(!write_failed_, "a write failed, and nobody says so");
+    require(!write_failed_, "a failed write was not reported");
     encoded_.input_vertex.resize(case_.num_vertices);
     require(rlpc_encoder_vertex_order(handle_, encoded_.input_vertex.data(),
                                       case_.num_vertices) == RLPC_OK,
-            "no order of vertices");
+            "no vertex order");
     return std::move(encoded_);
   }
 
@@ -292,7 +293,7 @@ class CaseEncoder {
     if (!case_.has_known_options()) return RLPC_BAD_ARGUMENT;
     return case_.is_legal() ? RLPC_OK : RLPC_BAD_INPUT;
   }
-  // A write may fail whatever is encoded; and a later GOF may need another level.
+  // A write can fail in any case, and a later GOF may need a higher level.
   bool is_due(rlpc_status status, bool legal) const {
     if (write_failed_) return status == RLPC_IO_FAILED;
     const bool level = std::string_view(rlpc_encoder_error_text(handle_)).find("need level") !=
@@ -303,7 +304,7 @@ class CaseEncoder {
     return call + ": " + rlpc_status_text(status) + ": " + rlpc_encoder_error_text(handle_);
   }
   std::nullopt_t stay_broken(rlpc_status status) {
-    require(handle_ != nullptr && rlpc_encoder_error_text(handle_)[0] != '\0', "no text");
+    require(handle_ != nullptr && rlpc_encoder_error_text(handle_)[0] != '\0', "no error text");
     const std::size_t written = encoded_.bytes.size();
     const std::vector<float> xyz(3 * std::size_t{case_.num_vertices});
     std::uint32_t order = 0;
@@ -311,7 +312,7 @@ class CaseEncoder {
                 rlpc_encoder_finish(handle_, nullptr, 0) == status &&
                 rlpc_encoder_vertex_order(handle_, &order, 1) == status &&
                 encoded_.bytes.size() == written,
-            "an error does not stand");
+            "an error is not sticky");
     return std::nullopt;
   }
 

@@ -1,5 +1,5 @@
-// Whether the encoder keeps its word for an animation and settings: the status of each call,
-// and a stream that conforms, decodes, and is as far from the input as the report says.
+// Checks what the encoder does with an animation and settings: the status of each call, and
+// that the stream conforms, decodes, and has the error that the report states.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace rlpc {
 
-// What an encoder has written, and says of it.
+// What an encoder has written and reported.
 struct EncodedCase {
   std::vector<std::uint8_t> bytes;
   rlpc_encode_report report{};
   std::vector<std::uint32_t> input_vertex;
 };
 
-// Of a legal case: what does not hold for the stream; empty if all does.
+// For a legal case: what is wrong with the stream; empty if nothing is.
 std::string check_encoded(const EncoderCase& c, const EncodedCase& encoded);
 
-// Encodes, and checks. Empty if all holds. result: none where an error was due.
+// Encodes and checks; empty if nothing is wrong. result: none if an error was expected.
 std::string check_encoder(const EncoderCase& c, std::optional<EncodedCase>* result = nullptr);
 
 }  // namespace rlpc

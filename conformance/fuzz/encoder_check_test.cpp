@@ -1,4 +1,4 @@
-// What encoder_fuzz checks, for cases at random; and that it notices what is wrong.
+// The checks of encoder_fuzz on random cases, and on results with planted faults.
 #include "conformance/fuzz/encoder_check.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<std::uint8_t> random_bytes(unsigned seed) {
   std::mt19937 random(seed);
   std::vector<std::uint8_t> bytes(400);
   for (auto& b : bytes) b = static_cast<std::uint8_t>(random());
-  // Mostly the box of the frames, all of them, and their vertices.
+  // Most cases have the right box, number of frames and number of vertices.
   if (seed % 4 != 0) bytes[0] &= 0b00101111;
   return bytes;
 }
@@ -113,14 +113,14 @@ TEST(EncoderCheck, NoticesWhatIsWrong) {
       {"breaks", [](auto&, auto& e) { e.bytes.resize(e.bytes.size() - 1); }},
       {"count of frames", [](auto& c, auto&) { c.num_frames = 5; }},
       {"kg_error_percent", [](auto& c, auto&) { c.frames[3][7] += 0.1F; }},
-      {"target is said to be met",
+      {"target is reported as met",
        [](auto& c, auto& e) { c.options.target_value = 0.9 * e.report.kg_error_percent; }},
-      {"target is said to be met",
+      {"target is reported as met",
        [](auto& c, auto& e) {
          c.options.target = RLPC_TARGET_MAX_ERROR;
          c.options.target_value = 0.9 * e.report.max_error;
        }},
-      {"target is said to be met",
+      {"target is reported as met",
        [](auto& c, auto& e) {
          c.options.target = RLPC_TARGET_BPVF;
          c.options.target_value = 0.9 * e.report.bpvf;
@@ -135,7 +135,7 @@ TEST(EncoderCheck, NoticesWhatIsWrong) {
   }
 }
 
-// A case that is legal by mistake, or not legal, would show the status of the call.
+// A case wrongly taken as legal or as illegal would show in the status of the call.
 TEST(EncoderCheck, KnowsWhatIsLegal) {
   const std::vector<std::function<void(EncoderCase&)>> list{
       [](auto& c) { c.num_vertices = 0; },

@@ -1,5 +1,5 @@
-// Fuzzes the encoder: animations and settings made of any bytes, encoded, validated, decoded
-// and measured.
+// Fuzzes the encoder: animations and settings derived from arbitrary bytes are encoded,
+// validated, decoded and measured.
 
 #include <cstddef>
 #include <cstdint>

@@ -112,7 +112,7 @@ def read_verdict(done):
     try:
         verdict = json.loads(lines[-1][len(VERDICT):])
     except ValueError:
-        return None, f"there is no JSON behind \"{VERDICT}\" on the last line of standard error"
+        return None, f"there is no JSON after \"{VERDICT}\" on the last line of standard error"
     try:
         schema.check(verdict, schema.load("verdict"), "the verdict")
     except schema.SchemaError as error:

@@ -47,7 +47,7 @@ sys.exit(3 if fault == "exit_code" else 0)
 
 
 class Encoders(JudgeTest):
-    """What each fault draws, and that all else still passes."""
+    """Each fault is detected, and all other checks still pass."""
 
     @classmethod
     def setUpClass(cls):

@@ -19,12 +19,12 @@ COLUMNS = (
     ("valid", "valid", "the validator finds no error"),
     ("decodes", "decodes", "the reference decoder decodes it"),
     ("mesh", "mesh", "vertices, triangles and frames are those of the input"),
-    ("error", "error", "no vertex is farther from the input than was asked"),
+    ("error", "error", "no vertex is farther from the input than asked"),
 )
 PLACES = ("{mesh}", "{points}", "{out}", "{error}")
 # Error bounds, as fractions of the diagonal of the first frame.
 COARSE, FINE = 1 / 100, 1 / 2000
-_ROUNDING = 1 + 1e-9  # of the sums here
+_ROUNDING = 1 + 1e-9  # for the rounding errors of sums
 
 
 @dataclasses.dataclass
@@ -153,7 +153,8 @@ class Checker:
             self._fail(judgement, "mesh", f"cannot read the file of {{order}}: {error}")
             return None
         if sorted(order) != list(range(count)):
-            self._fail(judgement, "mesh", "the file of {order} is no permutation of the vertices")
+            self._fail(judgement, "mesh", "the file of {order} is not a permutation of the "
+            "vertices")
             return None
         return order
 
@@ -169,8 +170,8 @@ class Checker:
                 return
             corners = [order[v] for v in reader.triangles()]
             if _turned(corners) != _turned([v for t in animation.triangles for v in t]):
-                self._fail(judgement, "mesh", "other triangles than in the input (does the "
-                           "decoder give the vertices in its order?)")
+                self._fail(judgement, "mesh", "the triangles differ from those of the input (are "
+                           "the vertices in decoded order?)")
                 return
             judgement.cells["mesh"] = PASS
             worst, frame, vertex = _largest_error(animation, reader, order)

@@ -65,7 +65,7 @@ class Grader:
         if run.complaint:
             return Judgement("FAIL-verdict", "no-verdict", f"{done.ending()}, but {run.complaint}")
         if done.code == LIMIT:
-            return Judgement("FAIL-resource", "limit", "says that it needs more than it may take")
+            return Judgement("FAIL-resource", "limit", "reports that it needs too much memory")
         if done.code == UNSUPPORTED and expect != "unsupported":
             if not self._decoder.declares(stream):
                 return Judgement("UNSUPPORTED", "not-declared",
@@ -135,7 +135,7 @@ class Grader:
 
     def _rule_cell(self, stream, judgement, run):
         if run.finished.code == UNSUPPORTED and not self._decoder.declares(stream):
-            return NOT_SUPPORTED  # for example its level, before what nobody supports
+            return NOT_SUPPORTED  # for example for its level
         return _rule_cell(stream, judgement, run)
 
     def _float_cell(self, stream, judgement, state):

@@ -80,7 +80,7 @@ class FakeDecoders(JudgeTest):
             if not alive(child):
                 return
             time.sleep(0.1)
-        self.fail("the child of the decoder lives on")
+        self.fail("the child of the decoder is still running")
 
     def test_interrupt_leaves_the_rest_not_run(self):
         path = self.folder / "report.json"

@@ -1,4 +1,4 @@
-"""What the tests of the judge have in common: a small suite, and running the commands."""
+"""Shared by the tests of the judge: a small suite, and running the commands."""
 
 import argparse
 import contextlib
@@ -47,7 +47,7 @@ def changed(data, kind, nth, change):
 
 
 def sidecar(identity, data, expect=None, level=1, **more):
-    """A whole sidecar for a stream; expect only where it is not what specdec says."""
+    """A complete sidecar for a stream; give expect only if it is not what specdec finds."""
     decoded = expectation.expectation_of(data, PROGRAM)
     result = {"id": identity, "title": f"Test stream {identity}", "spec": "1.0",
               "profile": "baseline", "level": level, "tier": "smoke", "rules": [], "features": [],
@@ -118,7 +118,7 @@ class JudgeTest(unittest.TestCase):
             JudgeTest._home = tempfile.TemporaryDirectory(prefix="rlpc-judge-test-")
             unittest.addModuleCleanup(JudgeTest._home.cleanup)
             JudgeTest.suite = make_suite(pathlib.Path(JudgeTest._home.name) / "suite")
-            JudgeTest.kept = pathlib.Path(JudgeTest._home.name) / "kept"  # by fake decoders
+            JudgeTest.kept = pathlib.Path(JudgeTest._home.name) / "kept"  # for fake decoders
             JudgeTest.kept.mkdir()
 
     def setUp(self):

@@ -116,7 +116,7 @@ def check_places(options):
     for path in (options.json, options.junit, options.markdown, options.html):
         folder = os.path.dirname(path or "") or "."
         if not os.access(folder, os.W_OK | os.X_OK):
-            raise OSError(f"{path}: cannot be written; is {folder} there, a folder, and yours?")
+            raise OSError(f"{path}: cannot be written; is {folder} a folder that you may write to?")
 
 
 def write(report, options):
@@ -130,10 +130,10 @@ def write(report, options):
 
 def add_options(parser):
     group = parser.add_argument_group("reports")
-    group.add_argument("--json", metavar="F", help="all that was found")
+    group.add_argument("--json", metavar="F", help="all results, for programs")
     group.add_argument("--junit", metavar="F", help="for continuous integration")
     group.add_argument("--markdown", metavar="F", help="a page for people")
-    group.add_argument("--html", metavar="F", help="the same to look around in, in one file")
+    group.add_argument("--html", metavar="F", help="an interactive page in one file")
 
 
 class Progress:

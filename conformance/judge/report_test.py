@@ -102,7 +102,7 @@ class Reports(JudgeTest):
 
 
 def png_pixels(path):
-    """(width, height, set of some of the bytes of its rows): is anything there?"""
+    """(width, height, a sample of its bytes), to see whether anything is drawn."""
     data = path.read_bytes()
     width, height = struct.unpack_from(">II", data, 16)
     at, packed = 8, b""
@@ -113,7 +113,7 @@ def png_pixels(path):
     return width, height, set(zlib.decompress(packed)[::97])
 
 
-@unittest.skipUnless(BROWSER, "no chromium here (Debian package chromium): the page is not tried")
+@unittest.skipUnless(BROWSER, "chromium is not installed (Debian package chromium)")
 class Page(JudgeTest):
     """The page in a real browser."""
 
@@ -156,7 +156,7 @@ class Page(JudgeTest):
             self.assertGreater(len(colours), 30)
 
     def test_page_fits_a_narrow_window(self):
-        """In a frame, as windows have a least width."""
+        """Shown in an iframe, as windows have a minimum width."""
         text = self.page.read_text().replace("recall();", "", 1)
         text = html.escape(text.replace('class="details" hidden', 'class="details"'))
         for width in (1280, 400, 340):

@@ -38,7 +38,7 @@ class Finished:
     def ending(self):
         """As text, such as "exit code 1" or "killed by SIGSEGV"."""
         if self.code is None:
-            return f"no end after {self.seconds:.0f} s"
+            return f"still running after {self.seconds:.0f} s"
         if self.code < 0:
             return f"killed by {signal_name(-self.code)}"
         return f"exit code {self.code}"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Suites and schemas: what is wrong with a suite is said, with its place.
+"""Suites and schemas: faults of a suite are reported with their place.
 
     suite_test.py --bin BUILD/bin [unittest arguments, such as Suites]
 """

@@ -17,7 +17,7 @@ static int failures = 0;
 #define CHECK(condition)                                                      \
   do {                                                                        \
     if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition); \
+      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
       ++failures;                                                             \
     }                                                                         \
   } while (0)
@@ -134,7 +134,7 @@ static void check_info(rlpc_decoder* decoder) {
   CHECK(info.num_frames == FRAMES && info.has_vertex_order == 1);
   CHECK(info.frame_rate_numerator == 30 && info.frame_rate_denominator == 1);
   CHECK(info.position_bits >= 20 && info.position_bits <= 24);
-  // A caller that knows only the beginning gets that.
+  // A caller with an older, shorter structure gets the members it knows.
   struct {
     size_t struct_size;
     uint32_t profile;
@@ -187,7 +187,7 @@ static void check_frames(rlpc_decoder* decoder) {
   CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES - 1) == RLPC_BAD_ARGUMENT);
   CHECK(rlpc_decoder_next_floats(decoder, NULL, VALUES) == RLPC_BAD_ARGUMENT);
   CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES + 3) == RLPC_BAD_ARGUMENT);
-  // None of that has moved it.
+  // None of these calls has moved the decoder.
   CHECK(rlpc_decoder_position(decoder) == 1);
   CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_OK);
   CHECK(rlpc_decoder_error_text(decoder)[0] == '\0');
@@ -201,7 +201,8 @@ typedef struct read_state {
 static int read_buffer(void* user, uint64_t offset, void* out, size_t num_bytes) {
   const read_state* state = user;
   if (state->fails) return -1;
-  if (offset + num_bytes > state->stream->size) abort();  // as promised, that is not asked for
+  if (offset + num_bytes > state->stream->size)
+    abort();  // the decoder promises never to ask for this
   memcpy(out, state->stream->bytes + offset, num_bytes);
   return 0;
 }
@@ -218,7 +219,7 @@ static void test_sources(const buffer* stream) {
   const rlpc_source source = {&state, stream->size, read_buffer};
   CHECK(rlpc_decoder_open_source(&source, NULL, &decoder) == RLPC_OK);
   check_frames(decoder);
-  // A callback that fails, and is well again.
+  // A callback that fails, then works again.
   float xyz[VALUES];
   state.fails = 1;
   CHECK(rlpc_decoder_seek(decoder, 19) == RLPC_IO_FAILED);
@@ -270,12 +271,12 @@ static void test_options(const buffer* stream) {
   rlpc_decoder_close(decoder);
   options.max_vertices = VERTICES;
 
-  // A device without an end: no stream, which its first bytes show.
+  // An endless device, whose first bytes show that it is not a stream.
   CHECK(rlpc_decoder_open_file("/dev/zero", &options, &decoder) == RLPC_BAD_STREAM);
   CHECK_TEXT(rlpc_decoder_error_text(decoder), "R-STR-01");
   rlpc_decoder_close(decoder);
 
-  // In memory of the caller, if there is enough of it.
+  // Into the caller's buffer, if it is large enough.
   void* place = malloc(rlpc_decoder_bytes());
   options.place = place;
   options.place_bytes = rlpc_decoder_bytes() - 1;
@@ -289,7 +290,7 @@ static void test_options(const buffer* stream) {
   rlpc_decoder_close(decoder);
   free(place);
 
-  // Not initialised; as of a newer version, without and with something that is new.
+  // Not initialised; of a newer version, with its new members unset and set.
   struct {
     rlpc_decode_options options;
     uint64_t future;
@@ -306,7 +307,7 @@ static void test_options(const buffer* stream) {
         RLPC_BAD_ARGUMENT);
 }
 
-// Wherever a stream is cut off, and whichever byte is wrong: an error, no harm.
+// A stream cut off anywhere, or with any byte changed, gives an error and does no harm.
 static void test_damage(const buffer* stream) {
   static buffer damaged;
   int32_t positions[VALUES];

@@ -1,4 +1,4 @@
-// librlpc where memory ends: each call of `new` fails in turn, alone or with all after it.
+// librlpc when memory runs out: each call of `new` fails in turn, alone or with all later ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,9 +83,9 @@ class FailedAllocation : public testing::TestWithParam<Case> {
     return status;
   }
 
-  // Fails every call up to `all`, then ever fewer of them, until there are no more. What was
-  // taken is given back. Some calls can do without: those of std::stable_sort, and on another
-  // thread.
+  // Fails each call up to `all`, then samples of later calls, until there are no more. All
+  // memory must be freed. A failure need not be an error: std::stable_sort and the start of
+  // another thread work without their memory.
   template <class Run>
   void fail_calls(std::size_t all, const Run& run) {
     memory_count.fails_once = GetParam().once;

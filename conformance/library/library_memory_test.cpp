@@ -1,4 +1,4 @@
-// What librlpc takes of memory.
+// The memory that librlpc uses.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> encoded_strip() {
   return stream;
 }
 
-// But for what the sum of the bones of a few frames needs, for a moment.
+// Apart from a temporary buffer for the sums of bones of a few frames.
 TEST(Library, FramesWithinAGofKeepNoMemory) {
   const std::vector<std::uint8_t> stream = encoded_strip();
   rlpc_decoder* decoder = nullptr;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""librlpc.so shows rlpc_* and nothing else: all that its headers declare."""
+"""librlpc.so exports exactly the functions that its headers declare."""
 
 import argparse
 import pathlib
@@ -27,11 +27,11 @@ def main():
     shown = {line.split()[-1].split("@")[0] for line in lines}
     wanted = declared()
     for name in sorted(shown - wanted):
-        print(f"shown, but in no header: {name}")
+        print(f"exported, but in no header: {name}")
     for name in sorted(wanted - shown):
-        print(f"in a header, but not shown: {name}")
+        print(f"in a header, but not exported: {name}")
     if shown == wanted and wanted:
-        print(f"{len(shown)} functions are shown")
+        print(f"{len(shown)} functions are exported")
     return 0 if shown == wanted and wanted else 1
 
 

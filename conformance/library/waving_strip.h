@@ -1,5 +1,5 @@
-// A strip of triangles that waves, and its encoder by the interface in C. Nothing is allocated
-// here while it encodes, so that tests see what the library allocates.
+// A waving strip of triangles, encoded through the C interface. This code allocates nothing
+// while it encodes, so that tests see what the library allocates.
 #pragma once
 
 #include <cmath>
@@ -48,7 +48,7 @@ struct WavingStrip {
     format.box_max[2] = 0.2F;
     return rlpc_encoder_create(&format, &options, append, &to, encoder);
   }
-  // The frames, and the end.
+  // Adds the frames and finishes the stream.
   rlpc_status add_all(rlpc_encoder* encoder) const {
     rlpc_status status = RLPC_OK;
     for (std::size_t f = 0; status == RLPC_OK && f < frames.size(); ++f) {

@@ -16,7 +16,7 @@ import grading  # noqa: E402
 
 LIST = pathlib.Path(__file__).resolve().with_name("mutants.txt")
 FOLDERS = ("common", "decoder", "scripts/cmake")
-# Faults are in plain loops, not in their twins.
+# Faults are seeded into plain loops, not into their SIMD twins.
 _TWINS = "#define RLPC_HAVE_AVX2_KERNELS"
 _TIMEOUT = 8  # seconds for a stream; a mutant that hangs is noticed
 _MAX_HANGS = 3
@@ -24,7 +24,7 @@ _MEMORY = 4 << 30
 
 
 class MutantError(Exception):
-    """A list that does not fit the sources, or sources that do not build."""
+    """The list does not match the sources, or the sources do not build."""
 
 
 @dataclasses.dataclass
@@ -34,7 +34,7 @@ class Mutant:
     file: str
     old: str
     new: str
-    equivalent: str  # why no stream can notice it; empty: one has to
+    equivalent: str  # why no stream can notice it; empty: some stream must
     line: int
 
 
@@ -55,13 +55,13 @@ def read(path=LIST):
     names = [m.name for m in mutants]
     for mutant in mutants:
         if not mutant.file or not mutant.old or names.count(mutant.name) > 1:
-            raise MutantError(f"{path}:{mutant.line}: {mutant.name}: a mutant has a name of its "
-                              "own, a file and a text to replace")
+            raise MutantError(f"{path}:{mutant.line}: {mutant.name}: a mutant needs a unique "
+                              "name, a file and a text to replace")
     return mutants
 
 
 def _pattern(text):
-    """The text, with any white space where it has some."""
+    """A pattern for the text that accepts any white space where the text has some."""
     return re.compile(r"\s+".join(re.escape(word) for word in text.split()))
 
 
@@ -75,7 +75,7 @@ def seeded(mutant, source):
 
 
 def check(root, mutants):
-    """Complaints about mutants that do not fit the sources."""
+    """Complaints about mutants that do not match the sources."""
     complaints = []
     for mutant in mutants:
         try:
@@ -86,7 +86,7 @@ def check(root, mutants):
 
 
 class _NoReference:
-    """Nobody needs to know where an output is wrong."""
+    """Replaces the reference decoder, as the place of the first difference is not needed."""
 
     def output(self, stream):
         return None, ""
@@ -106,14 +106,14 @@ class Workshop:
         (self._source / "CMakeLists.txt").write_text(_CMAKE, encoding="utf-8")
         twins = 0
         for path in self._source.glob("common/**/*.h"):
-            # What is wrong must be seen by the streams, not by the compiler.
+            # The streams must notice the fault, not the compiler.
             text = re.sub(r"^static_assert\(.*?\);.*$", "", path.read_text(encoding="utf-8"),
                           flags=re.MULTILINE)
             twins += text.count(_TWINS)
             path.write_text(text.replace(_TWINS, ""), encoding="utf-8")
         if twins != 1:
-            raise MutantError(f"{_TWINS} stands in {twins} headers: fast twins of what is changed "
-                              "would run in its place")
+            raise MutantError(f"{_TWINS} is in {twins} headers: SIMD twins would run instead of "
+                              "the changed loops")
         self._run("cmake", "-S", self._source, "-B", self._build, "-G", "Ninja")
         self._make()
         self._right = self._digest()
@@ -153,7 +153,7 @@ class Workshop:
 
     @contextlib.contextmanager
     def _built(self, mutant):
-        """The decoder with the fault in it; whether it is another program than without."""
+        """Builds the decoder with the fault; yields whether this gives another program."""
         path = self._source / mutant.file
         original = path.read_text(encoding="utf-8")
         try:
@@ -164,20 +164,20 @@ class Workshop:
             path.write_text(original, encoding="utf-8")
 
     def _first_failure(self):
-        """(stream, outcome) of the first stream that is not passed in all its cells, or None."""
+        """(stream, outcome) of the first stream that does not pass in all columns, or None."""
         only_diagnosed = None
         for stream, outcome in self._failures():
             if outcome != "PASS":
-                # It may well notice the next one too.
+                # It may well notice the next mutant, too.
                 self._streams.sort(key=lambda other: other.id != stream)
                 return stream, outcome
             only_diagnosed = only_diagnosed or (stream, outcome)
         return only_diagnosed
 
     def _failures(self):
-        """(stream, outcome) of all streams that are not passed in all their cells.
+        """(stream, outcome) of all streams that do not pass in all columns.
 
-        Of a mutant that hangs in several, not those behind.
+        Stops after the mutant has timed out on _MAX_HANGS streams.
         """
         decoder = contract.Decoder(str(self._build / "rlpcdec"),
                                    contract.Limits(_TIMEOUT, _MEMORY))
@@ -213,7 +213,7 @@ list(FILTER sources EXCLUDE REGEX "/player/(frame_surface|player_exports|stream_
 add_executable(rlpcdec ${sources})
 target_include_directories(rlpcdec PRIVATE ${CMAKE_SOURCE_DIR})
 target_precompile_headers(rlpcdec PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
-# Loading them takes longer than most files without.
+# Loading the precompiled header takes longer than most files take without it.
 list(FILTER sources EXCLUDE REGEX "/(rlpcdec|command_line|[a-z]*_verbs?)\\\\.cpp")
 set_source_files_properties(${sources} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 target_link_libraries(rlpcdec PRIVATE ZLIB::ZLIB CLI11::CLI11 nlohmann_json::nlohmann_json)

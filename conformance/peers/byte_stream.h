@@ -1,4 +1,4 @@
-// What the codecs write: numbers, little-endian, and pieces of bytes.
+// Files of the codecs: little-endian numbers and strings of bytes.
 #pragma once
 
 #include <bit>
@@ -54,7 +54,7 @@ class ByteReader {
   std::string_view bytes_;
 };
 
-// What the files of most codecs begin with.
+// The header of the files of most codecs.
 struct Sizes {
   std::size_t num_vertices;
   std::size_t num_triangles;
@@ -73,7 +73,7 @@ inline Sizes read_sizes(ByteReader& in) {
   return sizes;
 }
 
-// Triangles for a general compressor: each index less the one before.
+// Triangles for a general-purpose compressor: differences of successive indices.
 inline void write_triangles(ByteWriter& out, const std::vector<Triangle>& triangles) {
   std::uint32_t last = 0;
   for (const Triangle& t : triangles) {

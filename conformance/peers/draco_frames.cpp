@@ -81,7 +81,7 @@ std::vector<std::uint32_t> decoded_order(const Animation& animation, int method,
   return order;
 }
 
-// Edgebreaker leaves out vertices without a triangle, and triangles that are degenerate.
+// Edgebreaker drops vertices without a triangle, and triangles that are degenerate.
 bool keeps_everything(const Animation& animation) {
   std::size_t num_triangles = 0;
   std::vector<bool> there(animation.num_vertices);

@@ -8,8 +8,7 @@ namespace {
 
 using Neighbours = std::vector<std::vector<std::uint32_t>>;
 
-// For each vertex those of its neighbours whose index is smaller, one for each triangle they
-// share.
+// For each vertex the neighbours with a smaller index, once per triangle that they share.
 Neighbours earlier_neighbours(const QuantisedAnimation& a) {
   Neighbours out(a.num_vertices);
   for (const Triangle& t : a.triangles) {
@@ -22,8 +21,8 @@ Neighbours earlier_neighbours(const QuantisedAnimation& a) {
   return out;
 }
 
-// How number i of frame f changes in time: from the frame before (order 1), or from the line
-// through the two frames before (order 2).
+// The change of value i in frame f: from the previous frame (order 1), or from the linear
+// extrapolation of the two previous frames (order 2).
 int change(const QuantisedAnimation& a, int order, std::size_t f, std::size_t i) {
   const int here = a.frames[f][i];
   if (f == 0) return here;
@@ -32,7 +31,7 @@ int change(const QuantisedAnimation& a, int order, std::size_t f, std::size_t i)
   return here - 2 * before + a.frames[f - 2][i];
 }
 
-// What change() will be, to judge by the neighbours.
+// change(), predicted as the mean of the neighbours.
 int predict(const QuantisedAnimation& a, const std::vector<std::uint32_t>& neighbours,
             int order, std::size_t f, std::size_t axis) {
   if (neighbours.empty()) return 0;
@@ -42,7 +41,7 @@ int predict(const QuantisedAnimation& a, const std::vector<std::uint32_t>& neigh
   return sum / static_cast<int>(neighbours.size());
 }
 
-// All residuals, modulo 2^16: an axis of a frame at a time.
+// All residuals modulo 2^16, frame by frame and axis by axis.
 std::vector<std::int16_t> residuals_of(const QuantisedAnimation& a,
                                        const Neighbours& neighbours, int order) {
   std::vector<std::int16_t> out;
@@ -106,7 +105,7 @@ QuantisedAnimation read_lorenzo(const Bytes& bytes) {
         const int code =
             static_cast<unsigned char>(low[at]) | static_cast<unsigned char>(high[at]) << 8;
         const int residual = (code & 1) != 0 ? -(code + 1) / 2 : code / 2;
-        // The number itself is zero still, so change() is what the frames before make of it.
+        // The value itself is still zero, so -change() is its prediction from previous frames.
         const std::size_t i = 3 * v + axis;
         a.frames[f][i] = static_cast<std::uint16_t>(
             residual + predict(a, neighbours[v], order, f, axis) - change(a, order, f, i));

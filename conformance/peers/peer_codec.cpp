@@ -1,4 +1,4 @@
-// peer_codec: what scripts/compare needs of other codecs, as a tool that encodes and decodes.
+// peer_codec: encodes and decodes with other codecs, for scripts/compare.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -98,7 +98,7 @@ void write_animation(const std::string& path, const Animation& animation) {
   write_file(path, cache.take());
 }
 
-// `decoded` with its vertices where order[decoded vertex] says.
+// Moves each vertex of `decoded` to index order[decoded vertex].
 Animation reordered(const Animation& decoded, const std::vector<std::uint32_t>& order) {
   Animation out = decoded;
   out.num_vertices = 1 + *std::max_element(order.begin(), order.end());
@@ -206,20 +206,22 @@ CLI::App* add_convert(CLI::App& app, Options& o) {
       "convert", "Write any input of rlpcenc as OUT.pc2, with OUT.obj beside it");
   verb->add_option("input", o.source.path)->required();
   verb->add_option("--points", o.source.points, "Point cache with the frames");
-  verb->add_option("--animation", o.source.animation, "Of a glTF file: name, index or `all`");
+  verb->add_option("--animation", o.source.animation,
+                   "If the input is glTF: name, index or `all`");
   verb->add_option("--fps", o.frame_rate, "Frame rate of glTF files");
-  verb->add_flag("!--no-weld", o.source.weld, "Of a glTF file: keep coincident vertices apart");
+  verb->add_flag("!--no-weld", o.source.weld,
+                 "If the input is glTF: keep coincident vertices apart");
   verb->add_option("-o,--output", o.output)->required();
   return verb;
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Other codecs, for comparisons; which, depends on the libraries at build time.",
-               "peer_codec");
+  CLI::App app(
+      "Other codecs for comparisons, as far as their libraries were found at build time.",
+      "peer_codec");
   Options o;
-  const auto* list = app.add_subcommand("list", "The codecs that there are");
-  const auto* encoding =
-      add_verb(app, o, "encode", "Write what the codec makes of an animation");
+  const auto* list = app.add_subcommand("list", "List the codecs");
+  const auto* encoding = add_verb(app, o, "encode", "Encode an animation");
   const auto* decoding = add_verb(app, o, "decode", "Write OUT.pc2, and OUT.obj beside it");
   const auto* converting = add_convert(app, o);
   add_verb(app, o, "order", "Write, per decoded vertex, its index in the input");

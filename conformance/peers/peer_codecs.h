@@ -1,8 +1,8 @@
-// The codecs that scripts/compare sets beside ours, each in its own words: what it makes of an
-// animation, as one file, and back. Nothing of this is part of the project's formats.
+// The codecs that scripts/compare compares with ours. Each encodes an animation to one file of
+// its own form, and decodes it. These files are not part of the project's formats.
 //
-// Failures are exceptions (std::runtime_error): these files are read by nobody but the tool
-// that wrote them a moment ago.
+// Failures are exceptions (std::runtime_error), as only the program that has just written such
+// a file reads it.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct QuantisedAnimation {
   std::vector<std::vector<std::uint16_t>> frames;
 };
 
-// Of the bounding box of all frames.
+// The longest side of the bounding box of all frames.
 double longest_side(const Animation& animation);
 
 // One grid for all frames: 2^bits - 1 steps over the longest side of their bounding box.
@@ -37,17 +37,17 @@ Animation dequantise(const QuantisedAnimation& quantised);
 
 using Bytes = std::string;
 
-// Changes in time, predicted by those of neighbours on the mesh (a Lorenzo predictor), as
-// 16-bit numbers for a general compressor.
+// Changes in time, predicted from those of neighbours on the mesh (a Lorenzo predictor), as
+// 16-bit numbers for a general-purpose compressor.
 Bytes write_lorenzo(const QuantisedAnimation& animation);
 QuantisedAnimation read_lorenzo(const Bytes& bytes);
 
-// Differences from the frame before, through the vertex codec of meshoptimizer, triangles
-// through its index codec; for a general compressor.
+// Differences from the previous frame by the vertex codec of meshoptimizer, triangles by its
+// index codec; for a general-purpose compressor.
 Bytes write_meshopt(const QuantisedAnimation& animation);
 QuantisedAnimation read_meshopt(const Bytes& bytes);
 
-// zfp with a bound of the error, 2^-bits of the longest side of the bounding box; each axis as
+// zfp with an error bound of 2^-bits of the longest side of the bounding box; each axis as
 // an array of frames and vertices.
 Bytes write_zfp(const Animation& animation, int bits);
 Animation read_zfp(const Bytes& bytes);

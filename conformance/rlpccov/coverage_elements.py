@@ -5,13 +5,13 @@ import ast
 import spec_program
 from coverage_sites import Element, Loop, Value
 
-EVERY_VALUE = 8  # ranges of at most so many values are to be seen whole
+EVERY_VALUE = 8  # in a range of at most this many values, each value is a goal
 _SIGNS = ("negative", "zero", "positive")
 _BITS = ("all-zeros", "all-ones")
 
 
 def instrument(instrumenter, statement, following):
-    """Has the value recorded if the statement reads a syntax element."""
+    """Instruments the statement to record the value, if it reads a syntax element."""
     call = statement.value
     if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
             and spec_program.is_descriptor(call.func.id)
@@ -54,11 +54,11 @@ def goals(instrumenter, call, limits):
 
 
 def limits_of(target, name, following):
-    """(least, greatest) that requirements behind it put on an element; None: no constant."""
+    """(least, greatest) that the requirements after an element impose; None: not a constant."""
     least = greatest = None
     for statement in following:
         if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) != name:
-            continue  # of another element, or of ElementPosition
+            continue  # requires something of another element, or of ElementPosition
         call = statement.value if isinstance(statement, ast.Expr) else None
         if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)):
             break

@@ -153,7 +153,7 @@ def _united(parts):
 
 
 def minimum(goals, measurements):
-    """Names of few streams that reach together what all reach: the best next one each time."""
+    """A small set of streams that together reach what all reach, chosen greedily."""
     reached = {name: goals.reached(m) for name, m in measurements.items()}
     wanted = set().union(*reached.values())
     chosen = []

@@ -26,7 +26,7 @@ def record_bins(function):
 
 
 def instrument(instrumenter, statement):
-    """Has the models that the statement assigns to a variable named."""
+    """Instruments the statement to name the models that it assigns to a variable."""
     models = instrumenter.target.models
     makes = [p for p in ast.walk(statement.value) if isinstance(p, ast.Call)
              and isinstance(p.func, ast.Name) and p.func.id in models.makers]
@@ -120,7 +120,7 @@ class Models:
     # A run
 
     def given(self, namespace):
-        """CoverMade( ) names models, and takes note of what those it replaces have decoded."""
+        """CoverMade( ) names models, and records what the models that it replaces have decoded."""
         current = {}
         bins = (set(), set())
 

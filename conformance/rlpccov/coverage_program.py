@@ -76,7 +76,7 @@ class Instrumented:
                 and isinstance(p.func, ast.Name) and p.func.id in self.program.functions]
 
     def _reachable(self):
-        """(functions to run, all that they call); without those that only constants need.
+        """(functions to run, all that they call), without those that only constants need.
 
         Functions to run are stream( ), and after it those without parameters that nothing calls.
         """
@@ -119,7 +119,7 @@ class Instrumented:
                       for r in json.loads(listing.read_text(encoding="utf-8")))
 
     def rules_checked(self):
-        """Those of the rules that the program checks."""
+        """The rules that the program checks."""
         effects = {"require": "invalid", "supported": "unsupported"}
         return sorted({(p.args[1].value, clause, effects[p.func.id])
                        for node, clause in self.program.functions.values()

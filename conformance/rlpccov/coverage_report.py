@@ -30,7 +30,7 @@ class Result:
 
 
 class Page:
-    """Some of the goals, told by a function of function and site, and what to say about them."""
+    """A page: the goals for which holds(function, site) is true, and a text about them."""
 
     def __init__(self, file, title, holds, text, extra=None):
         self.file = file
@@ -160,7 +160,7 @@ PAGES = [
          "unit was added."),
     Page("loops.md", "Loops and binarisation", lambda f, s: _is_loop(f, s) and not (
         _is_coder(f, s) or _is_arithmetic(f, s)),
-         "Numbers of iterations: of a loop that counts up to a constant, each of them.", _loops),
+         "Numbers of iterations; for a loop that counts up to a constant, every number.", _loops),
     Page("branches.md", "Branches", lambda f, s: not (
         s.kind in ("element", "context") or _is_loop(f, s) or _is_coder(f, s)
         or _is_arithmetic(f, s)),
@@ -180,7 +180,7 @@ def pages(result, sidecars):
              *_table("Pages", ("page", "reached", "of", "waived", "missing"), rows),
              "* [Rules and streams](rules.md)", "* [Widths](widths.md)",
              "* `waivers.json`: goals that cannot be reached, with reasons; `hard_goals.md`: goals "
-             "that take some thought", ""]
+             "that are hard to reach", ""]
     yield "README.md", "\n".join(index)
     for page in PAGES:
         yield page.file, page.markdown(result)
@@ -214,7 +214,7 @@ def rules_page(result, sidecars):
                for kind, found in (("accept", kept), ("reject", broken)) if not found.get(rule)]
     lines = ["# Rules and streams", "", f"**{len(both)} of {len(rules)}** rules have both.", "",
              "Accept: streams that decode and whose sidecar names the rule. Reject: streams that "
-             "break the rule, as sidecar or measurement say.", ""]
+             "break the rule, according to sidecar or measurement.", ""]
     lines += [f"## Missing: {len(without)}", "", *without, ""] if without else []
     lines += _table("Rules", ("rule", "clause", "effect", "accept", "reject"), rows)
     return "\n".join(lines), headline

@@ -21,10 +21,10 @@ context     a model, such as M[3]         0 1: bins decoded with it. Where the n
                                           list depends on the stream: ranges of the last index
 value       an expression                 least N, greatest N (coverage_goals.json)
 
-TEXT ends with #2, #3 ... where it stands in the function again. A function of clause 5 is counted
-at each of its calls apart: there, FUNCTION is  MakeLcf > Round2(y[c], 30).  Ids hold no line
-numbers. Conditions and ranges that are constant are no goals, nor is what no stream can run: code
-that only computes constants.
+TEXT ends with #2, #3 ... if it occurs again in the function. Each call of a function of clause 5
+is counted separately: there, FUNCTION is  MakeLcf > Round2(y[c], 30).  Ids contain no line
+numbers. Constant conditions and ranges are not goals, nor is code that only computes constants,
+as no stream can run it.
 """
 
 LOOP_CAP = 64
@@ -45,7 +45,7 @@ class Site:
         return f"Cover{letter}{self.number}"
 
     def given(self, namespace):
-        """Variables that the program needs, as for nothing seen yet."""
+        """The variables that the program needs, before anything is seen."""
         raise NotImplementedError
 
     def seen(self, namespace):

@@ -95,7 +95,8 @@ class Commands(rlpccov_test.FolderTest):
 
     def test_sidecars_are_compared(self):
         path = self.sidecar("low", expect="accept")
-        self.assertIn("other than measured now", self.run_tool(self.streams, "--check")[1])
+        self.assertIn("differs from what is measured now",
+                      self.run_tool(self.streams, "--check")[1])
         self.run_tool(self.streams / "low.rlpc", "--update")
         self.assertNotIn("low", self.run_tool(self.streams, "--check")[1])
         content = json.loads((self.streams / "MEASURED.json").read_text())
@@ -106,7 +107,7 @@ class Commands(rlpccov_test.FolderTest):
         (self.streams / "none.rlpc").write_bytes(b"")
         self.sidecar("none", rule="R-BIT-01")
         self.run_tool(self.streams / "none.rlpc", "--update")
-        self.assertIn("none.json: names R-QQQ-01, which the stream never comes to",
+        self.assertIn("none.json: names R-QQQ-01, which decoding the stream never checks",
                       self.run_tool(self.streams, "--check")[1])
 
     def test_measurements_are_kept_by_suite_as_of_the_release(self):
@@ -119,7 +120,7 @@ class Commands(rlpccov_test.FolderTest):
         measured = (self.streams / "MEASURED.json").read_text()
         self.assertEqual(list(json.loads(measured)["streams"]), ["low"])
         self.goals(("6 Syntax", "def stream():\n    Next = 0\n    q_value = u(8)"))
-        changed = "low: other than measured now"
+        changed = "low: differs from what is measured now"
         self.assertIn(changed, self.run_tool(self.streams, "--check")[1])
         (area / "low.json").write_text('{"id": "low", "released": "2026-11-21"}')
         self.assertNotIn(changed, self.run_tool(self.streams, "--check")[1])

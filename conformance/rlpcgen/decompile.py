@@ -9,7 +9,7 @@ import stream_writer
 
 import specdec  # found through stream_writer
 
-# Not 0 where nothing is said, so that a 0 has to be said.
+# Elements whose default is not 0, so that a recipe must give a 0.
 _NOT_ZERO = set(recipe_source.DEFAULTS) | {
     "first_frame", "num_gof_frames_minus1", "num_index_gofs_minus1", "first_gof_offset",
     "index_gof_frames_minus1", "index_gof_bytes", "index_distance", "component_group_idx",
@@ -46,7 +46,7 @@ class _Recorder:
         if not condition:
             raise specdec.Verdict(1, rule)
 
-    # Operations of 6.4, put among the elements as ("gates", operation).
+    # Operations of 6.4, recorded among the elements as ("gates", operation).
 
     def _component_start(self, run):
         def component_start():
@@ -140,7 +140,7 @@ def _grouped(elements):
 
 
 def _unit_lines(elements):
-    """The elements of a unit; those of each component by themselves."""
+    """The lines for the elements of a unit, with those of each component in a group."""
     common, components = [], []
     for name, value in elements:
         if name == "scale_idx_delta":
@@ -160,7 +160,7 @@ def _unit_lines(elements):
 
 
 class Decompiler:
-    """Writes recipes; the builder shows that they give the stream again."""
+    """Writes recipes, and checks with the builder that they give the stream again."""
 
     def __init__(self, program):
         self._code = stream_writer.writing_code(program)
@@ -188,7 +188,7 @@ class Decompiler:
         return self._rest(text, data[at:])
 
     def _unit(self, before, name, elements, unit, start):
-        """The unit by its elements if that gives its bytes, or else by its bytes."""
+        """The unit by its elements if these give its bytes, otherwise by its bytes."""
         head = f"unit {name}\n"
         lines = "".join(line + "\n" for line in _unit_lines(elements))
         if name == "METADATA":
@@ -210,7 +210,7 @@ class Decompiler:
 
     @staticmethod
     def _rest(text, rest):
-        """Bytes that are no whole unit."""
+        """Bytes that are not a complete unit."""
         if not rest:
             return text
         return text + f"stream\n  append = {rest.hex()}\n"

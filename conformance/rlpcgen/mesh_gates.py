@@ -1,8 +1,8 @@
-"""The gates of 6.4.4 from a list of triangles, and some meshes to try them on."""
+"""Operations on the gates of 6.4.4 from a list of triangles, and some small meshes."""
 
 
 class GateError(ValueError):
-    """An operation that is not possible on the gate at hand."""
+    """An operation that is not possible on the current gate."""
 
 
 def grid(columns, rows, wrap_columns=0, wrap_rows=0):
@@ -42,7 +42,7 @@ MESHES = {"grid": grid, "fan": fan, "tetrahedron": tetrahedron, "octahedron": oc
 
 
 class MeshFollower:
-    """Says for each gate what makes the triangles of a mesh, in the variables of a writer."""
+    """Finds for each gate the operation that gives the triangles of a mesh."""
 
     def __init__(self, triangles):
         self._triangles = [tuple(t) for t in triangles]
@@ -123,7 +123,7 @@ class GateElements:
               "glue_next_flag": "N"}
 
     def __init__(self, next_operation):
-        """next_operation(gate) gives text; gate tells whether it is wanted for a gate."""
+        """next_operation(gate) gives text; gate: for a gate, not for a component."""
         self._next = next_operation
         self._operation = ""
         self._instances = []

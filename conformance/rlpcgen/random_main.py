@@ -1,4 +1,4 @@
-"""Random legal streams of the Main profile: GOFs of bones, with slices, and of clusters."""
+"""Random legal streams of the Main profile: skinned GOFs with slices, and cluster GOFs."""
 
 import random_streams
 
@@ -12,7 +12,7 @@ class MainPlan(random_streams.Plan):
         self.deep = False
         if n.chance(15):  # more layers
             self.triangles = n.between(100, 300)
-        self.bones_percent = n.pick([100, 50, 50, 0])  # of the GOFs
+        self.bones_percent = n.pick([100, 50, 50, 0])  # share of skinned GOFs
         if self.bones_percent == 50:
             self.frames = n.between(2, 12)
         self.gof_frames = n.pick([self.frames, 3])  # at most
@@ -28,7 +28,7 @@ class MainPlan(random_streams.Plan):
 
 
 class MainSource(random_streams.RandomSource):
-    """Values of the elements of bones and slices, and of those that clusters have, too."""
+    """Values of the elements of skinned GOFs, slices and cluster GOFs."""
 
     def _profile_idc(self, ns, indices, arguments):
         return 1

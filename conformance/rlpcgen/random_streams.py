@@ -1,8 +1,8 @@
 """Random legal streams from a seed, shaped to reach extremes.
 
 A plan fixes what a stream is like (sizes, kind of mesh, how large residuals are); then the
-specification itself asks for one element after the other, and each gets a legal value, drawn with a
-liking for the limits. A requirement that fails here is an error of this file.
+specification itself asks for one element after the other, and each gets a random legal value,
+often a limit. A requirement that fails here is an error of this file.
 """
 
 import json
@@ -73,7 +73,7 @@ class RandomSource:
     # Draws.
 
     def near(self, low, high):
-        """A number of a range: a limit, near one, or any, of any order of magnitude."""
+        """A number of a range: a limit, a number near a limit, or a number of any magnitude."""
         n = self.numbers
         if n.chance(25):
             return n.pick([low, high])
@@ -314,7 +314,7 @@ class RandomBuilder:
         source.gates(operation, writer.ns)
         writer.unit(recipe_source.unit_codes(writer.ns)["CONNECTIVITY"])
         if not plan.reuse:
-            # All the vertices that occur, and some that do not.
+            # The vertices that occur, and some that do not.
             room = max(1, writer.ns["NumCodedVertices"] + plan.isolated)
         plan.vertices = room
         plan.all_triangles = plan.triangles + plan.degenerate

@@ -1,4 +1,4 @@
-"""Parses recipes, the readable texts from which streams are written. RECIPES.md describes the format."""
+"""Parses recipes, readable texts from which streams are written; RECIPES.md has the format."""
 
 import dataclasses
 import pathlib
@@ -18,7 +18,7 @@ META = ("title", "tier", "seed", "twin", "level", "expect", "note", "superseded_
 
 
 class RecipeError(Exception):
-    """A recipe that is not understood, with file and line."""
+    """A recipe that cannot be parsed; the text has file and line."""
 
 
 @dataclasses.dataclass
@@ -86,7 +86,7 @@ class Values:
         if not self._items:
             raise RecipeError(f"{entry.place}: {entry.name} has no value")
         self._at = 0
-        self._left = None  # of the item at hand
+        self._left = None  # repetitions left of the current item
 
     def done(self):
         return self._at >= len(self._items) and not self._repeats
@@ -113,7 +113,7 @@ class Values:
         try:
             return int(text, 0)
         except ValueError as error:
-            raise RecipeError(f"{self.entry.place}: {text!r} is no number") from error
+            raise RecipeError(f"{self.entry.place}: {text!r} is not a number") from error
 
 
 class _Parser:
@@ -153,7 +153,7 @@ class _Parser:
             self._repeat(*map(int, _REPEAT.match(line).groups()))
         elif _COMPONENT.match(line):
             if self._unit is None:
-                self.fail("a component stands in a unit")
+                self.fail("`component` belongs inside a unit")
             number = _COMPONENT.match(line).group(1)
             key = number if number == "all" else int(number)
             self._entries = self._unit.components.setdefault(key, [])
@@ -167,7 +167,7 @@ class _Parser:
 
     def _meta(self, key, text):
         if key not in META:
-            self.fail(f"{key}: not a field of a recipe; there are {', '.join(META)}")
+            self.fail(f"{key}: not a field of a recipe; fields are {', '.join(META)}")
         self.recipe.meta[key] = text.replace(",", " ").split() if key in LISTS else text
         if key == "twin":
             twin = self._load(text)

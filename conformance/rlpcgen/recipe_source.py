@@ -8,7 +8,7 @@ import stream_writer
 
 SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
-# What an element is when the recipe does not say; 0 for those that are not here.
+# Values of elements that the recipe does not give; 0 for all others.
 DEFAULTS = {"profile_idc": 0, "level_idc": 1, "frame_rate_numerator_minus1": 29,
             "position_bits": 16, "urgent_degree": 5, "bones_flag": 1,
             "layer_step_minus1": 15, "temporal_weight": 256}
@@ -62,7 +62,7 @@ class RecipeSource:
         for entry in entries:
             if (entry.name not in self._elements and entry.name not in _PSEUDO
                     and entry.name != "unit_crc"):
-                raise recipes.RecipeError(f"{entry.place}: {entry.name} is no syntax element")
+                raise recipes.RecipeError(f"{entry.place}: {entry.name} is not a syntax element")
             # Of two entries of the same name and indices, the later one counts.
             grouped.setdefault(entry.name, {})[entry.indices] = recipes.Values(entry, seed)
         return grouped
@@ -111,7 +111,7 @@ class RecipeSource:
         if self._gates is not None:
             self._gates.hook(ns)
 
-    # What StreamWriter asks for.
+    # Called by StreamWriter.
 
     def value(self, writer, name, indices, descriptor, arguments):
         value = self._value(writer, name, indices, arguments)
@@ -177,13 +177,13 @@ def _triangles(entry):
             raise recipes.RecipeError(f"{entry.place}: triangles have three corners each")
         return [tuple(numbers[i:i + 3]) for i in range(0, len(numbers), 3)]
     if text[0] not in mesh_gates.MESHES:
-        raise recipes.RecipeError(f"{entry.place}: there are the meshes "
+        raise recipes.RecipeError(f"{entry.place}: known meshes are "
                                   + ", ".join(sorted(mesh_gates.MESHES)))
     return mesh_gates.MESHES[text[0]](*map(int, text[1:]))
 
 
 def inferred(writer, name, indices):
-    """What an element has to be where nothing is said."""
+    """The value of an element that the recipe does not give."""
     ns = writer.ns
     if name == "first_frame":
         return ns["NumParsedFrames"]
@@ -239,13 +239,13 @@ class StreamBuilder:
         settings = {e.name: e for e in recipe.stream}
         for name, entry in settings.items():
             if name not in _STREAM:
-                raise recipes.RecipeError(f"{entry.place}: a stream has {', '.join(_STREAM)}")
+                raise recipes.RecipeError(f"{entry.place}: a stream can have {', '.join(_STREAM)}")
         writer.stream_header(*_stream_header(settings))
         offsets = []  # (code, first byte)
         for unit in recipe.units:
             code = int(unit.name, 16) if unit.name.startswith("0x") else codes.get(unit.name)
             if code is None:
-                raise recipes.RecipeError(f"{recipe.path}: {unit.name} is no unit; there are "
+                raise recipes.RecipeError(f"{recipe.path}: {unit.name} is not a unit; units are "
                                           + ", ".join(codes))
             _infer_positions(writer, codes, offsets, code)
             offsets.append((code, len(writer.data)))
@@ -265,7 +265,7 @@ class StreamBuilder:
             raise recipes.RecipeError(f"{entry.place}: {entry.name} has values that the unit "
                                       "does not use")
         if code == codes["SEQUENCE_HEADER"]:
-            # GOFs are written for the version where it does not have the profile.
+            # If the version does not have the profile, GOFs are written as in the version.
             writer.ns["profile_idc"] = min(writer.ns["profile_idc"], writer.ns["version_minor"])
         if code == codes["GOF"]:
             writer.decode_gof()
@@ -298,7 +298,7 @@ def _payload(source):
 
 
 def _change(source, payload):
-    """A payload with what stands behind its elements, and with what the recipe does to it."""
+    """The payload with the bytes that follow its elements, damaged as the recipe asks."""
     if source.entry("deflated") is not None:
         payload += hexadecimal(source.entry("deflated"))
     elif source.entry("json") is not None:
@@ -335,7 +335,7 @@ def _stream_header(settings):
 
 
 def _finish(data, settings):
-    """Damage to the whole: bits turned over, bytes cut off or added."""
+    """Damages the whole stream: inverts bits, cuts off or appends bytes."""
     if "flip" in settings:
         changed = bytearray(data)
         for bit in settings["flip"].text.split():
@@ -351,7 +351,7 @@ def _finish(data, settings):
 
 
 def _infer_positions(writer, codes, offsets, code):
-    """What index and end say of the units before them."""
+    """Infers the elements of index and end that describe the units before them."""
     here = len(writer.data)
     if code == codes["GOF_INDEX"]:
         gofs = [at for c, at in offsets if c == codes["GOF"]]

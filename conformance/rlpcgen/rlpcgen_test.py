@@ -143,12 +143,12 @@ class Recipes(unittest.TestCase):
         self.assertEqual(expected(low)["sha256_int"], expected(high)["sha256_int"])
 
     def test_complaints_name_the_place(self):
-        self.refuses("test:3: num_vertices is no syntax element",
+        self.refuses("test:3: num_vertices is not a syntax element",
                      self.changed("num_vertices_minus1", "num_vertices"))
         self.refuses("test:8: lcf_flag has values that the unit does not use",
                      self.changed("lcf_flag = 1", "lcf_flag = 1 0"))
-        self.refuses("'x' is no number", self.changed("lcf_flag = 1", "lcf_flag = x"))
-        self.refuses("GOFS is no unit", self.changed("unit GOF\n", "unit GOFS\n"))
+        self.refuses("'x' is not a number", self.changed("lcf_flag = 1", "lcf_flag = x"))
+        self.refuses("GOFS is not a unit", self.changed("unit GOF\n", "unit GOFS\n"))
         self.refuses("does not fit u(3)",
                      self.changed("lcf_flag = 1", "lcf_flag = 1\n  seed_predictor = 9"))
         self.refuses("not possible on this gate", self.changed("mesh = tetrahedron", "gates = T P C"))

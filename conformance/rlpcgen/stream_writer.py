@@ -19,7 +19,7 @@ BIT_DESCRIPTORS = ("u", "ue", "se")
 MAX_RESIDUAL = 268435455
 _ESCAPE_LENGTH = 27  # most ones before the bits of an escape, 9.5.1
 
-# Requirements on what stands around an element, which is not yet there when it is written.
+# Requirements on what follows an element, which is not yet written when they are evaluated.
 _STRUCTURAL = ("R-UNT-01", "R-UNT-02", "R-RNG-01", "R-RNG-02", "R-HSH-01", "R-BIT-03", "R-MET-02")
 
 
@@ -79,11 +79,11 @@ class _Stop(Exception):
 
 
 class RangeWriter:
-    """The bytes that make a range decoder decide as told: the lower end of its range."""
+    """A range encoder: the bytes with which a range decoder takes the given decisions."""
 
     def __init__(self):
         self.bytes = bytearray()
-        self.low = 0  # of the next 32 bits
+        self.low = 0  # lower end of the range, in the next 32 bits
         self.carries = []  # length of each carry, in bytes
 
     def narrow(self, by, shifts):
@@ -106,7 +106,7 @@ class RangeWriter:
         self.carries.append(len(self.bytes) - at)
 
     def finish(self, size, highest=False):
-        """One byte more, after which zeros lie in the range; the lowest or the highest."""
+        """Appends the lowest or the highest byte after which zeros lie in the range."""
         if highest:
             self.low = (self.low + size - 1) & ~0xFFFFFF
         else:
@@ -126,7 +126,7 @@ class StreamWriter:
     """One stream. source.value(writer, name, indices, descriptor, arguments) gives the values."""
 
     def __init__(self, code, source, strict=False):
-        """code: of writing_code( ). strict: a broken requirement is an error, not meant."""
+        """code: of writing_code( ). strict: a broken requirement is an error, not intended."""
         self.data = bytearray()
         self.source = source
         self.strict = strict
@@ -317,7 +317,7 @@ class StreamWriter:
 
     def _run_payload(self, code):
         if code < 128 and not self.ns["IsKnownType"](code):
-            return  # a slice in version 1.0, as any critical unit that it does not know
+            return  # a critical unit that the version does not know, such as a slice in 1.0
         if code == self.ns["SLICE"] and "SliceLayers" not in self.ns:
             return  # before the first GOF
         try:
@@ -329,7 +329,7 @@ class StreamWriter:
                 raise WriteError(f"unit of code {code}: {error!r}") from error
 
     def _read_payload(self, payload):
-        """Bytes as they are; what follows depends on what they say, so they are read."""
+        """Writes bytes as they are, and parses them, as later units depend on their contents."""
         ns, start = self.ns, self.ns["BitPosition"]
         self.put_bytes(payload)
         hooks = {name: ns[name] for name in self._read}

@@ -2,8 +2,8 @@
 
 STRESS.json of a version has a digest for each hundred random legal streams, by seed, and for each
 recipe of recipes-stress/: more of the same kind as the core tier, or slow, or large. A digest covers
-the bytes of the streams and all that they decode to. Whoever wants the streams has them written
-into a folder, which is a suite then.
+the bytes of the streams and all that they decode to. write_suite() writes the streams themselves
+into a folder, as a suite.
 """
 
 import hashlib
@@ -34,7 +34,7 @@ _out = None  # folder of write_suite, in its worker processes
 
 
 class _Worker:
-    """Makes streams; has both decoders decode them, and the validator look at them."""
+    """Makes streams, decodes them with both decoders, and validates them."""
 
     def __init__(self, folder, spec, bin_folder=None):
         self._folder = pathlib.Path(folder)
@@ -101,7 +101,7 @@ def _examine(item):
 
 
 def items(folder, seeds):
-    """What there is to examine: seeds of random streams, then recipes."""
+    """The items to examine: seeds of random streams, then recipes."""
     paths = sorted(pathlib.Path(folder).glob("recipes-stress/*/*.recipe"))
     return ([("seed", str(seed)) for seed in range(seeds)]
             + [("recipe", p.relative_to(folder).as_posix()) for p in paths])

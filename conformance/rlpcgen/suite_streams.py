@@ -23,12 +23,12 @@ _SETTINGS = {"profile_idc": 0, "level_idc": 1}
 
 
 def specification_of(folder):
-    """The version of the document: 1.1 of streams/v1.1, and of its supplement streams/v1.1s1."""
+    """The version of the specification: 1.1 for streams/v1.1 and its supplement streams/v1.1s1."""
     return pathlib.Path(folder).name[1:].partition("s")[0]
 
 
 class StreamsError(Exception):
-    """A recipe and what comes of it do not agree."""
+    """A recipe and its stream do not agree."""
 
 
 def recipe_paths(folder, only=None):
@@ -48,27 +48,27 @@ def _header_value(recipe, name):
 
 
 def _profile(recipe):
-    """Baseline, too, if version 1.0 has the number of a later profile."""
+    """The profile: also Baseline if version 1.0 has the profile_idc of a later profile."""
     minor = [e.text for e in recipe.stream if e.name == "version_minor"][-1:]
     return "main" if minor == ["1"] and _header_value(recipe, "profile_idc") == 1 else "baseline"
 
 
 def _expect(recipe, found, place):
-    """What a decoder has to do, from what the recipe announces and what the specification does."""
+    """What a decoder must do, from what the recipe announces and what the specification does."""
     announced = recipe.meta.get("expect")
     rules = recipe.meta["rules"]
     if announced == "either":
         if found["expect"] != "accept" or not rules:
-            raise StreamsError(f"{place}: expect: either is for streams that decode and break a "
-                               "rule that decoding need not check")
+            raise StreamsError(f"{place}: `expect: either` is for streams that decode, but "
+                               "violate a rule that decoding need not check")
         return announced
     if found["expect"] == "accept":
         if announced not in (None, "accept") or "x" in recipe.path.stem:
-            raise StreamsError(f"{place}: meant to be refused, but it decodes")
+            raise StreamsError(f"{place}: should be refused, but decodes")
         return "accept"
     if "x" not in recipe.path.stem:
         raise StreamsError(f"{place}: breaks {found['rule']} at bit {found['bit']}; if that is "
-                           "meant, its id has x and a number behind")
+                           "intended, its id must end with x and a number")
     if rules != [found["rule"]]:
         raise StreamsError(f"{place}: `rules: {', '.join(rules)}`, but the first rule that it "
                            f"breaks is {found['rule']}, at bit {found['bit']}")
@@ -156,7 +156,7 @@ def write_stream(place, data, sidecar):
 
 
 def difference(place, data, sidecar):
-    """What is not as the recipe gives it, or None."""
+    """The difference from what the recipe gives, or None."""
     if not place.is_file() or not place.with_suffix(".json").is_file():
         return f"{place}: missing; build the streams"
     if place.read_bytes() != data:
@@ -179,7 +179,7 @@ def strays(folder, places):
 
 
 def sums(folder):
-    """The text of SHA256SUMS: what a release freezes. Sidecars may say more later."""
+    """The text of SHA256SUMS: what a release freezes. Sidecars may get more fields later."""
     folder = pathlib.Path(folder)
     paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes*/*/*.recipe"))
     paths += [folder / name for name in (suite.INDEX, STRESS) if (folder / name).is_file()]

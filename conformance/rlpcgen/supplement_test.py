@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The supplements show the mistakes that they are for, by the specification with these mistakes.
+"""Streams of the supplements show the mistakes that they are for, seeded into the specification.
 
     supplement_test.py [unittest arguments, such as SingleFaults]
 
-What rlpcdec makes of them with the same mistakes, scripts/mutate says.
+scripts/mutate seeds the same mistakes into rlpcdec.
 """
 
 import ast
@@ -46,7 +46,7 @@ def data_of(sidecar):
 
 
 class Decoder(specdec.Decoder):
-    """The specification with a mistake: other functions {name: tree}; a rule is not looked at."""
+    """The specification with a mistake: replaced functions {name: tree}; a rule not checked."""
 
     def __init__(self, data, other=None, rule=None):
         super().__init__(PROGRAM, data, lambda output: None)
@@ -113,7 +113,7 @@ class Overruns(unittest.TestCase):
 
 
 class Inflating(unittest.TestCase):
-    """Each damaged zlib stream has one fault, and inflates where that is not looked at."""
+    """Each damaged zlib stream has one fault, and inflates if that is not checked."""
 
     FAULTS = ("check sum", "header check", "method", "window size", "dictionary", "dictionary",
               "stored length", "distance too far", "block type", "absent distance code",

@@ -1,7 +1,7 @@
 """Inflates zlib streams (RFC 1950, RFC 1951) check by check, so that checks can be left out.
 
-What a reader makes of a stream without a check is a guess at the most likely one: a length before
-the first is 0, bytes before the first are 0, and symbols without a meaning have the base 0.
+Without a check, inflating continues as a reader most likely would: a length before the first is
+0, bytes before the first are 0, and symbols without a meaning have the base 0.
 """
 
 import zlib

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""On random legal streams of the Main profile, and on these damaged, rlpcval and rlpcdec agree.
+"""rlpcval and rlpcdec agree on random legal streams of the Main profile, and on damaged copies.
 
     agreement_test.py --bin BUILD/bin [unittest arguments, such as Agreement]
 """
@@ -57,7 +57,7 @@ def damaged(stream, numbers):
 
 class Agreement(ToolsTest):
     SEEDS = 25
-    FAULTS = 6  # of each stream
+    FAULTS = 6  # damaged copies per stream
 
     def verdict_of_decoder(self, path):
         """(rule, bit), or None if rlpcdec decodes the stream."""

@@ -178,7 +178,7 @@ void print_report(std::FILE* out, const std::string& path, const ValidationRepor
                  report.stopped->element, what.c_str());
   }
   if (!report.complete) {
-    std::fprintf(out, "\n  Not all was checked: validate again when this is mended.\n");
+    std::fprintf(out, "\n  Not everything was checked: fix this, then validate again.\n");
   }
 }
 

@@ -56,7 +56,7 @@ class Validation(ToolsTest):
         result = run("rlpcval", self.broken())
         self.assertEqual(result.code, 1)
         for words in ("error R-UNT-03", "unit_crc", "(GOF) at byte", "clause 7.2", "Likely cause:",
-                      "What to do:", "stops here", "Not all was checked"):
+                      "What to do:", "stops here", "Not everything was checked"):
             self.assertIn(words, result.out.decode())
         self.assertEqual(run("rlpcval", self.broken(), "--quiet").out, b"")
 

@@ -91,8 +91,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Write the size of the whole GOF index unit (payload + 9), or 0 if there is none, and the "
      "index directly before the end."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
-     "A GOF was left out, repeated or reordered; or first_frame counts within something else "
-     "than the sequence.",
+     "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
+     "start of the sequence.",
      "Write GOFs in order; first_frame is the number of frames of all GOFs before."},
     {"R-GOF-02", "7.5", "A GOF has more frames than the sequence has left.",
      "The last GOF is written with the nominal length of a GOF.",
@@ -104,7 +104,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The step was computed in other units than those of the grid, or for a grid far finer "
      "than "
      "the target needs.",
-     "Take a coarser grid, so that steps stay small."},
+     "Use a coarser grid, so that steps stay small."},
     {"R-GOF-05", "7.5", "seed_predictor is above 4.",
      "A predictor was written that this version does not have; or reading is out of step.",
      "Write the order of the predictor, 0 to 4; see the elements before if it looks like "
@@ -298,8 +298,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
 constexpr std::array kWarnings = std::to_array<RuleExplanation>({
     {"W-BON-01", "7.11.2", "A bone moves no vertex.",
      "Bones that lost their last vertex to others were kept; they cost bits to no effect.",
-     "Remove bones that influence no vertex, and are above none that does, before the GOF is "
-     "written."},
+     "Remove bones that influence no vertex and have no descendant that does, before the GOF "
+     "is written."},
     {"W-GOF-01", "7.5.3", "A cluster has no coded vertices.",
      "Clusters that became empty were kept; they cost bits to no effect.",
      "Remove empty clusters before the GOF is written."},

@@ -7,7 +7,7 @@
 //
 // It walks the units itself and continues after an error where it can. In addition to the
 // checks of the decoding process, it checks the requirements that a decoder need not check
-// (clause 4.6), and warns of what is legal but surely not meant. Nothing throws; memory is
+// (clause 4.6), and warns of what is legal but surely not intended. Nothing throws; memory is
 // bounded by one GOF and one frame, and limits are checked before allocating.
 #pragma once
 
@@ -28,7 +28,7 @@ namespace rlpc {
 enum class Severity : std::uint8_t {
   kError,        // the stream does not conform
   kUnsupported,  // a later version, another profile or level
-  kWarning,      // legal, but surely not meant
+  kWarning,      // legal, but surely not intended
 };
 
 struct FindingUnit {

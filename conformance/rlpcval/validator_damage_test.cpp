@@ -33,7 +33,7 @@ std::optional<Error> decode_error(const StreamBytes& bytes) {
   }
 }
 
-// 4.6: not checked by decoding in order. Nor is anything within a GOF index unit.
+// 4.6: rules that decoding in order does not check, as it does nothing within a GOF index unit.
 bool checked_by_decoding(const Finding& finding) {
   constexpr std::array<std::string_view, 7> kUnchecked{
       "R-END-03", "R-HSH-03", "R-IDX-01", "R-IDX-02", "R-IDX-03", "R-IDX-04", "R-MET-03"};
@@ -103,7 +103,7 @@ TEST_P(Damage, EveryFlippedBitWithAndWithoutFittingCrcs) {
   }
 }
 
-// Several places at a time, so that there is something to find behind the first error.
+// Several places at a time, so that there is something to find after the first error.
 TEST_P(Damage, RandomBytes) {
   constexpr unsigned kSeeds = 3;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
@@ -166,7 +166,7 @@ TEST_P(Damage, UnitsInOtherPlaces) {
   }
 }
 
-// The types that there are, and some that there are not.
+// All known types, and some unknown ones.
 TEST_P(Damage, OtherTypes) {
   for (const UnitPlace& unit : units_of(stream_)) {
     for (const int type : {0, 1, 2, 3, 4, 5, 6, 127, 128, 129, 130, 131, 132, 255}) {
@@ -179,7 +179,7 @@ TEST_P(Damage, OtherTypes) {
   }
 }
 
-// Vertices met again by other fans of triangles, degenerate triangles, several components.
+// Vertices shared by several fans of triangles, degenerate triangles, several components.
 StreamBytes tangled_stream() {
   FrameSource::Shape shape;
   shape.triangles = {{0, 1, 2}, {0, 3, 4}, {0, 5, 6}, {1, 2, 7}, {1, 7, 8},

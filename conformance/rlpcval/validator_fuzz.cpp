@@ -1,6 +1,6 @@
 // Fuzzes the validator, and compares it with the decoder: the error at which a decoder stops is
 // the one that the validator says it stops at. The first byte of an input says whether CRCs are
-// repaired, or hardly an input would get past them.
+// repaired; otherwise hardly any input would get past them.
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What is legal in a GOF, but surely not meant; and what a GOF takes of the level.
+// Warnings about a GOF: what is legal, but surely not intended; and the level that it needs.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// bit_pos: of the payload of the GOF unit. needed: raised to what the GOF takes.
+// bit_pos: of the payload of the GOF unit. needed: raised to what the GOF needs.
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
                  std::uint64_t bit_pos, FindingList& findings, Level& needed);
 

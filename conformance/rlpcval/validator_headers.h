@@ -36,7 +36,7 @@ struct GofHeaderCheck {
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
-// of the mesh, for GOFs of bones; 0 if not known.
+// of the mesh, for skinned GOFs; 0 if not known.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
                                 std::uint32_t num_layers);

@@ -1,4 +1,5 @@
-// Findings that need the whole stream: a wrong index, and what is legal but surely not meant.
+// Findings that need the whole stream: a wrong index, and what is legal but surely not
+// intended.
 #include <algorithm>
 #include <string>
 

@@ -169,7 +169,7 @@ TEST(Validator, FindsUnitsAgainBehindAWrongSize) {
     ASSERT_NE(first, nullptr);
     EXPECT_EQ(report.hashed_frames, 15U) << "byte " << byte;
     EXPECT_FALSE(report.complete);
-    // Nothing is made of the bytes in between.
+    // The bytes in between are not interpreted.
     for (const Finding& f : report.findings) {
       EXPECT_TRUE(f.bit_pos == first->bit_pos || f.consequence) << f.id << " at " << f.bit_pos;
       EXPECT_TRUE(!f.unit || f.unit->offset == gofs[5].offset) << f.id;
@@ -211,7 +211,7 @@ TEST(Validator, SaysWhatIsMissingOrTooMuch) {
   EXPECT_EQ(found, (Ids{"R-UNT-05", "R-UNT-05"}));
 }
 
-// The elements of a GOF unit of bones up to its layers; and of those.
+// The elements of the GOF unit of a skinned GOF up to its layers, and those of the layers.
 void put_bones(BitWriter& w, std::uint32_t num_bones_minus1, std::uint32_t rest_step_minus1,
                std::uint32_t num_component_groups, std::uint32_t prediction_idc) {
   w.ue(0);       // first_frame
@@ -288,11 +288,11 @@ TEST(Validator, SaysWhichSlicesAreMissingOrMisplaced) {
   stream = good;
   insert(stream, slices[2].offset, unit_bytes(good, slices[0]));
   EXPECT_EQ(ids(stream), Ids{"R-SLI-02"});
-  // What needs it is gone as well: legal, but for the hash.
+  // The last slice, on which no other depends: legal, apart from the hash.
   stream = good;
   erase(stream, slices[7]);
   EXPECT_EQ(ids(stream), Ids{"R-HSH-02"});
-  // Behind the hash, and before any GOF.
+  // After the hash, and before any GOF.
   stream = good;
   insert(stream, units_of_type(good, UnitType::kGofHash).at(1).end(),
          unit_bytes(good, slices[7]));
@@ -311,7 +311,7 @@ TEST(Validator, TakesNoSlicesBehindGofsOfClusters) {
     insert(stream, gofs.at(g).end(), slice);
     EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
   }
-  // Of a damaged GOF unit, it is not known.
+  // If the GOF unit is damaged, its kind is unknown.
   for (const bool cut : {false, true}) {
     StreamBytes stream = good;
     stream[gofs.at(1).payload()] ^= 2;  // bones_flag

@@ -1,4 +1,4 @@
-// What the validator says about its findings; and which metadata are JSON texts.
+// The validator's texts about its findings; and which metadata is a JSON text.
 #include <gtest/gtest.h>
 
 #include <fstream>

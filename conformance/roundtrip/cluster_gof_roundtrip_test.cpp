@@ -1,4 +1,4 @@
-// Writer and parser of GOFs against each other (clause 6.5), and what both reconstruct.
+// Writer and parser of cluster GOFs against each other (clause 6.5), and what both reconstruct.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ class Generator {
   void add_seeds(ClusterGof& gof, Cluster& cluster) {
     cluster.lcf_flag = true;
     auto& s = cluster.seed_vertex;
-    // Out of few vertices, so that clusters share them.
+    // Drawn from few vertices, so that clusters share them.
     const std::uint32_t range = std::min(header.num_vertices, coin() ? 4U : 1000000U);
     do {
       for (std::uint32_t& v : s) v = below(range);
@@ -258,7 +258,8 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   }
 }
 
-// The least max_memory_bytes that the parser takes a GOF with, its estimate, or up to 2 % more.
+// The smallest max_memory_bytes with which the parser accepts a GOF, which is its estimate, or
+// up to 2 % more.
 std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
                                const std::vector<std::uint8_t>& payload) {
   std::uint64_t too_few = 0;
@@ -272,7 +273,7 @@ std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
   return enough;
 }
 
-// What parsing and reconstruction have at a time, beside what they need for any GOF.
+// Peak memory of parsing and reconstruction, less what they need for any GOF.
 void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   const std::uint64_t estimate = estimated_memory(from, gof, payload);
@@ -300,7 +301,7 @@ TEST(GofMemory, StaysWithinWhatIsComparedWithTheLimit) {
   }
 }
 
-// Most of it is what each component of each cluster takes, however few values it has.
+// Most of it is for each component of each cluster, however few values it has.
 TEST(GofMemory, OfManyComponentsOfSmallClustersIsCounted) {
   for (const int spatial_bits : {1, 16, kMaxSpatialBits}) {
     for (const int temporal_bits : {1, 16, kMaxTemporalBits}) {

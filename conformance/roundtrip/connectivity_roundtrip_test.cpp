@@ -79,7 +79,7 @@ Mesh disjoint_union(const Mesh& a, const Mesh& b) {
   return sum;
 }
 
-// Makes vertex `from` the same as vertex `to`; `from` stays as an isolated vertex.
+// Merges vertex `from` into vertex `to`; `from` stays as an isolated vertex.
 void merge_vertices(Mesh& mesh, std::uint32_t from, std::uint32_t to) {
   for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), from, to);
 }

@@ -13,7 +13,7 @@ namespace {
 
 std::mutex counting;
 
-// The size stands before what is given.
+// The size is stored before the returned block.
 constexpr std::size_t kBefore = alignof(std::max_align_t);
 
 // Null if there is no memory.

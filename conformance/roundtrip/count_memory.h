@@ -1,5 +1,5 @@
-// Memory that `new` takes, counted: for tests of how much that is. count_memory.cpp replaces
-// the operators new and delete of the program that it is part of.
+// Counts the memory that `new` allocates, for tests. count_memory.cpp replaces the operators
+// new and delete of the program that it is linked into.
 #pragma once
 
 #include <cstddef>

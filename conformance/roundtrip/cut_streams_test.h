@@ -1,4 +1,4 @@
-// Streams as sub-streams are cut from, and what is decoded of them.
+// Streams for tests of the sub-stream extractor, and the frames that they decode to.
 #pragma once
 
 #include <gtest/gtest.h>

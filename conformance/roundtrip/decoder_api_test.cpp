@@ -89,7 +89,7 @@ TEST_P(Seeking, EveryFrameInRandomOrderIsThatOfDecodingInOrder) {
       const auto found = decoder->seek(index);
       ASSERT_TRUE(found) << found.error().rule << ", seed " << seed << ", frame " << index;
       ASSERT_EQ(decoder->position(), index);
-      // And some of those that follow.
+      // Also decode some of the frames that follow.
       for (std::uint32_t f = index; f < frames_.size() && f < index + random() % 6; ++f) {
         const auto more = decoder->next_frame(frame);
         ASSERT_TRUE(more && *more) << "seed " << seed << ", frame " << f;
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Streams, Seeking,
                                          mixed_stream),
                          stream_name);
 
-// Slices of GOFs that are skipped are skipped, too; but a GOF of clusters has none.
+// The slices of a skipped GOF are skipped, too; but a cluster GOF has none.
 TEST(Decoder, DoesNotSeekPastASliceBehindAGofOfClusters) {
   StreamBytes stream = mixed_stream();
   const std::size_t place = unit_of_type(stream, UnitType::kGof).end();
@@ -221,7 +221,7 @@ TEST(Decoder, AMissingFileCannotBeRead) {
   EXPECT_EQ(source.error().code, Errc::kIo);
 }
 
-// By every seek that needs it: not only by the first.
+// Every seek that needs the index reports the error, not only the first.
 TEST(Decoder, ReportsABadIndexAgain) {
   StreamBytes stream = indexed_stream();
   const UnitPlace end = units_of(stream).back();
@@ -358,7 +358,7 @@ std::vector<std::uint32_t> compared_from(Decoder& decoder, std::uint32_t first) 
 TEST(Hashes, ThoseOfAGofCoverItsFramesIfTheyCameInOrder) {
   auto decoder = open(plain_stream());
   ASSERT_TRUE(decoder);
-  // Zeros, but the length of each GOF at its end.
+  // Zeros, except at the last frame of each GOF, which has the length of the GOF.
   const std::vector<std::uint32_t> all = compared_from(*decoder, 0);
   std::size_t end = 0;
   while (end < all.size()) {
@@ -403,7 +403,7 @@ TEST(Hashes, AWrongOneOfAGofIsReportedWithItsLastFrame) {
   EXPECT_EQ(decoder->position(), 2U);
 }
 
-// Keeps the names, and whether the positions rise.
+// Records the names, and whether the positions increase.
 class Recorder final : public Trace {
  public:
   void begin(const char* structure, std::uint64_t bit_pos) override {

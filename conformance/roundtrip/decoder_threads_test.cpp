@@ -1,5 +1,5 @@
-// A decoder with several threads does what one with a single thread does: the same frames, and
-// the same error after them.
+// A decoder with several threads gives the same frames as one with a single thread, and the
+// same error after them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

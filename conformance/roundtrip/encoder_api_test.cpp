@@ -1,4 +1,4 @@
-// The encoder as an application uses it: what it refuses, and inputs at the edge.
+// The encoder as an application uses it: what it refuses, and edge cases.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST(Settings, ThatContradictEachOtherAreRefused) {
             std::string::npos);
 }
 
-// One parameter of a profile, and how the error is to call it.
+// One parameter of a profile, and its name in the error message.
 struct Parameter {
   const char* option;
   std::function<void(EncoderSettings&)> give;
@@ -271,7 +271,7 @@ TEST(Encoder, ReportsProgressUpToOne) {
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
 }
 
-// Inputs at the edge: they encode, decode, and are within the target.
+// Edge cases: they encode, decode, and are within the target.
 struct Edge {
   const char* name;
   std::vector<Triangle> triangles;

@@ -139,7 +139,7 @@ TEST_P(EachProfile, TheWholeStreamMeetsTheRate) {
   const double bpvf = bits_per_vertex_per_frame(encoded.bytes.size(), 100, 200);
   EXPECT_EQ(encoded.report.bpvf, bpvf);
   EXPECT_LE(bpvf, 6.0);
-  EXPECT_GE(bpvf, 0.97 * 6.0);  // 2 % of each GOF, and what the index was thought to need
+  EXPECT_GE(bpvf, 0.97 * 6.0);  // 2 % of each GOF, and the estimate of the index
 }
 
 TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
@@ -156,7 +156,7 @@ TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
   EXPECT_EQ(encoded.report.bytes, encoded.bytes.size());
 }
 
-// Where the grid does not depend on frames to come, and there is but one GOF.
+// If the grid does not depend on later frames, and there is only one GOF.
 TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
   MemoryFrames source = bending_tube(8, 20);
   EncoderSettings settings =
@@ -234,7 +234,7 @@ TEST(FrameEncoder, NamesFrameVertexAndAxisOutsideTheBox) {
     const auto error = encoder->add_frame(frame);
     ASSERT_TRUE(error);
     EXPECT_EQ(error->message.find("frame 1 (from 0), vertex 7: y is "), 0U) << error->message;
-    // It stands.
+    // The error is sticky.
     EXPECT_EQ(encoder->add_frame(frame_of(source, 1))->message, error->message);
     EXPECT_EQ(encoder->finish().error().message, error->message);
   }
@@ -289,7 +289,7 @@ TEST(FrameEncoder, ASinkThatFailsEndsIt) {
   }
 }
 
-// Frames that stand still say nothing of what is to come: noise in every vertex.
+// Still frames, which give no hint of the noise that follows.
 TEST(FrameEncoder, ALaterGofThatNeedsAHigherLevelIsAnError) {
   constexpr std::uint32_t kVertices = 520;  // more components than level 1 has
   constexpr std::uint32_t kGofFrames = 176;

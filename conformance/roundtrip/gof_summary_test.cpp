@@ -38,7 +38,7 @@ TEST(GofSummaries, TellsOfGofsAndTheirSlices) {
   EXPECT_EQ(gofs[0].layer_group_size[1], gofs[0].figure("num_layers") - 1);
   EXPECT_GT(gofs[0].figure("num_layers"), 1U);
   EXPECT_EQ(gofs[0].figure("num_trajectories"), 3U);
-  // Of the second group there is no slice: neither has it trajectories.
+  // The second group has no slice, and therefore no trajectories.
   EXPECT_EQ(gofs[1].figure("prediction_idc"), 1U);
   EXPECT_EQ(gofs[1].layer_group_size, std::vector<std::uint32_t>{1});
   EXPECT_EQ(gofs[1].figure("num_layers"), 1U);

@@ -1,4 +1,4 @@
-// Targets that GOFs of bones fail: those of clusters reach them in the Main profile, too.
+// Targets that skinned GOFs miss: in the Main profile, cluster GOFs reach them.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kFrames = 8;
 
-// A strip of triangles that trembles, with a vertex that is far away in one frame.
+// A trembling strip of triangles, with a vertex that is far away in one frame.
 MemoryFrames strip_with_outlier(std::uint32_t num_vertices, float far_away) {
   FrameSource::Shape shape;
   for (std::uint32_t v = 0; v + 2 < num_vertices; ++v) {

@@ -35,7 +35,7 @@ EncoderSettings settings_for(Target target, Preset preset = Preset::kFast) {
   EncoderSettings settings;
   settings.target = target;
   settings.preset = preset;
-  settings.hash_mode = HashMode::kFrame;  // what the encoder takes for decoded; checked below
+  settings.hash_mode = HashMode::kFrame;  // of the encoder's reconstruction; verified below
   return settings;
 }
 
@@ -139,8 +139,7 @@ TEST(MainProfile, EncodesTheSameEachTime) {
   }
 }
 
-// One vertex, points on a line, a mesh without triangles, a single frame.
-// Noise needs as many trajectories as there are, more than the level of so small a mesh allows.
+// Noise needs all trajectories, which are more than the level of so small a mesh allows.
 TEST(MainProfile, RaisesTheLevelForManyTrajectories) {
   constexpr std::uint32_t kVertices = 540;
   constexpr std::uint32_t kFrames = 174;

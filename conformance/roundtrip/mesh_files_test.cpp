@@ -1,4 +1,4 @@
-// What the decoder writes, the encoder reads back.
+// The encoder reads back what the decoder writes.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -108,7 +108,7 @@ TEST_F(MeshFiles, EveryFormatGivesBackTheSameFloats) {
   }
 }
 
-// In glTF, frames are distances from the first, of a few vertices or of all; or nothing moves.
+// glTF stores differences from the first frame: of a few vertices, of all, or of none.
 TEST_F(MeshFiles, SmallMovesGiveBackTheSameFloats) {
   options_.grid = {-10, {0, 5, 9}};
   std::vector<std::int32_t> all;

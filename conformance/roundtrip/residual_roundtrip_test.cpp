@@ -82,7 +82,7 @@ TEST(Residual, RandomValuesComeBack) {
     Coded list;
     for (int i = 0; i < 2000; ++i) {
       const auto expected = static_cast<std::uint32_t>((random() >> 2) >> (random() % 31));
-      // Mostly of the expected magnitude, now and then of any.
+      // Mostly of the expected magnitude, sometimes of any magnitude.
       const std::uint64_t around = random() % (expected / 8 + 2);
       const std::uint64_t any = random() >> (4 + random() % 28);
       const auto value = static_cast<std::int32_t>(

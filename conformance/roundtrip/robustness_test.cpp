@@ -17,7 +17,7 @@ namespace {
 
 using Frame = std::vector<std::int32_t>;
 
-// What a decoder gave until it was done, or complained.
+// The output of a decoder up to the end or an error.
 struct Decoded {
   std::vector<Frame> frames;
   std::optional<Error> error;
@@ -50,7 +50,7 @@ Decoded decode(const StreamBytes& bytes, const DecoderOptions& options = small_o
     out.frames.push_back(frame);
   }
   if (out.error) {
-    // Nobody stops callers from going on: another error, or the end.
+    // Callers may continue: they get another error, or the end.
     EXPECT_FALSE(decoder->next_frame(frame));
     if (decoder->seek(decoder->header().num_frames - 1)) (void)decoder->next_frame(frame);
     if (decoder->seek(0)) (void)decoder->next_frame(frame);
@@ -94,7 +94,7 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
       }
     }
   }
-  // The CRCs fit, so anything may be decoded; with hashes, only what was hashed.
+  // The CRCs match, so anything may be decoded; with hashes, only what was hashed.
   void expect_an_end(StreamBytes bytes) const {
     repair_crcs(bytes);
     const auto start = std::chrono::steady_clock::now();
@@ -187,7 +187,7 @@ TEST_P(Robustness, UnitsLeftOutOrRepeatedEnd) {
     SCOPED_TRACE(testing::Message() << "unit at " << unit.offset);
     ASSERT_NO_FATAL_FAILURE(expect_an_end(without));
     ASSERT_NO_FATAL_FAILURE(expect_an_end(twice));
-    // A stream may do without its vertex order, and without or with more of what is ancillary.
+    // A stream needs neither a vertex order nor ancillary units, and may repeat the latter.
     const bool ancillary = (stream_[unit.offset] & kAncillaryFlag) != 0;
     const bool optional = ancillary || unit.type == UnitType::kVertexOrder;
     EXPECT_TRUE(optional || decode(without).error);

@@ -1,4 +1,4 @@
-// Writer and parser of GOFs of bones against each other (clauses 6.11 and 6.12).
+// Writer and parser of skinned GOFs against each other (clauses 6.11 and 6.12).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -218,7 +218,7 @@ Payload prefix_of(const Payload& payload, std::size_t n) {
   return {payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(n)};
 }
 
-// Of a payload cut off, few starts are another payload by chance; these decode.
+// A few prefixes of a payload happen to be payloads themselves; these decode.
 TEST(SkinnedGofParser, ProperPrefixesFailOrDecode) {
   int refused = 0;
   int decoded = 0;

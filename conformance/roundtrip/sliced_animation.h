@@ -45,7 +45,7 @@ class SlicedAnimation {
     for (Vec3i& residual : idle.trajectories.back().residual) residual = {};
     return stream_of({gof(0, Prediction::kParallelograms), idle});
   }
-  // GOFs of clusters, of bones, of clusters, and so on.
+  // Cluster GOFs and skinned GOFs in turn.
   StreamBytes mixed_stream() {
     std::vector<AnyGof> gofs;
     for (std::uint32_t g = 0; g < 7; ++g) {
@@ -202,7 +202,7 @@ class SlicedAnimation {
     const ClusterRecon recon(header_, topology_, gof);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }
-  // Of the GOF as a decoder has it: without trajectories of groups whose slices are absent.
+  // Hashes of the GOF as decoded: without trajectories of groups whose slices are absent.
   std::vector<std::uint32_t> hashes(const CodedMesh& mesh, SkinnedGof gof) const {
     while (gof.slice_layers[gof.group_end.size() - 1] == 0) {
       gof.group_end.pop_back();

@@ -71,7 +71,7 @@ inline MemoryFrames bending_tube(std::uint32_t rings, std::uint32_t num_frames) 
   return {std::move(shape), std::move(frames)};
 }
 
-// What the encoder writes conforms, or the test fails.
+// Encodes; the test fails if the stream does not conform.
 inline void require_conforming(const StreamBytes& bytes) {
   const auto source = memory_source(bytes);
   const ValidationReport report = validate(*source);

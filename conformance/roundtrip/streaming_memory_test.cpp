@@ -1,4 +1,4 @@
-// Memory while frames stream in and out: that of a GOF, however long the sequence.
+// Memory while frames stream in and out: enough for one GOF, however long the sequence.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kVertices = 60;
 constexpr std::uint32_t kGofFrames = 10;
 
-// Of a cloth of 10 by 6 vertices that waves: the same in every GOF.
+// A waving cloth of 10 by 6 vertices, which moves alike in every GOF.
 std::vector<float> frame_of(std::uint32_t f) {
   std::vector<float> xyz;
   for (std::uint32_t v = 0; v < kVertices; ++v) {
@@ -74,7 +74,7 @@ std::size_t peak_of_decoding(const std::vector<std::uint8_t>& stream,
 }
 
 TEST(Streaming, MemoryDoesNotGrowWithTheSequence) {
-  // A GOF costs its place in the index; tables that grow have room for as many again.
+  // Each GOF needs an entry in the index; a growing table reserves room for as many again.
   constexpr std::size_t kOfGof = 64;
   std::vector<std::uint8_t> short_stream;
   std::vector<std::uint8_t> long_stream;
@@ -82,7 +82,7 @@ TEST(Streaming, MemoryDoesNotGrowWithTheSequence) {
   const std::size_t with_2000 = peak_of_encoding(2000, long_stream);
   EXPECT_LE(with_2000, with_400 + kOfGof * 160);
   EXPECT_GT(long_stream.size(), 4 * short_stream.size());
-  // All frames alone are more than what was allowed to be added.
+  // The frames alone are larger than the allowed growth.
   static_assert(1600 * kVertices * 12 > 100 * kOfGof * 160);
 
   const std::size_t decoded_400 = peak_of_decoding(short_stream, 400);

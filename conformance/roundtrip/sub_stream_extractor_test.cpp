@@ -1,5 +1,5 @@
-// Streams without some of their slices: as they are written, and as they are decoded without
-// being written.
+// Cut streams: as the extractor writes them, and as a decoder with the same cut decodes the
+// original.
 #include "decoder/extract/sub_stream_extractor.h"
 
 #include <gtest/gtest.h>
@@ -227,7 +227,7 @@ TEST(CutDecoding, ComparesHashesOfGofsThatAreWhole) {
 TEST(CutDecoding, ParsesNothingOfWhatIsLeftOut) {
   const StreamBytes stream = sliced_stream();
   const auto slices = units_of_type(stream, UnitType::kSlice);
-  // Of the first GOF: those of the finer layers, and of the second group.
+  // Slices of the first GOF: those of the finer layers, and those of the second group.
   for (const std::size_t s : {std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
     const StreamBytes garbled =
         with_payload(stream, slices[s],

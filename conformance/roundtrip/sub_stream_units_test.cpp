@@ -1,4 +1,4 @@
-// Sub-streams of whatever units a stream has, in whatever order: each cut fails, or conforms.
+// Cuts of streams with arbitrary units in arbitrary order: each cut fails or conforms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr SliceCut kCuts[] = {{}, {0, 1}, {1, 1}, {1, SliceCut::kAll}, {SliceCut::kAll, 1}};
 
-// The rules that a stream breaks; those that a decoder stops at, or the others.
+// The rules that a stream breaks: either those that stop a decoder, or the others.
 std::vector<std::string> broken_rules(const StreamBytes& stream, bool stops_decoder) {
   const auto source = memory_source(stream);
   std::vector<std::string> rules;
@@ -48,8 +48,8 @@ CutResult try_cut(const StreamBytes& stream, const SliceCut& cut) {
   }
 }
 
-// Cuts what decodes to something that conforms, and fails at what a decoder stops at.
-// Whether there is a stream.
+// Expects that a stream that decodes is cut to one that conforms, and that cutting fails where
+// decoding does. Returns whether there is a cut stream.
 bool check_cut(const StreamBytes& stream, const SliceCut& cut) {
   const CutResult result = try_cut(stream, cut);
   const std::vector<std::string> stops = broken_rules(stream, true);

@@ -12,8 +12,8 @@ import spec_program
 
 
 class CachedProgram:
-    """Program(folder) as far as compile( ) goes. What is kept is taken again while the texts, the
-    translator and Python are the same."""
+    """Program(folder) as far as compile( ) goes. A kept translation is reused while the texts,
+    the translator and Python are the same."""
 
     def __init__(self, folder, cache):
         self._folder = pathlib.Path(folder)
@@ -32,7 +32,7 @@ class CachedProgram:
         return spec_program.run(code, given)
 
     def _keep(self, path, data):
-        """Under its name when it is whole: others may be looking for it."""
+        """Renamed only when complete, as other processes may be reading."""
         self._cache.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=self._cache, delete=False) as file:
             file.write(data)

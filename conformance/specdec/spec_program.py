@@ -115,7 +115,7 @@ class _Subset(ast.NodeVisitor):
 
     def visit_Expr(self, node):
         if not isinstance(node.value, ast.Call):
-            self.fail(node, "an expression is no statement")
+            self.fail(node, "an expression is not a statement")
         self.generic_visit(node)
 
     def visit_Call(self, node):
@@ -221,7 +221,7 @@ class _Tracer(ast.NodeTransformer):
 
 
 class _WidthChecker(ast.NodeTransformer):
-    """Has every result of arithmetic looked at."""
+    """Checks every result of arithmetic."""
 
     def visit_BinOp(self, node):
         self.generic_visit(node)
@@ -286,7 +286,7 @@ class Program:
                 else:
                     known = part.id in local or part.id in self.variables
                 if not known:
-                    raise SpecError(f"{self._places[node]}: {part.id} is known nowhere")
+                    raise SpecError(f"{self._places[node]}: {part.id} is not defined")
             for call in calls:
                 self._check_arguments(node, call)
 

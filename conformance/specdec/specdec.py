@@ -61,7 +61,7 @@ class Decoder:
         return self.variables[name]()
 
     def place(self):
-        """(bit position, number of frames output) where decoding has come to."""
+        """(bit position, number of frames output) that decoding has reached."""
         if "BitPosition" not in self.variables:
             return 0, 0
         return self.call("Position"), self.variables.get("NumOutputFrames", 0)
@@ -99,7 +99,7 @@ def _checked_width(value):
 
 
 class Output:
-    """A file that comes into being with the first bytes written to it."""
+    """A file that is created with the first bytes written to it."""
 
     def __init__(self, path):
         self._path = path

@@ -58,7 +58,7 @@ class Language(FolderTest):
         self.refuses("def F():\n    try:\n        F()\n    finally:\n        F()", "Try")
         self.refuses("def F():\n    a = b = 1", "one target")
         self.refuses("def F():\n    a, b = 1, 2", "the target is a name")
-        self.refuses("def F():\n    1 + 1", "no statement")
+        self.refuses("def F():\n    1 + 1", "not a statement")
         self.refuses("def F():\n    def G():\n        F()\n    G()", "within a function")
         self.refuses("F()", "functions and assignments only")
 
@@ -75,9 +75,9 @@ class Language(FolderTest):
                 self.refuses(f"def F():\n    return {expression}", complaint)
 
     def test_names_must_be_known(self):
-        self.refuses("def F():\n    return Unknown", "Unknown is known nowhere")
-        self.refuses("def F():\n    return print(1)", "print is known nowhere")
-        self.refuses("def F():\n    x = 1\ndef G():\n    return x", "x is known nowhere")
+        self.refuses("def F():\n    return Unknown", "Unknown is not defined")
+        self.refuses("def F():\n    return print(1)", "print is not defined")
+        self.refuses("def F():\n    x = 1\ndef G():\n    return x", "x is not defined")
         self.refuses("def F(a):\n    return a\ndef G():\n    return F()", "takes 1 argument")
         self.refuses("def F(Big):\n    return 1", "lower-case word")
         self.refuses("def F():\n    return 1\ndef F():\n    return 2", "a second time")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the text of the specification says about its pseudo-code is so.
+"""What the text of the specification says about its pseudo-code is true.
 
     statements_test.py [unittest arguments, such as Statements]
 """

@@ -214,7 +214,7 @@ class DamagedMainStreams(DamagedStreams):
 
 
 class DamagedMixedStreams(DamagedStreams):
-    """The same for a stream with GOFs of clusters and of bones."""
+    """The same for a stream with cluster GOFs and skinned GOFs."""
 
     def stream(self):
         return (ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc").read_bytes()

@@ -50,11 +50,11 @@ std::string distortion_charts(const Distortion& d) {
   ChartSeries psnr = line("PSNR", kBlue, frames, [](const auto& f) { return f.psnr_db; });
   psnr.worst_is_smallest = true;
   html += line_chart("PSNR", "dB", {psnr});
-  html += line_chart("Angle of normals, mean", "degrees",
+  html += line_chart("Normal deviation, mean", "degrees",
                      {line("mean by area", kBlue, surface,
                            [](const auto& f) { return f.mean_normal_angle; })});
   html += line_chart(
-      "Angle of normals, largest", "degrees",
+      "Normal deviation, largest", "degrees",
       {line("largest", kRed, surface, [](const auto& f) { return f.max_normal_angle; })});
   return html + "</div>\n";
 }
@@ -67,8 +67,8 @@ std::vector<KeyFigure> key_figures(const Distortion& d) {
           {number_text(m.max_error_percent, 3) + " %", "of the diagonal, largest"},
           {number_text(m.mean_psnr_db, 3) + " dB", "PSNR, mean of frames"},
           {number_text(s.sted, 3), "STED"},
-          {number_text(s.mean_normal_angle, 3) + "°", "angle of normals, mean"},
-          {number_text(s.max_normal_angle, 3) + "°", "angle of normals, largest"}};
+          {number_text(s.mean_normal_angle, 3) + "°", "normal deviation, mean"},
+          {number_text(s.max_normal_angle, 3) + "°", "normal deviation, largest"}};
 }
 
 struct Parsed {

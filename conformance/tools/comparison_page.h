@@ -25,7 +25,7 @@ struct ComparisonPage {
 
 InputResult<std::string> comparison_page_text(const ComparisonPage& comparison);
 
-// Of one frame, as Metrics::kg_error_percent of all.
+// The KG error of one frame, as Metrics::kg_error_percent is that of all.
 double kg_error_percent(const FrameMetrics& frame);
 
 }  // namespace rlpc

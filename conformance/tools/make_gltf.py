@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """make_gltf.py FOLDER: writes tulip.glb, the glTF animation of streams/inputs.
 
-A tulip sways, opens and closes, and two bees visit it. A small file that has much of what glTF
-has: a skin, morph targets (one of them sparse), instances, a matrix, integers as positions,
-strips, fans and lines, and every interpolation. Only the four operations and square roots make
-the numbers, so that the bytes are the same on every machine.
+A tulip sways, opens and closes, and two bees visit it. The file is small, but uses much of glTF:
+a skin, morph targets (one of them sparse), instances, a matrix, integer positions, strips, fans
+and lines, and every interpolation. It is computed with the four operations and square roots
+alone, so that the bytes are the same on every machine.
 """
 
 import json
@@ -17,7 +17,7 @@ BYTE, UBYTE, SHORT, USHORT, FLOAT = 5120, 5121, 5122, 5123, 5126
 LETTERS = {BYTE: "b", UBYTE: "B", SHORT: "h", USHORT: "H", FLOAT: "f"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 LINES, STRIP, FAN = 1, 5, 6
-VERTICES, INDICES = 34962, 34963  # what a buffer view is for
+VERTICES, INDICES = 34962, 34963  # targets of a buffer view
 DIAGONAL = 0.70710678
 
 # Cosine and sine of the corners of an octagon and of a dodecagon.
@@ -204,7 +204,7 @@ def animate(document, joints, cup, bees):
         sway.move(joint, "rotation", "VEC4",
                   [turn(0, 0), turn(bend, bend / 2), turn(0, 0), turn(-bend, 0), turn(0, 0)],
                   "LINEAR")
-    # Per time the tangent before, the value, the tangent after; of both targets each.
+    # For each time in-tangent, value and out-tangent, each for both targets.
     keys = [(0, 0), (0.6, 0), (1, 0.2), (0.5, 1), (0, 0)]
     sway.move(cup, "weights", "SCALAR",
               [x for a, b in keys for x in (0, 0, a, b, 0, 0)], "CUBICSPLINE")
@@ -222,7 +222,7 @@ def tulip():
     document = Document()
     meshes = {make.__name__: make(document) for make in (stem, flower, bee, soil)}
     step = HEIGHT / (JOINTS - 1)
-    # Nodes 0 to 3 are the joints, then what is to be seen.
+    # Nodes 0 to 3 are the joints; visible nodes follow.
     for joint in range(JOINTS):
         node = {"name": f"joint {joint}", "translation": [0, step if joint else 0, 0],
                 "children": [joint + 1]}

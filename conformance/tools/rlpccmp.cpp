@@ -257,14 +257,14 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
   std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
               m.max_error_percent, m.max_error_frame, m.max_error_vertex);
   if (m.max_error > 0) {
-    std::printf("  PSNR      %.2f dB in the mean\n", m.mean_psnr_db);
+    std::printf("  PSNR      %.2f dB, mean of frames\n", m.mean_psnr_db);
   } else {
     std::printf("  PSNR      infinite: every frame is exact\n");
   }
   const rlpc::SurfaceMetrics& s = d.surface;
   std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
               s.sted_spatial, s.sted_temporal);
-  std::printf("  normals   %.4g degrees off in the mean, largest %.4g, frame %u, triangle %u\n",
+  std::printf("  normals   mean deviation %.4g degrees, largest %.4g, frame %u, triangle %u\n",
               s.mean_normal_angle, s.max_normal_angle, s.max_normal_frame,
               s.max_normal_triangle);
 }

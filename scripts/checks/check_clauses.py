@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Code and specification point at each other correctly.
+"""Code and specification cite each other correctly.
 
 Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comments of C++ code
              exist in spec/; a title after a number at the start of a comment is that of the

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""No floating point in the folders of integers (scripts/checks/rooms.py), common/io excepted.
+"""No floating point in the integer folders (scripts/checks/rooms.py), except in common/io.
 
-Tests are free to use it. Division and shifts of signed numbers are not looked for: text alone
-cannot tell them from those of unsigned numbers, which are exact.
+Tests may use it. Division and shifts of signed numbers are not checked: text alone cannot
+distinguish them from those of unsigned numbers, which are exact.
 """
 
 import argparse
@@ -40,7 +40,7 @@ def check(root):
             line = cpp_source.line_of(text, match.start())
             complaints.append(f"{path.relative_to(root)}:{line}: floating point: "
                               f"{match.group().rstrip(' (')}")
-    return complaints, f"{len(paths)} files are integer only"
+    return complaints, f"{len(paths)} files use integers only"
 
 
 def main():

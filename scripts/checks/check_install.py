@@ -27,7 +27,7 @@ PROGRAMS = {
 
 
 class Wrong(Exception):
-    """What is installed does not do what it should."""
+    """The installed package does not do what it should."""
 
 
 def run(*command, **kwargs):
@@ -51,7 +51,7 @@ def check_quickstart(build):
     def ninja(*words):
         return run("ninja", "-C", build, "-t", *words, stdout=subprocess.PIPE, text=True).stdout
     built = looked_for & {line.partition(":")[0] for line in ninja("targets", "all").splitlines()}
-    require(len(built) > 2 * len(PAGES), f"only {sorted(built)} are built, of what is installed")
+    require(len(built) > 2 * len(PAGES), f"only {sorted(built)} of the installed files are built")
     commands = ninja("commands", TARGET)
     missing = sorted(path for path in built if path not in commands)
     require(not missing, f"{TARGET} does not build {missing}")
@@ -80,7 +80,7 @@ class Clip:
 
 
 def try_decoder(program, clip, work):
-    """Its floats are those of rlpcdec; of an empty file it says that it is no stream."""
+    """Its floats are those of rlpcdec, and it reports that an empty file is not a stream."""
     out = work / "decoded.f32"
     run(program, clip.stream, out)
     require(out.read_bytes() == clip.decoded, f"{program.name} and rlpcdec decode differently")
@@ -163,7 +163,7 @@ def main():
             if shutil.which("pkg-config"):
                 try_decoders(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
             else:
-                print("pkg-config is not installed: its files were not tried")
+                print("pkg-config is not installed: its files were not tested")
             pages = {path.name for path in (prefix / "share" / "man" / "man1").iterdir()}
             require(pages == {f"{page}.1" for page in PAGES}, f"manual pages: {sorted(pages)}")
         except (subprocess.CalledProcessError, Wrong) as error:

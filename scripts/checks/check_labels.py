@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Every test has one label that says what it tests, so that `ctest -L` and `scripts/test --fast`
-leave none out unseen. The labels are those of scripts/cmake/tests.cmake. And every test that a
-preset names is there.
+"""Every test has one of the labels of scripts/cmake/tests.cmake, so that `ctest -L` and
+`scripts/test --fast` skip none by accident; and every test that a preset names exists.
 
   check_labels.py BUILD
 """
@@ -60,7 +59,7 @@ def labels_of(build):
     return {test["name"]: {label for p in test["properties"] if p["name"] == "LABELS"
                            for label in p["value"]}
             for test in json.loads(done.stdout)["tests"]
-            if not test["name"].endswith("_NOT_BUILT")}  # which fails by itself
+            if not test["name"].endswith("_NOT_BUILT")}  # ctest itself fails for these
 
 
 def main():

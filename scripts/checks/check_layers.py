@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The layer rules: who may include, import or link whom.
+"""The layer rules: which folder may include, import and link which.
 
 Each folder includes what scripts/checks/rooms.py allows: common neither side, encoder and decoder
 never each other, parsing nothing that reconstructs, readers and writers of mesh files nothing of
@@ -18,13 +18,13 @@ import rooms
 
 LAYERS = ("common", "decoder", "encoder", "conformance")
 
-# All of common computes, and neither reads, writes nor logs; but for the folders in it that
-# rooms.LIBRARIES names.
+# common/ only computes: no input, output or logging, except in the folders that rooms.LIBRARIES
+# names.
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
 PUBLIC_HEADERS = ("common/c_api/rlpc_status.h", "decoder/c_api/rlpc_decode.h", "decoder/rlpc_decoder.h",
                   "encoder/frame_encoder.h", "encoder/c_api/rlpc_encode.h", "encoder/rlpc_encoder.h")
-# That headers in C include.
+# Headers of the standard library that our C headers include.
 C_HEADERS = {"stddef.h", "stdint.h"}
 # Folder: other folders whose modules it may import.
 PLAIN_PYTHON = {"conformance/specdec": (), "conformance/judge": ("conformance/specdec",)}
@@ -98,7 +98,7 @@ def check_exceptions(root, path):
 
 
 def check_public_header(root, header):
-    """A user of the installed header has our headers and the standard library, no more."""
+    """A user of an installed header needs only our headers and the standard library."""
     queue, seen = [header], set()
     while queue:
         current = queue.pop()
@@ -162,7 +162,7 @@ def called_functions(root, places):
 
 
 def check_calls(root, folder, places):
-    """Code of a room does not call what it must not know, through whatever header it sees it."""
+    """Code of a room does not call what it must not know, whichever header declares it."""
     names = called_functions(root, places)
     if not names:
         yield f"scripts/checks/rooms.py: NOT_CALLED of {folder} names no function"
@@ -182,7 +182,7 @@ def check_rooms(root, paths):
     found = {path.parent.relative_to(root).as_posix() for path in paths}
     found = {folder for folder in found if rooms.layer_of(folder) != rooms.BOTH_SIDES}
     for folder in sorted(found - set(rooms.ROOMS)):
-        yield f"{folder}/ has sources, but is no room of scripts/checks/rooms.py"
+        yield f"{folder}/ has sources, but is not a room of scripts/checks/rooms.py"
     for folder in sorted(set(rooms.ROOMS) - found):
         yield f"scripts/checks/rooms.py: {folder}/ has no sources"
 
@@ -198,12 +198,12 @@ def check(root):
         complaints += check_calls(root, folder, places)
     for header in PUBLIC_HEADERS:
         if not (root / header).is_file():
-            complaints.append(f"{header}: a public header that is not there")
+            complaints.append(f"{header}: this public header does not exist")
         complaints += check_public_header(root, header)
     complaints += check_links(root)
     for folder, others in PLAIN_PYTHON.items():
         complaints += check_python(root, folder, others)
-    return complaints, f"{len(paths)} files in {len(rooms.ROOMS)} rooms include what they may"
+    return complaints, f"{len(paths)} files in {len(rooms.ROOMS)} rooms include only what they may"
 
 
 def main():

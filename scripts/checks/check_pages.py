@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Files that pages for people (*.md) name, and relative links in them, exist.
+"""Files and relative links named in pages (*.md) exist.
 
-A name is looked at if it begins with one of the project's folders. It may be a glob; `X` stands
-for a version that is not there yet (streams/vX.Y). Tables that scripts write have marks around them.
+A name is checked if it begins with one of the project's folders. It may be a glob; `X` stands
+for a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
 """
 
 import argparse
@@ -26,7 +26,7 @@ def pages(root):
 
 
 def missing(root, path):
-    """(line, name) of what a page names and nobody has."""
+    """(line, name) of what a page names, but does not exist."""
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         for match in _NAME.finditer(line):
             name = match.group(1).rstrip("./")
@@ -38,7 +38,7 @@ def missing(root, path):
 
 
 def unmarked(root):
-    """(page, name) of tables that have no place, or several."""
+    """(page, name) of tables whose marks are missing or repeated."""
     for page, names in _WRITTEN.items():
         text = (root / page).read_text(encoding="utf-8")
         for name in names:
@@ -53,7 +53,7 @@ def check(root):
                   for path in found for line, name in missing(root, path)]
     complaints += [f"{page}: no marks `begin: {name}`, `end: {name}`, once each"
                    for page, name in unmarked(root)]
-    return complaints, f"{len(found)} pages name only what is there"
+    return complaints, f"{len(found)} pages name only existing files"
 
 
 def main():

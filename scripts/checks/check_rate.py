@@ -4,9 +4,9 @@
 Encodes the bundled animations with fixed settings and compares the bytes with
 streams/inputs/encoder_bytes.json. Fails if one stream grows by more than 0.5 %, or all of them by
 more than 0.2 % in the geometric mean; a target that is missed, and a stream without an entry or an
-entry without a stream, fail as well. Streams may get smaller; --write then keeps what was gained.
+entry without a stream, fail as well. Streams may get smaller; --write then keeps the gain.
 
-  --bin FOLDER   where rlpcenc is
+  --bin FOLDER   folder of rlpcenc
   --write        replace the table by what the encoder does now; the commit says why
 """
 
@@ -20,7 +20,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE = "streams/inputs/encoder_bytes.json"
-# Other settings than those of check_stability.py, which encodes them anyway.
+# Settings that check_stability.py does not already encode.
 SETTINGS = ("--kg 1", "--kg 0.2", "--kg 0.05", "--kg 0.1 --gof all", "--kg 0.2 --gof 30",
             "--kg 0.2 --preset fast",
             "--profile baseline --kg 1", "--profile baseline --kg 0.1 --gof all",
@@ -30,7 +30,7 @@ MAX_MEAN_RISE = 0.002
 
 
 def inputs(root):
-    """Arguments that name each animation."""
+    """The arguments of rlpcenc for each animation."""
     folder = root / "streams" / "inputs"
     yield from ((p.stem, (p, "--points", p.with_suffix(".pc2"))) for p in folder.glob("*.obj"))
     yield from ((p.stem, (p,)) for p in folder.glob("*.glb"))
@@ -58,7 +58,7 @@ def compare(table, found):
     if not found:
         yield "no animation was encoded"
     if mean_ratio(table, found) > 1 + MAX_MEAN_RISE:
-        yield f"all streams: {100 * (mean_ratio(table, found) - 1):+.2f} % in the mean"
+        yield f"all streams: {100 * (mean_ratio(table, found) - 1):+.2f} % on average"
     for name in sorted(table.keys() | found.keys()):
         if name not in found:
             yield f"{name}: {TABLE} has it, but it was not encoded"
@@ -102,7 +102,7 @@ def main(arguments=None):
     complaints = list(compare(table, found))
     for complaint in complaints:
         print(f"rate: {complaint}", file=sys.stderr)
-    print(f"rate: {len(found)} streams, {change:+.2f} % in the mean, "
+    print(f"rate: {len(found)} streams, {change:+.2f} % on average, "
           f"{len(complaints)} complaints")
     return int(bool(complaints))
 

@@ -83,7 +83,7 @@ class Rate(unittest.TestCase):
         self.encode_as(dict.fromkeys(NAMES, 1002))
         self.assert_clean()
         self.encode_as(dict.fromkeys(NAMES, 1003))
-        self.assert_fails("all streams: +0.30 % in the mean")
+        self.assert_fails("all streams: +0.30 % on average")
 
     def test_what_others_save_does_not_excuse_a_rise(self):
         self.encode_as({FIRST: 1100, **dict.fromkeys(OTHERS, 500)})
@@ -128,7 +128,7 @@ class Rate(unittest.TestCase):
 
 
 class BundledTable(unittest.TestCase):
-    """What is committed has each animation with each setting."""
+    """The committed table has each animation with each setting."""
 
     def test_it_is_whole(self):
         table = check_rate.read_table(check_rate.ROOT)

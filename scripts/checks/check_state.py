@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Annex E says how long the variables of the pseudo-code in spec/*.md live.
+"""Annex E states the lifetimes of the variables of the pseudo-code in spec/*.md.
 
 Table E-1 has each variable that a function assigns to, in a row whose function gives it a value;
-Table E-2 each syntax element that another function reads than those that read it from the stream,
-in a row with the function that reads it. The rows of Table E-2 are written by hand, but for the
+Table E-2 each syntax element that a function uses other than those that read it from the stream,
+in a row with the function that reads it. The rows of Table E-2 are written by hand, except the
 clauses of their functions and the column of elements.
 
   --write    brings these up to date
@@ -107,7 +107,7 @@ def _check_variables(text, functions):
         complaints += [f"{function}( ) gives {name} no value" for name in names
                        if name not in set(_begun(tree))]
     complaints += [f"{name} is missing" for name in sorted(kept - listed)]
-    complaints += [f"{name} is nothing that lives" for name in sorted(listed - kept)]
+    complaints += [f"{name} does not outlive a function" for name in sorted(listed - kept)]
     return complaints, listed
 
 

@@ -23,7 +23,7 @@ _PUBLIC_DECODER = {"decoder"}
 _ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/write"}
 
 ROOMS = {
-    # Integers only. Nothing here knows who reads or writes a stream.
+    # Integers only, shared by readers and writers of streams.
     "common": set(),
     "common/bitstream": {"common"},
     "common/mesh": _BITS,
@@ -88,31 +88,31 @@ ROOMS = {
     "encoder/tools": {"common/io", "common/tools", "encoder", "encoder/input", "encoder/metrics",
                       "encoder/sequence"},
 }
-# Although the room is open: layers of vertices are made with the connectivity (8.9), not while a
-# GOF is parsed.
+# Files that a room must not include although their folder is open to it: vertex layers are made
+# with the connectivity (8.9), not while a GOF is parsed.
 CLOSED = {room: {"common/mesh/vertex_layers.h"} for room in _PARSE}
-# Functions that headers of these folders and files declare are not called by name in the room,
-# through whatever header they are seen.
+# A room must not call by name the functions that headers of these folders and files declare,
+# whichever header makes them visible.
 NOT_CALLED = {room: (*sorted(_of_kinds("common/{}/recon")), "common/mesh_prediction",
                      "common/kernels", "decoder/recon", "common/mesh/vertex_layers.h",
                      "common/io") for room in _PARSE}
 NOT_CALLED |= {room: ("common/io",) for room in ("decoder/recon", "decoder/stream")}
-# Sees both sides; nothing includes it.
+# May include both sides; nothing includes it.
 BOTH_SIDES = "conformance"
 
-# Layers that neither throw nor catch, but for the interface in C, programs, and threads.
+# Layers that neither throw nor catch, except the C interface, programs, and threads.
 NEITHER_THROW_NOR_CATCH = {"common", "decoder"}
 MAY_CATCH = {"common/c_api", "common/io", "common/tools", "decoder/c_api", "decoder/tools",
              "decoder/recon/async.cpp"}
 
-# Folders in which all is an integer, folders in them included; but for one.
+# Folders without floating point, with all folders in them except FILES.
 INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
                    "decoder/extract")
 FILES = "common/io"
 
 _TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
-_PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, to compare with
-# Other libraries, by the first part of the path of what is included; of a folder and those in it.
+_PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, for comparisons
+# Other libraries that a folder and those in it may use, by the first part of an include's path.
 LIBRARIES = {
     "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
     FILES: {"sys"},

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small bad trees, and the complaint that each must draw."""
+"""Small trees with a fault each, and the complaint that it must cause."""
 
 import json
 import pathlib

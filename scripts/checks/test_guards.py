@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Faults planted in a copy of the real tree, one at a time, and the complaint that each must draw.
+"""Faults planted in a copy of the real tree, one at a time, and the complaint that each must cause.
 
-A guard that looks past what it guards would let its fault pass.
+A guard that matches nothing in the real tree would miss its fault.
 """
 
 import contextlib
@@ -62,7 +62,7 @@ class RealTree(unittest.TestCase):
             self.assertIn(words, found[0])
 
     def include(self, name, line, *expected):
-        """One include more in an existing file."""
+        """Adds an include to an existing file."""
         self.assertTrue((self.root / name).is_file(), name)
         self.complaint(check_layers.check, name, lambda text: text + line + "\n", name, *expected)
 
@@ -171,7 +171,7 @@ class Layers(RealTree):
 
     def test_folders_are_rooms_and_rooms_are_folders(self):
         self.complaint(check_layers.check, "decoder/attic/a.h", lambda _: "#pragma once\n",
-                       "decoder/attic/ has sources, but is no room")
+                       "decoder/attic/ has sources, but is not a room")
         with self.without("decoder/extract"):
             found = check_layers.check(self.root)[0]
         self.assertIn("scripts/checks/rooms.py: decoder/extract/ has no sources", found)

@@ -71,7 +71,7 @@ class State(TreeTest):
 
     def test_variables_that_are_wrong(self):
         for more, complaint in {"| a unit | head( ) (6.1) | Lost |\n": "gives Lost no value",
-                                "| a unit | head( ) (6.1) | far_flag |\n": "nothing that lives",
+                                "| a unit | head( ) (6.1) | far_flag |\n": "does not outlive a function",
                                 "| a unit | Use( ) (6.2) | Sizes |\n": "Use( ) gives Sizes no",
                                 "| a unit | Use( ) (6.1) | Sizes |\n": "6.1 has no Use( )"}.items():
             found = self.complaints(check_state.check, self.tree(self.VARIABLES + more))

@@ -1,8 +1,8 @@
-# What `cmake --install` puts where; and the package that find_package(rlpc) and pkg-config find.
-# The parts of the project that do not exist are left out.
+# What `cmake --install` installs, and the package that find_package(rlpc) and pkg-config find.
+# Parts of the project that are not built are skipped.
 include(CMakePackageConfigHelpers)
 
-# Builds all that is installed, and no more: scripts/quickstart does.
+# Builds all that is installed, and no more; used by scripts/quickstart.
 add_custom_target(installed_files)
 foreach(target rlpc rlpc_common rlpc_decoder rlpc_encoder rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval
                man_pages)
@@ -37,7 +37,7 @@ foreach(part common io decoder encoder)
   add_library(rlpc::${part} ALIAS rlpc_${part})
   set_target_properties(rlpc_${part} PROPERTIES EXPORT_NAME ${part})
   target_compile_features(rlpc_${part} PUBLIC cxx_std_20)
-  # Flags and header-only libraries end in the archive: a user of it need not have them.
+  # Flags and header-only libraries are needed to build the archive, not to use it.
   get_target_property(links rlpc_${part} INTERFACE_LINK_LIBRARIES)
   if(links)
     list(FILTER links EXCLUDE REGEX
@@ -55,7 +55,7 @@ foreach(tool rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval)
   endif()
 endforeach()
 
-# If scripts/player has built it.
+# Installed only if scripts/player has built it.
 install(FILES ${PROJECT_SOURCE_DIR}/build/player/player.html
         DESTINATION ${CMAKE_INSTALL_DATADIR}/rlpc OPTIONAL)
 

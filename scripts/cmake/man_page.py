@@ -13,7 +13,7 @@ COLUMN = 26  # of descriptions in the help
 
 
 def escaped(text):
-    """For roff: no line is a request, and dashes are those of the keyboard."""
+    """Text for roff: no line is a request, and hyphens stay hyphens."""
     text = text.replace("\\", r"\e").replace("-", r"\-").replace("'", r"\(aq").replace("`", r"\(ga")
     return r"\&" + text if text.startswith(".") else text
 
@@ -46,7 +46,7 @@ def options(lines):
 
 
 def paragraph(lines):
-    """Text as it is; what is indented, or stands in columns, keeps its lines."""
+    """Paragraphs; lines that are indented or in columns stay as they are."""
     out, exact = [], False
     for line in lines:
         if (line.startswith(" ") or "   " in line) != exact:

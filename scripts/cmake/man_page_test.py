@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The manual pages: what they are made of, and that man has no complaint about those built."""
+"""The manual pages: how they are generated, and that man accepts those built."""
 
 import argparse
 import pathlib
@@ -81,6 +81,6 @@ class Built(unittest.TestCase):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=pathlib.Path, help="of the pages")
+    parser.add_argument("folder", type=pathlib.Path, help="folder of the pages")
     Built.folder = parser.parse_args().folder
     unittest.main(argv=[sys.argv[0]])

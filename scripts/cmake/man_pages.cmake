@@ -1,5 +1,5 @@
-# Manual pages of the tools, from their --help-all. Left out where the tools cannot be run
-# or there is no Python.
+# Manual pages of the tools, from their --help-all. Skipped if the tools cannot run on this
+# machine, or without Python.
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(CMAKE_CROSSCOMPILING OR NOT Python3_Interpreter_FOUND)
   return()

@@ -1,5 +1,5 @@
-# librlpc.so: the interface in C (rlpc.h) over the static libraries. Nothing but rlpc_* can be seen
-# of it, so that it may be changed within.
+# librlpc.so: the C interface (rlpc.h) over the static libraries. It exports only rlpc_*, so that
+# its internals can change.
 add_library(rlpc SHARED
   common/c_api/rlpc_status.cpp
   decoder/c_api/rlpc_decode.cpp

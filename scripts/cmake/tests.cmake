@@ -9,9 +9,10 @@
 #   figures  what scripts/compare and scripts/bench write
 #   browser  pages in Chromium
 #
-# More labels: `slow` for more than three seconds of a processor, which `scripts/test --fast` leaves
-# out; `pure` for what runs nothing that was built, and need not run again with another preset.
-# A test that keeps several processors busy says so (PROCESSORS), and uses no more.
+# More labels: `slow` for tests that take more than three seconds of processor time, which
+# `scripts/test --fast` skips; `pure` for tests that run nothing that was built, and need not run
+# again with another preset. A test that keeps several processors busy states how many
+# (PROCESSORS), and uses no more.
 include(GoogleTest)
 
 # rlpc_test(NAME SOURCE... LIBS lib...): one GoogleTest binary, each TEST its own entry.
@@ -22,7 +23,7 @@ function(rlpc_test name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LIBS")
   add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main rlpc_flags)
-  # What is tested is optimised; to optimise the tests as well takes longer than they run.
+  # The code under test is optimised; optimising the tests would take longer than running them.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS unit)
@@ -47,7 +48,7 @@ function(rlpc_tests)
 endfunction()
 
 # rlpc_python_test(NAME LABEL SCRIPT ARGUMENT... [SLOW] [PURE] [PROCESSORS n]): one entry.
-# PURE: it runs nothing that was built.
+# PURE: it runs nothing that was built. SLOW: see above.
 function(rlpc_python_test name label script)
   cmake_parse_arguments(PARSE_ARGV 3 ARG "SLOW;PURE" "PROCESSORS" "")
   add_test(NAME ${name} COMMAND Python3::Interpreter -B ${CMAKE_CURRENT_SOURCE_DIR}/${script}
@@ -58,7 +59,7 @@ function(rlpc_python_test name label script)
   endif()
   if(ARG_SLOW)
     list(APPEND labels slow)
-    set_tests_properties(${name} PROPERTIES COST 10)  # first, until their times are known
+    set_tests_properties(${name} PROPERTIES COST 10)  # started first, until ctest knows their times
   endif()
   if(ARG_PROCESSORS)
     set_tests_properties(${name} PROPERTIES PROCESSORS ${ARG_PROCESSORS} COST 100)

@@ -72,8 +72,8 @@ class Pchip:
 
 
 def bd_rate(points, reference):
-    """Bjontegaard: how many per cent more bytes than the reference, in the mean over the errors
-    that both reach (both in logarithms). None: they have no two errors in common."""
+    """Bjontegaard: extra bytes against the reference in per cent, averaged over the errors that
+    both reach (both in logarithms). None: they have no two errors in common."""
     curves = [[(math.log(kg), math.log(size)) for kg, size in front(p)]
               for p in (points, reference)]
     if min(map(len, curves)) < 2:
@@ -87,7 +87,7 @@ def bd_rate(points, reference):
 
 
 def geometric_mean(values):
-    """Of values above zero; None if there are none, or one is missing."""
+    """The geometric mean of positive values; None if there are none, or one is missing."""
     values = list(values)
     if not values or None in values:
         return None

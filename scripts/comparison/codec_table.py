@@ -1,4 +1,4 @@
-"""The codecs of the comparison and how to run them: tables, to be changed here and nowhere else."""
+"""The codecs of the comparison and how to run them, as tables: the only place to change them."""
 
 import dataclasses
 import pathlib
@@ -28,7 +28,7 @@ class Codec:
     what: str  # for people who read the results
     encode: tuple = RLPC_ENCODE
     decode: tuple = RLPC_DECODE
-    prepare: tuple = ()  # not timed, nothing of it is counted
+    prepare: tuple = ()  # not timed, and its output is not counted
     options: str = ""  # come before every setting
     ladders: tuple = ()  # of settings, coarse to fine; none: "--kg X" for every error asked for
     restores_order: bool = False  # the decoder does: no order map for the comparison
@@ -104,7 +104,7 @@ CODECS = (
     peer("meshopt-zstd", "meshopt + zstd", "#e69f00",
          f"differences in time, codecs of meshoptimizer, zstd {ZSTD}", "zstd"),
     peer("zfp-xz", "zfp + xz", "#8c564b",
-         "zfp with a bound of the error, each axis an array of vertices and frames; triangles by "
+         "zfp with an error bound, each axis an array of vertices and frames; triangles by "
          "xz", "xz"),
     peer("draco", "draco per frame", "#b8a800",
          "draco at its slowest, a mesh for each frame"),
@@ -112,8 +112,8 @@ CODECS = (
 DEFAULT = ("main", "baseline", "rlpca", "orlpca", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz",
            "draco")
 README = ("main", "baseline", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz", "draco")
-NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 12 has no package "
-                "of them.")
+NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 12 does not package "
+                "them.")
 
 
 class BadCodec(Exception):
@@ -172,8 +172,8 @@ def variant(name, title, colour, options):
     return Codec(name, title, colour, f"Main with {options}", options=f"--profile main {options}")
 
 
-# What Main loses without one of its tools. The encoder tries clusters only where every tool is at
-# its choice; so all rows are without them, and compared with that one.
+# What Main loses without one of its tools. The encoder tries cluster GOFs only if no tool is
+# disabled; so all rows are without them, and compared with the row that only disables clusters.
 ABLATIONS = (
     MAIN,
     variant("clusters", "Main, no clusters", "#000000", "--no-clusters"),
@@ -190,7 +190,7 @@ ABLATIONS = (
 
 
 class Toolbox:
-    """Where the programs are, and what they can do."""
+    """The folder of the programs, and what they can do."""
 
     OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "plot_svg", "make_tentacle")
 
@@ -199,7 +199,7 @@ class Toolbox:
         self._said = {}
 
     def path(self, tool):
-        """None: it is not there. Tools of this project are those of the folder and no others."""
+        """The path of a program, or None. Tools of this project are only looked for in the folder."""
         if tool not in self.OWN:
             return shutil.which(tool)
         own = self.folder / tool

@@ -138,7 +138,7 @@ else:
             self.assertAlmostEqual(kg / less / 2 ** (more - bits), 1, delta=0.15)
         self.assertIn("| mine |", (self.folder / "out/comparison.md").read_text(encoding="utf-8"))
 
-        # Results belong to the script as it was.
+        # Cached results of the old script are not used.
         script.write_text("raise SystemExit('no such codec')")
         done = self.compare(*command, code=1)
         self.assertRegex(done.stderr, "arm, mine: failed: sh: .*no such codec")

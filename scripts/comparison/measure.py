@@ -1,4 +1,4 @@
-"""Runs codecs on sequences and keeps what came out, so that nothing is run twice."""
+"""Runs codecs on sequences and caches the results, so that nothing is run twice."""
 
 import dataclasses
 import hashlib
@@ -15,7 +15,7 @@ MIB = 1 << 20
 
 
 class Failure(Exception):
-    """A codec did not do its work; the text says how."""
+    """A codec failed; the text says how."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -230,7 +230,7 @@ def sample(laboratory, sequence, codec, gof, errors):
 
 
 def usable(ladder, sequence):
-    """Without the steps that have more components than frames."""
+    """The ladder without steps that have more components than frames."""
     def components(setting):
         words = setting.split()
         return int(words[words.index("--components") + 1]) if "--components" in words else 0

@@ -70,7 +70,7 @@ def described(sequence):
 
 
 def number(value, digits=3):
-    """With so many digits that count."""
+    """With this many significant digits."""
     if value is None:
         return NOTHING
     if value == 0:
@@ -124,8 +124,8 @@ def ratios_table(sequences, curves, points, kgs):
 
 
 def ablation_tables(sequences, curves, points, kgs):
-    """What clusters are worth; and what the other tools are, compared with Main without clusters,
-    which all variants behind it are too."""
+    """What clusters are worth; and what each other tool is worth, against Main without clusters,
+    as the variants without these tools have no clusters either."""
     names = list(dict.fromkeys(curve.codec.name for curve in curves))
     found = []
     for chosen in (names[:2], names[1:]):
@@ -135,7 +135,7 @@ def ablation_tables(sequences, curves, points, kgs):
 
 
 def extra_table(sequences, curves, points, kgs):
-    """As ratios_table, in per cent more, for every sequence."""
+    """Like ratios_table, but extra bytes in per cent, for every sequence."""
     rows = []
     for curve in curves[1:]:
         columns = []
@@ -157,7 +157,7 @@ def _extra(ratio):
 
 
 def bd_rates(curve, sequences, curves, points):
-    """Against the first curve, per cent; None where there is none."""
+    """BD-rates against the first curve, in per cent; None if there is none."""
     return [arithmetic.bd_rate(curve.sizes(points, s), curves[0].sizes(points, s))
             for s in sequences]
 
@@ -177,7 +177,7 @@ def bd_table(sequences, curves, points):
 
 
 def speed_table(sequences, curves, points, kg):
-    """Vertices times frames a second, and memory, at the point nearest to an error."""
+    """Vertices times frames per second, and memory, at the point nearest to an error."""
     rows = []
     for curve in curves:
         encode, decode, peaks = [], [], []
@@ -287,7 +287,7 @@ def marks(name):
 
 
 def replace_marked(text, name, table):
-    """`text` with what stands between the marks replaced."""
+    """`text` with the lines between the marks replaced."""
     first, last = marks(name)
     begin, end = text.find(first), text.find(last)
     if begin < 0 or end < begin:

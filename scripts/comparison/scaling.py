@@ -29,8 +29,8 @@ def make_sequence(toolbox, folder, num_vertices, num_frames):
 
 
 def run(laboratory, codecs, gof, limit):
-    """(sequence, point) of every size up to `limit` vertices times frames. An animation is there
-    only as long as it is needed."""
+    """(sequence, point) of every size up to `limit` vertices times frames. The files of an
+    animation exist only while needed."""
     found = []
     for num_vertices, num_frames in sorted(SIZES, key=lambda size: size[0] * size[1]):
         if num_vertices * num_frames > limit:

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Speed against rate, as SVG, from what the benchmarks report as JSON.
+"""Plots of speed against rate, as SVG, from the JSON report of the benchmarks.
 
   bench_plots.py PLOT_SVG BENCH.json FOLDER
 
-draws FOLDER/decode.svg and FOLDER/encode.svg, each where its benchmarks ran, and prints their
-paths.
+draws FOLDER/decode.svg and FOLDER/encode.svg, if their benchmarks ran, and prints their paths.
 """
 
 import json
@@ -22,8 +21,8 @@ FILES = {"Decode": "decode", "EncodeTarget": "encode"}
 
 
 def curves(results):
-    """{kind: {(animation, preset): [(bpvf, million vertex-frames a second)]}}, kind as in TITLES;
-    of benchmarks that were repeated, medians."""
+    """{kind: {(animation, preset): [(bpvf, million vertex-frames per second)]}}, kind as in TITLES;
+    medians if benchmarks were repeated."""
     runs = {}
     for run in results["benchmarks"]:
         match = NAME.fullmatch(run["run_name"])
@@ -48,7 +47,7 @@ def plot(kind, lines):
                                    COLOURS[animations.index(animation) % len(COLOURS)],
                                    "dashed" if fast else "solid", "square" if fast else "circle"))
     return plots.Plot(TITLES[kind], series, "bits per vertex and frame (whole file)",
-                      "million vertices times frames a second")
+                      "million vertices times frames per second")
 
 
 def main():

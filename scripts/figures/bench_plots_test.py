@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plots of scripts/bench, from a report as the benchmark library writes it; and how plots are drawn.
+"""Plots of scripts/bench, from a report in the form of the benchmark library; drawing of plots.
 
   bench_plots_test.py --bin FOLDER
 """

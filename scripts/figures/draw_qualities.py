@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the picture of README.md: one frame of a bundled animation as it was, and as it comes back
-from streams of the qualities that have names, with what the streams take.
+"""Draws the picture of README.md: one frame of a bundled animation, original and decoded from a
+stream of each named quality, with the sizes of the streams.
 
   scripts/figures/draw_qualities.py [--bin FOLDER] [-o FILE]
 
@@ -48,7 +48,7 @@ def read_pc2_frame(path, frame):
 
 
 def turned(vertex):
-    """As seen: x to the right, y up, z towards us."""
+    """View coordinates: x to the right, y up, z towards the viewer."""
     x, y, z = vertex
     x, z = x * math.cos(YAW) + z * math.sin(YAW), z * math.cos(YAW) - x * math.sin(YAW)
     return x, y * math.cos(PITCH) - z * math.sin(PITCH), y * math.sin(PITCH) + z * math.cos(PITCH)
@@ -63,7 +63,7 @@ def normal(a, b, c):
 
 
 def draw_mesh(vertices, triangles, place):
-    """SVG paths of the triangles that face us, the farthest first."""
+    """SVG paths of the triangles that face the viewer, the farthest first."""
     seen = [turned(vertex) for vertex in vertices]
     strength = math.hypot(*LIGHT)
     faces = []
@@ -82,7 +82,7 @@ def draw_mesh(vertices, triangles, place):
 
 
 def placing(vertices):
-    """Where a point comes to lie in a panel that all vertices fit into."""
+    """A function that maps points into a panel so that all vertices fit."""
     seen = [turned(vertex) for vertex in vertices]
     low = [min(v[i] for v in seen) for i in range(2)]
     high = [max(v[i] for v in seen) for i in range(2)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The comparisons of the RLPCA paper, run with our tools; scripts/reproduce calls it."""
+"""The comparisons of the RLPCA paper, made with our tools; called by scripts/reproduce."""
 
 import argparse
 import csv
@@ -39,9 +39,9 @@ PUBLISHED = {
 
 NOTE = f"""\
 12 bits for eigenshapes, coefficients and seed positions; the whole sequence is one group of
-frames; all bytes of the stream are counted. RLPCA: L components in every cluster; ORLPCA: L in the
-mean, by rate and distortion; {OURS}: the encoder's own search, to the error of the RLPCA row. Times
-are those of the tools, reading and checking included."""
+frames; all bytes of the stream are counted. RLPCA: L components in every cluster; ORLPCA: L on
+average, by rate and distortion; {OURS}: the encoder's own search, to the error of the RLPCA row.
+Times are those of the tools, reading and checking included."""
 COW_NOTE = """\
 The paper prints L = 20 in its second row; its rate is that of L = 10. Its KG figures are
 lower than the method gives under the definition used here, so its normalisation was another; its
@@ -61,7 +61,7 @@ class Run:
 
 
 class Bench:
-    """Encodes, decodes and compares; every result once."""
+    """Encodes, decodes and compares; caches each result."""
 
     def __init__(self, tools, mesh, points, folder):
         self.tools, self.mesh, self.points, self.folder = tools, mesh, points, folder

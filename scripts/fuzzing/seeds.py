@@ -18,7 +18,7 @@ GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
 # In the order of decoder/fuzz/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
 
-# Settings that make different streams of a small animation.
+# Settings that give different streams of a small animation.
 BASELINE = ["--profile", "baseline"]
 SETTINGS = [
     ["--kg", "1", "--keep-order", "--hash", "frame"],
@@ -28,7 +28,7 @@ SETTINGS = [
     [*BASELINE, "--gof", "all", "--clusters", "3", "--components", "2", "--qu", "8", "--qc", "8",
      "--qdelta", "8", "--frame", "lcf", "--no-rdo"],
 ]
-# The encoder uses a part of what there is in the Main profile.
+# The encoder uses only a part of the Main profile, so random streams are added.
 RANDOM_MAIN_STREAMS = 60
 OBJ_SEEDS = [
     b"# frame_rate 30000/1001\nv 0 0 0\nv 1 0 .5e-3\nv 0 +1 -2.25\nv 1 1 1e-50\nf 1 2 3 4\n",
@@ -39,7 +39,7 @@ OBJ_SEEDS = [
 
 
 class Failure(Exception):
-    """What to tell the user."""
+    """The text is for the user."""
 
 
 def tube(rings, extra):
@@ -223,7 +223,7 @@ def is_main(header):
 
 
 def skinned_gof_seeds(found, _):
-    """GOFs with the slices behind them."""
+    """GOFs with the slices that follow them."""
     before = {}
     for place, (code, payload) in enumerate(found):
         before.setdefault(code, payload)
@@ -271,8 +271,8 @@ def gltf_seeds(root):
 
 
 def encoder_seeds():
-    """Of conformance/fuzz/encoder_case.cpp: each profile, preset and target over shapes and ways to
-    move, with few and with many tools."""
+    """For conformance/fuzz/encoder_case.cpp: each profile, preset and target with several shapes
+    and motions, with few and with many tools."""
     numbers = random.Random(1)
     for profile, preset, target in itertools.product(range(2), range(3), range(3)):
         for shape, motion in itertools.product(range(4), range(8)):
@@ -291,7 +291,7 @@ def encoder_seeds():
 
 
 def seeds_of(target, streams, root):
-    """What a target begins with; of a target that is not known here: streams."""
+    """The seeds of a target; streams, if the target is not listed here."""
     if target == "obj_fuzz":
         return OBJ_SEEDS + [obj_text(p, t) for p, t, _ in small_animations()]
     if target in ("off_fuzz", "ply_fuzz"):

@@ -14,11 +14,11 @@ GOOGLETEST = pathlib.Path("/usr/src/googletest")
 
 
 class NotRun(Exception):
-    """A platform that this machine cannot build or run, and why."""
+    """This machine cannot build or run a platform; the text says why."""
 
 
 class BuildFailed(Exception):
-    """A build that failed, and where its log is."""
+    """A build failed; the text says where its log is."""
 
 
 @dataclasses.dataclass
@@ -26,12 +26,12 @@ class Platform:
     name: str
     compiler: str
     flags: str
-    triplet: str = ""  # of a cross compiler
+    triplet: str = ""  # prefix of a cross compiler
     qemu: str = ""
-    unit_tests: bool = False  # those of common/
+    unit_tests: bool = False  # runs those of common/
 
     def emulator(self):
-        """What stands before the command of a program of this platform."""
+        """The words before the command of a program of this platform."""
         return [self.qemu, "-L", f"/usr/{self.triplet}"] if self.qemu else []
 
 
@@ -62,7 +62,7 @@ class Builder:
         self.out = out
 
     def build(self, platform):
-        """Everything that the platform runs; the folder with the programs."""
+        """Builds everything that the platform runs; returns the folder of the programs."""
         for program in filter(None, [platform.compiler, platform.qemu]):
             if not shutil.which(program):
                 raise NotRun(f"no {program}")
@@ -81,10 +81,10 @@ class Builder:
             tests = self.unit_tests(platform)
             for name in tests:
                 (folder / "bin" / name).unlink(missing_ok=True)
-            if tests:  # what else is installed builds there, too
+            if tests:  # the other installed programs must build there, too
                 self._run(out, ["cmake", "--build", folder, "--target", "rlpc", "rlpcinfo",
                                 "rlpccmp", "rlpcval"])
-                # One that does not build is one that fails.
+                # A test that does not build counts as failed.
                 subprocess.run(["cmake", "--build", folder, "--target", *tests, "--", "-k0"],
                                stdout=out, stderr=out)
         return folder / "bin"

@@ -27,18 +27,18 @@ SETTINGS = {
         "--max-error 0.01 --preset fast --bones 6 --components 5",
     ],
 }
-# Of glTF documents; what is evaluated of them is at stake.
+# Settings for glTF documents, to compare how they are evaluated.
 GLTF = "--animation all --kg 0.5 --preset fast --bones 4"
 # The decoded frames of the first setting are also written as floats, and encoded again.
 AGAIN = "--profile baseline --kg 1 --preset fast"
 
 
 class RunFailed(Exception):
-    """A program that ended as it should not."""
+    """A program failed or took too long."""
 
 
 def cut_animations(pairs, frames, folder):
-    """The first frames of each animation (0: all), in files of the folder; their meshes."""
+    """Writes the first frames of each animation (0: all) to the folder; returns the meshes."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     meshes = []
@@ -75,7 +75,7 @@ def digest_of(paths):
 
 
 class Workload:
-    """The work of one build; its results are digests by job, in four groups."""
+    """The work of one build; results are digests by job, in four groups."""
 
     GROUPS = ["streams", "integers", "floats", "suite"]
 

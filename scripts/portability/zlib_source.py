@@ -9,13 +9,13 @@ DEBIAN_KEY = pathlib.Path("/usr/share/keyrings/debian-archive-keyring.gpg")
 
 
 class Unavailable(Exception):
-    """Why this machine cannot fetch it."""
+    """This machine cannot fetch the source; the text says why."""
 
 
 def fetch(work, run):
-    """The folder of Debian's source package, by apt-get with lists of its own: no architecture
-    and no source of the system changes, and no privilege is needed. run(command, cwd) raises if
-    the command fails."""
+    """Fetches Debian's source package with apt-get and returns its folder. apt-get uses package
+    lists of its own, so the system is not changed and no privileges are needed. run(command, cwd)
+    raises if the command fails."""
     unpacked = sorted(work.glob("zlib-*/configure"))
     if unpacked:
         return unpacked[0].parent
@@ -24,7 +24,7 @@ def fetch(work, run):
     codename = re.search(r"^VERSION_CODENAME=(\w+)", pathlib.Path("/etc/os-release").read_text(),
                          re.MULTILINE)
     if not codename or not DEBIAN_KEY.exists():
-        raise Unavailable("its source comes from Debian")
+        raise Unavailable("needs Debian, for its source package")
     for folder in ["lists/partial", "cache/archives/partial"]:
         (work / folder).mkdir(parents=True, exist_ok=True)
     (work / "debian.sources").write_text(

@@ -35,14 +35,14 @@ def last_frame_is_cut(request):
 
 
 def another_number_of_frames_in_the_header(request):
-    """All frames are right, and as many as there should be."""
+    """The frames themselves, and their number, are right."""
     if request.code == 0:
         count = struct.unpack_from("<I", request.data, 16)[0]
         request.data = request.data[:16] + struct.pack("<I", count + 1) + request.data[20:]
 
 
 def a_triangle_is_turned(request):
-    """The last one; its orientation stays."""
+    """Rotates the corners of the last triangle; its orientation stays."""
     at = _sizes(request.data)[0] - 12 if request.code == 0 else 0
     if at >= 44:
         a, b, c = struct.unpack_from("<III", request.data, at)
@@ -50,7 +50,7 @@ def a_triangle_is_turned(request):
 
 
 def always_the_first_output(request):
-    """Keeps what it once decoded, and gives that for all streams."""
+    """Outputs the first stream that it decoded for all later streams."""
     kept = request.kept_folder() / "stale"
     if request.code == 0 and not kept.exists():
         kept.write_bytes(request.data)
@@ -67,19 +67,19 @@ def stops_within_the_header(request):
 
 
 def drops_frames_before_an_error(request):
-    """Output only if all went well."""
+    """Writes output only if there is no error."""
     if request.code != 0:
         request.data = None
 
 
 def a_frame_more_before_an_error(request):
-    """The frame in which the error was noticed."""
+    """Outputs one more frame, as if the frame with the error counted."""
     if request.code == 1 and request.verdict["frame"]:
         request.data += request.data[-_sizes(request.data)[1]:]
 
 
 def writes_before_the_first_gof(request):
-    """The header, as soon as its numbers are known."""
+    """Writes the header as soon as its values are known."""
     if request.data is None:
         request.data = struct.pack("<4s10i", b"RLPD", 1, 400, 722, 5, 30, 1, 0, 0, 0, 0)
 
@@ -90,7 +90,7 @@ def one_wrong_frame_before_an_error(request):
 
 
 def _floats(request, convert):
-    """OUT.f32 instead of OUT.rlpd, if that is wanted."""
+    """Writes OUT.f32 if that is requested instead of OUT.rlpd."""
     if request.code != 0 or request.output.suffix != ".f32":
         return
     step, *origin = struct.unpack_from("<4i", request.data, 28)
@@ -120,7 +120,7 @@ floats_one_ulp_off.declares = right_floats.declares
 
 
 def integers_for_floats(_):
-    """Declares f32, and writes .rlpd whatever OUT is called."""
+    """Declares f32, but writes .rlpd whatever the extension of OUT."""
 
 
 integers_for_floats.declares = right_floats.declares

@@ -74,6 +74,6 @@ def verdict_is_no_json(request):
 
 
 def rejects_what_either_may(request):
-    """No fault: metadata that are no JSON, which decoding does not check (R-MET-03)."""
+    """No fault: the metadata is not JSON, which decoding does not check (R-MET-03)."""
     if zlib.compress(b"no JSON") in request.stream:
         request.code, request.verdict, request.data = 1, {"rule": "R-MET-03"}, None
