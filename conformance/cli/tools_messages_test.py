@@ -95,6 +95,18 @@ class Messages(ToolsTest):
             said = run("rlpcenc", *clip, "-o", self.path("a.rlpc"), *found.groups()).err
             self.assertNotIn("visible", said, found.groups())
 
+    def test_advice_on_missed_targets_helps(self):
+        clip = [INPUTS / "robot_arm.obj", "--points", INPUTS / "robot_arm.pc2", "--preset", "fast",
+                "-o", self.path("a.rlpc")]
+        for options in (["--kg", 1e-5], ["--max-error", 1e-7], ["--bpvf", 0.05],
+                        ["--kg", 0.01, "--components", 2]):
+            said = self.fails(2, "out of reach", "rlpcenc", *clip, *options).err
+            found = re.search(r"Try (?:more --components, or )?(--\S+) (\S+?)(?:, or a longer --gof)?"
+                              r"\.\n", said)
+            self.assertIsNotNone(found, said)
+            self.assertEqual(found.group(1), options[0])
+            self.ok("rlpcenc", *clip, *found.groups(), *options[2:])
+
     def test_axes_of_mesh_and_points(self):
         triangles, (frame, *_) = self.clip(2)
         y_up = [c for v in range(0, len(frame), 3)

@@ -88,17 +88,38 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
   }
 }
 
+// At least 2 % above `value`, in two digits.
+std::string a_little_above(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", std::ceil(1.02 * value / digit) * digit);
+  return text;
+}
+
+// The option and value that ask for what was reached.
+std::string reachable_target(const Target& target, const EncodeReport& report) {
+  switch (target.kind) {
+    case Target::kBpvf:
+      return "--bpvf " + a_little_above(report.bpvf);
+    case Target::kMaxError:
+      return "--max-error " + a_little_above(report.metrics.max_error);
+    default:
+      return "--kg " + a_little_above(report.metrics.kg_error_percent);
+  }
+}
+
 std::string advice(const EncodeOptions& o, const EncodeReport& report) {
-  if (o.settings.target.kind == Target::kBpvf) {
-    return report.num_gofs > 1 ? "Try a higher --bpvf, or a longer --gof"
-                               : "Try a higher --bpvf";
+  const Target& target = o.settings.target;
+  const std::string reachable = reachable_target(target, report);
+  if (target.kind == Target::kBpvf) {
+    return "Try " + reachable + (report.num_gofs > 1 ? ", or a longer --gof" : "");
   }
   if (is_far_away(report)) {
     return "The animation lies so far from the origin that floats are coarser than that: move "
-           "it there, or try a larger error";
+           "it there, or try " +
+           reachable;
   }
-  return o.settings.components > 0 ? "Try more --components, or a larger error"
-                                   : "Try a larger error";
+  return (o.settings.components > 0 ? "Try more --components, or " : "Try ") + reachable;
 }
 
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
