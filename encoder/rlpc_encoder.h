@@ -60,7 +60,7 @@ struct MainTools {
   bool layer_steps = true;               // finer steps in coarser layers
   bool temporal_weights = true;          // transmitted ones, beside the four fixed predictors
   bool cobra_steps = false;  // of basis vectors: those of Vasa and Skala 2009, (18), (19)
-  // GOFs of clusters where they cost less. They have none of the tools above, and no slices: if
+  // Cluster GOFs where they cost less. They have none of the tools above, and no slices: if
   // anything here is not as by default, all GOFs are of bones.
   bool clusters = true;
   std::uint32_t component_groups = 0;  // slices: 0 for the default

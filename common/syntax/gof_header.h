@@ -10,9 +10,9 @@ enum class GofKind : std::uint8_t {
   kSkinned,   // 6.11: bones, and trajectories for the residual
 };
 
-// Its main elements, for messages: "clusters", "bones".
+// For messages: "cluster" or "skinned", as in "skinned GOF".
 constexpr const char* kind_name(GofKind kind) {
-  return kind == GofKind::kSkinned ? "bones" : "clusters";
+  return kind == GofKind::kSkinned ? "skinned" : "cluster";
 }
 
 // 6.12: whether slice units may follow the GOF unit.

@@ -58,7 +58,7 @@ class CutTest(ToolsTest):
         path.write_bytes(CutTest.builder.build(seed)[0])
         return path
 
-    def gofs_of_bones(self, path):
+    def skinned_gofs(self, path):
         gofs = self.ok("rlpcinfo", path, "--json").json()["gofs"]
         return [gof for gof in gofs if "num_bones" in gof]
 
@@ -66,7 +66,7 @@ class CutTest(ToolsTest):
         """The first random stream with GOFs of several component groups and layer groups."""
         for seed in range(100):
             path = self.random_stream(seed)
-            for gof in self.gofs_of_bones(path):
+            for gof in self.skinned_gofs(path):
                 if len(gof["cut_to_components"]) > 2 and len(gof["cut_to_layers"]) > 1:
                     return path
         raise AssertionError("no such stream")
@@ -161,7 +161,7 @@ class Cutting(CutTest):
                                      name == "components" or choice[name] >= least)
         said = self.ok("rlpcinfo", path, "--gofs").out.decode()
         self.assertIn("GOF to here", said)
-        for gof in self.gofs_of_bones(path):
+        for gof in self.skinned_gofs(path):
             self.assertIn(f" {gof['cut_to_components'][-1]['bytes']}\n", said)
 
     def test_the_report_in_words(self):
@@ -183,7 +183,7 @@ class Cutting(CutTest):
         for asked in ((4, 2), (2, 5), (255, 1), (1, 255)):
             self.encode(self.path("a.rlpc"), "--gof", 30, "--layer-groups", asked[0],
                         "--component-groups", asked[1])
-            gofs = self.gofs_of_bones(self.path("a.rlpc"))
+            gofs = self.skinned_gofs(self.path("a.rlpc"))
             self.assertEqual(len(gofs), 2)
             for gof in gofs:
                 self.assertEqual(len(gof["layer_group_size"]),
@@ -204,7 +204,7 @@ class Cutting(CutTest):
         said = self.extract(streams / "MIX-0201a.rlpc", "components=2,layers=1").out.decode()
         self.assertEqual(self.path("cut.rlpc").read_bytes(),
                          (streams / "MIX-0202a.rlpc").read_bytes())
-        for words in ("frames 0 to 3: of clusters, 271 bytes, kept whole", "frames 4 to 8: 2 of 3"):
+        for words in ("frames 0 to 3: cluster GOF, 271 bytes, kept whole", "frames 4 to 8: 2 of 3"):
             self.assertIn(words, said)
         self.assertIn("nothing was dropped", self.extract(
             streams / "MIX-0203a.rlpc", "components=0,layers=1").out.decode())
@@ -212,7 +212,7 @@ class Cutting(CutTest):
     def test_layers_that_cannot_be_left_out(self):
         for seed in range(100):
             path = self.random_stream(seed)
-            gofs = self.gofs_of_bones(path)
+            gofs = self.skinned_gofs(path)
             if any(gof["slices"] and gof["layer_group_size"][0] > 1 for gof in gofs):
                 break
         self.assertFalse(self.extract(path, "layers=1", "--json").json()["request_met"])

@@ -258,7 +258,7 @@ class Figures(ToolsTest):
         for part in ("bones", "rest positions", "spatial factors"):
             self.assertGreater(info["bits"][part], 0, part)
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("Main profile", "GOFs of bones: 3, with ", "frames 20 to 39", "influences, rest positions",
+        for words in ("Main profile", "skinned GOFs: 3, with ", "frames 20 to 39", "influences, rest positions",
                       f" {info['gofs'][0]['slices'][0]['bytes']} "):
             self.assertIn(words, said)
         self.assertNotIn("frames 20 to 39", self.ok("rlpcinfo", stream).out.decode())
@@ -266,7 +266,7 @@ class Figures(ToolsTest):
         gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
         self.assertEqual([(g["first_frame"], g["num_frames"]) for g in gofs], [(0, 60)])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("Baseline profile", "GOFs of clusters: 1, with ", "frames 0 to 59: "
+        for words in ("Baseline profile", "cluster GOFs: 1, with ", "frames 0 to 59: "
                       f"{gofs[0]['num_clusters']} clusters and {gofs[0]['num_components']} comp"):
             self.assertIn(words, said)
 
@@ -281,8 +281,8 @@ class Figures(ToolsTest):
             self.assertGreater(info["bits"][part], 0, part)
         self.assertEqual(sum(info["bits"].values()), 8 * stream.stat().st_size)
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("GOFs of clusters: 2, with 2 to 3 clusters and 3 to 4 components",
-                      "GOFs of bones: 1, with 2 bones", "frames 4 to 8: 2 bones",
+        for words in ("cluster GOFs: 2, with 2 to 3 clusters and 3 to 4 components",
+                      "skinned GOFs: 1, with 2 bones", "frames 4 to 8: 2 bones",
                       "frames 9 to 11: 2 clusters and 3 components"):
             self.assertIn(words, said)
 

@@ -1,4 +1,4 @@
-// Fuzzes the parser of a GOF of bones and its slices, and their reconstruction, without CRCs in
+// Fuzzes the parser of a skinned GOF and its slices, and their reconstruction, without CRCs in
 // front. Input: first frame, 4 bytes; then pieces, each with its size in 2 bytes before it: the
 // payloads of sequence header, connectivity, GOF, and slices.
 

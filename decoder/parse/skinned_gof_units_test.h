@@ -1,4 +1,4 @@
-// The units of a GOF of bones through their parser, for tests.
+// The units of a skinned GOF through their parser, for tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -86,7 +86,7 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
               bpvf(cutter, bytes));
   for (const GofSummary& gof : cutter.gofs()) {
     if (!has_slices(gof.kind)) {
-      std::printf("  frames %u to %u: of %s, %" PRIu64 " bytes, kept whole\n", gof.first_frame,
+      std::printf("  frames %u to %u: %s GOF, %" PRIu64 " bytes, kept whole\n", gof.first_frame,
                   gof.first_frame + gof.num_frames - 1, kind_name(gof.kind), gof.bytes);
       continue;
     }

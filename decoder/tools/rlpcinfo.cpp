@@ -207,7 +207,7 @@ void print_kinds(std::vector<rlpc::GofSummary> gofs) {
     for (std::size_t i = 0; i < of_kind[0].figures.size(); ++i) {
       if (of_kind[0].figures[i].many != nullptr) ranges.push_back(range_over(of_kind, i));
     }
-    std::printf("  GOFs of %s: %zu, with %s each\n", rlpc::kind_name(of_kind[0].kind),
+    std::printf("  %s GOFs: %zu, with %s each\n", rlpc::kind_name(of_kind[0].kind),
                 of_kind.size(), listed(ranges).c_str());
     gofs.erase(gofs.begin(), end);
   }

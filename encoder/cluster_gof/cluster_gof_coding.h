@@ -1,4 +1,4 @@
-// One GOF of clusters at the quantisers of the settings.
+// One cluster GOF at the quantisers of the settings.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// GOFs of clusters (clauses 6.5 and 8.4 to 8.6).
+// Cluster GOFs (clauses 6.5 and 8.4 to 8.6).
 #pragma once
 
 #include <memory>

@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Payload of the unit of a GOF of clusters, in a stream of either profile. All values must be
+// Payload of the unit of a cluster GOF, in a stream of either profile. All values must be
 // legal (asserted): an encoder that emits an illegal value has a bug.
 std::vector<std::uint8_t> write_cluster_gof(const ClusterGof& gof, const SequenceHeader& header,
                                             const Topology& topology);

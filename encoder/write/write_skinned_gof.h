@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// Payloads of the unit of a GOF of bones and of its slice units. All values must be legal
+// Payloads of the unit of a skinned GOF and of its slice units. All values must be legal
 // (asserted). gof.slice_layers says which slices are written.
 struct SkinnedGofPayloads {
   std::vector<std::uint8_t> gof;
