@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The scripts answer --help on one screen: what they do, and an example or the options."""
+"""The scripts answer --help on one screen, with what they do and an example or the options; and they
+refuse wrong usage with exit code 64."""
 
 import os
 import pathlib
@@ -33,6 +34,22 @@ class Help(unittest.TestCase):
             self.assertLessEqual(len(lines), most_lines, script)
             for line in lines:
                 self.assertLessEqual(len(line), most_columns, (script, line))
+
+
+    def test_wrong_usage_is_refused(self):
+        for script, *arguments in (("scripts/mutate", "--jobs", "0"),
+                                   ("scripts/mutate", "--jobs", "many"),
+                                   ("scripts/streams", "check", "--jobs", "0"),
+                                   ("scripts/streams", "check", "--jobs", "-1"),
+                                   ("scripts/streams", "stress", "--seeds", "-1"),
+                                   ("scripts/fuzz", "--minutes", "0"),
+                                   ("scripts/determinism", "--frames", "-1"),
+                                   ("conformance/rlpccov/rlpccov", "streams", "--jobs", "0"),
+                                   ("conformance/judge/run", "--decoder", "x", "--jobs", "0")):
+            done = subprocess.run([ROOT / script, *arguments], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(done.returncode, 64, (script, arguments, done.stderr))
+            self.assertIn(arguments[-2], done.stderr)
 
 
 if __name__ == "__main__":
