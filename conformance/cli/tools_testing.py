@@ -40,7 +40,7 @@ def run(tool, *args, **options):
 
 def _run(tool, args, options):
     command = [str(Tools.folder / tool), *map(str, args)]
-    return Result(subprocess.run(command, capture_output=True, timeout=120, check=False, **options))
+    return Result(subprocess.run(command, capture_output=True, check=False, **options))
 
 
 def check_encoded(args, result):

@@ -34,7 +34,7 @@ def encode(folder, name, frames, *settings):
     mesh, cache = cut_animation(folder, name, frames)
     stream = folder / "stream.rlpc"
     subprocess.run([Tools.folder / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q",
-                    "--profile", "baseline", "--preset", "fast", *settings], check=True, timeout=60)
+                    "--profile", "baseline", "--preset", "fast", *settings], check=True)
     return stream.read_bytes()
 
 
@@ -131,7 +131,7 @@ class JudgeTest(unittest.TestCase):
     def command(self, name, *args, **options):
         """(exit code, standard output, standard error) of a command of the judge."""
         done = subprocess.run([sys.executable, "-B", JUDGE / name, *map(str, args)],
-                              capture_output=True, text=True, timeout=120, check=False, **options)
+                              capture_output=True, text=True, check=False, **options)
         return done.returncode, done.stdout, done.stderr
 
     def judge(self, decoder, *args, suite_folder=None):

@@ -38,7 +38,7 @@ class Commands(rlpccov_test.FolderTest):
         done = subprocess.run(
             [sys.executable, TOOLS / "rlpccov", *args, "--spec", self.folder,
              "--goals", self.folder / "goals.json", "--waivers", self.folder / "waivers.json",
-             "--jobs", "1"], capture_output=True, text=True, timeout=60, check=False)
+             "--jobs", "1"], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout, done.stderr
 
     def sidecar(self, name, **content):

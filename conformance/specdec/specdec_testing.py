@@ -91,5 +91,5 @@ def encode(tools, folder, animation, *settings, profile="baseline"):
     mesh, cache = animation
     stream = folder / "stream.rlpc"
     subprocess.run([tools / "rlpcenc", mesh, "--points", cache, "-o", stream, "-q", "--profile",
-                    profile, *settings], check=True, timeout=60)
+                    profile, *settings], check=True)
     return stream.read_bytes()

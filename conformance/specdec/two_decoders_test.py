@@ -34,7 +34,7 @@ class Clips(FolderTest):
         stream.write_bytes(data)
         output.unlink(missing_ok=True)
         done = subprocess.run([BIN / "rlpcdec", "decode", stream, output], capture_output=True,
-                              text=True, timeout=60, check=False)
+                              text=True, check=False)
         verdict = {}
         if done.returncode != 0:
             word, _, text = done.stderr.splitlines()[-1].partition(" ")
@@ -55,7 +55,7 @@ class StreamTest(Clips):
         self.assertEqual(decoded[:2], (0, None))
         self.assertTrue(decoded[3] == expected, "other bytes than from rlpcdec")
         trace = subprocess.run([BIN / "rlpcinfo", self.folder / "in.rlpc", "--trace"], check=True,
-                               capture_output=True, text=True, timeout=60).stdout
+                               capture_output=True, text=True).stdout
         listed = re.findall(r"^ *\d+    (\w+) = (-?\d+)$", trace, re.MULTILINE)
         self.assertEqual([(name, str(value)) for _, name, value in elements], listed)
 

@@ -36,7 +36,7 @@ class SmallRun(unittest.TestCase):
         done = subprocess.run(
             [sys.executable, "-B", ROOT / "scripts" / "compare", "--bin", tools or Tools.folder,
              "--out", self.folder / "out", "--kg", "0.3,1.0", *arguments],
-            capture_output=True, text=True, timeout=100, check=False)
+            capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
@@ -181,7 +181,7 @@ class Reproduce(unittest.TestCase):
     def test_missing_tools_are_named(self):
         with tempfile.TemporaryDirectory() as none:
             done = subprocess.run([ROOT / "scripts" / "reproduce", "--bin", none, "-o", none],
-                                  capture_output=True, text=True, timeout=100, check=False)
+                                  capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stdout), (1, ""))
         self.assertEqual(done.stderr, f"reproduce: {none}/rlpcenc: No such file or directory; leave "
                                       "out --bin to have the tools built\n")
