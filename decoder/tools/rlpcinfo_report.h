@@ -1,0 +1,29 @@
+// What rlpcinfo reports of a stream: as text, as JSON, and as a page.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/syntax/sequence_header.h"
+#include "decoder/report/bit_counter.h"
+#include "decoder/stream/gof_summary.h"
+
+namespace rlpc {
+
+struct StreamInfo {
+  const std::string& input;  // as given on the command line
+  const SequenceHeader& header;
+  const BitCounter& counter;
+  std::uint64_t bytes;
+  const std::vector<GofSummary>& gofs;
+  const std::string& metadata;
+};
+
+// Both on standard output.
+void print_table(const StreamInfo& s, bool with_gofs);
+void print_json(const StreamInfo& s);
+// HTML.
+std::string page_text(const StreamInfo& s);
+
+}  // namespace rlpc
