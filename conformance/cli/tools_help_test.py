@@ -6,7 +6,7 @@ import re
 from tools_testing import ROOT, ToolsTest, main
 
 LINES, COLUMNS = 40, 80
-SOURCES = {"rlpcenc": "encoder/tools/encode_options.cpp",
+SOURCES = {"rlpcenc": "encoder/tools/encode_command_line.cpp",
            "rlpcdec": "decoder/tools/rlpcdec.cpp",
            "rlpcinfo": "decoder/tools/rlpcinfo.cpp",
            "rlpcval": "conformance/rlpcval/rlpcval.cpp",

@@ -1,0 +1,31 @@
+// The options of rlpcenc and its help page, as CLI11 takes them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "encoder/tools/encode_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace rlpc {
+
+// Values that are not converted yet are beside the options.
+struct EncodeCommandLine {
+  explicit EncodeCommandLine(EncodeOptions& to) : options(to) {}
+
+  EncodeOptions& options;
+  std::string fps;
+  std::string gof = "128";
+  std::string metadata_path;
+  std::optional<double> kg;
+  std::optional<double> bpvf;
+  std::optional<double> max_error;
+};
+
+// `line` must outlive the parsing of the command line.
+void add_encode_options(CLI::App& app, EncodeCommandLine& line);
+
+}  // namespace rlpc
