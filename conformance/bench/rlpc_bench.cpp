@@ -3,7 +3,7 @@
 // It also reports multiply-adds per second: for decoding, and for the sums of 8.5.3 with each
 // loop that the machine can run, the plain loop first.
 //
-// Animations: the bundled ones and, where they are present beside the project, two from the
+// Animations: the bundled ones and, if present beside the project, two from the
 // literature. Peak memory is measured on the programs doing the same work.
 
 #include <benchmark/benchmark.h>

@@ -198,7 +198,7 @@ class Cutting(CutTest):
         for cut in ("--max-components", "--max-layers"):
             self.fails(64, "--verify excludes " + cut, "rlpcdec", path, "--verify", cut, 1)
 
-    def test_gofs_of_clusters_stay_whole(self):
+    def test_cluster_gofs_stay_whole(self):
         """Cutting a stream of the suite gives another stream of the suite."""
         streams = ROOT / "streams/v1.1/accept/MIX"
         said = self.extract(streams / "MIX-0201a.rlpc", "components=2,layers=1").out.decode()

@@ -54,7 +54,7 @@ class BadInput(ToolsTest):
             path.write_text(text)
         return path
 
-    def test_obj_that_is_none(self):
+    def test_a_file_that_is_not_obj(self):
         self.refused("none.obj", self.path("none.obj"))
         self.refused("mesh.obj", self.obj(""))
         self.refused("mesh.obj", self.obj("# nothing\n"))
@@ -291,7 +291,7 @@ class BadStreams(ToolsTest):
             self.fails(4, "it is a folder", tool, self.folder, *verify)
             self.fails(4, "no such file", tool, self.path("none.rlpc"), *verify)
 
-    def test_any_metadata_can_be_told(self):
+    def test_any_metadata_can_be_shown(self):
         for text in ('{"a": 1}', "no JSON \x1b[31m", "[" * 100000 + "]" * 100000, '"\\ud800"'):
             self.path("meta.json").write_text('{"a": 1}')
             self.encode(self.path("m.rlpc"), "--metadata", self.path("meta.json"))
@@ -300,8 +300,8 @@ class BadStreams(ToolsTest):
             changed = [(code, metadata if code == METADATA else payload)
                        for code, payload in units_of(stream)]
             self.path("m.rlpc").write_bytes(stream_of(stream, changed))
-            told = self.ok("rlpcinfo", self.path("m.rlpc"), "--json").json()["metadata"]
-            self.assertEqual(told, {"a": 1} if text[0] == "{" else text)
+            shown = self.ok("rlpcinfo", self.path("m.rlpc"), "--json").json()["metadata"]
+            self.assertEqual(shown, {"a": 1} if text[0] == "{" else text)
             self.assertNotIn(b"\x1b", self.ok("rlpcinfo", self.path("m.rlpc")).out)
 
     def test_limits(self):

@@ -204,22 +204,24 @@ class MddTimes(ToolsTest):
                       [nan] * 5, [0, nan, 0.2, 0.3, 0.4], [0, 1e-9, 2e-9], [7]):
             self.assertEqual(self.rate_of(times), [30, 1], times)
 
-    def test_what_cannot_be_times_is_told(self):
+    def test_invalid_times_are_reported(self):
         _, frames = self.clip(3)
         encode = ["rlpcenc", self.path("clip.obj"), "-o", self.path("out.rlpc"), "--kg", 5,
                   "--preset", "fast", "--points"]
         nan, cache = float("nan"), self.path("clip.mdd")
-        for times, told in (([0.2, 0.1, 0], True), ([0, nan, 1], True), ([0, 1, math.inf], True),
+        for times, warned in (([0.2, 0.1, 0], True), ([0, nan, 1], True), ([0, 1, math.inf], True),
                             ([0, 0, 0], False), ([0, 0.1, 0.3], False), ([0, 0.1, 0.2], False)):
             cache.write_bytes(mdd(frames, times))
-            self.assertEqual("not finite and ascending" in self.ok(*encode, cache).err, told, times)
+            self.assertEqual("not finite and ascending" in self.ok(*encode, cache).err, warned,
+                             times)
             self.assertNotIn("ascending", self.ok(*encode, cache, "--fps", 10).err)
         cache = self.path("clip.pc2")
         good = cache.read_bytes()
-        for at, value, told in ((20, nan, True), (24, nan, True), (24, -math.inf, True),
+        for at, value, warned in ((20, nan, True), (24, nan, True), (24, -math.inf, True),
                                 (24, 0, False)):
             cache.write_bytes(good[:at] + struct.pack("<f", value) + good[at + 4:])
-            self.assertEqual("the file may be damaged" in self.ok(*encode, cache).err, told, value)
+            self.assertEqual("the file may be damaged" in self.ok(*encode, cache).err, warned,
+                             value)
 
 
 class FormatsOut(ToolsTest):
@@ -270,7 +272,7 @@ class FormatsOut(ToolsTest):
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("data.bin"), "--format", "glb")
         self.assertEqual(self.path("data.bin").read_bytes()[:4], b"glTF")
 
-    def test_what_cannot_be_written_is_told(self):
+    def test_what_cannot_be_written_is_reported(self):
         stream = self.path("a.rlpc")
         self.fails(64, "needs --format", "rlpcdec", stream, "-o", "-")
         self.fails(64, "--json", "rlpcdec", stream, "-o", "-", "--format", "glb", "--json")

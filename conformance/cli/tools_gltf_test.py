@@ -68,7 +68,7 @@ class GltfInput(ToolsTest):
             self.assertEqual(report["num_frames"], count, options)
             self.assertEqual(report["num_vertices"], 172)
 
-    def test_what_is_joined_and_left_out_is_told(self):
+    def test_what_is_merged_and_dropped_is_reported(self):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
         for words in ("dropped 2 primitives of points or lines", "dropped 8 degenerate triangles",
                       "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
@@ -111,7 +111,7 @@ class GltfInput(ToolsTest):
         self.assertAlmostEqual(widths[0], 0.5, delta=0.002)
         self.assertGreater(widths[1], 0.9)
 
-    def test_all_is_one_after_another(self):
+    def test_all_joins_animations_in_sequence(self):
         whole = self.frames("--animation", "all")
         each = self.frames("--animation", "Sway") + self.frames("--animation", "Visit")
         self.assertEqual(len(whole), len(each))
@@ -197,8 +197,8 @@ class GltfErrors(ToolsTest):
                             (b'{"asset":{"version":"1.0"}}', "asset.version")):
             self.fails(1, f"standard input: {words}", "rlpcenc", "-", "-o", self.path("a.rlpc"),
                        input=data)
-        told = self.ok("rlpcenc", "-", "-o", self.path("a.rlpc"), "--kg", 1, input=whole).err
-        self.assertIn("standard input: merged 53 duplicate vertices", told)
+        messages = self.ok("rlpcenc", "-", "-o", self.path("a.rlpc"), "--kg", 1, input=whole).err
+        self.assertIn("standard input: merged 53 duplicate vertices", messages)
 
 
 if __name__ == "__main__":

@@ -122,7 +122,7 @@ class Messages(ToolsTest):
                            "--kg", 1, "--preset", "fast").err
             self.assertEqual("(one is Y-up, the other Z-up); the stream gets" in said, differ, (mesh, points, said))
 
-    def test_choices_of_the_encoder_are_told_when_asked(self):
+    def test_choices_of_the_encoder_are_reported_on_request(self):
         self.clip(4)
         clip = ["rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "--dry-run"]
         self.assertNotIn(b"trial", self.ok(*clip).out)

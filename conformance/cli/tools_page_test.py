@@ -259,7 +259,7 @@ class PagesInBrowser(PageTest):
             shots.append(self.path("shot.png").read_bytes())
         self.assertTrue(shots[0] == shots[1], "the pictures differ")
 
-    def test_charts_tell_values(self):
+    def test_charts_show_values(self):
         """Simulates a pointer over the first chart."""
         self.compare()
         page = self.path("a.html")

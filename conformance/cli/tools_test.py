@@ -156,7 +156,7 @@ class RoundTrip(ToolsTest):
         self.assertEqual(decoded["none"], decoded["gof"])
         self.assertEqual(decoded["none"], decoded["frame"])
 
-    def test_rlpcdec_tells_what_was_compared_with_hashes(self):
+    def test_rlpcdec_reports_what_was_compared_with_hashes(self):
         def verified(*options):
             report = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--json", *options).json()
             text = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", *options).err
@@ -270,7 +270,7 @@ class Figures(ToolsTest):
                       f"{gofs[0]['num_clusters']} clusters and {gofs[0]['num_components']} comp"):
             self.assertIn(words, said)
 
-    def test_rlpcinfo_tells_of_both_kinds_of_gofs(self):
+    def test_rlpcinfo_reports_both_kinds_of_gofs(self):
         stream = ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc"
         info = self.ok("rlpcinfo", stream, "--json").json()
         self.assertEqual([g.get("num_clusters") for g in info["gofs"]], [3, None, 2])
@@ -432,15 +432,15 @@ class Targets(ToolsTest):
         self.fails(64, "visually-lossless", "rlpcenc", INPUTS / "elephant.obj", "-o",
                    self.path("a.rlpc"), "--quality", "best")
 
-    def test_errors_that_are_seen_are_told(self):
+    def test_visible_errors_are_reported(self):
         elephant = ("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
                     self.path("a.rlpc"), "--preset", "fast", "--json")
-        for options, visible, told in ((("--kg", 1), True, True), (("--bpvf", 1), True, True),
+        for options, visible, warned in ((("--kg", 1), True, True), (("--bpvf", 1), True, True),
                                        (("--quality", "preview"), True, False),
                                        (("--kg", 1, "-q"), True, False),
                                        (("--quality", "good"), False, False)):
             result = self.ok(*elephant, *options)
-            self.assertEqual("the error may be visible" in result.err, told, options)
+            self.assertEqual("the error may be visible" in result.err, warned, options)
             found = result.json()["visibility"]
             self.assertEqual(found["visible"], visible, options)
             self.assertAlmostEqual(
@@ -452,7 +452,7 @@ class Targets(ToolsTest):
                          for a, b in edges)
         self.assertAlmostEqual(found["median_edge_length"], lengths[len(lengths) // 2], delta=1e-6)
 
-    def test_a_dry_run_writes_nothing_and_tells_the_size(self):
+    def test_a_dry_run_writes_nothing_and_reports_the_size(self):
         elephant = ("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2",
                     "--preset", "fast", "--quality", "good")
         dry = self.ok(*elephant, "--dry-run", "--json").json()

@@ -91,7 +91,7 @@ class Encoders(JudgeTest):
         report = self.draws("none", "PASS")
         self.assertEqual({g["grade"]: g["status"] for g in report["grades"]}["valid"], "NOT RUN")
 
-    def test_validator_is_heard(self):
+    def test_the_verdict_of_the_validator_counts(self):
         self.draws("none", "FAIL-valid", "--validator", "false")
 
     def test_validator_is_found_beside_the_encoder(self):

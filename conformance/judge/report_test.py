@@ -179,7 +179,7 @@ class Fluster(JudgeTest):
         code, text, errors = self.command("export_fluster", self.out, "--suite", self.suite,
                                           "--reference", Tools.folder / "rlpcdec")
         self.assertEqual(code, 0, errors)
-        self.assertIn("3 streams that decode and 4 to refuse; 1 left out", text)
+        self.assertIn("3 streams that decode and 4 to refuse; 1 omitted", text)
 
     def suites(self):
         for path in sorted((self.out / "test_suites" / "rlpc").glob("*.json")):

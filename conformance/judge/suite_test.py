@@ -45,7 +45,7 @@ class Schemas(unittest.TestCase):
                 self.assertEqual(len(found), 1, found)
                 self.assertIn(word, found[0])
 
-    def test_what_fits_draws_no_complaint(self):
+    def test_what_matches_causes_no_complaint(self):
         rules = {"type": "object", "required": ["a"], "additionalProperties": False,
                  "properties": {"a": {"type": ["array", "null"], "items": {"minimum": 2}},
                                 "b": {"enum": ["x"], "pattern": "x"}}}

@@ -123,7 +123,7 @@ class EncoderWithoutMemory : public FailedAllocation {
   std::vector<std::uint8_t> expected_;
 };
 
-TEST_P(EncoderWithoutMemory, EndsAndGivesBackAll) {
+TEST_P(EncoderWithoutMemory, EndsAndFreesAllMemory) {
   ASSERT_EQ(encode(), RLPC_OK);
   expected_ = stream_;
   fail_calls(300, [this] { return encode(); });
@@ -136,7 +136,7 @@ class DecoderWithoutMemory : public FailedAllocation {
   std::vector<std::int32_t> expected_;
 };
 
-TEST_P(DecoderWithoutMemory, EndsAndGivesBackAll) {
+TEST_P(DecoderWithoutMemory, EndsAndFreesAllMemory) {
   ASSERT_EQ(encode(), RLPC_OK);
   rlpc_decode_options options;
   rlpc_decode_options_init(&options, sizeof options);

@@ -48,7 +48,7 @@ TEST(Library, FramesWithinAGofKeepNoMemory) {
   rlpc_decoder_close(decoder);
 }
 
-TEST(Library, WhatIsTakenIsGivenBack) {
+TEST(Library, AllMemoryIsFreed) {
   const std::vector<std::uint8_t> stream = encoded_strip();
   std::vector<std::int32_t> positions(3 * kVertices);
   const std::size_t before = memory_count.now;

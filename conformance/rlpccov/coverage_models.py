@@ -10,7 +10,7 @@ import spec_program
 from coverage_sites import Context
 
 NEW_MODEL = "NewModel"
-_BINS = 3  # index behind the three elements of a model
+_BINS = 3  # index after the three elements of a model
 
 
 def record_bins(function):

@@ -8,7 +8,7 @@ value. It has *outcomes*; an outcome that a suite of streams has to show at leas
 KIND        TEXT                          OUTCOME
 if while    the condition                 true false; of < <= > >= also true-edge, false-edge: true
                                           or false, with sides as close as they can be
-require     rule id, then the condition   the same (supported: likewise)
+require     rule id, then the condition   the same; also for supported
 condition   an operand of and / or, or    the same
             a comparison elsewhere
 for         the iterable                  0 1 many: iterations at hand

@@ -309,7 +309,7 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
     {"W-HDR-01", "7.3", "The frame rate is implausible.",
      "Numerator and denominator are exchanged, or the rate is the duration of a frame.",
      "Frames per second: 30/1, or 30000/1001."},
-    {"W-HSH-01", "7.7", "GOFs have no hash.", "The encoder was told to omit them.",
+    {"W-HSH-01", "7.7", "GOFs have no hash.", "The encoder was set to omit them.",
      "Write a hash for each GOF: decoders cannot detect differences without one."},
     {"W-IDX-01", "7.9", "Many GOFs, but no GOF index.", "The encoder writes none.",
      "Write one: without it, finding a frame means walking over all units."},

@@ -8,7 +8,7 @@ namespace rlpc {
 
 struct RuleExplanation {
   const char* id;           // of a rule of the specification, or of a warning
-  const char* clause;       // where it stands
+  const char* clause;       // that states it
   const char* explanation;  // what is wrong, in plain words
   const char* cause;        // where it usually comes from
   const char* remedy;       // what to do

@@ -67,7 +67,7 @@ class Damage : public testing::TestWithParam<StreamBytes (*)()> {
     // A stream that decodes can still break what decoding does not check.
     for (const Finding& f : report.findings) {
       if (f.severity == Severity::kWarning || !checked_by_decoding(f)) continue;
-      ASSERT_EQ(&f, first) << f.id << " stands before";
+      ASSERT_EQ(&f, first) << f.id << " comes first";
       break;
     }
     if (!error) return;

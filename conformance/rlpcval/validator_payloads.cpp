@@ -316,7 +316,7 @@ void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
   if (const auto at = find_json_error(*json)) {
     findings_.unchecked("R-MET-03", "metadata_json", unit.payload_offset() * 8 + 32,
                         "byte " + std::to_string(*at) + " of " + std::to_string(json->size()) +
-                            " inflated bytes cannot stand there");
+                            " inflated bytes is not JSON");
   }
 }
 

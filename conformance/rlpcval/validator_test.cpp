@@ -118,7 +118,7 @@ TEST(Validator, ReportsAllValuesOfAGofHeader) {
   EXPECT_EQ(report.hashed_frames, 3U);
 }
 
-TEST(Validator, GoesOnBehindABrokenGof) {
+TEST(Validator, ContinuesAfterABrokenGof) {
   StreamBytes stream = indexed_stream();
   const auto gofs = units_of_type(stream, UnitType::kGof);
   for (const std::size_t g : {std::size_t{2}, std::size_t{9}}) {
@@ -137,7 +137,7 @@ TEST(Validator, GoesOnBehindABrokenGof) {
   EXPECT_EQ(report.first_failure()->unit->offset, gofs[2].offset);
 }
 
-TEST(Validator, TellsWhatMayBeAConsequence) {
+TEST(Validator, MarksWhatMayBeAConsequence) {
   const StreamBytes good = indexed_stream();
   const auto gofs = units_of_type(good, UnitType::kGof);
   const StreamBytes stream =
@@ -158,7 +158,7 @@ TEST(Validator, ReadsPayloadsWhoseCrcIsWrong) {
   EXPECT_TRUE(report.findings[1].consequence);
 }
 
-TEST(Validator, FindsUnitsAgainBehindAWrongSize) {
+TEST(Validator, FindsUnitsAgainAfterAWrongSize) {
   const StreamBytes good = indexed_stream();
   const auto gofs = units_of_type(good, UnitType::kGof);
   for (std::size_t byte = 1; byte <= 4; ++byte) {
@@ -233,7 +233,7 @@ ValidationReport validate_first_gof(const Bytes& payload) {
   return validate(with_payload_of(sliced_stream(), UnitType::kGof, payload));
 }
 
-TEST(Validator, ReportsAllValuesOfAHeaderOfBones) {
+TEST(Validator, ReportsAllValuesOfASkinnedGofHeader) {
   BitWriter w;
   put_bones(w, 256, 1U << 16, 256, 0);
   w.byte_alignment();
@@ -302,7 +302,7 @@ TEST(Validator, SaysWhichSlicesAreMissingOrMisplaced) {
   EXPECT_EQ(ids(stream), Ids{"R-UNT-05"});
 }
 
-TEST(Validator, TakesNoSlicesBehindGofsOfClusters) {
+TEST(Validator, AcceptsNoSlicesAfterClusterGofs) {
   const StreamBytes good = mixed_stream();
   const auto gofs = units_of_type(good, UnitType::kGof);
   const Bytes slice = unit_bytes(good, units_of_type(good, UnitType::kSlice).at(0));
@@ -322,7 +322,7 @@ TEST(Validator, TakesNoSlicesBehindGofsOfClusters) {
   }
 }
 
-TEST(Validator, TakesNoSlicesInStreamsOfVersion0) {
+TEST(Validator, AcceptsNoSlicesInStreamsOfVersion0) {
   const StreamBytes rich = rich_stream();
   const UnitPlace gof = units_of_type(rich, UnitType::kGof).at(0);
   StreamBytes stream = rich;
@@ -338,7 +338,7 @@ TEST(Validator, WarnsOfIdleBonesAndStillTrajectories) {
 }
 
 // 4.6: the decoding process checks none of these.
-TEST(Validator, ChecksWhatDecodersNeedNot) {
+TEST(Validator, ChecksWhatDecodersNeedNotCheck) {
   const StreamBytes rich = rich_stream();
   const auto hashes = units_of_type(rich, UnitType::kGofHash);
   const auto first_gof = units_of_type(rich, UnitType::kGof).at(0);
@@ -400,7 +400,7 @@ TEST(Validator, ComparesTheIndexWithTheGofs) {
             (Ids{"R-IDX-02", "R-BIT-01", "R-END-03", "R-IDX-04"}));
 }
 
-TEST(Validator, WarnsOfWhatIsSurelyNotMeant) {
+TEST(Validator, WarnsOfWhatIsSurelyNotIntended) {
   SequenceHeader header;
   header.level_idc = 3;
   header.num_vertices = 4;

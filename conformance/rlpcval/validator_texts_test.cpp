@@ -47,7 +47,7 @@ TEST(Json, TextsOfRfc8259) {
   }
 }
 
-TEST(Json, TextsThatAreNone) {
+TEST(Json, TextsThatAreNotJson) {
   using namespace std::string_view_literals;
   for (const auto& [text, at] :
        std::vector<std::pair<std::string_view, std::size_t>>{{"", 0},

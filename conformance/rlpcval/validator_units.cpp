@@ -38,7 +38,7 @@ std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes
 
 }  // namespace
 
-// Table 7-1. Any ancillary type may stand in a stream.
+// Table 7-1. Any ancillary type may occur in a stream.
 bool StreamUnits::possible_type(std::uint8_t type_byte) const {
   const UnitType last = version_minor_ > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
   return (type_byte & kAncillaryFlag) != 0 ||
@@ -155,7 +155,7 @@ std::optional<std::vector<std::uint8_t>> StreamUnits::payload(const UnitHeader& 
 }
 
 // From the end backwards: a chain is an end_of_sequence unit at the very end, or a unit of a
-// possible type behind which a chain begins.
+// possible type after which a chain begins.
 bool StreamUnits::find_chains(std::uint64_t offset) {
   if (chains_from_ && *chains_from_ <= offset) return true;
   offset = std::min(offset, size());

@@ -35,7 +35,7 @@ class StreamUnits {
   // Whether a unit of a possible type, with a matching CRC, is at the offset.
   bool is_unit(std::uint64_t offset);
 
-  // As far as it is known.
+  // 0 until the version has been read.
   std::uint32_t version_minor() const { return version_minor_; }
   std::uint64_t size() const { return source_.size(); }
   bool failed() const { return failed_; }  // to read

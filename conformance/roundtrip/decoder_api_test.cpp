@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Streams, Seeking,
                          stream_name);
 
 // The slices of a skipped GOF are skipped, too; but a cluster GOF has none.
-TEST(Decoder, DoesNotSeekPastASliceBehindAGofOfClusters) {
+TEST(Decoder, DoesNotSeekPastASliceAfterAClusterGof) {
   StreamBytes stream = mixed_stream();
   const std::size_t place = unit_of_type(stream, UnitType::kGof).end();
   const Bytes slice = write_unit(UnitType::kSlice, Bytes{0xC0});

@@ -142,7 +142,7 @@ TEST_P(Threads, GiveTheSameErrorForUnitsLeftOutOrTwice) {
   }
 }
 
-TEST_P(Threads, GiveTheSameErrorForASliceBehindAnyUnit) {
+TEST_P(Threads, GiveTheSameErrorForASliceAfterAnyUnit) {
   const Bytes slice = write_unit(UnitType::kSlice, Bytes{0xC0, 0, 0, 0, 0});
   for (const UnitPlace& unit : units_of(stream_)) {
     SCOPED_TRACE(unit.offset);

@@ -330,7 +330,7 @@ void expect_round_trip(const Edge& edge, EncoderSettings settings) {
   EXPECT_EQ(frames, source.num_frames());
 }
 
-TEST(Encoder, TakesInputsAtTheEdge) {
+TEST(Encoder, AcceptsEdgeCases) {
   for (const Edge& edge : edges()) {
     for (const std::uint32_t parts : {0U, 1U, 3U}) {
       SCOPED_TRACE(testing::Message() << edge.name << ", " << parts << " bones or clusters");

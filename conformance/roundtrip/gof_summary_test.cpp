@@ -21,7 +21,7 @@ std::vector<GofSummary> entries_of(const StreamBytes& stream) {
   return gofs ? *gofs : std::vector<GofSummary>();
 }
 
-TEST(GofSummaries, TellsOfGofsAndTheirSlices) {
+TEST(GofSummaries, ReportsGofsAndTheirSlices) {
   const StreamBytes stream = sliced_stream();
   const auto gofs = entries_of(stream);
   ASSERT_EQ(gofs.size(), 2U);
@@ -77,7 +77,7 @@ TEST(GofSummaries, NumbersSlicesAsTheyStand) {
             (std::vector<std::vector<std::uint32_t>>{{0, 0, 0}, {1, 0, 1}}));
 }
 
-TEST(GofSummaries, TellsOfGofsOfClusters) {
+TEST(GofSummaries, ReportsClusterGofs) {
   const auto gofs = entries_of(rich_stream());
   ASSERT_EQ(gofs.size(), 2U);
   for (std::size_t g = 0; g < 2; ++g) {
@@ -90,7 +90,7 @@ TEST(GofSummaries, TellsOfGofsOfClusters) {
   }
 }
 
-TEST(GofSummaries, TellsBothKindsInOneStream) {
+TEST(GofSummaries, ReportsBothKindsInOneStream) {
   const auto gofs = entries_of(mixed_stream());
   ASSERT_EQ(gofs.size(), 7U);
   for (std::size_t g = 0; g < gofs.size(); ++g) {

@@ -162,7 +162,7 @@ TEST(MainProfile, RaisesTheLevelForManyTrajectories) {
   EXPECT_LE(decoded_metrics(source, e.bytes).kg_error_percent, 2.0);
 }
 
-TEST(MainProfile, TakesDegenerateMeshes) {
+TEST(MainProfile, AcceptsDegenerateMeshes) {
   struct Case {
     std::uint32_t num_vertices;
     std::uint32_t num_frames;

@@ -72,7 +72,7 @@ TEST(SubStreamExtractor, LeavesOutWholeGroups) {
   EXPECT_EQ(places_of(cut_stream(stream, {0, 0})), (Places{{{0, 0}}, {{0, 0}}}));
 }
 
-TEST(SubStreamExtractor, LeavesGofsOfClustersWhole) {
+TEST(SubStreamExtractor, KeepsClusterGofsWhole) {
   const StreamBytes out = cut_stream(mixed_stream(), {1, 1});
   const Places::value_type none;
   const Places::value_type cut{{0, 0}, {1, 0}};
@@ -179,7 +179,7 @@ TEST(CutDecoding, SeeksToTheFramesOfDecodingInOrder) {
   }
 }
 
-TEST(CutDecoding, TellsWhetherAnythingWasLeftOut) {
+TEST(CutDecoding, ReportsWhetherAnythingWasDropped) {
   const auto was_cut = [](const StreamBytes& stream, const SliceCut& cut) {
     auto decoder = Decoder::open(memory_source(stream), cut_options(cut));
     EXPECT_FALSE(decoder->was_cut());

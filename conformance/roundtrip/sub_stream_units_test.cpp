@@ -216,7 +216,7 @@ TEST(SubStreamUnits, AStrayHashStaysNoHash) {
 }
 
 // A hash that does not fit is not replaced by one that does.
-TEST(SubStreamUnits, AWrongHashIsNotMendedByCutting) {
+TEST(SubStreamUnits, CuttingDoesNotRepairAWrongHash) {
   StreamBytes wrong = sliced_stream();
   for (const UnitPlace& unit : units_of(wrong)) {
     if (unit.type == UnitType::kGofHash) wrong[unit.payload() + 3] ^= 1;

@@ -88,7 +88,7 @@ class Language(FolderTest):
         self.refuses("\ndef F():\n    x = )", "a.md:6")
         self.refuses("\ndef F():\n    return 1.5", "a.md:6")
 
-    def test_names_tell_how_long_a_variable_lives(self):
+    def test_names_show_lifetimes_of_variables(self):
         program = self.load("def F():\n    Kept = 1\n    also_kept = 2\n    lost = 3\n")
         variables = program.compile({})
         variables["F"]()

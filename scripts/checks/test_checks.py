@@ -43,7 +43,7 @@ class TreeTest(unittest.TestCase):
 class Source(unittest.TestCase):
     TEXT = 'int a = 1\'000;  // "x" is\n/* b */ const char* s = "// no";\n'
 
-    def test_code_and_comments_are_told_apart(self):
+    def test_code_and_comments_are_separated(self):
         code = cpp_source.code_only(self.TEXT)
         comments = cpp_source.comments_only(self.TEXT)
         self.assertIn("1'000", code)

@@ -81,7 +81,7 @@ class Layers(RealTree):
     def test_the_tree_is_clean(self):
         self.assertEqual(check_layers.check(self.root)[0], [])
 
-    def test_sides_include_each_other_never(self):
+    def test_sides_never_include_each_other(self):
         self.include("decoder/decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
         self.include("encoder/sequence/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
@@ -150,7 +150,7 @@ class Layers(RealTree):
                        lambda text: text + "target_link_libraries(rlpc_common Eigen3::Eigen)\n",
                        "must not use Eigen")
 
-    def test_public_headers_show_the_standard_library_alone(self):
+    def test_public_headers_reach_only_the_standard_library(self):
         self.complaint(check_layers.check, "decoder/slice_cut.h",
                        lambda text: text + "#include <CLI/CLI.hpp>\n",
                        "decoder/slice_cut.h", "reaches <CLI/CLI.hpp>")
@@ -176,7 +176,7 @@ class Layers(RealTree):
             found = check_layers.check(self.root)[0]
         self.assertIn("scripts/checks/rooms.py: decoder/extract/ has no sources", found)
 
-    def test_a_rule_about_calls_that_names_none_is_told(self):
+    def test_a_rule_about_calls_that_names_none_is_reported(self):
         before = rooms.NOT_CALLED
         rooms.NOT_CALLED = {"decoder/parse": ("common/no_such_folder",)}
         try:
@@ -204,7 +204,7 @@ class Float(RealTree):
         self.complaint(check_float.check, name, lambda text: line + "\n" + text, f"{name}:1",
                        "floating point")
 
-    def test_every_folder_of_integers_is_looked_at(self):
+    def test_every_folder_of_integers_is_checked(self):
         for name in ("common/mesh_prediction/value_prediction.cpp",
                      "common/skinned_gof/recon/skinned_recon.h", "common/int_math.h",
                      "decoder/parse/section_reader.h", "decoder/recon/hash_check.cpp",
@@ -228,7 +228,7 @@ class Float(RealTree):
             with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
                 self.assertEqual(check_float.check(self.root)[0], [])
 
-    def test_an_empty_folder_is_told(self):
+    def test_an_empty_folder_is_reported(self):
         with self.without("decoder/stream"):
             found = check_float.check(self.root)[0]
         self.assertEqual(found, ["decoder/stream/ has no sources"])
@@ -263,7 +263,7 @@ class Constants(RealTree):
             with self.subTest(line=line):
                 self.plant(line, "kMagic says neither")
 
-    def test_every_folder_of_the_search_is_looked_at(self):
+    def test_every_folder_of_the_search_is_checked(self):
         for name in ("encoder/gof/component_cost.h", "encoder/sequence/target_search.cpp",
                      "encoder/cluster_gof/cluster_gof_search.cpp",
                      "encoder/skinned_gof/skinned_gof_coder.cpp",

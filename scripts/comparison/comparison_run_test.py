@@ -152,9 +152,9 @@ else:
             (tools / name).symlink_to(Tools.folder / name)
         done = self.compare("--codecs", "baseline,lorenzo-xz,draco", self.folder / "in put",
                             tools=tools)
-        self.assertIn(f"Left out: Lorenzo + xz, draco per frame: peer_codec is not in {tools}; "
+        self.assertIn(f"Skipped: Lorenzo + xz, draco per frame: peer_codec is not in {tools}; "
                       "leave out --bin", done.stderr)
-        self.assertIn("Left out: Lorenzo", (self.folder / "out/index.html").read_text("utf-8"))
+        self.assertIn("Skipped: Lorenzo", (self.folder / "out/index.html").read_text("utf-8"))
         done = self.compare("--codecs", "lorenzo-xz", self.folder / "in put", tools=tools, code=1)
         self.assertIn("no codec is left", done.stderr)
         (tools / "plot_svg").unlink()
@@ -169,7 +169,7 @@ else:
         done = self.compare("--codecs", "baseline", self.folder / "nowhere.obj", code=1)
         self.assertIn("nowhere.obj", done.stderr)
 
-    def test_a_failure_is_said_and_does_not_stop_the_rest(self):
+    def test_a_failure_is_reported_and_does_not_stop_the_rest(self):
         (self.folder / "in put" / "bad.obj").write_text("v 0 0 0\n")
         shutil.copy(self.folder / "in put" / "arm.pc2", self.folder / "in put" / "bad.pc2")
         done = self.compare("--codecs", "baseline", self.folder / "in put", code=1)

@@ -164,7 +164,7 @@ class Inputs(unittest.TestCase):
         self.assertEqual(self.found("walk/f_%03d.obj"), [("f", "walk/f_%03d.obj", None)])
         self.assertEqual(self.found("walk/*.obj"), [("walk", "walk/*.obj", None)])
 
-    def test_point_caches_tell_their_size(self):
+    def test_point_caches_state_their_size(self):
         self.make("a.obj")
         (self.folder / "a.pc2").write_bytes(
             struct.pack("<12siiffi", b"POINTCACHE2\0", 1, 7, 0.0, 1.0, 9))
@@ -356,7 +356,7 @@ class Reports(unittest.TestCase):
 
 
 class Tables(unittest.TestCase):
-    def test_names_are_told_apart(self):
+    def test_names_are_distinguished(self):
         for table in (codec_table.CODECS, codec_table.ABLATIONS):
             self.assertEqual(len({c.name for c in table}), len(table))
         known = {c.name for c in codec_table.CODECS}
