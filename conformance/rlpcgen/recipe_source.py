@@ -63,7 +63,7 @@ class RecipeSource:
             if (entry.name not in self._elements and entry.name not in _PSEUDO
                     and entry.name != "unit_crc"):
                 raise recipes.RecipeError(f"{entry.place}: {entry.name} is not a syntax element")
-            # Of two entries of the same name and indices, the later one counts.
+            # The later one of two entries with the same name and indices counts.
             grouped.setdefault(entry.name, {})[entry.indices] = recipes.Values(entry, seed)
         return grouped
 

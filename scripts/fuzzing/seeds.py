@@ -191,7 +191,7 @@ class Bits:
 
 
 def parts(stream):
-    """Of a stream: its units, and the counts of its sequence header."""
+    """The units of a stream, and the counts of its sequence header."""
     found = list(units(stream))
     if not found or found[0][0] != SEQUENCE_HEADER or len(found[0][1]) < 3:
         return None

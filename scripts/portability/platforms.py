@@ -104,7 +104,7 @@ class Builder:
         return platform.unit_tests and GOOGLETEST.is_dir()
 
     def run_unit_tests(self, platform, bin_folder):
-        """Those that fail, or do not build."""
+        """Unit tests that fail or do not build."""
         failed = []
         with (self.out / f"{platform.name}.log").open("a") as out:
             for name in self.unit_tests(platform):
