@@ -42,7 +42,7 @@ ClusterAnalysisSettings ClusterGofCoding::analysis_settings(double step, bool wo
   a.seed_step = static_cast<std::uint32_t>(
       std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
   if (settings_.components > 0) {
-    // With a budget, clusters share: some take more than their mean.
+    // The budget is shared by all clusters: some take more components than the mean.
     a.max_components = std::min<std::size_t>(
         a.max_components, tools.rdo ? kShare * settings_.components : settings_.components);
   } else if (tools.qu == 0) {
@@ -90,7 +90,7 @@ EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analy
   for (const Cluster& cluster : gof.clusters) {
     const auto components = static_cast<std::uint32_t>(cluster.components.size());
     encoded.components += components;
-    encoded.most_components = std::max(encoded.most_components, components);
+    encoded.max_components = std::max(encoded.max_components, components);
     for (const Component& component : cluster.components) {
       encoded.num_factors += component.spatial_residual.size() + gof.num_frames;
     }

@@ -1,4 +1,4 @@
-// What a principal component of a GOF is expected to cost, before anything is coded.
+// Estimates the Lagrangian cost of one principal component of a GOF without coding it.
 #pragma once
 
 #include <algorithm>
@@ -8,22 +8,23 @@
 
 namespace rlpc {
 
-// What is expected to cost up to so much more than the least may be the best.
+// A candidate is encoded if its estimated cost exceeds the lowest cost by less than this
+// fraction.
 inline constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): of what is encoded
 
-// Lagrangian cost of coding the component, or of leaving it out where that is cheaper.
+// Expected Lagrangian cost of coding the component, or of dropping it if that is cheaper.
 //
-//   energy         of the component, in squared grid steps
-//   vertices       of the GOF, each with one spatial factor
-//   values         temporal ones: 3 x frames
-//   spatial_left   mean square of what prediction leaves of a spatial factor
-//   step           of the quantisers, in grid steps
+//   energy            energy of the component, squared grid steps
+//   vertices          number of vertices in the GOF, each with one spatial factor
+//   values            number of temporal values: 3 x frames
+//   spatial_residual  mean square of the prediction residual of a spatial factor
+//   step              quantiser step, grid steps
 inline double expected_component_cost(double energy, double vertices, double values,
-                                      double spatial_left, double step) {
+                                      double spatial_residual, double step) {
   constexpr double kTemporalLeft =
       0.25;  // tuned (off: 1): energy that temporal prediction leaves
-  const double error = step * step / 12.0;  // of a coded value
-  const double bits = 0.5 * vertices * det_log2(1.0 + spatial_left / error) +
+  const double error = step * step / 12.0;  // mean squared error of a coded value
+  const double bits = 0.5 * vertices * det_log2(1.0 + spatial_residual / error) +
                       0.5 * values * det_log2(1.0 + kTemporalLeft * energy / (values * error));
   return std::min(energy, error * (vertices + values) + lambda(step) * bits);
 }

@@ -1,4 +1,4 @@
-// One GOF, encoded at varying steps, whatever its kind.
+// The interface that encodes one GOF at varying quantiser steps, for all kinds of GOF.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@
 
 namespace rlpc {
 
-// Sets the decoded positions of frame f of a GOF, as a decoder has them; [num_vertices][3].
+// Writes the positions [num_vertices][3] of frame f of a GOF exactly as a decoder outputs them.
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
 
-// An analysis serves steps up to this factor from the one that it is made for.
+// An analysis is reused for steps that differ from its own by at most this factor.
 inline constexpr double kAnalysisServes = 1.44;  // tuned (off: 1): steps of an analysis
 inline bool analysis_serves(double made_for, double step) {
   return step <= kAnalysisServes * made_for && made_for <= kAnalysisServes * step;
 }
-// Beyond, kinds, bones and tools are chosen again, but not for ever.
+// When the step leaves that range, the kind of GOF, bones and tools are chosen again, at most
+// this often.
 inline constexpr int kMostChoices = 3;  // tuned (off: 1): for one GOF
 
 // One encoding of a GOF.
@@ -31,26 +32,26 @@ struct EncodedGof {
   };
   std::vector<Unit> units;  // the GOF unit, then its slices
   DecodeFrame frame;
-  std::uint64_t num_factors = 0;      // NumFactors of the specification
-  std::uint32_t clusters = 0;         // or bones
-  std::uint32_t components = 0;       // or trajectories
-  std::uint32_t most_components = 0;  // of a cluster; all trajectories
+  std::uint64_t num_factors = 0;     // NumFactors of the specification
+  std::uint32_t clusters = 0;        // clusters or bones
+  std::uint32_t components = 0;      // components of all clusters, or trajectories
+  std::uint32_t max_components = 0;  // components of the largest cluster, or trajectories
 };
 
-// Encodes one GOF. What is chosen for it stands as long as the coder does; the analysis of the
-// last step, which is large, can be released, and is then made again when it is needed.
+// Encodes one GOF, repeatedly. Choices made for the GOF last as long as the coder. The analysis
+// of the last step is large; it can be released, and is computed again when needed.
 class GofCoder {
  public:
   virtual ~GofCoder() = default;
-  // As encode() does first, where expected_error() tells more afterwards.
+  // Runs the analysis that encode() starts with, if expected_error() depends on it.
   virtual void analyse(double /*analysis_step*/) {}
-  // Squared error of what encode() would give, by the last analysis; the real one is larger or
-  // smaller by a factor that hardly depends on the step. None: nothing is known.
+  // Estimates the squared error of encode(step) from the last analysis. The ratio of actual to
+  // estimated error is almost independent of the step. None: no estimate is available.
   virtual std::optional<double> expected_error(double /*step*/) const { return std::nullopt; }
-  // Whether encode() looks at the frames; else they may be gone.
+  // Whether encode() would read the frames; if not, the caller may have freed them.
   virtual bool needs_frames(double step, double analysis_step) const = 0;
-  // step: of the quantisers, in grid steps. analysis_step: that the analysis is made for, near
-  // it; the last analysis is kept, and serves again for its step.
+  // step: quantiser step, in grid steps. analysis_step: the nearby step to analyse for; an
+  // analysis is reused as long as analysis_step stays the same.
   virtual EncodedGof encode(double step, double analysis_step) = 0;
   virtual void release_analysis() = 0;
 };

@@ -1,4 +1,4 @@
-// The frames of one GOF as the encoder analyses them: in grid units, not yet rounded.
+// The frames of one GOF as the encoder analyses them: in grid units, unrounded.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ struct GofFrames {
   }
 };
 
-// Squared distance of decoded positions from the frames, over all. decode(f, positions) sets
-// those of frame f, [num_vertices][3].
+// Sum of squared distances between the frames and the decoded positions. decode(f, positions)
+// writes the positions of frame f, [num_vertices][3].
 template <typename Decode>
 double squared_error(const GofFrames& frames, const Decode& decode) {
   const std::size_t values = std::size_t{frames.num_vertices} * 3;
@@ -32,12 +32,12 @@ double squared_error(const GofFrames& frames, const Decode& decode) {
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     decode(f, std::span<std::int32_t>(positions));
     const double* original = frames.at(f, 0);
-    double of_frame = 0.0;
+    double frame_sum = 0.0;
     for (std::size_t i = 0; i < values; ++i) {
       const double d = positions[i] - original[i];
-      of_frame += d * d;
+      frame_sum += d * d;
     }
-    sum += of_frame;
+    sum += frame_sum;
   }
   return sum;
 }

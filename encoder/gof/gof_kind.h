@@ -1,4 +1,4 @@
-// A kind of GOF: one way to code the frames of one, in a folder of its own.
+// The interface of a kind of GOF (clusters or a skinned mesh); each kind has its own folder.
 #pragma once
 
 #include <memory>
@@ -12,21 +12,22 @@
 
 namespace rlpc {
 
+// Makes the coders of one kind of GOF.
 class GofEncoder {
  public:
   virtual ~GofEncoder() = default;
-  // Frames are kept by reference.
+  // The coder keeps a reference to the frames.
   virtual std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const = 0;
-  // Lagrangian cost that a coder of this kind is expected to come to, from a quick look. best:
-  // of the kinds before this one. None: no look is needed to tell that it comes to more.
+  // Quick estimate of the Lagrangian cost of coding the frames with this kind. best: the best
+  // encoding by the kinds tried so far. None: this kind certainly costs more than best.
   virtual std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
                                               double step) const = 0;
 };
 
 using GofKinds = std::vector<std::unique_ptr<GofEncoder>>;
 
-// Null where the profile or the settings do not allow for the kind. Mesh and settings are kept
-// by reference.
+// Null if profile or settings exclude the kind. The result keeps references to mesh and
+// settings.
 using MakeGofKind = std::unique_ptr<GofEncoder> (*)(const SequenceMesh& mesh,
                                                     const EncoderSettings& settings);
 

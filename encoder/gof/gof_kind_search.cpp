@@ -12,11 +12,10 @@ GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Pre
   coders_.front() = kinds_.front()->make_coder(frames_);
 }
 
-// Whether kinds should be compared for a step.
-bool GofKindSearch::is_far(double step) const {
+bool GofKindSearch::must_compare(double step) const {
   if (kinds_.size() == 1) return false;
-  if (compared_.times == 0) return true;
-  if (compared_.is_settled || compared_.times == kMostChoices) return false;
+  if (compared_.count == 0) return true;
+  if (compared_.is_settled || compared_.count == kMostChoices) return false;
   return !analysis_serves(compared_.step, step);
 }
 
@@ -27,12 +26,12 @@ std::optional<double> GofKindSearch::expected_error(double step) const {
 }
 
 bool GofKindSearch::needs_frames(double step, double analysis_step) const {
-  return is_far(analysis_step) || coders_[chosen_]->needs_frames(step, analysis_step);
+  return must_compare(analysis_step) || coders_[chosen_]->needs_frames(step, analysis_step);
 }
 
 EncodedGof GofKindSearch::encode(double step, double analysis_step) {
-  return is_far(analysis_step) ? compare(step, analysis_step)
-                               : coders_[chosen_]->encode(step, analysis_step);
+  return must_compare(analysis_step) ? compare(step, analysis_step)
+                                     : coders_[chosen_]->encode(step, analysis_step);
 }
 
 bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, double step) {
@@ -48,7 +47,7 @@ bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, doub
 }
 
 EncodedGof GofKindSearch::compare(double step, double analysis_step) {
-  compared_ = {analysis_step, compared_.times + 1, true};
+  compared_ = {analysis_step, compared_.count + 1, true};
   chosen_ = 0;
   EncodedGof best = coders_.front()->encode(step, analysis_step);
   for (std::size_t k = 1; k < kinds_.size(); ++k) {

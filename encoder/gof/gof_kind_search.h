@@ -1,4 +1,4 @@
-// The choice of a kind for one GOF, by Lagrangian cost.
+// Chooses the kind of one GOF by Lagrangian cost.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace rlpc {
 
-// Encodes the GOF by the first kind, and by each further one that may cost less. Where steps
-// move far from the one that kinds were compared for, they are compared again.
+// Encodes the GOF with the first kind and with each other kind that may cost less. Compares the
+// kinds again when the step moves far from that of the last comparison.
 class GofKindSearch : public GofCoder {
  public:
-  // kinds: at least one, the likeliest first. Kinds and frames are kept by reference.
+  // kinds: at least one, the most likely first. Keeps references to kinds and frames.
   GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Preset preset);
 
   void analyse(double analysis_step) override;
@@ -26,19 +26,19 @@ class GofKindSearch : public GofCoder {
 
  private:
   struct Comparison {
-    double step = 0.0;        // that kinds were compared for
-    int times = 0;            // that they were
-    bool is_settled = false;  // so clearly that other steps will change nothing
+    double step = 0.0;        // step of the last comparison
+    int count = 0;            // comparisons so far
+    bool is_settled = false;  // the margin was so large that other steps will not change it
   };
 
-  bool is_far(double step) const;
+  bool must_compare(double step) const;
   bool may_win(const GofEncoder& kind, const EncodedGof& best, double step);
   EncodedGof compare(double step, double analysis_step);
 
   const GofKinds& kinds_;
   const GofFrames& frames_;
   Preset preset_;
-  std::vector<std::unique_ptr<GofCoder>> coders_;  // [kind]; null: not needed so far
+  std::vector<std::unique_ptr<GofCoder>> coders_;  // [kind]; null: not chosen so far
   std::size_t chosen_ = 0;
   Comparison compared_;
 };

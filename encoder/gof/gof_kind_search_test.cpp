@@ -13,14 +13,14 @@
 namespace rlpc {
 namespace {
 
-// How often kinds were asked for something.
+// Counts the calls of a kind and its coders.
 struct Calls {
   int estimates = 0;
   int encodings = 0;
   int released = 0;
 };
 
-// A GOF of so many bytes, without error.
+// Gives an encoding of a fixed size, without error.
 class FakeCoder : public GofCoder {
  public:
   FakeCoder(std::size_t bytes, Calls& calls) : bytes_(bytes), calls_(calls) {}
@@ -41,7 +41,7 @@ class FakeCoder : public GofCoder {
 
 class FakeKind : public GofEncoder {
  public:
-  // expected: relative to the best cost before.
+  // expected: the estimate, relative to the best cost so far.
   FakeKind(std::size_t bytes, std::optional<double> expected, Calls& calls)
       : bytes_(bytes), expected_(expected), calls_(calls) {}
   std::unique_ptr<GofCoder> make_coder(const GofFrames& /*frames*/) const override {
@@ -81,7 +81,7 @@ TEST(GofKindSearch, TakesTheCheapestKind) {
   f.add(90, 1.0);
   GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
-  // Near that step the choice stands.
+  // At a nearby step the choice is kept.
   EXPECT_EQ(Fixture::bytes(search, 11.0), 80U);
   EXPECT_EQ(f.calls[0]->encodings, 1);
   EXPECT_EQ(f.calls[1]->encodings, 2);
@@ -101,7 +101,7 @@ TEST(GofKindSearch, EncodesOnlyKindsThatMayWin) {
   EXPECT_EQ(f.calls[2]->encodings, 0);
 }
 
-TEST(GofKindSearch, SlowEncodesAllWithoutAsking) {
+TEST(GofKindSearch, SlowPresetEncodesAllKindsWithoutEstimates) {
   Fixture f;
   f.add(100, std::nullopt);
   f.add(50, 9.0);
@@ -110,7 +110,7 @@ TEST(GofKindSearch, SlowEncodesAllWithoutAsking) {
   EXPECT_EQ(f.calls[1]->estimates, 0);
 }
 
-TEST(GofKindSearch, ComparesAgainFarAwayUnlessItIsSettled) {
+TEST(GofKindSearch, ComparesAgainAtADistantStepUnlessSettled) {
   for (const double expected : {1.05, 1.2}) {
     Fixture f;
     f.add(100, std::nullopt);

@@ -1,4 +1,4 @@
-// What a bit is worth: the Lagrange multiplier of every choice between rate and distortion.
+// The Lagrange multiplier for all choices between rate and distortion in the encoder.
 #pragma once
 
 #include "encoder/gof/gof_coder.h"
@@ -6,14 +6,15 @@
 
 namespace rlpc {
 
-// In squared steps per bit. At high rate a uniform quantiser of a step s adds the squared error
-// D = s^2 / 12 to a value, whose rate then falls by 1 / (2 ln 2 D) bits per unit of D. Error
-// and rate are in balance where a bit costs as much error as it saves: 2 ln 2 D = 0.1155 s^2.
+// The multiplier in squared steps per bit. At high rate a uniform quantiser of step s adds the
+// squared error D = s^2 / 12 to a value, and the rate falls by 1 / (2 ln 2 D) bits per unit of
+// D. So the multiplier, -dD/dR, is 2 ln 2 D = 0.1155 s^2.
 inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 
-// Squared error that is worth a bit.
+// The squared error, in squared grid steps, that one bit is worth at a quantiser step.
 inline double lambda(double step) { return kLambda * step * step; }
 
+// D + lambda R of an encoded GOF: squared error of its decoded frames, and bits of its units.
 inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
   double bits = 0.0;
   for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());

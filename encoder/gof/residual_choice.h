@@ -1,4 +1,4 @@
-// Residuals by rate and distortion: of the two next to what is wanted, the one that costs less.
+// Rounds residuals to integers: to nearest, with a dead zone, or by rate and distortion.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,11 @@
 
 namespace rlpc {
 
-// Where rates are not compared, residuals are rounded up from 1/2 and this part of a step.
+// Without rate-distortion optimisation, a magnitude is rounded up if its fraction is at least
+// 1/2 plus this dead zone.
 inline constexpr double kDeadZone = 0.06;  // tuned (off: 0): of rounding
 
-// To the next magnitude from 1 - round_up above the last; wanted is in steps.
+// Rounds the magnitude of `wanted` (in steps) up if its fraction is at least 1 - round_up.
 inline std::int32_t rounded_residual(double wanted, double round_up) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
   const auto magnitude =
@@ -27,38 +28,39 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
-// wanted is in steps.
+// Of the two integers next to `wanted` (in steps), the one with the lower Lagrangian cost under
+// the models. The larger magnitude is considered only if it is the nearer.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
                                      double wanted) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
   const double steps = std::min(std::abs(wanted), kMost);
   auto magnitude = static_cast<std::int32_t>(steps);
-  const double part = steps - magnitude;
-  const auto bits = [&](std::int32_t of) {
+  const double fraction = steps - magnitude;
+  const auto bits = [&](std::int32_t residual) {
     BitEstimate estimate;
-    write_residual(estimate, models, expected, of);
+    write_residual(estimate, models, expected, residual);
     return estimate.bits();
   };
-  if (part >= 0.5) {
-    const double more_error = part * part - (1.0 - part) * (1.0 - part);
-    if (kLambda * (bits(magnitude + 1) - bits(magnitude)) < more_error) ++magnitude;
+  if (fraction >= 0.5) {
+    const double saved = fraction * fraction - (1.0 - fraction) * (1.0 - fraction);
+    if (kLambda * (bits(magnitude + 1) - bits(magnitude)) < saved) ++magnitude;
   }
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
-// Residuals of the factors of vertices, as if there were one slice.
+// Chooses the residuals of vertex factors, with contexts as if the GOF were a single slice.
 class VertexResidualChoice {
  public:
   VertexResidualChoice(const CodedMesh& mesh, std::size_t num_factors)
       : contexts_(mesh, num_factors), models_(std::make_unique<VertexModels>()) {}
 
   void start(std::uint32_t v) { contexts_.start(v); }
-  // Of the next factor; wanted, in steps.
+  // Chooses the residual of the next factor and adapts the models; wanted: in steps.
   std::int32_t next(double wanted) {
     ResidualModels& models = (*models_)[contexts_.activity()];
     const std::uint32_t expected = contexts_.expected();
     const std::int32_t residual = cheaper_residual(models, expected, wanted);
-    BitCost cost;  // adapts the models
+    BitCost cost;  // unused: writing adapts the models
     write_residual(cost, models, expected, residual);
     contexts_.update(residual);
     return residual;

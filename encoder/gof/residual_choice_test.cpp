@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// Models that have seen little but zeros, where anything else is expensive.
+// Models adapted to zeros, so that all other residuals are expensive.
 ResidualModels quiet_models() {
   ResidualModels models;
   BitCost cost;
@@ -18,7 +18,7 @@ ResidualModels quiet_models() {
   return models;
 }
 
-TEST(CheaperResidual, IsTheNearestBelowHalfAStep) {
+TEST(CheaperResidual, RoundsToNearestBelowHalfAStep) {
   ResidualModels models = quiet_models();
   for (int i = -100; i < 100; ++i) {
     const double wanted = i + (i < 0 ? -0.49 : 0.49);
@@ -26,7 +26,7 @@ TEST(CheaperResidual, IsTheNearestBelowHalfAStep) {
   }
 }
 
-TEST(CheaperResidual, IsNeverAStepOff) {
+TEST(CheaperResidual, IsLessThanAStepOff) {
   ResidualModels models = quiet_models();
   for (int i = -300; i < 300; ++i) {
     const double wanted = 0.171875 * i;
@@ -35,7 +35,7 @@ TEST(CheaperResidual, IsNeverAStepOff) {
   }
 }
 
-TEST(CheaperResidual, StaysAtZeroWhereOthersAreExpensive) {
+TEST(CheaperResidual, StaysAtZeroIfOtherResidualsAreExpensive) {
   ResidualModels fresh;
   ResidualModels quiet = quiet_models();
   EXPECT_EQ(cheaper_residual(fresh, 0, 0.85), 1);
@@ -51,7 +51,7 @@ TEST(RoundedResidual, RoundsMagnitudes) {
   EXPECT_LE(rounded_residual(1e300, 0.5), kMaxResidual);
 }
 
-TEST(CheaperResidual, HasALargestMagnitude) {
+TEST(CheaperResidual, ClampsMagnitudes) {
   ResidualModels models;
   EXPECT_LE(cheaper_residual(models, 1000, 1e300), kMaxResidual);
   EXPECT_GE(cheaper_residual(models, 1000, -1e300), -std::int64_t{kMaxResidual});

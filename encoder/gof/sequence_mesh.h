@@ -1,4 +1,4 @@
-// The mesh of a sequence, in decoded order.
+// The mesh shared by all GOFs of a sequence, in decoded order.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 namespace rlpc {
 
 struct SequenceMesh {
-  const SequenceHeader& header;  // of which the grid may change
+  const SequenceHeader& header;  // its grid and level may change later
   const Topology& topology;
   std::span<const Triangle> triangles;
 };

@@ -1,4 +1,4 @@
-// What is made for a step and serves again for the same one.
+// A cache of one value, keyed by the quantiser step that it was computed for.
 #pragma once
 
 #include <optional>
@@ -6,11 +6,11 @@
 
 namespace rlpc {
 
-// Holds one value, which is large: it goes before the next is made.
+// Values are large: the old one is released before a new one is computed.
 template <class T>
 class StepCache {
  public:
-  // The value for a step: what make() returns, unless it is there.
+  // Returns the value for the step, calling make() if it is not cached.
   template <class Make>
   const T& get(double step, const Make& make) {
     if (!has(step)) {
@@ -22,7 +22,7 @@ class StepCache {
   void put(double step, T value) { held_.emplace(step, std::move(value)); }
   void release() { held_.reset(); }
   bool has(double step) const { return held_ && held_->first == step; }
-  // Null: none.
+  // Whatever value is cached; null if there is none.
   const T* last() const { return held_ ? &held_->second : nullptr; }
 
  private:

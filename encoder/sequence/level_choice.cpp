@@ -24,7 +24,7 @@ std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t lon
 LevelNeeds::LevelNeeds(const EncodedGof& encoded)
     : factors(encoded.num_factors),
       clusters(encoded.clusters),
-      components(encoded.most_components) {
+      components(encoded.max_components) {
   for (const auto& unit : encoded.units) {
     unit_bytes = std::max<std::uint64_t>(unit_bytes, unit.payload.size());
   }

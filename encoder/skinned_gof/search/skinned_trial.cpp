@@ -88,7 +88,7 @@ EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalys
   };
   encoded.clusters = static_cast<std::uint32_t>(gof.bones.size());
   encoded.components = static_cast<std::uint32_t>(gof.trajectories.size());
-  encoded.most_components = encoded.components;
+  encoded.max_components = encoded.components;
   encoded.num_factors =
       6 * std::uint64_t{gof.bones.size()} * gof.num_frames +
       3 * std::uint64_t{mesh.num_vertices()} +
