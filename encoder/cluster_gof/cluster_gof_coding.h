@@ -1,4 +1,4 @@
-// One cluster GOF at the quantisers of the settings.
+// The stages that encode one cluster GOF, with quantisers taken from the settings.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,29 @@
 
 namespace rlpc {
 
-// How a GOF is cut into clusters.
+// How a GOF is divided into clusters.
 struct ClusterChoice {
   std::uint32_t clusters;
-  bool world;
+  bool world;  // analyse in world coordinates instead of local coordinate frames
 };
 
-// Steps are in grid steps; they count where the settings have no quantisers of their own (qu,
-// qc, qdelta).
+// `step` is in grid steps everywhere. It is ignored if the settings give explicit quantisers
+// (qu, qc, qdelta).
 class ClusterGofCoding {
  public:
-  // All are kept by reference.
+  // Keeps references to all arguments.
   ClusterGofCoding(const SequenceMesh& mesh, const EncoderSettings& settings,
                    const GofFrames& frames)
       : mesh_(mesh), settings_(settings), frames_(frames) {}
 
   const EncoderSettings& settings() const { return settings_; }
   const GofFrames& frames() const { return frames_; }
-  // No clusters yet.
+  // A clustering of the frames without seeds so far.
   MotionClusters motion() const;
   Clustering cluster(MotionClusters& motion, std::uint32_t count) const;
   ClusterGofAnalysis analyse(double step, bool world, const Clustering& clustering) const;
   EncodedGof encode(double step, const ClusterGofAnalysis& analysis) const;
-  // All of it for one choice.
+  // Clusters, analyses and encodes.
   EncodedGof encode(double step, const ClusterChoice& choice, MotionClusters& motion) const;
 
  private:

@@ -16,7 +16,8 @@
 namespace rlpc {
 namespace {
 
-// Closed loop: residuals against recovered positions (3.3, delta coding), for one predictor.
+// Codes the seed tracks in closed loop with the predictor of the GOF: residuals refer to
+// recovered positions (delta coding, 3.3 of the paper).
 void code_seed_tracks(ClusterGof& gof, const GofFrames& frames, int position_bits) {
   std::vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -111,7 +112,7 @@ std::vector<Lcf> recovered_frames(const ClusterGof& gof, const Cluster& cluster,
   return lcf;
 }
 
-// Steps of every component of a cluster.
+// Chooses the quantiser steps of each component of a cluster.
 class StepRule {
  public:
   StepRule(const ClusterCodingSettings& settings, const PrincipalComponents& pc,
@@ -146,7 +147,8 @@ class StepRule {
       s = u_step_ * sigma;
       t = c_step_ / sigma;
     }
-    // Values must fit their widths, with room for the change of the spatial step.
+    // Values must fit their coded widths, with room for make_steps() to change the spatial
+    // step.
     s = std::max(s, largest(spatial) / (1 << (kMaxSpatialBits - 2)));
     t = std::max(t, largest(temporal) / (1 << (kTemporalIndexBits - 2)));
     return make_steps(s, t);
@@ -175,7 +177,7 @@ QuantisedComponent quantise_component(const ClusterAnalysis& cluster, std::size_
   return q;
 }
 
-// Squared error that quantising a component adds, beside the truncation of the others.
+// Squared error added by quantising a component, without that of dropping others.
 double quantisation_error(const QuantisedComponent& q, double energy) {
   const double spatial =
       q.steps.spatial * q.steps.spatial * static_cast<double>(q.spatial.size());
@@ -198,7 +200,7 @@ RdCurve rd_curve(const ClusterAnalysis& cluster,
   return curve;
 }
 
-// Temporal values that fit the quantised spatial ones best, in the least-squares sense.
+// Replaces the temporal values by the least-squares fit to the quantised spatial values.
 void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
                     std::vector<QuantisedComponent>& components, double dead_zone) {
   const std::size_t count = components.size();
@@ -225,7 +227,7 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
     }
   }
   const SymmetricSystem gram(std::move(g), count);
-  if (!gram.is_unique()) return;  // some vector was quantised away: keep the projection
+  if (!gram.is_unique()) return;  // a spatial vector was quantised to zero: keep the projection
   gram.solve(projected, num_frames);
   for (std::size_t l = 0; l < count; ++l) {
     const auto row = projected.begin() + static_cast<std::ptrdiff_t>(l * num_frames);

@@ -1,4 +1,5 @@
-// Analysis and quantisation of one GOF (Amjoun and Strasser 2007, 3; clause 8 backwards).
+// Analysis and quantisation of one cluster GOF (Amjoun and Strasser 2007, 3; inverse of 8.4 to
+// 8.6).
 #pragma once
 
 #include <cstdint>
@@ -17,19 +18,19 @@
 
 namespace rlpc {
 
-// What the analysis of a GOF depends on.
+// Parameters of the analysis of a GOF.
 struct ClusterAnalysisSettings {
-  bool world = false;               // analyse in world coordinates, not in frames of seeds
+  bool world = false;               // world coordinates instead of local coordinate frames
   std::uint32_t seed_step = 1;      // grid steps
-  std::size_t max_components = 64;  // of one cluster
-  double min_energy = 0.0;          // of a component worth a look, grid steps squared
+  std::size_t max_components = 64;  // per cluster
+  double min_energy = 0.0;          // components below are dropped; squared grid steps
 };
 
 // How the components of a GOF are chosen and quantised.
 struct ClusterCodingSettings {
   enum class Steps : std::uint8_t {
-    kEqualDistortion,  // every coded value adds the same error: one step for all
-    kRanges,           // the paper's: 2^-qu and 2^-qc of each cluster's range of values
+    kEqualDistortion,  // one step for all values: each adds the same error
+    kRanges,           // as in the paper: 2^-qu and 2^-qc of each cluster's range of values
   };
   enum class Allocation : std::uint8_t { kFixed, kVectorBudget, kBitBudget, kSlope };
 
@@ -38,7 +39,7 @@ struct ClusterCodingSettings {
   int qu = 12;        // kRanges
   int qc = 12;
   Allocation allocation = Allocation::kSlope;
-  std::uint32_t components = 0;  // per cluster: all but kSlope
+  std::uint32_t components = 0;  // per cluster; not used by kSlope
   double dead_zone = kDeadZone;
 };
 
@@ -50,16 +51,17 @@ struct ClusterAnalysis {
 };
 
 struct ClusterGofAnalysis {
-  ClusterGof gof;  // all but the components
+  ClusterGof gof;  // complete except for the components
   std::vector<ClusterAnalysis> clusters;
 };
 
-// Seed tracks in closed loop, and principal components in the recovered frames.
+// Codes the seed tracks in closed loop, and computes the principal components in the local
+// coordinate frames that a decoder recovers from them.
 ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames& frames,
                                        const Clustering& clustering,
                                        const ClusterAnalysisSettings& settings);
 
-// The GOF ready to be written, from the frames that were analysed.
+// Quantises the components and completes the GOF. frames: those passed to the analysis.
 ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& analysis,
                             const ClusterCodingSettings& settings);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTurn = 6.283185307179586;
 
-// A strip of squares that bends, in grid steps.
+// A bending strip of squares, in grid steps.
 struct Strip {
   static constexpr std::uint32_t kColumns = 20;
   SequenceHeader header;
@@ -101,9 +101,9 @@ TEST(AnalyseGof, SharedSeedsHaveOneTrackAndSeedsAreInNoCluster) {
   }
 }
 
-// A fast, smooth motion over the whole grid asks for the highest predictor; two frames in
-// between jump from one end of the grid to the other, of which it makes nearly six times as
-// much.
+// Fast, smooth motion across the whole grid, for which the highest predictor order is best. Two
+// frames in between jump from one end of the grid to the other, which this predictor amplifies
+// almost sixfold.
 TEST(AnalyseGof, SeedResidualsStayWithinTheirBounds) {
   constexpr std::uint32_t kFrames = 1000;
   Strip strip(1);
@@ -150,7 +150,7 @@ TEST(CodeGof, ErrorFollowsTheStep) {
   }
 }
 
-TEST(CodeGof, FixedAllocationTakesTheComponentsThatAreAskedForAndThere) {
+TEST(CodeGof, FixedAllocationTakesTheRequestedComponentsIfTheyExist) {
   const Strip strip(10);
   const ClusterGofAnalysis analysis =
       analyse_cluster_gof(strip.mesh(), strip.frames, strip.halves(), {});

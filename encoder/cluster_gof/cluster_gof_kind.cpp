@@ -10,7 +10,8 @@
 namespace rlpc {
 namespace {
 
-// One PCA of all vertices does well unless it needs this part of all trajectories that can be.
+// Clusters are tried only if the best encoding so far uses at least this fraction of the
+// maximum number of trajectories; below, a single PCA of all vertices is efficient enough.
 constexpr double kHighRank = 0.4;  // tuned (off: 0): below, clusters are not tried
 constexpr std::uint32_t kVerticesOfCluster = 56;  // tuned: of many small ones, as a sample
 constexpr std::uint32_t kFewestClusters = 2;      // fixed: of many
@@ -44,7 +45,7 @@ class ClusterGofKind : public GofEncoder {
     return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames));
   }
 
-  // Of many small clusters.
+  // Encodes the GOF once, with many small clusters.
   std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
                                       double step) const override {
     const std::uint32_t most = std::min(frames.num_vertices, 3 * frames.num_frames);
@@ -63,9 +64,9 @@ class ClusterGofKind : public GofEncoder {
 
 }  // namespace
 
-// In the Main profile, only where there is time to compare. Costs do not tell which kind has
-// the smaller largest error; usually, it is bones. What is asked for of these is not asked for
-// of clusters.
+// In the Main profile, clusters are compared with bones unless the preset is fast, the target
+// is the maximum error, or any Main tool is set explicitly. The Lagrangian cost does not
+// predict the maximum error, which is usually smaller with bones.
 std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
   const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-// Numbers of clusters worth comparing; finer ones gain little.
+// The numbers of clusters to compare; a denser list gains little.
 constexpr std::array<std::uint32_t, 13> kCounts{1,  2,  3,  4,  6,  8, 12,
                                                 16, 24, 32, 48, 64, 96};  // tuned: of clusters
 constexpr std::size_t kFirstCount = 5;      // tuned (off: 0): of these, where a climb begins
@@ -35,7 +35,7 @@ class ClusterSearch {
     return error + lambda(step_) * bits;
   }
 
-  // Climbs from a middling number of clusters while the cost falls.
+  // Hill climbing from a medium number of clusters, upwards and then downwards.
   std::uint32_t choose_count(bool world) {
     std::size_t last = 0;
     while (last + 1 < kCounts.size() &&
@@ -61,19 +61,19 @@ class ClusterSearch {
 
   ClusterChoice choose() {
     const BaselineTools& tools = coding_.settings().baseline;
-    const bool asked_world = tools.frame_mode == FrameMode::kWorld;
+    const bool world_requested = tools.frame_mode == FrameMode::kWorld;
     const bool any_frame = tools.frame_mode == FrameMode::kAuto;
-    if (tools.clusters > 0 && !any_frame) return {tools.clusters, asked_world};
+    if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
     if (coding_.settings().preset == Preset::kFast) {
       const auto wanted =
           static_cast<std::uint32_t>(std::sqrt(coding_.frames().num_vertices) / kFastDivisor);
       return {tools.clusters > 0 ? tools.clusters : std::clamp(wanted, 1U, kMostFast),
-              asked_world};
+              world_requested};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
     };
-    if (!any_frame) return best_of(asked_world);
+    if (!any_frame) return best_of(world_requested);
     const ClusterChoice local = best_of(false);
     const ClusterChoice world = best_of(true);
     return cost(world) < cost(local) ? world : local;

@@ -1,4 +1,4 @@
-// The choice of clusters for one GOF, by Lagrangian cost.
+// Chooses the clusters of one GOF by Lagrangian cost.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ struct FoundClusters {
   Clustering clustering;
 };
 
-// The clusters that cost least at a step, of those that the settings allow.
+// The clusters with the lowest cost at a step (grid steps), among those that the settings
+// allow.
 FoundClusters search_clusters(const ClusterGofCoding& coding, double step);
 
 }  // namespace rlpc

@@ -17,10 +17,11 @@ double distance2(const double* a, const double* b) {
   return sum;
 }
 
-// How well a triangle carries a frame: the smallest of its squared doubled areas over the GOF;
-// 0 if it degenerates in some frame. Gives up once it is no better than `enough`.
+// How stable a local coordinate frame on the triangle is: the minimum over the GOF of the
+// square of its doubled area; 0 if it is degenerate in any frame. Stops early once the minimum
+// is at most `threshold`.
 double triangle_quality(const GofFrames& frames, const Seed& t, int position_bits,
-                        double enough = 0.0) {
+                        double threshold = 0.0) {
   double worst = std::numeric_limits<double>::infinity();
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     std::array<Vec3i, 3> p{};
@@ -36,12 +37,12 @@ double triangle_quality(const GofFrames& frames, const Seed& t, int position_bit
     const double ny = a[2] * b[0] - a[0] * b[2];
     const double nz = a[0] * b[1] - a[1] * b[0];
     worst = std::min(worst, nx * nx + ny * ny + nz * nz);
-    if (worst <= enough) break;
+    if (worst <= threshold) break;
   }
   return worst;
 }
 
-// Triangles around each vertex.
+// Indices of the triangles at each vertex.
 std::vector<std::vector<std::uint32_t>> incident_triangles(
     std::uint32_t num_vertices, std::span<const Triangle> triangles) {
   std::vector<std::vector<std::uint32_t>> incident(num_vertices);
@@ -51,7 +52,7 @@ std::vector<std::vector<std::uint32_t>> incident_triangles(
   return incident;
 }
 
-// The nearest points that are elsewhere, in frame 0.
+// The points nearest to vertex v in frame 0, without those that coincide with it.
 std::vector<std::uint32_t> nearest_points(const GofFrames& frames, std::uint32_t v) {
   std::vector<std::pair<double, std::uint32_t>> others;
   for (std::uint32_t u = 0; u < frames.num_vertices; ++u) {
@@ -66,7 +67,7 @@ std::vector<std::uint32_t> nearest_points(const GofFrames& frames, std::uint32_t
   return nearest;
 }
 
-// The x axis runs along the longest edge of frame 0, where noise turns it least.
+// Puts the x axis along the longest edge in frame 0, where noise rotates it least.
 Seed rotate_to_longest_edge(const GofFrames& frames, const Triangle& t) {
   std::size_t best = 0;
   double longest = -1.0;
@@ -95,13 +96,13 @@ MotionClusters::MotionClusters(const GofFrames& frames, std::span<const Triangle
     for (std::size_t c = 0; c < 3; ++c) centre[c] += frames.at(0, v)[c];
   }
   for (double& c : centre) c /= n;
-  for (std::uint32_t v = 0; v < n; ++v) {  // a loose vertex of a mesh cannot bring a seed
-    const bool loose = incident_[v].empty() && !triangles_.empty();
-    distance_[v] = loose ? -1.0 : distance2(frames.at(0, v), centre.data());
+  for (std::uint32_t v = 0; v < n; ++v) {  // an isolated vertex of a mesh cannot be a seed
+    const bool isolated = incident_[v].empty() && !triangles_.empty();
+    distance_[v] = isolated ? -1.0 : distance2(frames.at(0, v), centre.data());
   }
 }
 
-// What may become the seed at a vertex.
+// The candidate seed triangles at a vertex.
 std::vector<Triangle> MotionClusters::triangles_at(std::uint32_t v) const {
   std::vector<Triangle> found;
   for (const std::uint32_t t : incident_[v]) found.push_back(triangles_[t]);
@@ -113,7 +114,7 @@ std::vector<Triangle> MotionClusters::triangles_at(std::uint32_t v) const {
   return found;
 }
 
-// False when every vertex is a seed or was passed over.
+// False once every vertex is a seed or was skipped.
 bool MotionClusters::add_seed() {
   for (;;) {
     const auto farthest = std::max_element(distance_.begin(), distance_.end());
@@ -141,7 +142,7 @@ bool MotionClusters::add_seed() {
   }
 }
 
-// Total motion of every vertex between adjacent frames, seen from the frame of a seed (3.2).
+// Total motion of every vertex between adjacent frames, in the coordinates of a seed (3.2).
 std::vector<double> MotionClusters::motion_in(const Seed& seed) const {
   const std::uint32_t n = frames_.num_vertices;
   std::vector<double> motion(n);
@@ -169,7 +170,8 @@ Clustering MotionClusters::clusters(std::uint32_t count) {
   return clustering;
 }
 
-// Gives cluster i the vertices that move less in its frame than in those before.
+// Assigns to cluster i the vertices that move less in its coordinates than in those of clusters
+// 0 to i - 1.
 void MotionClusters::assign(Clustering& clustering, std::size_t i,
                             const std::vector<double>& motion, std::vector<double>& least) {
   for (std::uint32_t v = 0; v < motion.size(); ++v) {
@@ -191,7 +193,8 @@ Clustering MotionClusters::spread_clusters(std::uint32_t count) {
   return clustering;
 }
 
-// Three far-apart vertices of a cluster, out of the half that moves least in the seed's frame.
+// Three distant vertices of a cluster, from the half that moves least in the coordinates of the
+// seed.
 Seed MotionClusters::spread_seed(const Clustering& clustering, std::size_t i) const {
   std::vector<std::uint32_t> calm;
   for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {

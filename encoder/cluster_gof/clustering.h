@@ -1,4 +1,5 @@
-// Clusters by motion in seed-triangle frames (Amjoun and Strasser 2007, 3.1 and 3.2).
+// Clusters vertices by their motion relative to seed triangles (Amjoun and Strasser 2007, 3.1
+// and 3.2).
 #pragma once
 
 #include <array>
@@ -15,28 +16,31 @@ namespace rlpc {
 using Seed = std::array<std::uint32_t, 3>;  // p1, p2, p3 of a seed triangle
 
 struct Clustering {
-  std::vector<Seed> seeds;  // one per cluster; empty: one cluster without a frame
+  std::vector<Seed> seeds;  // one per cluster; empty: one cluster without an LCF
   std::vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; also set for seed vertices
 };
 
-// Far-distance seeds, and the motion of every vertex in their frames. The seeds of N clusters
-// are the first N of those of more clusters, so one object serves every N.
+// Farthest-point seeds, and the motion of every vertex in the local coordinate frames of the
+// seeds. The seeds of N clusters are the first N seeds of any larger number, so one object
+// handles all N.
 //
-// Seeds: the vertex farthest from the centre of frame 0, then each time the vertex farthest
-// from those chosen. Each brings an incident triangle that is degenerate in no frame, in a
-// point cloud one with two of its nearest points; vertices without one are passed over.
+// The first seed vertex is the one farthest from the centre of frame 0, each further one the
+// vertex farthest from all chosen so far. The seed is an incident triangle that is degenerate
+// in no frame; in a point cloud, a triangle of the vertex and two of its nearest points.
+// Vertices without such a triangle are skipped.
 class MotionClusters {
  public:
-  // Everything is kept by reference.
+  // Keeps references to the frames and triangles.
   MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
                  int position_bits);
 
-  // Assigns each vertex to the one of the first `count` seeds in whose frame it moves least
-  // over the GOF; ties go to the lower index. Fewer seeds than asked for may exist, even none.
+  // Assigns each vertex to that of the first `count` seeds in whose local coordinate frame it
+  // moves least over the GOF; ties go to the lower index. There may be fewer seeds than
+  // `count`, even none.
   Clustering clusters(std::uint32_t count);
-  // The same clusters with each seed triangle replaced by three far-apart vertices of its
-  // cluster: noise then turns the frame less, and seeds can be coded coarser. Vertices are
-  // assigned afresh.
+  // As clusters(), then replaces each seed triangle by three distant vertices of its cluster
+  // and assigns the vertices again. Noise rotates these frames less, so seeds can be coded more
+  // coarsely.
   Clustering spread_clusters(std::uint32_t count);
 
  private:
@@ -51,7 +55,7 @@ class MotionClusters {
   std::span<const Triangle> triangles_;
   int position_bits_;
   std::vector<std::vector<std::uint32_t>> incident_;
-  std::vector<double> distance_;  // to the centre at first, then to the nearest seed
+  std::vector<double> distance_;  // squared, to the centre; later to the nearest seed
   std::vector<Seed> seeds_;
   std::vector<std::vector<double>> motion_;  // [seed][num_vertices]
 };

@@ -21,7 +21,7 @@ struct Scene {
   GofFrames frames;
   std::vector<Triangle> triangles;
 
-  // All frames have as many vertices as the first.
+  // All frames must have the same number of vertices.
   void add_frame(const std::vector<Point>& points) {
     frames.num_vertices = static_cast<std::uint32_t>(points.size());
     ++frames.num_frames;
@@ -52,8 +52,8 @@ void add_box_triangles(std::vector<Triangle>& triangles, std::uint32_t first) {
   }
 }
 
-// A box that stays, and one that moves away from it and turns by 90 degrees in each frame:
-// rounding to the grid changes neither.
+// A static box, and one that moves away from it and turns by 90 degrees in each frame; rounding
+// to the grid is exact for both.
 Scene two_boxes() {
   Scene scene;
   add_box_triangles(scene.triangles, 0);
@@ -80,13 +80,13 @@ void expect_boxes_apart(const Clustering& clustering) {
   }
 }
 
-TEST(MotionClusters, OfTwoBoxesThatMoveApartAreTheBoxes) {
+TEST(MotionClusters, SeparateTwoBoxesThatMoveApart) {
   const Scene scene = two_boxes();
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
   expect_boxes_apart(motion.clusters(2));
 }
 
-TEST(MotionClusters, WithSpreadSeedsOfTwoBoxesAreTheBoxes) {
+TEST(MotionClusters, SeparateTwoBoxesWithSpreadSeeds) {
   const Scene scene = two_boxes();
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
   const Clustering clustering = motion.spread_clusters(2);
@@ -96,7 +96,7 @@ TEST(MotionClusters, WithSpreadSeedsOfTwoBoxesAreTheBoxes) {
   }
 }
 
-TEST(MotionClusters, SeedTrianglesAreThoseOfTheMeshTurnedToTheirLongestEdge) {
+TEST(MotionClusters, SeedsAreMeshTrianglesRotatedToTheirLongestEdge) {
   const Scene scene = two_boxes();
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
   for (const Seed& s : motion.clusters(6).seeds) {
@@ -119,7 +119,7 @@ TEST(MotionClusters, SeedTrianglesAreThoseOfTheMeshTurnedToTheirLongestEdge) {
   }
 }
 
-TEST(MotionClusters, OfAPointCloudHaveSeedsOfNearPoints) {
+TEST(MotionClusters, SeedsOfAPointCloudAreNearbyPoints) {
   Scene scene = two_boxes();
   scene.triangles.clear();
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
@@ -131,7 +131,7 @@ TEST(MotionClusters, OfAPointCloudHaveSeedsOfNearPoints) {
   expect_boxes_apart(motion.spread_clusters(2));
 }
 
-TEST(MotionClusters, OfPointsOnALineOrInOnePlaceHaveNoSeed) {
+TEST(MotionClusters, CollinearOrCoincidentPointsGiveNoSeeds) {
   for (const double step : {0.0, 50.0}) {
     Scene scene;
     std::vector<Point> points;
@@ -146,16 +146,16 @@ TEST(MotionClusters, OfPointsOnALineOrInOnePlaceHaveNoSeed) {
   }
 }
 
-TEST(MotionClusters, LooseVerticesOfAMeshBringNoSeed) {
+TEST(MotionClusters, IsolatedVerticesOfAMeshGiveNoSeeds) {
   Scene scene = two_boxes();
-  scene.triangles.resize(scene.triangles.size() / 2);  // those of the first box
+  scene.triangles.resize(scene.triangles.size() / 2);  // the triangles of the first box
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
   for (const Seed& s : motion.clusters(8).seeds) {
     for (const std::uint32_t v : s) EXPECT_LT(v, 8U);
   }
 }
 
-// A strip of squares along x: column i has the vertices 2 i and 2 i + 1.
+// A strip of squares along x; column i consists of the vertices 2 i and 2 i + 1.
 Scene strip(int columns, const std::vector<double>& heights) {
   Scene scene;
   for (std::uint32_t i = 0; i + 1 < static_cast<std::uint32_t>(columns); ++i) {
@@ -189,13 +189,13 @@ TEST(MotionClusters, SeedsAreFarApart) {
   EXPECT_NEAR(columns[4], 24, 2);
 }
 
-TEST(MotionClusters, OfFewerSeedsAreThoseOfMoreSeedsBegun) {
+TEST(MotionClusters, SeedsOfFewerClustersAreAPrefix) {
   const Scene scene = two_boxes();
   MotionClusters once(scene.frames, scene.triangles, kPositionBits);
   const std::vector<Seed> eight = once.clusters(8).seeds;
   for (const std::uint32_t count : {1U, 3U, 8U, 2U}) {
     MotionClusters afresh(scene.frames, scene.triangles, kPositionBits);
-    const Clustering a = once.clusters(count);  // the same object serves every count
+    const Clustering a = once.clusters(count);  // one object handles all counts
     const Clustering b = afresh.clusters(count);
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.cluster_of_vertex, b.cluster_of_vertex);
@@ -203,7 +203,7 @@ TEST(MotionClusters, OfFewerSeedsAreThoseOfMoreSeedsBegun) {
   }
 }
 
-TEST(MotionClusters, InATieVerticesGoToTheFirstSeed) {
+TEST(MotionClusters, TiesGoToTheFirstSeed) {
   const Scene scene = strip(9, {0, 50, 20});  // moves as a whole
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
   const Clustering clustering = motion.clusters(4);
@@ -211,8 +211,8 @@ TEST(MotionClusters, InATieVerticesGoToTheFirstSeed) {
   EXPECT_EQ(clustering.cluster_of_vertex, std::vector<std::uint16_t>(18, 0));
 }
 
-// The ends of the strip shrink to points, to lines or below the grid in one frame.
-TEST(MotionClusters, TrianglesThatDegenerateInAFrameAreNoSeeds) {
+// In one frame, the ends of the strip shrink to points, to lines or below the grid step.
+TEST(MotionClusters, TrianglesDegenerateInAnyFrameAreNoSeeds) {
   for (const int kind : {0, 1, 2}) {
     Scene scene = strip(9, {0, 0, 0});
     double* p = &scene.frames.xyz[std::size_t{18} * 3];  // frame 1
@@ -237,7 +237,7 @@ TEST(MotionClusters, TrianglesThatDegenerateInAFrameAreNoSeeds) {
   }
 }
 
-TEST(MotionClusters, WhereAllVerticesCoincideHaveNoSeeds) {
+TEST(MotionClusters, HaveNoSeedsIfAllVerticesCoincide) {
   Scene scene = strip(4, {});
   scene.add_frame(std::vector<Point>(8, Point{5, 5, 5}));
   MotionClusters motion(scene.frames, scene.triangles, kPositionBits);

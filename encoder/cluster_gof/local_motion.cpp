@@ -13,7 +13,7 @@ LocalFrame::LocalFrame(const Lcf& lcf) {
 
 RLPC_WIDEST void add_local_motion(const LocalFrame& frame, std::size_t num_vertices,
                                   const double* xyz, double* before, double* motion) noexcept {
-  const LocalFrame f = frame;  // which nothing here writes to
+  const LocalFrame f = frame;  // a copy that the writes below cannot alias
   for (std::size_t v = 0; v < num_vertices; ++v) {
     const std::array<double, 3> q = f.to_local(xyz + 3 * v);
     const double dx = q[0] - before[3 * v];

@@ -1,4 +1,4 @@
-// Motion of vertices as seen from a local coordinate frame (Amjoun and Strasser 2007, 3.2).
+// Motion of vertices in a local coordinate frame (Amjoun and Strasser 2007, 3.2).
 #pragma once
 
 #include <array>
@@ -8,7 +8,8 @@
 
 namespace rlpc {
 
-// The inverse of 8.4.3 in floating point: grid units from there, as they are in the frame.
+// Converts positions to local coordinates, both in grid units: the inverse of 8.4.3 in floating
+// point.
 struct LocalFrame {
   explicit LocalFrame(const Lcf& lcf);
 
@@ -28,12 +29,12 @@ struct LocalFrame {
   std::array<std::array<double, 3>, 3> axis{};  // in units of kAxisUnit
 };
 
-// Adds to motion[v] the squared distance of each vertex from where it was, which becomes where
-// it is.
+// Adds to motion[v] the squared distance between the local coordinates of vertex v and
+// `before`, then replaces `before` by the new local coordinates.
 //
-//   xyz     [num_vertices][3]
-//   before  [num_vertices][3], local
-//   motion  [num_vertices]
+//   xyz     [num_vertices][3]  grid units
+//   before  [num_vertices][3]  local coordinates in the previous frame; updated
+//   motion  [num_vertices]     squared grid units; accumulated
 void add_local_motion(const LocalFrame& frame, std::size_t num_vertices, const double* xyz,
                       double* before, double* motion) noexcept;
 

@@ -20,7 +20,7 @@ Vec3i random_position(std::mt19937& random) {
   return p;
 }
 
-TEST(LocalFrame, IsTheInverseOfTheDecodersWayBack) {
+TEST(LocalFrame, InvertsTheDecodersTransform) {
   constexpr unsigned kSeed = 1;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);
@@ -32,15 +32,16 @@ TEST(LocalFrame, IsTheInverseOfTheDecodersWayBack) {
     const Point xyz{static_cast<double>(point[0]), static_cast<double>(point[1]),
                     static_cast<double>(point[2])};
     const Point local = LocalFrame(lcf).to_local(xyz.data());
-    // Local coordinates are rounded to 1/16 steps: less than half a step of error, then exact.
+    // Rounding local coordinates to 1/16 steps moves a point by less than half a step, so it
+    // rounds back to the same grid position.
     const Vec3l back = lcf_to_world(lcf, std::llround(16 * local[0]),
                                     std::llround(16 * local[1]), std::llround(16 * local[2]));
     for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(back[c], point[c]);
   }
 }
 
-TEST(LocalFrame, OfRigidlyMovedPointsStaysTheSame) {
-  // Turned by 90 degrees about z and moved: exact on the grid.
+TEST(LocalFrame, IsInvariantUnderRigidMotion) {
+  // Rotated by 90 degrees about z and translated, which is exact on the grid.
   const auto moved = [](const Vec3i& p) { return Vec3i{-p[1] + 77, p[0] - 12, p[2] + 5}; };
   const Vec3i a{0, 0, 0};
   const Vec3i b{90, 40, -20};
@@ -58,7 +59,7 @@ TEST(LocalFrame, OfRigidlyMovedPointsStaysTheSame) {
 
 TEST(AddLocalMotion, SumsSquaredDistancesAndKeepsTheLastPositions) {
   std::mt19937 random(3);
-  constexpr std::size_t kVertices = 37;  // whole vectors and a rest
+  constexpr std::size_t kVertices = 37;  // several full SIMD vectors and a remainder
   std::vector<double> motion(kVertices);
   std::vector<double> before(3 * kVertices);
   std::vector<double> expected(kVertices);

@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-// Bits of a signed number that holds every value.
+// The narrowest two's complement width, in bits, that holds every value.
 int signed_width(const std::vector<std::int32_t>& values) {
   int bits = 1;
   for (const std::int32_t v : values) {
@@ -129,7 +129,8 @@ int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clu
   for (const auto& components : clusters) {
     for (const QuantisedComponent& c : components) {
       const int eighths = c.steps.product_eighths - 8 * norm_shift(c);
-      const int octaves = floor_octave(eighths) + 1;  // the scale without fraction bits is less
+      const int octaves =
+          floor_octave(eighths) + 1;  // the scale without fraction bits is below 2^octaves
       wanted = std::max(wanted, -floor_octave(eighths - kTemporalUnitEighths));
       allowed = std::min(allowed, kMaxTemporalBits - signed_width(c.temporal) - octaves);
     }

@@ -1,4 +1,4 @@
-// Quantisation of principal components to the integers of a stream (clause 8.5 backwards).
+// Quantises principal components to the integers of a stream (inverse of clause 8.5).
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@
 
 namespace rlpc {
 
-// Steps of the spatial and the temporal values of one component. Their product, in units of
-// local coordinates (1/16 grid step), is 2^(product_eighths / 8) as in Table 8-1: only that is
-// coded.
+// Quantiser steps of the spatial and the temporal values of one component. Only their product
+// is coded: in units of local coordinates (1/16 grid step) it is 2^(product_eighths / 8),
+// rounded as in Table 8-1.
 struct StepPair {
   double spatial = 1.0;
   double temporal = 1.0;
   int product_eighths = 0;
 };
 
-// The nearest legal pair: the temporal step stays, the spatial one changes by at most 2^(1/16).
+// The nearest legal pair. Keeps the temporal step; scales the spatial step by at most 2^(1/16).
 StepPair make_steps(double spatial_step, double temporal_step);
 
-// Quantised values of one component, and how they are best predicted.
+// Quantised values of one component, with the best predictors.
 struct QuantisedComponent {
   StepPair steps;
   std::vector<std::int32_t> temporal;  // [num_frames]
@@ -39,15 +39,15 @@ std::vector<std::int32_t> quantise(const std::vector<double>& values, double ste
 // Chooses the predictors of quantised values and estimates their bits.
 void choose_predictors(QuantisedComponent& component, const SpatialPrediction& prediction);
 
-// Fractional bits that leave every temporal factor of the components enough precision.
+// The number of fraction bits at which all temporal factors are precise enough.
 int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clusters);
 
-// The component as it is written. fraction_bits as chosen above.
+// The component as it is written. fraction_bits: from choose_fraction_bits().
 Component make_component(const QuantisedComponent& component,
                          const SpatialPrediction& prediction, int fraction_bits);
 
-// Estimated bits of residuals coded with adaptive models: the entropy of a two-sided geometric
-// distribution of the same mean magnitude.
+// Estimates the bits of residuals coded with adaptive models: the entropy of the two-sided
+// geometric distribution with the same mean magnitude.
 double estimate_bits(const std::vector<std::int32_t>& residuals);
 
 }  // namespace rlpc

@@ -15,7 +15,7 @@ namespace {
 
 using Values = std::vector<std::int32_t>;
 
-// No triangles: nothing to predict from but the vertex before.
+// No triangles: a vertex can be predicted only from the one before it.
 SpatialPrediction no_topology(std::uint32_t num_vertices) {
   std::vector<std::uint32_t> vertices(num_vertices);
   std::iota(vertices.begin(), vertices.end(), 0U);
@@ -23,7 +23,7 @@ SpatialPrediction no_topology(std::uint32_t num_vertices) {
           std::vector<std::uint16_t>(num_vertices, 0), vertices};
 }
 
-TEST(MakeSteps, ProductIsExactlyThatOfTheTable) {
+TEST(MakeSteps, ProductIsExactlyAnEntryOfTheTable) {
   for (unsigned seed = 1; seed <= 2000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -36,14 +36,14 @@ TEST(MakeSteps, ProductIsExactlyThatOfTheTable) {
     ASSERT_LT(index, 8U);
     const double coded = std::ldexp(kScaleMantissa[index] / 32768.0, octave);
     EXPECT_NEAR(16.0 * steps.spatial * steps.temporal / coded, 1.0, 1e-14);
-    // The table is rounded to 2^-16, too.
+    // The entries of the table are themselves rounded, to 2^-16.
     const double change = std::exp2(1.0 / 16.0) * (1.0 + 0x1p-16);
     EXPECT_LE(steps.spatial / s, change);
     EXPECT_GE(steps.spatial / s, 1.0 / change);
   }
 }
 
-TEST(MakeSteps, LegalPairsStayAsTheyAre) {
+TEST(MakeSteps, KeepsLegalPairs) {
   for (int eighths = -100; eighths <= 100; ++eighths) {
     const int octave = static_cast<int>(std::floor(eighths / 8.0));
     const double product = std::ldexp(
@@ -68,13 +68,13 @@ TEST(Quantise, RoundsToTheNearestStep) {
   }
 }
 
-TEST(Quantise, DeadZoneWidensTheStepAroundZeroAndMovesTheOthers) {
+TEST(Quantise, DeadZoneWidensTheZeroBinAndShiftsTheOthers) {
   EXPECT_EQ(quantise({1.05, 1.15, -1.05, -1.15, 3.05, 3.15}, 2.0, 0.06),
             (Values{0, 1, 0, -1, 1, 2}));
   EXPECT_EQ(quantise({1.9, -1.9, 2.1, -2.1, 3.9}, 2.0, 0.5), (Values{0, 0, 1, -1, 1}));
 }
 
-TEST(EstimateBits, OfNothingIsNothingAndOfZerosLittle) {
+TEST(EstimateBits, IsZeroWithoutResidualsAndSmallForZeros) {
   EXPECT_EQ(estimate_bits({}), 0.0);
   const double zeros = estimate_bits(Values(1000, 0));
   EXPECT_GT(zeros, 0.0);
@@ -100,7 +100,7 @@ TEST(EstimateBits, IsNearTheEntropyOfTwoSidedGeometricResiduals) {
   }
 }
 
-TEST(EstimateBits, DependsOnMagnitudesAloneAndGrowsWithThem) {
+TEST(EstimateBits, GrowsWithMagnitudesAndIgnoresSigns) {
   EXPECT_EQ(estimate_bits({3, -1, 0, 2}), estimate_bits({-2, 0, 1, 3}));
   double before = 0.0;
   for (int scale = 0; scale < 24; ++scale) {
@@ -143,8 +143,8 @@ TEST(ChoosePredictors, LeaveNoiseUnpredicted) {
   EXPECT_EQ(c.spatial_predictor, SpatialPredictor::kNone);
 }
 
-// A plane on a square lattice: parallelograms are exact. Bent sharply at random, the mean of
-// the neighbours scatters less.
+// On a planar square lattice, parallelogram prediction is exact. If the lattice is randomly
+// bent, the mean of the neighbours has less variance.
 TEST(ChoosePredictors, FollowTheShapeOfTheMesh) {
   constexpr std::uint32_t kSide = 12;
   std::vector<Triangle> triangles;
@@ -189,7 +189,7 @@ QuantisedComponent random_component(std::mt19937& random, std::size_t num_frames
   const int spatial_bits = 1 + static_cast<int>(random() % 16);
   for (std::size_t f = 0; f < num_frames; ++f) c.temporal.push_back(value(temporal_bits));
   for (std::size_t i = 0; i < 3 * num_vertices; ++i) c.spatial.push_back(value(spatial_bits));
-  // A product that keeps positions within 20 bits.
+  // A product of steps small enough for positions of 20 bits.
   const double range = std::exp2(static_cast<double>(random() % 12));
   c.steps =
       make_steps(range / std::exp2(spatial_bits) * std::exp2(6),
@@ -222,7 +222,7 @@ TEST(MakeComponent, WidthsAreTheSmallestThatHoldTheValues) {
   }
 }
 
-TEST(MakeComponent, ResidualsGiveTheValuesBack) {
+TEST(MakeComponent, ResidualsReproduceTheValues) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -234,8 +234,8 @@ TEST(MakeComponent, ResidualsGiveTheValuesBack) {
   }
 }
 
-// A temporal step spans at least 4 units of the factor, so that rounding the factor is worth at
-// most 1/8 of a temporal step; then come the local unit of 1/16 and the grid.
+// A temporal step spans at least 4 units of the factor, so rounding the factor adds at most 1/8
+// of a temporal step. Rounding to the local unit of 1/16 and to the grid comes on top.
 TEST(MakeComponent, FactorsReproduceTheProductOfTheValues) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
@@ -271,13 +271,13 @@ TEST(MakeComponent, FactorsReproduceTheProductOfTheValues) {
   }
 }
 
-TEST(ChooseFractionBits, AreNoneForNothingAndForCoarseFactors) {
+TEST(ChooseFractionBits, IsZeroWithoutComponentsAndForCoarseFactors) {
   EXPECT_EQ(choose_fraction_bits({}), 0);
   EXPECT_EQ(choose_fraction_bits({{}, {}}), 0);
   QuantisedComponent coarse;
-  coarse.spatial = Values{1 << 14, 0, 0};  // 16 bits: not normalised
+  coarse.spatial = Values{1 << 14, 0, 0};  // 16 bits: norm_shift() is 0
   coarse.temporal = {1};
-  coarse.steps = make_steps(1.0, 0.25);  // 4 local units for each step of both
+  coarse.steps = make_steps(1.0, 0.25);  // the product of the steps is 4 local units
   EXPECT_EQ(choose_fraction_bits({{coarse}}), 0);
   coarse.steps = make_steps(1.0, 0.125);
   EXPECT_EQ(choose_fraction_bits({{coarse}}), 1);

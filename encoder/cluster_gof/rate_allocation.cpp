@@ -45,7 +45,8 @@ std::vector<std::size_t> allocate_within(const std::vector<RdCurve>& curves,
     const RdCurve& curve = curves[steepest];
     const double more = curve[step[steepest].to].rate - curve[chosen[steepest]].rate;
     if (rate + more > total_rate) {
-      step[steepest].slope = 0.0;  // does not fit any more; a flatter step elsewhere may
+      step[steepest].slope =
+          0.0;  // exceeds the budget; a flatter step of another curve may fit
       continue;
     }
     rate += more;

@@ -1,5 +1,5 @@
-// How many components each cluster gets (Amjoun and Strasser 2007, 3.4; convex hulls computed
-// as they grow, after Wagner and Saupe 2000).
+// Allocates components to clusters along convex hulls of rate and distortion (Amjoun and
+// Strasser 2007, 3.4; incremental hulls after Wagner and Saupe 2000).
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,19 @@
 namespace rlpc {
 
 struct RdPoint {
-  double rate = 0.0;        // vectors or estimated bits, rising with the number of components
-  double distortion = 0.0;  // squared error, falling
+  double rate = 0.0;        // vectors or estimated bits; rises with the number of components
+  double distortion = 0.0;  // squared error; usually falls with the number of components
 };
 
-// Point l stands for l components; every curve has at least the point of 0 components.
+// Point l is the result of coding l components; every curve has at least point 0.
 using RdCurve = std::vector<RdPoint>;
 
-// Steps along the lower convex hulls, steepest first, while the total rate stays within the
-// budget.
+// The number of components of each cluster. Advances along the lower convex hulls, steepest
+// slope first, as long as the total rate stays within total_rate.
 std::vector<std::size_t> allocate_within(const std::vector<RdCurve>& curves, double total_rate);
 
-// Steps along the lower convex hull as long as a unit of rate lowers the distortion by lambda.
+// The number of components with the lowest Lagrangian cost. Advances along the lower convex
+// hull while a unit of rate lowers the distortion by more than lambda.
 std::size_t allocate_by_slope(const RdCurve& curve, double lambda);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ RdPoint total(const std::vector<RdCurve>& curves, const Choice& choice) {
   return sum;
 }
 
-// Every choice, by counting.
+// All combinations of points, by enumeration.
 std::vector<Choice> all_choices(const std::vector<RdCurve>& curves) {
   std::vector<Choice> all{Choice(curves.size(), 0)};
   for (Choice choice = all.front();;) {
@@ -33,7 +33,7 @@ std::vector<Choice> all_choices(const std::vector<RdCurve>& curves) {
   }
 }
 
-// The least distortion that any choice has within a rate.
+// The lowest distortion of all choices within a rate.
 double least_distortion(const std::vector<RdCurve>& curves, double rate) {
   double least = std::numeric_limits<double>::infinity();
   for (const Choice& choice : all_choices(curves)) {
@@ -43,7 +43,8 @@ double least_distortion(const std::vector<RdCurve>& curves, double rate) {
   return least;
 }
 
-// Whole numbers, so that sums are exact. Convex: each step saves less than the one before.
+// Curves with integer values, so that sums are exact. Convex: each step saves less than the one
+// before.
 std::vector<RdCurve> random_curves(std::mt19937& random, bool unit_rates, bool convex) {
   std::vector<RdCurve> curves(1 + random() % 4);
   for (RdCurve& curve : curves) {
@@ -59,7 +60,7 @@ std::vector<RdCurve> random_curves(std::mt19937& random, bool unit_rates, bool c
   return curves;
 }
 
-TEST(AllocateWithin, OfConvexCurvesInVectorsIsTheBestOfAllChoices) {
+TEST(AllocateWithin, IsOptimalForConvexCurvesInVectors) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -84,8 +85,8 @@ TEST(AllocateWithin, NeverExceedsItsBudget) {
   }
 }
 
-// Curves of any form: steps that lie on the hulls are the best use of just that many bits.
-TEST(AllocateWithin, AtTheRateOfASlopeIsTheBestOfAllChoices) {
+// On curves of any shape, points on the hulls are optimal for the bits that they use.
+TEST(AllocateWithin, IsOptimalAtTheRateOfASlope) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -101,7 +102,7 @@ TEST(AllocateWithin, AtTheRateOfASlopeIsTheBestOfAllChoices) {
   }
 }
 
-TEST(AllocateWithin, TakesFlatterStepsWhereASteepOneDoesNotFit) {
+TEST(AllocateWithin, TakesFlatterStepsIfASteepOneDoesNotFit) {
   const std::vector<RdCurve> curves{{{0, 100}, {10, 0}}, {{0, 100}, {2, 95}, {4, 94}}};
   EXPECT_EQ(allocate_within(curves, 9), (Choice{0, 2}));
   EXPECT_EQ(allocate_within(curves, 10), (Choice{1, 0}));
@@ -109,7 +110,8 @@ TEST(AllocateWithin, TakesFlatterStepsWhereASteepOneDoesNotFit) {
   EXPECT_EQ(allocate_within(curves, 100), (Choice{1, 2}));
 }
 
-// One component more can cost distortion, or bits without saving any: neither is on the hull.
+// A further component can increase distortion, or cost bits without reducing distortion; such
+// points are not on the hull.
 TEST(AllocateWithin, SkipsPointsAboveTheHull) {
   const std::vector<RdCurve> curves{{{0, 100}, {5, 99}, {6, 20}, {7, 30}}};
   EXPECT_EQ(allocate_within(curves, 5), Choice{0});
@@ -123,12 +125,12 @@ TEST(AllocateWithin, PrefersTheLowerIndexInATie) {
   EXPECT_EQ(allocate_within(curves, 2), (Choice{1, 1, 0}));
 }
 
-TEST(AllocateWithin, OfNothingIsNothing) {
+TEST(AllocateWithin, IsEmptyWithoutCurves) {
   EXPECT_EQ(allocate_within({}, 10), Choice{});
   EXPECT_EQ(allocate_within({{{0, 7}}}, 10), Choice{0});
 }
 
-TEST(AllocateBySlope, HasTheLeastLagrangianCost) {
+TEST(AllocateBySlope, MinimisesTheLagrangianCost) {
   for (unsigned seed = 1; seed <= 500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -146,7 +148,7 @@ TEST(AllocateBySlope, HasTheLeastLagrangianCost) {
 TEST(AllocateBySlope, TakesFewerComponentsAsLambdaGrows) {
   const RdCurve curve{{0, 1000}, {10, 500}, {20, 300}, {30, 290}};
   EXPECT_EQ(allocate_by_slope(curve, 60.0), 0U);
-  EXPECT_EQ(allocate_by_slope(curve, 50.0), 0U);  // a unit has to save more than lambda
+  EXPECT_EQ(allocate_by_slope(curve, 50.0), 0U);  // a unit of rate has to save more than lambda
   EXPECT_EQ(allocate_by_slope(curve, 49.0), 1U);
   EXPECT_EQ(allocate_by_slope(curve, 19.0), 2U);
   EXPECT_EQ(allocate_by_slope(curve, 0.5), 3U);
