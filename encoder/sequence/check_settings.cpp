@@ -12,41 +12,42 @@ namespace {
 
 struct Parameter {
   const char* option;  // of rlpcenc
-  bool given;          // it is not as by default
+  bool given;          // differs from the default
 };
 
-// The names of all members keep the list complete: one more does not compile.
+// The structured binding names all members: a new member does not compile until it is added
+// here.
 std::vector<Parameter> parameters(const BaselineTools& tools) {
   const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode] = tools;
-  const BaselineTools usual;
-  return {{"--clusters", clusters != usual.clusters},
-          {"--no-rdo", rdo != usual.rdo},
-          {"--rdo-rate", rate_in_vectors != usual.rate_in_vectors},
-          {"--qu", qu != usual.qu},
-          {"--qc", qc != usual.qc},
-          {"--qdelta", qdelta != usual.qdelta},
-          {"--frame", frame_mode != usual.frame_mode},
-          {"--seeds", seed_mode != usual.seed_mode}};
+  const BaselineTools defaults;
+  return {{"--clusters", clusters != defaults.clusters},
+          {"--no-rdo", rdo != defaults.rdo},
+          {"--rdo-rate", rate_in_vectors != defaults.rate_in_vectors},
+          {"--qu", qu != defaults.qu},
+          {"--qc", qc != defaults.qc},
+          {"--qdelta", qdelta != defaults.qdelta},
+          {"--frame", frame_mode != defaults.frame_mode},
+          {"--seeds", seed_mode != defaults.seed_mode}};
 }
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
                temporal_weights, cobra_steps, clusters, component_groups, layer_groups] = tools;
-  const MainTools usual;
-  return {{"--bones", bones != usual.bones},
-          {"--prediction", prediction != usual.prediction},
-          {"--influences", influences != usual.influences},
-          {"--no-geometry-weights", geometry_weights != usual.geometry_weights},
-          {"--no-outer-ring", outer_ring != usual.outer_ring},
-          {"--no-layer-steps", layer_steps != usual.layer_steps},
-          {"--no-temporal-weights", temporal_weights != usual.temporal_weights},
-          {"--basis-steps", cobra_steps != usual.cobra_steps},
-          {"--no-clusters", clusters != usual.clusters},
-          {"--component-groups", component_groups != usual.component_groups},
-          {"--layer-groups", layer_groups != usual.layer_groups}};
+  const MainTools defaults;
+  return {{"--bones", bones != defaults.bones},
+          {"--prediction", prediction != defaults.prediction},
+          {"--influences", influences != defaults.influences},
+          {"--no-geometry-weights", geometry_weights != defaults.geometry_weights},
+          {"--no-outer-ring", outer_ring != defaults.outer_ring},
+          {"--no-layer-steps", layer_steps != defaults.layer_steps},
+          {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
+          {"--basis-steps", cobra_steps != defaults.cobra_steps},
+          {"--no-clusters", clusters != defaults.clusters},
+          {"--component-groups", component_groups != defaults.component_groups},
+          {"--layer-groups", layer_groups != defaults.layer_groups}};
 }
 
-// Parameters of a profile that is not that of the stream would do nothing.
+// Rejects parameters of the other profile, which would have no effect.
 std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
                                        const std::string& profile) {
   for (const Parameter& p : parameters) {
@@ -58,15 +59,15 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
-// Parameters of layers would do nothing if there are none.
+// Rejects parameters of layers if there are no layers, as they would have no effect.
 std::optional<InputError> check_layers(const MainTools& tools) {
   if (tools.prediction.value_or(Prediction::kLayers) == Prediction::kLayers)
     return std::nullopt;
-  const MainTools usual;
+  const MainTools defaults;
   for (const Parameter& p :
-       {Parameter{"--no-geometry-weights", tools.geometry_weights != usual.geometry_weights},
-        Parameter{"--no-outer-ring", tools.outer_ring != usual.outer_ring},
-        Parameter{"--no-layer-steps", tools.layer_steps != usual.layer_steps},
+       {Parameter{"--no-geometry-weights", tools.geometry_weights != defaults.geometry_weights},
+        Parameter{"--no-outer-ring", tools.outer_ring != defaults.outer_ring},
+        Parameter{"--no-layer-steps", tools.layer_steps != defaults.layer_steps},
         Parameter{"--layer-groups", tools.layer_groups > 1}}) {
     if (p.given) {
       return InputError{std::string(p.option) +
@@ -83,7 +84,7 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
   }
   if (b.qu > 0 && s.target.kind != Target::kNone) {
     return InputError{
-        "a target searches the quantisers: leave out either the target or qu and qc"};
+        "a target determines the quantisers: leave out either the target or qu and qc"};
   }
   if (b.qu > 0 && s.components == 0) {
     return InputError{"qu and qc need a number of components per cluster (--components)"};
@@ -98,7 +99,7 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
   return std::nullopt;
 }
 
-// Annex B: what is beyond every level, whatever the animation.
+// Rejects counts that exceed the limits of every level (Annex B), whatever the animation.
 std::optional<InputError> check_counts(const EncoderSettings& s) {
   const Level& most = kLevels.back();
   const auto refuse = [](std::uint32_t limit, const std::string& what) {
@@ -125,7 +126,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (auto error = check_baseline(s)) return error;
   if (auto error = check_layers(s.main)) return error;
   if (auto error = check_counts(s)) return error;
-  // A vertex of which no bone is a candidate can have no more (6.12.2).
+  // The most bones of a vertex none of whose bones is a candidate (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
                       " bones (--influences)"};

@@ -1,4 +1,4 @@
-// What an encoder can be asked for.
+// Validates EncoderSettings.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-// Why settings cannot be used, with the option of rlpcenc that sets the one that is wrong; none
-// if they can.
+// Why the settings cannot be used, naming the option of rlpcenc for the setting at fault; none
+// if they are valid.
 std::optional<InputError> check_settings(const EncoderSettings& settings);
 
 }  // namespace rlpc

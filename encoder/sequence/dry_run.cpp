@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kStretches = 8;        // fixed: of a dry run
 constexpr std::uint64_t kStretchFrames = 128;  // fixed: of a dry run
 
-// Some stretches of a sequence, one after the other.
+// Concatenates kStretches evenly spaced stretches of a sequence, each of `stretch` frames.
 class StretchSource final : public FrameSource {
  public:
   StretchSource(FrameSource& source, std::uint32_t stretch)
@@ -36,7 +36,7 @@ class StretchSource final : public FrameSource {
   std::uint32_t stretch_;
 };
 
-// GOFs of the sample are then those of the settings.
+// Frames per stretch: a multiple of the GOF length, so that the sample has GOFs of that length.
 std::uint64_t stretch_frames(std::uint64_t gof_frames) {
   if (gof_frames == 0 || gof_frames >= kStretchFrames) {
     return std::max(gof_frames, kStretchFrames);
@@ -48,30 +48,30 @@ std::uint64_t stretch_frames(std::uint64_t gof_frames) {
 
 InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress) {
-  const ByteSink nowhere = [](std::span<const std::uint8_t>) { return true; };
+  const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
   const std::uint64_t stretch = stretch_frames(settings.gof_frames);
   if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
-    auto report = encode(source, settings, nowhere, progress);
+    auto report = encode(source, settings, discard, progress);
     if (!report) return report.error();
     return Expectation{std::move(*report), source.num_frames()};
   }
   StretchSource sample(source, static_cast<std::uint32_t>(stretch));
-  auto encoded = encode(sample, settings, nowhere, progress);
+  auto encoded = encode(sample, settings, discard, progress);
   if (!encoded) return encoded.error();
   EncodeReport& report = *encoded;
-  const double times = static_cast<double>(source.num_frames()) / sample.num_frames();
-  const std::uint64_t once =
-      8 * report.bytes - report.bits.gofs - report.bits.hashes;  // in every stream, as it is
+  const double scale = static_cast<double>(source.num_frames()) / sample.num_frames();
+  const std::uint64_t once = 8 * report.bytes - report.bits.gofs -
+                             report.bits.hashes;  // independent of the number of frames
   for (std::uint64_t* bits : {&report.bits.gofs, &report.bits.hashes}) {
     *bits =
-        8 * static_cast<std::uint64_t>(std::llround(static_cast<double>(*bits) / 8 * times));
+        8 * static_cast<std::uint64_t>(std::llround(static_cast<double>(*bits) / 8 * scale));
   }
   report.bytes = (once + report.bits.gofs + report.bits.hashes) / 8;
   report.header.num_frames = source.num_frames();
   report.bpvf =
       bits_per_vertex_per_frame(report.bytes, source.num_vertices(), source.num_frames());
-  for (std::uint32_t* of_gofs : {&report.num_gofs, &report.clusters, &report.components}) {
-    *of_gofs = static_cast<std::uint32_t>(std::llround(*of_gofs * times));
+  for (std::uint32_t* count : {&report.num_gofs, &report.clusters, &report.components}) {
+    *count = static_cast<std::uint32_t>(std::llround(*count * scale));
   }
   return Expectation{std::move(report), sample.num_frames()};
 }

@@ -1,4 +1,4 @@
-// What an encoding would come to, without a stream.
+// Predicts the outcome of an encoding without writing a stream.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,18 @@
 namespace rlpc {
 
 struct Expectation {
-  EncodeReport report;  // of the whole sequence, bytes and bpvf by extrapolation unless exact
+  EncodeReport report;  // for the whole sequence; extrapolated unless exact
   std::uint32_t frames_encoded = 0;
   bool exact() const { return frames_encoded == report.header.num_frames; }
 };
 
-// Up to 1024 frames, or eight times as many as a GOF may have, everything is encoded as
-// encode() does, and what it reports is exact. Of longer sequences, eight stretches that are
-// spread evenly are, as if they were all: bits and numbers of GOFs are taken for those of as
-// many frames, errors are those of the stretches. A stretch has about 128 frames, whole GOFs,
-// or is as long as a GOF may be.
+// A sequence of at most 1024 frames, or of at most eight GOFs of maximum length if these are
+// longer, is encoded completely, and the report is exact. For a longer sequence, eight evenly
+// spaced stretches are encoded as if they were the whole sequence: bits and numbers of GOFs are
+// scaled by the number of frames, errors are those of the stretches. A stretch consists of
+// whole GOFs with about 128 frames in total, or of one GOF if that may be longer.
+//
+// Errors: as encode(), except that no sink can fail.
 InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress = {});
 

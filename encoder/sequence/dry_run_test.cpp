@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 6;
 
-// A sheet of waves, calm first, then restless.
+// A waving sheet whose amplitude doubles halfway.
 class Waves final : public FrameSource {
  public:
   explicit Waves(std::uint32_t num_frames)
@@ -67,7 +67,7 @@ std::uint64_t encoded_bytes(FrameSource& source, const EncoderSettings& settings
 
 TEST(DryRun, IsExactUpToEightStretches) {
   EncoderSettings settings = fast();
-  settings.gof_frames = 50;  // stretches of longer ones would have 100 frames
+  settings.gof_frames = 50;  // longer sequences would have stretches of 100 frames
   Waves source(1024);
   const auto expected = expect_encoding(source, settings);
   ASSERT_TRUE(expected);
@@ -76,7 +76,7 @@ TEST(DryRun, IsExactUpToEightStretches) {
   EXPECT_EQ(expected->report.bytes, encoded_bytes(source, settings));
 }
 
-TEST(DryRun, ExtrapolatesLongerOnes) {
+TEST(DryRun, ExtrapolatesLongerSequences) {
   EncoderSettings settings = fast();
   settings.gof_frames = 50;
   Waves source(2400);
@@ -86,15 +86,15 @@ TEST(DryRun, ExtrapolatesLongerOnes) {
   EXPECT_EQ(expected->frames_encoded, 800U);
   EXPECT_EQ(expected->report.header.num_frames, 2400U);
   EXPECT_EQ(expected->report.num_gofs, 48U);
-  EXPECT_GE(expected->report.clusters, 48U);  // one at least of each
-  EXPECT_EQ(source.last(), 2399U);            // to the end
+  EXPECT_GE(expected->report.clusters, 48U);  // at least one per GOF
+  EXPECT_EQ(source.last(), 2399U);            // the last frame was read
   const double bytes = static_cast<double>(encoded_bytes(source, settings));
   EXPECT_NEAR(static_cast<double>(expected->report.bytes), bytes, 0.05 * bytes);
   EXPECT_DOUBLE_EQ(expected->report.bpvf,
                    8 * static_cast<double>(expected->report.bytes) / (36 * 2400));
 }
 
-TEST(DryRun, OneGofIsEncodedWhole) {
+TEST(DryRun, EncodesASingleGofCompletely) {
   EncoderSettings settings = fast();
   settings.gof_frames = EncoderSettings::kWholeSequence;
   settings.target = {Target::kKg, 5};

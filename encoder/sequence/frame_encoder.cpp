@@ -20,7 +20,7 @@
 namespace rlpc {
 namespace {
 
-// The frames of one GOF, as they came.
+// Buffers the frames of one GOF as they are added.
 class GofBuffer final : public FrameSource {
  public:
   GofBuffer(std::uint32_t num_vertices, std::uint32_t num_frames)
@@ -70,8 +70,8 @@ std::optional<InputError> check_format(const FrameFormat& format) {
   return std::nullopt;
 }
 
-// Later GOFs may need errors this much smaller than the first one, by which the grid is chosen.
-// Steps stay far below their largest size.
+// The grid is chosen for the first GOF; later GOFs may need errors smaller by this factor. The
+// finer grid keeps steps far below their maximum.
 constexpr double kReserve = 16.0;  // fixed: four bits of the grid
 
 }  // namespace
@@ -84,19 +84,19 @@ class FrameEncoder::Impl {
         sink_(std::move(sink)),
         coded_(format_.num_vertices) {}
 
-  std::optional<InputError> prepare();  // of a format that was checked
+  std::optional<InputError> prepare();  // the format has passed check_format()
   std::optional<InputError> add_frame(std::span<const float> xyz);
   InputResult<EncodeReport> finish();
   std::uint32_t num_added() const { return num_added_; }
 
  private:
-  // What the GOFs so far came to.
+  // The results of all GOFs so far.
   struct Coded {
     explicit Coded(std::uint32_t num_vertices)
         : metrics(num_vertices, MetricsAccumulator::kTotals) {}
 
     std::size_t gofs = 0;
-    double step = 0.0;  // of the last, grid steps; 0: none yet
+    double step = 0.0;  // step of the last GOF, grid steps; 0: none yet
     MetricsAccumulator metrics;
     EncodeReport report;
   };
@@ -104,7 +104,7 @@ class FrameEncoder::Impl {
   std::optional<InputError> check_frame(std::span<const float> xyz) const;
   std::optional<InputError> encode_gof();
   void use_header(const SequenceHeader& header);
-  // With the grid for the finest error that matters.
+  // The header with the grid for an error of `finest` (units).
   SequenceHeader header_for(double finest) const;
   InputResult<TargetResult> search(const GofSpan& span, double rms_spread);
   InputResult<TargetResult> search_first(const GofSpan& span, double rms_spread);
@@ -138,19 +138,19 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   spans_ = equal_gofs(header.num_frames, longest_gof(settings_));
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
-  // Frames come as floats.
-  const std::uint64_t of_buffer = 12 * std::uint64_t{header.num_vertices} * longest;
-  if (auto error = check_memory(settings_, header, longest, 0, of_buffer)) return error;
+  // The buffer holds frames as floats.
+  const std::uint64_t buffer_bytes = 12 * std::uint64_t{header.num_vertices} * longest;
+  if (auto error = check_memory(settings_, header, longest, 0, buffer_bytes)) return error;
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
-  // GOFs that come later can have all that is asked for.
+  // The level must allow later GOFs to have all clusters, bones and components of the settings.
   if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;
   coding_.emplace(header, settings_, format_.triangles);
   format_.triangles = {};
   return std::nullopt;
 }
 
-// Of all that is no GOF, with an index as large as it gets with GOFs that meet a target in
-// bits.
+// Bits outside the GOFs, per frame. If the target is a rate, the index is taken at its largest
+// size for GOFs that meet the target.
 double FrameEncoder::Impl::fixed_bits_per_frame() const {
   constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
   std::uint64_t bytes = stream_->overhead_bytes();
@@ -222,14 +222,15 @@ InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double
                             .header = coding_->header(),
                             .rms_spread = rms_spread,
                             .fixed_bits = fixed_bits_per_frame() * span.count,
-                            .first_step = coded_.step,  // GOFs are much alike
+                            .first_step = coded_.step,  // GOFs are usually similar
                             .keeps_level = coded_.gofs > 0},
                            batch);
   if (best) coded_.report.trials += best->trials;
   return best;
 }
 
-// The first GOF sets the grid; where the target is a rate, by the error that this allows.
+// Searches the first GOF, which determines the grid. If the target is a rate, the resulting
+// error may require a finer grid and a second search.
 InputResult<TargetResult> FrameEncoder::Impl::search_first(const GofSpan& span,
                                                            double rms_spread) {
   use_header(header_for(finest_error(settings_.target, rms_spread) / kReserve));
@@ -242,7 +243,7 @@ InputResult<TargetResult> FrameEncoder::Impl::search_first(const GofSpan& span,
   return search(span, rms_spread);
 }
 
-// The first GOF sets the level, with a reserve; the others keep to it.
+// Sets the level with a reserve at the first GOF; error if a later GOF needs a higher one.
 std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& needs) {
   const GofSpan& span = spans_[coded_.gofs];
   SequenceHeader header = coding_->header();

@@ -1,4 +1,4 @@
-// GOFs that meet one target together: all of a sequence, or one of frames that arrive one by
+// GOFs that share one target: all GOFs of a sequence, or a single GOF when frames arrive one by
 // one.
 #pragma once
 
@@ -17,15 +17,16 @@
 
 namespace rlpc {
 
-// A GOF as it was coded at some step.
+// The result of encoding a GOF at one step.
 struct CodedGof {
   GofBytes bytes;
   LevelNeeds needs;
   std::uint32_t clusters = 0;
   std::uint32_t components = 0;
-  DecodeFrame frame;  // empty unless it was to be kept
+  DecodeFrame frame;  // empty unless Options::keep_decoded
 };
 
+// All GOFs of a batch, encoded at one step.
 struct BatchTrial {
   std::vector<CodedGof> gofs;
   std::uint64_t gof_bytes = 0;
@@ -35,33 +36,34 @@ struct BatchTrial {
 class GofBatch {
  public:
   struct Options {
-    std::uint32_t first_frame = 0;  // of the source, in the stream
-    bool keep_analyses = true;      // from one step to the next; else only what is chosen
-    bool keep_decoded = false;      // CodedGof::frame
+    std::uint32_t first_frame = 0;  // position in the stream of frame 0 of the source
+    bool keep_analyses = true;      // from one encode() to the next; choices are always kept
+    bool keep_decoded = false;      // set CodedGof::frame
     MetricsAccumulator::Keep metrics = MetricsAccumulator::kFrames;
   };
 
-  // spans: of the source. coding and source are kept by reference.
+  // spans: frames of the source. Keeps references to coding and source.
   GofBatch(const SequenceCoding& coding, FrameSource& source, const std::vector<GofSpan>& spans,
            const Options& options);
 
   std::uint32_t num_frames() const;
-  // From now on, encodes all GOFs by the kind that is left when others fail a target. False:
-  // there is none.
+  // From now on, encodes all GOFs with the kind reserved for targets that the others miss.
+  // False: there is no such kind.
   bool use_last_resort();
-  // Analyses all GOFs, if analyses are kept. Error: that of the source.
+  // Analyses all GOFs if analyses are kept. Errors: those of the source.
   std::optional<InputError> analyse(double analysis_step);
-  // Squared error of all GOFs at a step, by their last analyses; empty where one tells nothing.
+  // Estimates the squared error of all GOFs at a step from their last analyses; empty if any
+  // GOF has no estimate.
   std::function<double(double step)> expected_error() const;
   // Called after each GOF with the fraction done.
   using Progress = std::function<void(double)>;
-  // Error: that of the source.
+  // Steps as in GofCoder::encode(). Errors: those of the source.
   InputResult<BatchTrial> encode(double step, double analysis_step, const Progress& progress);
 
  private:
   struct Gof {
     GofSpan span{};
-    GofFrames frames;  // while they are needed
+    GofFrames frames;  // empty while they are not needed
     std::unique_ptr<GofCoder> coder;
   };
 

@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// A strip of squares that waves.
+// A waving strip of squares.
 class WavingStrip final : public FrameSource {
  public:
   static constexpr std::uint32_t kColumns = 30;
@@ -53,8 +53,8 @@ SequenceHeader header_of(FrameSource& source, const EncoderSettings& settings) {
   return header;
 }
 
-// What analyses keep from one step to the next saves time, and nothing else.
-TEST(GofBatch, GivesTheSameBytesWhetherItKeepsAnalyses) {
+// Keeping analyses from one step to the next only saves time.
+TEST(GofBatch, GivesTheSameBytesWithoutKeepingAnalyses) {
   for (const Profile profile : {Profile::kBaseline, Profile::kMain}) {
     EncoderSettings settings;
     settings.profile = profile;
@@ -79,7 +79,7 @@ TEST(GofBatch, GivesTheSameBytesWhetherItKeepsAnalyses) {
   }
 }
 
-TEST(GofBatch, ExpectsTheErrorOfAllGofsOnceTheyAreAnalysed) {
+TEST(GofBatch, EstimatesTheErrorOnceAllGofsAreAnalysed) {
   EncoderSettings settings;
   settings.preset = Preset::kFast;
   WavingStrip source(24);
@@ -96,7 +96,7 @@ TEST(GofBatch, ExpectsTheErrorOfAllGofsOnceTheyAreAnalysed) {
                    first.expected_error()(1000.0) + second.expected_error()(1000.0));
 }
 
-// The stream numbers frames on where a batch is not the first.
+// In a later batch, frame numbers continue from the previous one.
 TEST(GofBatch, NumbersFramesFromItsFirst) {
   EncoderSettings settings;
   settings.preset = Preset::kFast;

@@ -22,7 +22,7 @@ constexpr std::uint32_t kSampleFrames = 16;     // tuned: of a GOF, likewise
 constexpr double kLeastGain =
     0.03;  // tuned (off: 1): expected of GOFs that are not of equal length
 
-// What GOFs are expected to cost, from a sample of the vertices.
+// Estimates the cost of GOFs from a sample of the vertices.
 class GofCosts {
  public:
   GofCosts(std::uint32_t num_vertices, std::uint32_t num_frames, double step)
@@ -35,7 +35,8 @@ class GofCosts {
     }
   }
 
-  // Frame after frame. Positions are kept relative to the centre of the sample.
+  // To be called for all frames in order. Stores positions relative to the centre of the
+  // sample.
   void add_frame(std::span<const float> xyz) {
     std::array<double, 3> centre{};
     for (const std::uint32_t v : vertices_) {
@@ -50,7 +51,7 @@ class GofCosts {
     }
   }
 
-  // Lagrangian cost.
+  // Expected Lagrangian cost of a GOF, cached.
   double of(const GofSpan& span) {
     const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
     if (is_new) place->second = expected(span);
@@ -58,8 +59,8 @@ class GofCosts {
   }
 
  private:
-  // What vertices leave of their mean positions, in some frames; the first and last, too, as
-  // these show a cut that comes late or early.
+  // Displacements of the vertices from their mean positions in a sample of frames. The sample
+  // includes the first and the last frame, which reveal a cut that is slightly misplaced.
   TrajectoryMatrix displacements(const GofSpan& span) const {
     const std::uint32_t count = std::min(span.count, kSampleFrames);
     TrajectoryMatrix matrix;
@@ -92,11 +93,11 @@ class GofCosts {
     const TrajectoryMatrix matrix = displacements(span);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
-    const double of_all =
+    const double scale =
         vertices * values / static_cast<double>(matrix.num_values * matrix.num_frames);
     double cost = lambda(step_) * kRestBits * vertices;
     for (const double sampled : principal_components(matrix, 0, 0.0).energy) {
-      const double energy = of_all * sampled;
+      const double energy = scale * sampled;
       cost += expected_component_cost(energy, vertices, values,
                                       kSpatialLeft * energy / vertices, step_);
     }
@@ -116,15 +117,16 @@ double cost(GofCosts& costs, const std::vector<GofSpan>& spans) {
   return sum;
 }
 
-// The cheapest spans of all that begin at multiples of `unit`.
+// The cheapest division into GOFs that all begin at multiples of `unit`, by dynamic
+// programming.
 std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames,
                                        std::uint32_t longest, std::uint32_t unit) {
   struct Best {
     double cost = std::numeric_limits<double>::infinity();
-    std::uint32_t before = 0;  // frame that the last span begins at
+    std::uint32_t before = 0;  // where the last span begins, in units
   };
   const std::uint32_t num_units = (num_frames + unit - 1) / unit;
-  std::vector<Best> best(num_units + 1);  // of the frames before each multiple
+  std::vector<Best> best(num_units + 1);  // [end]: division of the frames before end * unit
   best[0].cost = 0.0;
   for (std::uint32_t end = 1; end <= num_units; ++end) {
     const std::uint32_t end_frame = std::min(end * unit, num_frames);
@@ -144,7 +146,7 @@ std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames
   return spans;
 }
 
-// Moves the cut between two spans while that helps, by ever smaller distances.
+// Moves the cut between two adjacent spans, by halving distances, where that lowers the cost.
 void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, GofSpan& a,
             GofSpan& b) {
   for (std::uint32_t by = unit / 2; by > 0; by /= 2) {

@@ -1,4 +1,4 @@
-// Where a sequence is cut into GOFs.
+// Divides a sequence into GOFs.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,23 @@
 
 namespace rlpc {
 
+// Consecutive frames: `count` of them, starting with frame `first`.
 struct GofSpan {
   std::uint32_t first;
   std::uint32_t count;
 };
 
-// As few GOFs as can be, none longer than `longest`, of equal lengths but for one frame.
+// The fewest GOFs of at most `longest` frames; their lengths differ by at most one frame.
 std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest);
 
-// GOFs, none longer than `longest`, that are expected to cost least: cut where the animation
-// turns to other motions. Equal ones unless others are clearly better. The frames are read
-// once, of which a sample of vertices is kept; time is linear in frames. Very long sequences
-// have equal ones, as so little of each frame could be kept.
+// The GOFs of at most `longest` frames with the lowest expected cost: cut where the motion
+// changes. Returns equal_gofs() unless the others are clearly cheaper. Reads each frame once
+// and keeps a sample of the vertices; time is linear in frames. Very long sequences get equal
+// GOFs, because the memory limit would leave too small a sample of each frame.
 //
-//   step  of the quantisers that is likely, in units of the coordinates
+//   step  likely quantiser step, in the unit of the coordinates
+//
+// Errors: those of the source.
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
                                                 double step);
 

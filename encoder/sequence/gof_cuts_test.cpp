@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kVertices = 600;
 
-// Vertex v, axis c of frame f is given by a function.
+// A source whose coordinates are a function of frame, vertex and axis.
 class Motion final : public FrameSource {
  public:
   using At = std::function<double(std::uint32_t f, std::uint32_t v, std::uint32_t c)>;
@@ -36,7 +36,7 @@ class Motion final : public FrameSource {
   At at_;
 };
 
-// Some waves, others in each act.
+// A sum of waves; each act has different ones.
 double waves(std::uint32_t act, std::uint32_t f, std::uint32_t v, std::uint32_t c) {
   double x = v % 25 + 30.0 * c;
   for (std::uint32_t k = 1; k <= 8; ++k) {
@@ -71,7 +71,7 @@ TEST(EqualGofs, DifferByAFrameAtMost) {
   }
 }
 
-TEST(CheapestGofs, AreCutWhereTheMotionChanges) {
+TEST(CheapestGofs, CutsWhereTheMotionChanges) {
   constexpr std::uint32_t kFirstCut = 90;
   constexpr std::uint32_t kSecondCut = 210;
   constexpr std::uint32_t kFrames = 270;
@@ -86,9 +86,9 @@ TEST(CheapestGofs, AreCutWhereTheMotionChanges) {
   EXPECT_NEAR((*spans)[2].first, kSecondCut, 4.0);
 }
 
-TEST(CheapestGofs, AreEqualWhereItMakesNoDifference) {
+TEST(CheapestGofs, AreEqualIfCutsMakeNoDifference) {
   Motion source(300, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
-    return waves(1, 0, v, c) + 0.1 * f;  // all slides along
+    return waves(1, 0, v, c) + 0.1 * f;  // pure translation
   });
   const auto spans = cheapest_gofs(source, 128, 0.05);
   ASSERT_TRUE(spans);
@@ -96,7 +96,7 @@ TEST(CheapestGofs, AreEqualWhereItMakesNoDifference) {
   for (const GofSpan& span : *spans) EXPECT_EQ(span.count, 100U);
 }
 
-TEST(CheapestGofs, AreOneWhereOneWillDo) {
+TEST(CheapestGofs, IsASingleGofIfTheSequenceIsShort) {
   Motion source(100, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
     return waves(f / 50, f, v, c);
   });
@@ -105,7 +105,7 @@ TEST(CheapestGofs, AreOneWhereOneWillDo) {
   EXPECT_EQ(spans->size(), 1U);
 }
 
-TEST(CheapestGofs, OfFramesThatCannotBeReadAreAnError) {
+TEST(CheapestGofs, PassesOnTheErrorOfTheSource) {
   Motion source(300, [](std::uint32_t, std::uint32_t, std::uint32_t) { return 1.0; });
   source.broken = 200;
   const auto spans = cheapest_gofs(source, 128, 0.05);
@@ -113,7 +113,7 @@ TEST(CheapestGofs, OfFramesThatCannotBeReadAreAnError) {
   EXPECT_EQ(spans.error().message, "no such frame");
 }
 
-TEST(CheapestGofs, OfVeryLongSequencesAreEqualAndNotReadFor) {
+TEST(CheapestGofs, DividesVeryLongSequencesEquallyWithoutReading) {
   Motion source(100'000, [](std::uint32_t, std::uint32_t, std::uint32_t) { return 1.0; });
   source.broken = 0;
   const auto spans = cheapest_gofs(source, 128, 0.05);

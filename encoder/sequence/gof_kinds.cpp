@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-// A new kind needs its factory here.
+// A new kind of GOF adds its factory here.
 constexpr std::array<MakeGofKind, 2> kFactories{make_skinned_gof_kind, make_cluster_gof_kind};
 
 }  // namespace

@@ -1,12 +1,12 @@
-// The kinds of GOF that an encoder has.
+// Lists the kinds of GOF of the encoder.
 #pragma once
 
 #include "encoder/gof/gof_kind.h"
 
 namespace rlpc {
 
-// Those that profile and settings allow for, the likeliest first; at least one. Mesh and
-// settings are kept by reference.
+// The kinds that profile and settings allow, the most likely first; at least one. Keeps
+// references to mesh and settings.
 GofKinds make_gof_kinds(const SequenceMesh& mesh, const EncoderSettings& settings);
 
 }  // namespace rlpc

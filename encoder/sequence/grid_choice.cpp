@@ -74,7 +74,7 @@ GridChoice choose_grid(const Extent& extent, double finest_error) {
     centre[c] = 0.5 * extent.min[c] + 0.5 * extent.max[c];
     largest = std::max(largest, std::abs(centre[c]));
   }
-  // Room for the rounded origin as well.
+  // The margin also covers rounding of the origin.
   const double reach = half * kMargin;
   int bits = kDefaultPositionBits;
   if (finest_error > 0.0 && reach > 0.0) {

@@ -1,5 +1,5 @@
-// The grid of a sequence: fine enough for the wanted error, no finer than positions can be
-// coded.
+// Chooses the grid of a sequence: fine enough for the target error, within the limits of the
+// format.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace rlpc {
 struct Extent {
   std::array<double, 3> min{};
   std::array<double, 3> max{};
-  double rms_spread = 0.0;  // of a coordinate about the mean of its frame, units
+  double rms_spread = 0.0;  // RMS of the coordinates about the mean of their frame, units
 };
 
-// Reads every frame once. Error: those of the source, and coordinates beyond 2^100.
+// Reads every frame once. Errors: those of the source; coordinates beyond 2^100.
 InputResult<Extent> measure_extent(FrameSource& source);
 
 struct GridChoice {
@@ -25,12 +25,12 @@ struct GridChoice {
   int position_bits = 0;
 };
 
-// The smallest error, in units, that matters to a target; 0 if that is not known before. A grid
-// that is far finer than the error is no better, and costs bits: steps have a largest size.
-// rms_spread: as in Extent.
+// The error, in units, that the target asks for; 0 if that is not known in advance. A much
+// finer grid would gain nothing and cost bits, because steps are limited to a maximum number of
+// grid steps. rms_spread: as in Extent.
 double finest_error(const Target& target, double rms_spread);
 
-// finest_error: 0 if unknown.
+// The coarsest suitable grid. finest_error: the smallest error that matters, units; 0: unknown.
 GridChoice choose_grid(const Extent& extent, double finest_error);
 
 inline void set_grid(SequenceHeader& header, const GridChoice& choice) {

@@ -43,8 +43,8 @@ class Frames final : public FrameSource {
 
 Extent box(double min, double max) { return {{min, min, min}, {max, max, max}, 0.0}; }
 
-// Every point of the box has a position of position_bits, at most half a step (and the float's
-// own rounding) away; all parts of the grid are legal.
+// Checks that every point of the box has a grid position of position_bits within half a step
+// (plus float rounding), and that all elements of the grid are legal.
 void expect_covered(const Extent& extent, const GridChoice& choice) {
   EXPECT_GE(choice.grid.log2_step, kMinGridLog2Step);
   EXPECT_LE(choice.grid.log2_step, kMaxGridLog2Step);
@@ -83,7 +83,7 @@ TEST(ChooseGrid, CoversTheBox) {
   }
 }
 
-TEST(ChooseGrid, HasRoomBeyondBoxesOfAPowerOfTwo) {
+TEST(ChooseGrid, HasAMarginAroundBoxesOfAPowerOfTwo) {
   for (int n = -100; n <= 99; ++n) {
     const double size = std::ldexp(1.0, n);
     for (const Extent& extent : {box(-size, size), box(0.0, size), box(-size, 3.0 * size)}) {
@@ -95,7 +95,7 @@ TEST(ChooseGrid, HasRoomBeyondBoxesOfAPowerOfTwo) {
   }
 }
 
-TEST(ChooseGrid, IsAsFineAsTheErrorAsks) {
+TEST(ChooseGrid, IsAsFineAsTheErrorRequires) {
   const Extent extent = box(-3.0, 5.0);
   for (const double finest : {0.1, 1e-3, 5e-5}) {
     const GridChoice choice = choose_grid(extent, finest);
@@ -104,10 +104,10 @@ TEST(ChooseGrid, IsAsFineAsTheErrorAsks) {
   EXPECT_EQ(choose_grid(extent, 0.0).position_bits, 20);
   EXPECT_EQ(choose_grid(extent, 1.0).position_bits, 20);
   EXPECT_GT(choose_grid(extent, 1e-4).position_bits, 20);
-  EXPECT_EQ(choose_grid(extent, 1e-12).position_bits, kMaxPositionBits);  // as fine as it goes
+  EXPECT_EQ(choose_grid(extent, 1e-12).position_bits, kMaxPositionBits);  // the finest possible
 }
 
-TEST(ChooseGrid, TakesAnyError) {
+TEST(ChooseGrid, AcceptsAnyError) {
   for (const double size : {1e-44, 1.0, 1e30}) {
     for (const double finest :
          {std::numeric_limits<double>::min(), 1e300, std::numeric_limits<double>::infinity()}) {
@@ -125,7 +125,7 @@ TEST(ChooseGrid, UsesAtLeastHalfOfItsPositions) {
   }
 }
 
-TEST(ChooseGrid, HoldsVerticesThatAreAllEqual) {
+TEST(ChooseGrid, AcceptsVerticesThatAreAllEqual) {
   for (const double x : {0.0, 1.0, -12345.678, 1e30, 1e-30, -1e-44}) {
     const auto value = static_cast<double>(static_cast<float>(x));
     const Extent extent = box(value, value);
@@ -133,7 +133,7 @@ TEST(ChooseGrid, HoldsVerticesThatAreAllEqual) {
   }
 }
 
-TEST(ChooseGrid, TakesHugeAndTinyCoordinates) {
+TEST(ChooseGrid, AcceptsHugeAndTinyCoordinates) {
   for (const double size : {1e30, 1.2676e30, 1e-30, 1e-38, 1.4e-45}) {
     for (const Extent& extent : {box(-size, size), box(0.0, size), box(0.99 * size, size)}) {
       expect_covered(extent, choose_grid(extent, 0.0));
@@ -146,9 +146,9 @@ TEST(ChooseGrid, FarFromTheOriginIsLimitedByTheOriginNotTheBox) {
   const Extent extent = box(1e6, 1e6 + 1.0);
   const GridChoice choice = choose_grid(extent, 0.0);
   expect_covered(extent, choice);
-  // The origin has 26 bits: 1e6 / 2^26 is 0.0149, so steps of 1/64.
+  // The origin has 26 bits: 1e6 / 2^26 is 0.0149, so the step is 1/64.
   EXPECT_EQ(choice.grid.log2_step, -6);
-  // Floats there are 1/16 apart; no vertex is lost.
+  // Floats there are 1/16 apart, so distinct vertices stay distinct.
   EXPECT_LT(std::ldexp(1.0, choice.grid.log2_step), 0x1p-4);
 }
 
@@ -158,7 +158,7 @@ TEST(MeasureExtent, IsTheBoxOverAllFramesAndTheSpreadAboutTheirMeans) {
   ASSERT_TRUE(extent);
   EXPECT_EQ(extent->min, (std::array<double, 3>{0, 0, -7}));
   EXPECT_EQ(extent->max, (std::array<double, 3>{14, 4, 0}));
-  // Squares about the means: 2 * 1 + 2 * 4 in the first frame, 2 * 4 in the second; 12 values.
+  // Squared deviations: 2 * 1 + 2 * 4 in the first frame, 2 * 4 in the second; 12 values.
   EXPECT_DOUBLE_EQ(extent->rms_spread, std::sqrt(18.0 / 12.0));
 }
 

@@ -36,7 +36,7 @@ LevelNeeds::LevelNeeds(const EncoderSettings& settings)
 
 LevelNeeds LevelNeeds::with_reserve() const {
   const Level& most = kLevels.back();
-  // What exceeds all levels keeps doing so.
+  // A value beyond all levels is kept, so that it is still rejected.
   const auto doubled = [](auto value, auto limit) {
     return std::max(value, std::min<decltype(value)>(2 * value, limit));
   };

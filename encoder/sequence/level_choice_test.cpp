@@ -42,7 +42,7 @@ EncodedGof coded(std::uint64_t factors, std::size_t bytes, std::uint32_t cluster
   return gof;
 }
 
-TEST(LevelNeeds, AskForALevelThatHasAll) {
+TEST(LevelNeeds, GiveTheLowestLevelThatMeetsAll) {
   EXPECT_EQ(LevelNeeds(coded(100, 10, 2, 5)).level_from(1), 1U);
   EXPECT_EQ(LevelNeeds(coded(100, 10, 2, 5)).level_from(3), 3U);
   EXPECT_EQ(LevelNeeds(coded(pow2(23) + 1, 10, 2, 5)).level_from(1), 2U);
@@ -52,7 +52,7 @@ TEST(LevelNeeds, AskForALevelThatHasAll) {
   EXPECT_FALSE(LevelNeeds(coded(100, 10, 2, 1025)).level_from(1));
 }
 
-TEST(LevelNeeds, AskForWhatTheSettingsDo) {
+TEST(LevelNeeds, IncludeTheCountsInTheSettings) {
   EncoderSettings settings;
   EXPECT_EQ(LevelNeeds(settings).level_from(1), 1U);
   settings.components = 513;
@@ -64,7 +64,7 @@ TEST(LevelNeeds, AskForWhatTheSettingsDo) {
   EXPECT_EQ(LevelNeeds(settings).level_from(1), 3U);
 }
 
-TEST(LevelNeeds, HaveAReserveWithinTheHighestLevel) {
+TEST(LevelNeeds, DoubleUpToTheHighestLevel) {
   const auto reserved = [](const EncodedGof& gof) {
     return LevelNeeds(gof).with_reserve().level_from(1);
   };

@@ -30,7 +30,7 @@ Metrics with_rms(double rms) {
 }
 
 // Edges of 3, 4 and 5: the median is 4.
-TEST(Quality, ErrorsAreSetAgainstTheMedianEdge) {
+TEST(Quality, ErrorsAreRelativeToTheMedianEdge) {
   OneFrame source({0, 0, 0, 3, 0, 0, 0, 4, 0}, {{0, 1, 2}, {0, 2, 1}});
   const auto small = measure_visibility(source, with_rms(0.119));
   ASSERT_TRUE(small && *small);
@@ -42,7 +42,7 @@ TEST(Quality, ErrorsAreSetAgainstTheMedianEdge) {
   EXPECT_TRUE((*large)->visible());
 }
 
-TEST(Quality, NothingIsSaidWithoutEdges) {
+TEST(Quality, IsUnknownWithoutEdges) {
   OneFrame points({0, 0, 0, 3, 0, 0}, {});
   const auto none = measure_visibility(points, with_rms(1));
   ASSERT_TRUE(none);

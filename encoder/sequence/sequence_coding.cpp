@@ -20,8 +20,8 @@ std::uint32_t longest_gof(const EncoderSettings& settings) {
 std::optional<InputError> check_memory(const EncoderSettings& settings,
                                        const SequenceHeader& header, std::uint32_t longest_gof,
                                        std::uint32_t kept_frames, std::uint64_t source_bytes) {
-  // Measured, of vertices that move at random: 90 to 150 bytes of a position in a GOF, 70 of
-  // one whose analysis is kept. Of motions, 40 and 10.
+  // Measured with random motion: 90 to 150 bytes per position of the GOF being coded, 70 bytes
+  // per position of a kept analysis. Real motion needs 40 and 10 bytes.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory

@@ -1,4 +1,4 @@
-// What the GOFs of a sequence have in common, and the steps that each of them goes through.
+// The data shared by all GOFs of a sequence, and the stages that each GOF passes through.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,18 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
 
-// The longest GOF that the settings allow.
+// Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings);
 
-// Error: the settings do not allow the memory that encoding takes. kept_frames: those whose
-// analyses stay in memory; source_bytes: what the source keeps.
+// Error: encoding may need more memory than the settings allow. kept_frames: number of frames
+// whose analyses stay in memory; source_bytes: memory held by the source.
 std::optional<InputError> check_memory(const EncoderSettings& settings,
                                        const SequenceHeader& header, std::uint32_t longest_gof,
                                        std::uint32_t kept_frames, std::uint64_t source_bytes);
 
 class SequenceCoding {
  public:
-  // Keeps a reference to the settings. Every index of the triangles is below num_vertices.
+  // Keeps a reference to the settings. All vertex indices must be below num_vertices.
   SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                  std::span<const Triangle> triangles);
   SequenceCoding(const SequenceCoding&) = delete;
@@ -40,19 +40,19 @@ class SequenceCoding {
 
   const SequenceHeader& header() const { return header_; }
   const ConnectivityCode& connectivity() const { return connectivity_; }
-  // The same with another level, or with another grid: frames and coders from before are then
-  // of no use.
+  // The header may change in level and grid only. A new grid invalidates all frames and coders
+  // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
 
-  // The frames of a GOF, in decoded vertex order and grid units; span.first is that of the
-  // source. Error: that of the source.
+  // The frames of a GOF, in decoded vertex order and grid units; span: frames of the source.
+  // Errors: those of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
-  // Whether there is a kind of GOF beside those compared, for targets that these fail.
+  // Whether there is a further kind of GOF, for targets that the compared kinds miss.
   bool has_last_resort() const { return last_resort_ != nullptr; }
-  // Keeps a reference to the frames. is_last_resort: of that kind alone.
+  // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
-  // Decodes what was written, as a decoder would, and compares with the input. Returns the hash
-  // unit of the GOF, empty if there is to be none. Error: that of the source.
+  // Decodes the GOF as a decoder would and adds its errors against the source to the metrics.
+  // Returns the hash unit of the GOF; empty if hashes are off. Errors: those of the source.
   InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
                              const DecodeFrame& decode, MetricsAccumulator& metrics) const;
 
@@ -66,7 +66,7 @@ class SequenceCoding {
   std::unique_ptr<GofEncoder> last_resort_;
 };
 
-// The units of a coded GOF, as they stand in a stream.
+// The units of a coded GOF as bytes of a stream.
 Bytes write_gof_units(const EncodedGof& encoded);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Implements encode() of encoder/rlpc_encoder.h: a whole sequence, to its target.
+// Implements encode() of encoder/rlpc_encoder.h: encodes a whole sequence to its target.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -17,7 +17,8 @@
 namespace rlpc {
 namespace {
 
-// Analyses of all GOFs are kept if the frames take no more than this many bytes.
+// Analyses of all GOFs are kept in memory if the frames, as doubles, take at most this many
+// bytes.
 constexpr std::uint64_t kKeepBytes = std::uint64_t{1} << 30;  // fixed: memory
 
 bool keeps_analyses(const SequenceHeader& header) {
@@ -49,7 +50,7 @@ class SequenceEncoder {
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;
-  std::uint32_t trials_ = 0;  // of the searches so far
+  std::uint32_t trials_ = 0;  // trials of all searches so far
 };
 
 std::optional<InputError> SequenceEncoder::prepare() {
@@ -78,7 +79,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   return std::nullopt;
 }
 
-// By expected cost where there is time for it, and a step to expect.
+// Divides the sequence into GOFs: by expected cost, or of equal length with preset fast and in
+// the Baseline profile.
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
   const std::uint32_t longest = longest_gof(settings_);
   if (header.num_frames > kMaxFrames) {
@@ -104,7 +106,7 @@ void SequenceEncoder::use_grid(const GridChoice& grid) {
   stream_.emplace(header, settings_, coding_->connectivity());
 }
 
-// A search converges: each trial is worth half of what is left.
+// The number of trials is unknown, so each trial counts for half of the remaining progress.
 void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
   if (!progress_) return;
   progress_(settings_.target.kind == Target::kNone
@@ -126,7 +128,8 @@ InputResult<TargetResult> SequenceEncoder::search() {
   return best;
 }
 
-// What error a rate allows shows when it is reached: whether the grid was fine enough for it.
+// With a rate as the target, the error is known only after the search. If it would have
+// required a finer grid, searches again on that grid and keeps the better result.
 std::optional<InputError> SequenceEncoder::search_on_finer_grid(TargetResult& best) {
   const double error = extent_.rms_spread * best.trial.metrics.kg_error_percent / 100.0;
   const GridChoice grid = choose_grid(extent_, error);

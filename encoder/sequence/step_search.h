@@ -1,4 +1,4 @@
-// What a search for a step learns from its encodings: parts of TargetSearch.
+// Parts of TargetSearch: what the search has learnt from its trials so far.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@ class BestEncoding {
  public:
   explicit BestEncoding(const Target& target) : target_(target) {}
 
-  // True if it is the best so far. tolerance: of the target, below it.
+  // Adds an encoding; true if it is the best so far. tolerance: relative distance below the
+  // target that counts as close.
   bool offer(double measured, std::uint64_t bytes, double tolerance) {
     const bool better = is_better(measured, bytes);
     const bool within = measured <= target_.value;
@@ -28,13 +29,13 @@ class BestEncoding {
     }
     return better;
   }
-  bool met() const { return met_; }      // some encoding is within the target
-  bool close() const { return close_; }  // and as close to it as asked for
+  bool met() const { return met_; }      // an encoding does not exceed the target
+  bool close() const { return close_; }  // one is also within the tolerance
 
  private:
-  // Within the target, usually the value closest to it. But errors jump where the analysis
-  // does: one that is a per cent farther off is better if it saves more than a per cent of the
-  // bytes. While none is within the target, the smallest value.
+  // Among encodings that meet the target, the one closest to it usually wins. But errors jump
+  // when the analysis changes, so an encoding whose error is 1 % further below the target wins
+  // if it saves more than 1 % of the bytes. If none meets the target, the smallest value wins.
   bool is_better(double measured, std::uint64_t bytes) const {
     if (measured > target_.value) return is_first_ || (!met_ && measured < measured_);
     if (!met_) return true;
@@ -53,7 +54,7 @@ class BestEncoding {
   bool close_ = false;
 };
 
-// The steps next to the one that reaches the target, and what they measure.
+// The tried steps on either side of the target, with their measured values.
 class Bracket {
  public:
   void add_fine(double step, double value) { fine_ = {step, value}; }
@@ -61,32 +62,32 @@ class Bracket {
   bool closed() const { return fine_.step > 0.0 && coarse_.step > 0.0; }
   bool within(double factor) const { return coarse_.step < factor * fine_.step; }
   double coarse_step() const { return coarse_.step; }
-  // Where the value is `aim` if it is linear between the two.
+  // The step at which linear interpolation gives the value `aim`.
   double interpolate(double aim) const {
     constexpr double kEnd = 0.02;  // fixed: never at an end that is known
-    const double share = (aim - fine_.value) / (coarse_.value - fine_.value);
-    return fine_.step + (coarse_.step - fine_.step) * std::clamp(share, kEnd, 1.0 - kEnd);
+    const double fraction = (aim - fine_.value) / (coarse_.value - fine_.value);
+    return fine_.step + (coarse_.step - fine_.step) * std::clamp(fraction, kEnd, 1.0 - kEnd);
   }
   double middle() const { return std::sqrt(fine_.step * coarse_.step); }
 
  private:
   struct End {
-    double step = 0.0;  // 0: none
+    double step = 0.0;  // 0: none yet
     double value = 0.0;
   };
-  End fine_;    // the last step that was too fine, or just right
-  End coarse_;  // the last one that was too coarse
+  End fine_;    // the last step that was too fine or exact
+  End coarse_;  // the last step that was too coarse
 };
 
-// Measured values as a power of the step.
+// Models measured values as a power of the step.
 class PowerLaw {
  public:
   explicit PowerLaw(double usual_exponent) : usual_(usual_exponent), exponent_(usual_) {}
 
   double usual_exponent() const { return usual_; }
   double exponent() const { return exponent_; }
-  // The exponent is that between this encoding and the last, within the given range of the
-  // usual one. value: above 0.
+  // Sets the exponent to the slope between this encoding and the previous one, clamped to the
+  // range from flattest to steepest times the usual exponent. value: above 0.
   void add(double step, double value, double flattest, double steepest) {
     if (last_value_ > 0.0 && value != last_value_ && step != last_step_) {
       const double rise = det_log2(value / last_value_) / det_log2(step / last_step_);
@@ -99,7 +100,7 @@ class PowerLaw {
  private:
   double usual_;
   double exponent_;
-  double last_value_ = 0.0;  // 0: none
+  double last_value_ = 0.0;  // 0: none yet
   double last_step_ = 1.0;
 };
 

@@ -1,4 +1,4 @@
-// The units of a stream in their order: those before the GOFs, GOFs, index and end.
+// Writes the units of a stream in order: leading units, GOFs, index, end of sequence.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace rlpc {
 
-// A GOF as it stands in a stream.
+// The units of one GOF as bytes of a stream.
 struct GofBytes {
   std::uint32_t num_frames = 0;
-  Bytes units;
+  Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
 
   std::uint64_t size() const { return units.size() + hash_unit.size(); }
@@ -25,23 +25,24 @@ class StreamAssembly {
   StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
                  const ConnectivityCode& connectivity);
 
-  // Of all that is no GOF, hash or index.
+  // Size of everything but GOFs, hashes and index.
   std::uint64_t overhead_bytes() const { return lead_bytes_ + end_bytes_; }
-  // Of the index of a stream with such GOFs; 0 if it would have none.
+  // Size of the index of a stream with these GOFs; 0 if it would have no index.
   std::uint64_t index_bytes(const std::vector<GofEntry>& gofs) const;
 
   // To be called in this order. False if the sink failed. The header may differ from that of
-  // the constructor in its level.
+  // the constructor in its level only.
   bool write_lead(const SequenceHeader& header, const ByteSink& sink);
   bool write_gof(const GofBytes& gof, const ByteSink& sink);
   bool write_end(const ByteSink& sink);
 
-  // Bytes, bpvf, bits, input_vertex and number of GOFs, once all is written.
+  // Sets header, bytes, bpvf, bits, num_gofs and input_vertex of the report, once all units are
+  // written.
   void describe(const SequenceHeader& header, const ConnectivityCode& connectivity,
                 EncodeReport& report) const;
 
  private:
-  // Of few GOFs an index saves nothing; in large streams, its offsets would not fit.
+  // With few GOFs an index saves nothing; in very large streams its offsets would not fit.
   bool has_index(const std::vector<GofEntry>& gofs) const;
   bool put(std::span<const std::uint8_t> bytes, const ByteSink& sink);
 

@@ -25,7 +25,7 @@ double measured(const TargetTask& task, const BatchTrial& trial, std::uint32_t n
   return 0.0;
 }
 
-// The KG error that analyses expect of a step; empty where they tell nothing.
+// Estimates the KG error at a step from the analyses; empty if there is no estimate.
 TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch) {
   if (task.settings.target.kind != Target::kKg) return {};
   auto squared_error = batch.expected_error();
@@ -79,7 +79,8 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
                         double rms_spread) {
   const double steps_per_unit = exact_exp2(-header.grid.log2_step);
   constexpr double kStepOfError = 9.0;  // tuned: first step per error of a coordinate
-  // What finer rest positions cost they gain where residuals are not weighed.
+  // Without rate-distortion optimisation, analysing for a finer step costs no bytes: finer rest
+  // positions pay for themselves.
   constexpr double kFinerFast = 1.25;  // tuned (off: 1): an analysis is made for a finer step
   const bool fast = header.profile_idc == kProfileMain && settings.preset == Preset::kFast;
   const double finer = fast ? kFinerFast : 1.0;

@@ -1,4 +1,4 @@
-// The search for the step at which a batch of GOFs meets its target.
+// Searches for the quantiser step at which a batch of GOFs meets its target.
 #pragma once
 
 #include <cstdint>
@@ -10,32 +10,32 @@
 
 namespace rlpc {
 
-// rms_spread: of a coordinate about the mean of its frame, units, over the frames that the
-// target is for.
+// The search for the target of the settings, in grid steps of the header. rms_spread: RMS of
+// the coordinates about the mean of their frame, over all frames of the batch, in units.
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread);
 
 struct TargetTask {
   const EncoderSettings& settings;
   const SequenceHeader& header;
-  double rms_spread = 0.0;   // of a coordinate about the mean of its frame, units
-  double fixed_bits = 0.0;   // that count towards a rate beside the GOFs
-  double first_step = 0.0;   // to begin with, grid steps; 0: unknown
-  bool keeps_level = false;  // that of the header: a last resort must not need a higher one
-  // Called with the trial, from 1, and the fraction of it that is done.
+  double rms_spread = 0.0;   // RMS of coordinates about the mean of their frame, units
+  double fixed_bits = 0.0;   // bits outside the GOFs that count towards a rate
+  double first_step = 0.0;   // step of the first trial, grid steps; 0: chosen by the search
+  bool keeps_level = false;  // reject a last resort that needs a higher level than the header
+  // Called with the number of the trial, from 1, and the fraction of it that is done.
   std::function<void(std::uint32_t trial, double done)> progress = {};
 };
 
 struct TargetResult {
-  BatchTrial trial;       // the best
-  double step = 0.0;      // that it was made with, grid steps
-  double measured = 0.0;  // the error or rate that is searched for
-  bool met = false;       // the target
+  BatchTrial trial;       // the best trial
+  double step = 0.0;      // its quantiser step, grid steps
+  double measured = 0.0;  // its error or rate, in the unit of the target
+  bool met = false;       // it does not exceed the target
   std::uint32_t trials = 0;
 };
 
-// Where the target is out of reach of the kinds of GOF that are compared, the last resort of
-// the batch is searched too. Error: that of the batch.
+// Runs the search. If the compared kinds of GOF miss the target, searches again with the last
+// resort of the batch. Errors: those of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
 
 }  // namespace rlpc

@@ -13,16 +13,17 @@ constexpr double kTolerance = 0.02;       // fixed: of the target, below it; pro
 constexpr double kFinestStep = 0.5;       // fixed: grid steps
 constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
 constexpr double kFarthest = 50.0;        // fixed: from one step to the next, as a factor
-// The largest exponent that is believed, relative to the usual one; its inverse is the least.
+// Exponents are clamped to this factor above and below the usual one.
 constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
-// Largest errors jump from step to step. Where they do, a narrower bracket tells nothing: some
-// steps beyond it are tried instead, as one of them may do as well by chance.
+// The maximum error is a discontinuous function of the step. At a jump, narrowing the bracket
+// is useless. Instead, coarser steps beyond the bracket are sampled: one of them may happen to
+// meet the target.
 constexpr double kNarrow = 1.0 + kTolerance / 4.0;  // fixed: by the tolerance
 constexpr int kSamples = 8;                         // tuned (off: 0): steps tried beyond
 
 constexpr double kRateExponent = -0.5;  // tuned (off: -1): rates are this power of the step
 
-// Errors are proportional to the step.
+// The usual exponent of the measured value as a power of the step: 1 for errors.
 double usual_exponent(const Target& target) {
   return target.kind == Target::kBpvf ? kRateExponent : 1.0;
 }
@@ -59,11 +60,11 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   }
   const bool better = best_.offer(measured, bytes, kTolerance);
   if (analysis_step() != frozen_ && is_near(measured)) {
-    // What was measured before belongs to other analyses.
+    // Earlier measurements belong to other analyses.
     frozen_ = analysis_step();
     bracket_ = {};
   }
-  // The rate falls as the step grows, errors rise.
+  // As the step grows, the rate falls and errors rise.
   const bool fine = (target_.kind == Target::kBpvf) != (measured <= target_.value);
   if (fine) {
     bracket_.add_fine(step_, measured);
@@ -74,7 +75,7 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   return better;
 }
 
-// Whether the analysis for this step serves for the one that reaches the target.
+// Whether the current analysis is valid for the step at which the target is expected.
 bool TargetSearch::is_near(double measured) const {
   const double ratio = measured / target_.value;
   if (!(ratio > 0.5 && ratio < 2.0)) return false;
@@ -82,7 +83,8 @@ bool TargetSearch::is_near(double measured) const {
   return serves(analysis_step(), factor * step_);
 }
 
-// Where such a value is expected: for errors, which rise with the step.
+// The step at which `value` is expected, by bisection; only for errors, which rise with the
+// step.
 double TargetSearch::step_for(double value, const Expected& expected) const {
   constexpr int kHalvings = 20;  // fixed: rounding
   double low = step_ / kFarthest;
@@ -109,7 +111,7 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
   const double factor = std::clamp(factor_to(aim, value, expected), 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
-  if (next == step_) finished_ = true;  // as fine or as coarse as it goes
+  if (next == step_) finished_ = true;  // at the finest or coarsest step
   step_ = next;
 }
 
@@ -120,7 +122,7 @@ void TargetSearch::sample_beyond_jump() {
   step_ = std::min(sampled_from_ * (1.0 + (kNarrow - 1.0) * samples_), kCoarsestStep);
 }
 
-// By interpolation; every third step halves the bracket whatever the values say.
+// Chooses the next step by interpolation, or every third time by bisection.
 void TargetSearch::narrow_bracket(double aim) {
   constexpr double kAsOne = 1.0002;  // fixed: two ends of a bracket
   if (bracket_.within(kAsOne)) {
@@ -131,7 +133,7 @@ void TargetSearch::narrow_bracket(double aim) {
   step_ = trials_ % kHalving == 0 ? bracket_.middle() : bracket_.interpolate(aim);
 }
 
-// From this step to the one whose value is `aim`.
+// The factor from the current step to the one whose value should be `aim`.
 double TargetSearch::factor_to(double aim, double value, const Expected& expected) const {
   const double rise = det_log2(aim / value);
   if (!expected || !(expected(step_) > 0.0)) return det_exp2(rise / power_law_.exponent());

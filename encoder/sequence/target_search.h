@@ -1,4 +1,4 @@
-// Finds the quantiser step that reaches a target error or rate.
+// Searches for the quantiser step that reaches a target error or rate.
 #pragma once
 
 #include <cstdint>
@@ -9,43 +9,48 @@
 
 namespace rlpc {
 
-// Steps relative to that of an analysis: it is made for one that serves those in between.
+// The quantiser steps that an analysis is valid for, as ratios to the step of the analysis:
+// strictly between finest and coarsest. A new analysis is made such that the ratio is made_for.
 struct AnalysisRange {
   double finest;
   double made_for;
   double coarsest;
 };
 
-// Ask step(), encode, tell report() what was measured; again until finished().
+// Usage: until finished(), encode with step() and analysis_step(), then report() the result.
+// All steps are in grid steps.
 class TargetSearch {
  public:
-  // What a step will give, but for a factor that hardly depends on it; empty: nothing is known.
+  // Estimates the error at a step, up to a factor almost independent of the step; empty: no
+  // estimate.
   using Expected = std::function<double(double step)>;
 
-  // spread: root mean square of the coordinates about their frame's mean; steps_per_unit: of
-  // the grid. step_of_error: typical ratio of the step to the error of a coordinate, to start
-  // with. Steps are in grid steps.
+  // spread: RMS of the coordinates about the mean of their frame, in grid steps.
+  // steps_per_unit: grid steps per unit. step_of_error: typical ratio of the step to the RMS
+  // error of a coordinate, for the first step.
   TargetSearch(const Target& target, double spread, double steps_per_unit, double step_of_error,
                const AnalysisRange& analysis_range);
 
-  // Before the first encoding: the step to try first, where a target is searched for.
+  // Before the first encoding: sets the first step, unless there is no target.
   void begin_at(double step) {
     if (target_.kind != Target::kNone) step_ = step;
   }
-  // Where the target, an error, is expected by analyses that are there, for analysis_step().
+  // Before the first encoding, if the target is an error: sets the first step to the one at
+  // which the target is expected. expected: from analyses made for analysis_step().
   void begin_at(const Expected& expected);
   double step() const { return step_; }
-  // The step that the analysis is made for. Close to the target it stays as it is, as the
-  // measured value jumps from one analysis to the next; but it serves nearby steps only.
+  // The step to analyse for. Near the target it is kept as long as it is valid for step(),
+  // because the measured value jumps from one analysis to the next.
   double analysis_step() const {
     return serves(frozen_, step_) ? frozen_ : step_ / range_.made_for;
   }
   double last_step() const { return last_step_; }
-  // What an encoding came to: the error or rate that is searched for, and all its bytes.
-  // True if it is the best so far. expected: of an error, by the same analyses.
+  // Reports an encoding with step(): its error or rate, in the unit of the target, and its
+  // bytes. True if it is the best so far. expected: if the target is an error, the estimate
+  // from the analyses of this encoding.
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
-  // The best encoding does not exceed the target.
+  // Whether the best encoding does not exceed the target.
   bool met() const { return target_.kind == Target::kNone || best_.met(); }
 
  private:
@@ -62,13 +67,13 @@ class TargetSearch {
   Target target_;
   AnalysisRange range_;
   double step_ = 1.0;
-  double frozen_ = 0.0;  // analysis step; 0: not yet
+  double frozen_ = 0.0;  // analysis step kept near the target; 0: none yet
   double last_step_ = 1.0;
   BestEncoding best_;
   Bracket bracket_;
   PowerLaw power_law_;
   int trials_ = 0;
-  double sampled_from_ = 0.0;  // the step that others are tried beyond; 0: none yet
+  double sampled_from_ = 0.0;  // start of the samples beyond a jump; 0: not sampling
   int samples_ = 0;
   bool finished_ = false;
 };

@@ -12,14 +12,14 @@
 namespace rlpc {
 namespace {
 
-constexpr int kEnough = 100;  // no search may take so many trials
+constexpr int kEnough = 100;  // every search must end before
 constexpr double kStepOfError = 6.0;
 constexpr AnalysisRange kRange{.finest = 1.0 / 1.2, .made_for = 1.0, .coarsest = 1.2};
 
 struct Outcome {
-  double best = 0.0;  // measured for the encoding that was called the best
+  double best = 0.0;  // measured value of the encoding reported as best
   double best_step = 0.0;
-  double least = std::numeric_limits<double>::infinity();  // of all that were measured
+  double least = std::numeric_limits<double>::infinity();  // of all measured values
   int trials = 0;
   bool met = false;
 };
@@ -27,7 +27,7 @@ struct Outcome {
 // Coarser steps take fewer bytes.
 std::uint64_t bytes_with(double step) { return static_cast<std::uint64_t>(1e12 / step); }
 
-// measure(step) stands for an encoding.
+// Runs a search; measure(step) replaces encoding.
 Outcome search(const Target& target, const std::function<double(double)>& measure,
                double spread = 10000.0, double steps_per_unit = 1000.0) {
   TargetSearch s(target, spread, steps_per_unit, kStepOfError, kRange);
@@ -62,7 +62,7 @@ TEST(TargetSearch, WithoutTargetTakesOneTrial) {
   EXPECT_TRUE(outcome.met);
 }
 
-// Errors grow with the step, by powers from a square root to a square.
+// Errors are powers of the step, with exponents from 1/2 to 2.
 TEST(TargetSearch, ReachesAnErrorFromBelow) {
   for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
     for (const double value : {0.003, 0.1, 2.0}) {
@@ -70,7 +70,7 @@ TEST(TargetSearch, ReachesAnErrorFromBelow) {
         for (const double factor : {0.02, 1.0, 30.0}) {
           SCOPED_TRACE(testing::Message() << value << " " << power << " " << factor);
           const Target target{kind, value};
-          // The step where the target is met lies well within the range of steps.
+          // The step that meets the target is well within the range of steps.
           const double at = 300.0 * factor;
           expect_within_two_per_cent(target, search(target, [&](double step) {
                                        return value * std::pow(step / at, power);
@@ -81,7 +81,7 @@ TEST(TargetSearch, ReachesAnErrorFromBelow) {
   }
 }
 
-// The rate falls as the step grows, down to that of headers and connectivity.
+// The rate falls as the step grows, towards that of headers and connectivity.
 TEST(TargetSearch, ReachesARateFromBelow) {
   for (const double value : {0.3, 1.0, 6.0}) {
     for (const double power : {0.3, 0.5, 1.0}) {
@@ -98,9 +98,8 @@ TEST(TargetSearch, ReachesARateFromBelow) {
   }
 }
 
-// Neighbouring steps give values that scatter: whatever the search ends with, it does not lie
-// about it.
-TEST(TargetSearch, OfNoisyMeasurementsEndsWithTheClosestFromBelow) {
+// With noisy values the search may not converge, but it must report its result correctly.
+TEST(TargetSearch, ReportsTheClosestFromBelowOfNoisyMeasurements) {
   int within = 0;
   int all = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
@@ -128,8 +127,9 @@ TEST(TargetSearch, OfNoisyMeasurementsEndsWithTheClosestFromBelow) {
   EXPECT_GE(within, all * 95 / 100);
 }
 
-// Measurements in stairs, as maximum errors often are: the last stair below the target.
-TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
+// Values that are a staircase, as maximum errors often are: ends on the last step below the
+// target.
+TEST(TargetSearch, EndsOnTheLastStairBelowTheTarget) {
   const Outcome outcome =
       search({Target::kMaxError, 1.0}, [](double step) { return step < 700.0 ? 0.6 : 1.5; });
   EXPECT_LT(outcome.trials, kEnough);
@@ -137,7 +137,7 @@ TEST(TargetSearch, OfAStaircaseEndsOnTheLastStairBelow) {
   EXPECT_EQ(outcome.best, 0.6);
 }
 
-TEST(TargetSearch, OfErrorsWithinTheTargetTheClosestIsBestUnlessBytesAreSaved) {
+TEST(TargetSearch, PrefersTheErrorClosestToTheTargetUnlessAnotherSavesBytes) {
   for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
     TargetSearch search({kind, 1.0}, 10000.0, 1000.0, kStepOfError, kRange);
     EXPECT_TRUE(search.report(3.0, 10));
@@ -154,7 +154,7 @@ TEST(TargetSearch, OfErrorsWithinTheTargetTheClosestIsBestUnlessBytesAreSaved) {
   }
 }
 
-TEST(TargetSearch, OfRatesWithinTheTargetTheHighestIsBest) {
+TEST(TargetSearch, PrefersTheHighestRateWithinTheTarget) {
   TargetSearch search({Target::kBpvf, 1.0}, 10000.0, 1000.0, kStepOfError, kRange);
   EXPECT_TRUE(search.report(2.0, 2000));
   EXPECT_TRUE(search.report(0.5, 500));
@@ -162,7 +162,7 @@ TEST(TargetSearch, OfRatesWithinTheTargetTheHighestIsBest) {
   EXPECT_TRUE(search.report(0.9, 900));
 }
 
-TEST(TargetSearch, FindsALargestErrorThatIsSmallerBeyondAJump) {
+TEST(TargetSearch, FindsASmallerMaximumErrorBeyondAJump) {
   const Outcome outcome = search({Target::kMaxError, 1.0}, [](double step) {
     const bool lucky = step > 704.0 && step < 709.0;
     return step < 700.0 ? 0.6 : lucky ? 0.9 : 1.5;
@@ -171,7 +171,7 @@ TEST(TargetSearch, FindsALargestErrorThatIsSmallerBeyondAJump) {
   EXPECT_EQ(outcome.best, 0.9);
 }
 
-// Errors that level out where much is left out, as measured and as expected.
+// Errors that level off at coarse steps, both as measured and as expected.
 double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step * step / 1e6); }
 
 int trials_with(const TargetSearch::Expected& expected, double value, double factor) {
@@ -190,7 +190,7 @@ int trials_with(const TargetSearch::Expected& expected, double value, double fac
   return outcome.trials;
 }
 
-TEST(TargetSearch, TakesTwoTrialsWhereOnlyTheFactorIsNotAsExpected) {
+TEST(TargetSearch, TakesTwoTrialsIfTheExpectationIsOffByAFactor) {
   for (const double value : {0.2, 0.5, 0.9}) {
     EXPECT_EQ(trials_with(expected_error, value, 0.991), 1);
     for (const double factor : {0.7, 0.9, 1.1, 1.4}) {
@@ -210,7 +210,7 @@ TEST(TargetSearch, FindsItsTargetDespiteWrongExpectations) {
   }
 }
 
-TEST(TargetSearch, KeepsTheAnalysisOfStepsThatItServes) {
+TEST(TargetSearch, KeepsTheAnalysisForStepsThatItIsValidFor) {
   const AnalysisRange range{.finest = 0.9, .made_for = 1.25, .coarsest = 1.6};
   const auto analysis_for = [&](double factor) {
     TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, kStepOfError, range);
@@ -228,7 +228,7 @@ TEST(TargetSearch, KeepsTheAnalysisOfStepsThatItServes) {
   EXPECT_NEAR(analysis_for(1.7), 1.7 / 1.25, 1e-3);
 }
 
-TEST(TargetSearch, OfAnErrorThatCannotBeReachedEndsWithTheSmallest) {
+TEST(TargetSearch, EndsWithTheSmallestErrorIfTheTargetIsUnreachable) {
   for (const double floor : {0.11, 3.0}) {
     const Outcome outcome =
         search({Target::kKg, 0.1}, [&](double step) { return std::max(floor, 0.001 * step); });
@@ -239,7 +239,7 @@ TEST(TargetSearch, OfAnErrorThatCannotBeReachedEndsWithTheSmallest) {
   }
 }
 
-TEST(TargetSearch, OfARateThatCannotBeReachedEndsWithTheSmallest) {
+TEST(TargetSearch, EndsWithTheSmallestRateIfTheTargetIsUnreachable) {
   const Outcome outcome =
       search({Target::kBpvf, 0.1}, [](double step) { return 0.5 + 1.0 / step; });
   EXPECT_LT(outcome.trials, kEnough);
@@ -247,7 +247,7 @@ TEST(TargetSearch, OfARateThatCannotBeReachedEndsWithTheSmallest) {
   EXPECT_EQ(outcome.best, outcome.least);
 }
 
-TEST(TargetSearch, OfWhatIsAlwaysExactEndsMet) {
+TEST(TargetSearch, MeetsTheTargetIfTheErrorIsAlwaysZero) {
   for (const Target::Kind kind : {Target::kKg, Target::kMaxError, Target::kBpvf}) {
     const Outcome outcome = search({kind, 0.1}, [](double) { return 0.0; });
     EXPECT_LT(outcome.trials, kEnough);
@@ -256,7 +256,7 @@ TEST(TargetSearch, OfWhatIsAlwaysExactEndsMet) {
   }
 }
 
-TEST(TargetSearch, TargetsThatAreEasilyMetEndWithTheCoarsestOrFinestStep) {
+TEST(TargetSearch, EndsWithTheCoarsestOrFinestStepForLooseTargets) {
   const Outcome error =
       search({Target::kKg, 50.0}, [](double step) { return 10.0 * step / 0x1p24; });
   EXPECT_TRUE(error.met);
@@ -266,7 +266,7 @@ TEST(TargetSearch, TargetsThatAreEasilyMetEndWithTheCoarsestOrFinestStep) {
   EXPECT_EQ(rate.best_step, 0.5);
 }
 
-TEST(TargetSearch, OfInfiniteAndZeroMeasurementsEnds) {
+TEST(TargetSearch, EndsDespiteInfiniteAndZeroMeasurements) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const Target::Kind kind : {Target::kKg, Target::kMaxError}) {
     const Outcome outcome = search(
