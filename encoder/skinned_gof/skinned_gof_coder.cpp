@@ -8,10 +8,9 @@
 
 namespace rlpc {
 
-// Whether bones and tools should be chosen for a step.
 bool SkinnedGofCoder::must_choose(double analysis_step) const {
-  if (choice_.times == 0) return true;
-  if (choice_.times >= kMostChoices) return false;
+  if (choice_.count == 0) return true;
+  if (choice_.count >= kMostChoices) return false;
   return !analysis_serves(choice_.step, analysis_step);
 }
 
@@ -20,7 +19,7 @@ void SkinnedGofCoder::choose(double step) {
   const SkinnedTrials trials(context_, frames_, step);
   const BoneSearch bones(context_, frames_, trials);
   const Choice before = std::move(choice_);
-  choice_ = {{}, step, before.times + 1};
+  choice_ = {{}, step, before.count + 1};
   analysis_.release();
   if (preset == Preset::kFast && context_.settings.main.bones == 0) {
     choice_.candidate = {bones.guess_one_bone(), {}, usual_settings(context_.settings)};
@@ -40,15 +39,16 @@ const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
       step, [&] { return SkinnedTrials(context_, frames_, step).analyse(choice_.candidate); });
 }
 
-// Whether what is coded follows the step, with the analysis that there is: it has trajectories.
-bool SkinnedGofCoder::follows(double step) const {
+// Whether the cached analysis gives enough trajectories at the step. With fewer, the error
+// hardly depends on the step, because the rest of the GOF is quantised in the analysis.
+bool SkinnedGofCoder::is_valid_for(double step) const {
   constexpr std::size_t kEnough =
       4;  // tuned (off: 0): trajectories, for errors to follow steps
   return has_trajectories(kEnough, *analysis_.last(), choice_.candidate.settings, step);
 }
 
 bool SkinnedGofCoder::needs_frames(double step, double analysis_step) const {
-  return must_choose(analysis_step) || !analysis_.has(analysis_step) || !follows(step);
+  return must_choose(analysis_step) || !analysis_.has(analysis_step) || !is_valid_for(step);
 }
 
 void SkinnedGofCoder::analyse(double analysis_step) {
@@ -64,7 +64,7 @@ std::optional<double> SkinnedGofCoder::expected_error(double step) const {
 
 EncodedGof SkinnedGofCoder::encode(double step, double analysis_step) {
   analyse(analysis_step);
-  if (!follows(step)) analysis_for(step);
+  if (!is_valid_for(step)) analysis_for(step);
   return encode_skinned_gof(context_, *analysis_.last(), choice_.candidate.settings, step);
 }
 

@@ -1,4 +1,4 @@
-// Encodes one GOF as a skinned mesh.
+// Encodes one GOF as a skinned mesh, at varying quantiser steps.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace rlpc {
 
 class SkinnedGofCoder : public GofCoder {
  public:
-  // Everything is kept by reference.
+  // Keeps references to both.
   SkinnedGofCoder(const SkinnedContext& context, const GofFrames& frames)
       : context_(context), frames_(frames) {}
 
@@ -24,22 +24,23 @@ class SkinnedGofCoder : public GofCoder {
   void release_analysis() override { analysis_.release(); }
 
  private:
-  // Bones and tools, and the step that they were chosen for.
+  // The chosen bones and tools, and the step that they were chosen for.
   struct Choice {
     SkinnedCandidate candidate;
     double step = 0.0;
-    int times = 0;  // that there was a choice
+    int count = 0;  // choices so far
   };
 
+  // Whether bones and tools must be chosen (again) for a step.
   bool must_choose(double analysis_step) const;
   void choose(double step);
   const SkinnedAnalysis& analysis_for(double step);
-  bool follows(double step) const;
+  bool is_valid_for(double step) const;
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
   Choice choice_;
-  StepCache<SkinnedAnalysis> analysis_;  // of the choice
+  StepCache<SkinnedAnalysis> analysis_;  // of choice_.candidate
 };
 
 }  // namespace rlpc

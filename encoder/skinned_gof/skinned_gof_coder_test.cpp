@@ -22,7 +22,7 @@ constexpr std::uint32_t kVertices = kRings * kSides;
 
 using Move = std::function<Point(const Point&, double)>;
 
-// A bumpy tube along x, in grid steps, whose points move as they are told.
+// A bumpy tube along x, in grid steps, moved by a given function.
 struct Animation {
   explicit Animation(const Move& move, std::uint32_t num_frames = 20)
       : triangles(tube()), topology(make_topology(kVertices, triangles)) {
@@ -54,7 +54,7 @@ struct Animation {
     return list;
   }
 
-  // The settings are kept by reference.
+  // The result keeps a reference to the settings.
   SkinnedContext context(const EncoderSettings& settings) const {
     return {header, settings, triangles, CodedMeshes(topology, triangles)};
   }
@@ -71,12 +71,12 @@ Point turned(const Point& p, double angle) {
   return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
 }
 Point still(const Point& p, double) { return p; }
-// Speeds change, so that no extrapolation holds.
+// Motion with varying speed, so that extrapolation is not exact.
 Point rigid(const Point& p, double f) {
   const Point q = turned({p[0], p[2], p[1]}, 0.8 * std::sin(0.5 * f));
   return {q[0] + 5000.0 * std::sin(0.37 * f), q[1], q[2] - 70.0 * f};
 }
-// The second half bends against the first, smoothly, and swells.
+// The second half bends smoothly relative to the first, and swells.
 Point bending(const Point& p, double f) {
   const double bend = 0.5 * std::sin(0.4 * f) * std::tanh((p[0] - 12000.0) / 3000.0);
   const Point q = turned({p[0] - 12000.0, p[1], p[2]}, bend);
@@ -113,29 +113,30 @@ EncoderSettings fast() {
   return settings;
 }
 
-// The cost of more frames of the same shape.
-TEST(SkinnedGofCoder, MoreFramesOfAStillMeshCostNextToNothing) {
+// Adds frames of the same shape.
+TEST(SkinnedGofCoder, FurtherFramesOfAStaticMeshCostAlmostNothing) {
   const std::size_t one = encode(Animation(still, 2), 8.0, fast()).bytes;
   const Outcome many = encode(Animation(still, 100), 8.0, fast());
   EXPECT_EQ(many.gof.clusters, 1U);
   EXPECT_EQ(many.gof.components, 0U);
-  // Rest positions are finer, as their errors are in every frame: 2.8 bits, of three each.
+  // Rest positions are finer, because their errors occur in every frame: 2.8 bits per
+  // coordinate.
   EXPECT_LT(many.bytes, one + kVertices * 3 * 4 / 8 + 40);
   EXPECT_LT(many.rms_error, 8.0);
 }
 
-TEST(SkinnedGofCoder, ARigidMotionIsOneBone) {
+TEST(SkinnedGofCoder, CodesARigidMotionWithOneBone) {
   const Outcome still_mesh = encode(Animation(still, 40), 8.0, fast());
   const Outcome moving = encode(Animation(rigid, 40), 8.0, fast());
   EXPECT_EQ(moving.gof.clusters, 1U);
   EXPECT_EQ(moving.gof.components, 0U);
   EXPECT_LT(moving.rms_error, 8.0);
-  // A few bytes a frame for six coordinates.
+  // A few bytes per frame for the six coordinates of the pose.
   EXPECT_LT(moving.bytes, still_mesh.bytes + 40 * 16);
 }
 
-// Closed loop: the error follows the step, and does not grow on the way.
-TEST(SkinnedGofCoder, TheErrorFollowsTheStep) {
+// Coding is closed-loop: the error is proportional to the step and does not grow over time.
+TEST(SkinnedGofCoder, ErrorIsProportionalToTheStep) {
   const Animation a(bending);
   double last_error = 0.0;
   std::size_t last_bytes = 1U << 30;
@@ -149,8 +150,8 @@ TEST(SkinnedGofCoder, TheErrorFollowsTheStep) {
   }
 }
 
-// The real error is another, by about the same factor at all steps.
-TEST(SkinnedGofCoder, ExpectsTheErrorOfOneBone) {
+// The actual error differs from the estimate by about the same factor at all steps.
+TEST(SkinnedGofCoder, EstimatesTheErrorWithOneBone) {
   const Animation a(bending);
   const EncoderSettings settings = fast();
   const SkinnedContext context = a.context(settings);
@@ -170,7 +171,7 @@ TEST(SkinnedGofCoder, ExpectsTheErrorOfOneBone) {
   EXPECT_LT(most, 1.1 * least);
 }
 
-TEST(SkinnedGofCoder, ExpectsNothingOfManyBones) {
+TEST(SkinnedGofCoder, HasNoEstimateWithSeveralBones) {
   const Animation a(bending);
   EncoderSettings settings = fast();
   settings.main.bones = 2;
@@ -180,7 +181,7 @@ TEST(SkinnedGofCoder, ExpectsNothingOfManyBones) {
   EXPECT_FALSE(coder.expected_error(10.0));
 }
 
-TEST(SkinnedGofCoder, IsTheSameEachTime) {
+TEST(SkinnedGofCoder, IsDeterministic) {
   const Animation a(bending);
   const Outcome first = encode(a, 20.0, {});
   const Outcome second = encode(a, 20.0, {});
@@ -191,8 +192,8 @@ TEST(SkinnedGofCoder, IsTheSameEachTime) {
   }
 }
 
-// The encoder tries steps one after the other: what is kept from one to the next does not show.
-TEST(SkinnedGofCoder, AReleasedAnalysisIsMadeAgain) {
+// Data kept from one step to the next must not affect the result.
+TEST(SkinnedGofCoder, RecomputesAReleasedAnalysis) {
   const Animation a(bending);
   const EncoderSettings settings = fast();
   const SkinnedContext context = a.context(settings);
@@ -211,7 +212,7 @@ TEST(SkinnedGofCoder, AReleasedAnalysisIsMadeAgain) {
   }
 }
 
-TEST(SkinnedGofCoder, HasAsManyBonesAndTrajectoriesAsAsked) {
+TEST(SkinnedGofCoder, HasTheRequestedNumbersOfBonesAndTrajectories) {
   const Animation a(bending);
   EncoderSettings settings = fast();
   settings.main.bones = 3;
@@ -221,8 +222,8 @@ TEST(SkinnedGofCoder, HasAsManyBonesAndTrajectoriesAsAsked) {
   EXPECT_EQ(outcome.gof.components, 2U);
 }
 
-// As far as bones, tools and their prediction go, nothing that can be asked for is better.
-TEST(SkinnedGofCoder, ChoosesThePredictionThatCostsLeast) {
+// No explicit setting of bones or prediction is better than the automatic choice.
+TEST(SkinnedGofCoder, ChoosesTheCheapestPrediction) {
   const double step = 20.0;
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
     const Outcome o = encode(a, step, settings);
@@ -245,8 +246,8 @@ TEST(SkinnedGofCoder, ChoosesThePredictionThatCostsLeast) {
   EXPECT_TRUE(differs);
 }
 
-// Frames may go where they are not needed.
-TEST(SkinnedGofCoder, SaysWhenItNeedsTheFrames) {
+// Frames may be freed when needs_frames() is false.
+TEST(SkinnedGofCoder, ReportsWhenItNeedsTheFrames) {
   Animation a(bending);
   const EncoderSettings settings = fast();
   const SkinnedContext context = a.context(settings);
@@ -256,7 +257,7 @@ TEST(SkinnedGofCoder, SaysWhenItNeedsTheFrames) {
   EXPECT_FALSE(coder.needs_frames(22.0, 20.0));
   const auto expected = coder.encode(22.0, 20.0).units;
   EXPECT_TRUE(coder.needs_frames(26.0, 26.0));
-  EXPECT_TRUE(coder.needs_frames(1e6, 20.0));  // no trajectories: the analysis is made anew
+  EXPECT_TRUE(coder.needs_frames(1e6, 20.0));  // no trajectories: analyses again
   a.frames.xyz = {};
   const auto units = coder.encode(22.0, 20.0).units;
   ASSERT_EQ(units.size(), expected.size());

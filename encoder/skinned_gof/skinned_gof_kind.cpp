@@ -16,7 +16,7 @@ class SkinnedGofKind : public GofEncoder {
     return std::make_unique<SkinnedGofCoder>(context_, frames);
   }
 
-  // The first kind wherever there is more than one.
+  // Never called: if there are several kinds, this one comes first and is always encoded.
   std::optional<double> estimate_cost(const GofFrames& /*frames*/, const EncodedGof& /*best*/,
                                       double /*step*/) const override {
     return std::nullopt;

@@ -1,5 +1,5 @@
-// GOFs as skinned meshes: bones, and trajectories of what they leave (clauses 6.11, 6.12 and
-// 8.9 to 8.14).
+// Registers skinned GOFs as a kind of GOF: bones, and trajectories for the residual of bone
+// motion (clauses 6.11, 6.12 and 8.9 to 8.14).
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 
 namespace rlpc {
 
+// Null for the Baseline profile.
 std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings);
 

@@ -12,8 +12,8 @@
 namespace rlpc {
 namespace {
 
-// What spatial prediction leaves of each trajectory, a vertex at a time: mean squared
-// differences between the middle of a patch and the vertices around it.
+// Mean squared spatial prediction residual of each component: the difference between the centre
+// vertex of a patch and the mean of the vertices around it.
 std::vector<double> differences(const BoneSample& sample, const PrincipalComponents& pc) {
   const std::size_t count = pc.spatial.size();
   std::vector<double> sum(count, 0.0);
@@ -41,16 +41,17 @@ double expected_cost(const BoneSample& sample, std::vector<double> residuals,
   const std::vector<double> difference = differences(sample, pc);
   const double vertices = num_vertices;
   const double values = 3.0 * num_frames;
-  const double of_frames = num_frames / static_cast<double>(sample.num_frames);
-  const double of_all = of_frames * vertices / static_cast<double>(sample.num_vertices());
+  const double frame_scale = num_frames / static_cast<double>(sample.num_frames);
+  const double scale = frame_scale * vertices / static_cast<double>(sample.num_vertices());
   double cost = 0.0;
   for (std::size_t l = 0; l < pc.energy.size(); ++l) {
-    const double energy = of_all * pc.energy[l];
+    const double energy = scale * pc.energy[l];
     if (l >= difference.size()) {
       cost += energy;
       continue;
     }
-    cost += expected_component_cost(energy, vertices, values, of_frames * difference[l], step);
+    cost +=
+        expected_component_cost(energy, vertices, values, frame_scale * difference[l], step);
   }
   return cost;
 }
@@ -75,7 +76,8 @@ std::vector<double> unsteadiness(const GofFrames& frames) {
   return result;
 }
 
-// The more vertices follow a bone, the finer its steps are. Factors as measured.
+// The steps of a bone become finer with the number of vertices that follow it. The constants
+// were measured.
 double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
                           std::size_t num_bones, double step) {
   constexpr double kPivotAndFirstPose = 60.0;  // tuned (off: 0): bits of a bone

@@ -1,4 +1,4 @@
-// What bones of a GOF, and the trajectories of what they leave, are expected to cost.
+// Estimates the cost of bones, and of the trajectories for the residual of bone motion.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,23 @@
 
 namespace rlpc {
 
-// Lagrangian cost of the whole GOF.
+// Expected Lagrangian cost of trajectories for the residuals of a whole GOF, from a sample.
 //
-//   residuals               [vertex of the sample][3 * frame of the sample], grid units
-//   num_vertices, num_frames  of the GOF
-//   step                    of the quantisers, grid units
+//   residuals                 [vertex of the sample][3 * frame of the sample], grid units
+//   num_vertices, num_frames  size of the whole GOF
+//   step                      quantiser step, grid units
 double expected_cost(const BoneSample& sample, std::vector<double> residuals,
                      std::uint32_t num_vertices, std::uint32_t num_frames, double step);
 
-// Of some vertices, how far each is in each frame but the first from where it would be if it
-// had gone on as before; grid units.
+// Distances, in grid units, between the positions of a sample of vertices and their linear
+// extrapolation from the two frames before; for each frame except the first.
 std::vector<double> unsteadiness(const GofFrames& frames);
 
-// Bits of pivot and poses of one bone among so many (at least 1) in all frames.
+// Expected bits of the pivot and of all poses of one bone.
 //
-//   unsteady  of that GOF
-//   step      of the quantisers, grid units, above 0
+//   unsteady   unsteadiness() of the frames
+//   num_bones  number of bones in the GOF, at least 1
+//   step       quantiser step, grid units, above 0
 double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
                           std::size_t num_bones, double step);
 

@@ -13,10 +13,10 @@
 namespace rlpc {
 namespace {
 
-// Of a weight, and whether it is there.
+// Bits of one influence: its weight, and the flag that it is present.
 constexpr double kInfluenceBits = 7.0;  // fixed: those of the usual weight_bits, and one
 
-// Evenly spaced, from the first to the last.
+// At most `most` evenly spaced frames, including the first and the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
   const std::uint32_t count = std::min(num_frames, most);
   std::vector<std::uint32_t> chosen;
@@ -57,7 +57,7 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
   return result;
 }
 
-// A vertex, then those around it; two rings where one is small.
+// A vertex, then its neighbours, then the neighbours of these if the first ring is small.
 std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
   constexpr std::size_t kSmall = 6;     // tuned (off: 1): vertices of a patch of one ring
   constexpr std::size_t kLargest = 24;  // fixed: memory, where all triangles share a vertex
@@ -125,7 +125,7 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
 
-// Relative to the centre of the vertices in the frame.
+// A position relative to the centre of all vertices in the frame.
 Vec3d BoneFit::centred(std::uint32_t frame, std::uint32_t vertex) const {
   const double* p = frames_.at(frame, vertex);
   return Vec3d(p[0], p[1], p[2]) - centre_[frame];
@@ -135,7 +135,7 @@ void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) co
   for (const std::uint32_t f : chosen_) to.push_back(centred(f, vertex));
 }
 
-// All vertices, or if they are many the patches around some.
+// All vertices or, in large meshes, the patches around evenly spaced vertices.
 BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   constexpr std::uint32_t kPatchSize = 7;  // fixed: vertices of a regular one
   const std::uint32_t n = frames_.num_vertices;
@@ -163,9 +163,9 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   return sample;
 }
 
-// What a free bone costs, as an error of all frames.
+// The Lagrangian cost of the bits of one unpinned bone, as a squared error over all frames.
 double BoneFit::cost_of_bone() const {
-  if (options_.step == 0.0) return 0.0;  // no error is small
+  if (options_.step == 0.0) return 0.0;  // exact fit: bones are free
   return lambda(options_.step) *
          expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
 }
@@ -186,8 +186,8 @@ double BoneFit::expected_translation_cost() const {
     for (const Vec3d& x : sample_.trajectory(v)) mean += x;
     mean /= static_cast<double>(sample_.num_frames);
     for (const Vec3d& x : sample_.trajectory(v)) {
-      const Vec3d left = x - mean;
-      residuals.insert(residuals.end(), {left(0), left(1), left(2)});
+      const Vec3d residual = x - mean;
+      residuals.insert(residuals.end(), {residual(0), residual(1), residual(2)});
     }
   }
   return rlpc::expected_cost(sample_, std::move(residuals), frames_.num_vertices,
@@ -209,7 +209,7 @@ double BoneFit::translation_error() const {
   return std::sqrt(sum / static_cast<double>(sample_.positions.size()));
 }
 
-// Weights and rest positions of all vertices, given the bones.
+// Fits weights and rest positions of all vertices to the bones.
 void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
                            Rig& rig) const {
   constexpr std::uint32_t kTogether = 256;  // fixed: memory
@@ -242,7 +242,8 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
   }
 }
 
-// The motions of all frames, each starting from the nearest of the chosen ones.
+// Fits the bone motions of all frames. Each frame starts from the motions in the last sampled
+// frame up to it.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
   constexpr std::uint32_t kTogether = 64;  // fixed: memory
@@ -290,7 +291,7 @@ Rig BoneFit::rig(std::size_t max_influences) const {
     moments.add(rest_of(rig, v), rig.weights[v]);
   }
   BoneMotions motions = fit_frames(settled.motions(), moments, rig);
-  const double pin_error = 0.5 * cost_of_bone();  // three of six values per pose
+  const double pin_error = 0.5 * cost_of_bone();  // pinning saves three of six values per pose
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
   put_in_tree_order(tree, motions, rig);
   return rig;

@@ -1,4 +1,5 @@
-// A group of frames as a skinned mesh: bones that move rigidly, and vertices that follow a few.
+// Fits a skinned mesh to the frames of a GOF: rigid bones, and vertices that follow a few of
+// them.
 #pragma once
 
 #include <array>
@@ -16,44 +17,45 @@
 namespace rlpc {
 
 struct BoneFitOptions {
-  std::size_t max_influences = 3;  // of a vertex while bones are looked for, 1 to 4
-  double step = 1.0;  // of the quantisers, grid units: smaller errors do not matter
+  std::size_t max_influences = 3;  // maximum bones per vertex during the search, 1 to 4
+  double step = 1.0;  // quantiser step, grid units; 0: fit as precisely as possible
   std::uint32_t sample_frames = kSampleFrames;
   std::uint32_t sample_vertices = kSampleVertices;
-  int exchanges = kExchanges;  // of bones, each time these settle
+  int exchanges = kExchanges;  // maximum attempts to exchange bones per call of settle()
 
   static constexpr std::uint32_t kSampleFrames = 64;  // tuned: at most so many are looked at
   static constexpr std::uint32_t kSampleVertices = 3000;  // tuned: of so many vertices
   static constexpr int kExchanges = 6;                    // tuned (off: 0): of bones
 };
 
-// Finds bones, weights, rest positions, tree and pivots of at least one vertex in at least one
-// frame, for a growing number of bones. Time is linear in vertices and frames.
+// Finds bones, weights, rest positions, hierarchy and pivots, for a growing number of bones.
+// Time is linear in vertices and frames.
 class BoneFit {
  public:
-  // The frames are kept by reference.
+  // Keeps a reference to the frames: at least one, with at least one vertex.
   BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
           const BoneFitOptions& options);
   BoneFit(const BoneFit&) = delete;
   BoneFit& operator=(const BoneFit&) = delete;
 
-  // Adds bones up to a number; false if none was worth adding.
+  // Adds bones until there are num_bones; false if none was worth adding.
   bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
-  // Puts bones where these serve better. That takes about as long as growing.
+  // Replaces bones by more useful ones. Takes about as long as grow().
   void settle() { solver_.exchange_bones(options_.exchanges); }
-  // What coding the GOF with these bones is expected to cost (bone_estimate.h), rest positions
-  // left out; and with one that only follows the centre of the vertices.
+  // Expected Lagrangian cost of the GOF with these bones, without rest positions
+  // (bone_estimate.h).
   double expected_cost() const;
+  // The same with a single bone that only translates, with the centre of the vertices.
   double expected_translation_cost() const;
-  // Of a vertex of the sample in a frame, grid units.
+  // RMS error of a vertex position in the sample, grid units.
   double rms_error() const;
-  // The same of one bone that only follows the centre of the vertices.
+  // The same with a single bone that only translates.
   double translation_error() const;
   std::size_t num_bones() const { return solver_.motions().size(); }
 
-  // The bones that save more bits than they cost. Bone 0 is the only root; weights are heaviest
-  // first; rotations do not change sign from frame to frame.
-  // max_influences: of a vertex, 1 to 4.
+  // The rig of all frames, without bones that save less than they cost. Bone 0 is the only
+  // root. The weights of a vertex are in descending order; quaternions keep their sign from
+  // frame to frame. max_influences: maximum bones per vertex, 1 to 4.
   Rig rig(std::size_t max_influences) const;
 
  private:
@@ -67,14 +69,15 @@ class BoneFit {
 
   const GofFrames& frames_;
   BoneFitOptions options_;
-  std::vector<Vec3d> centre_;          // [num_frames]: everything is relative to it
-  std::vector<std::uint32_t> chosen_;  // frames that are looked at together
-  std::vector<double> unsteady_;       // bone_estimate.h
+  std::vector<Vec3d> centre_;  // [num_frames], mean vertex; the sample is relative to it
+  std::vector<std::uint32_t> chosen_;  // the frames of the sample
+  std::vector<double> unsteady_;       // unsteadiness() of the frames
   BoneSample sample_;
   BoneSolver solver_;
 };
 
-// sum_b w_b (R_b(f) (p - c_b) + o_b(f))
+// The position of a vertex in a frame, grid units: sum_b w_b (R_b(f) (p - c_b) + o_b(f)), with
+// rest position p, pivot c_b, and the rotation R_b and origin o_b of the pose.
 Point skinned_position(const Rig& rig, std::uint32_t frame, std::uint32_t vertex);
 
 }  // namespace rlpc

@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// A turn about z, then one about x.
+// Rotates about z, then about x.
 Point turned(const Point& p, double about_z, double about_x) {
   const double c = std::cos(about_z);
   const double s = std::sin(about_z);
@@ -26,9 +26,9 @@ struct Animation {
   std::vector<Triangle> triangles;
 };
 
-// A tube along x of three links of length `kLink`. The second turns about the end of the first,
-// the third about that of the second; the whole wanders. Around the joints weights change over
-// a distance of `blend`: 0 makes the links rigid.
+// A tube along x of three links of length `kLink`. The second rotates about the end of the
+// first, the third about the end of the second, and the whole tube moves. Weights blend across
+// the joints over a distance of `blend`; 0 makes the links rigid.
 constexpr double kLink = 1000.0;
 constexpr std::uint32_t kSides = 8;
 constexpr std::uint32_t kRings = 46;
@@ -114,7 +114,7 @@ double distance(const Point& a, const Point& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-// Where a bone takes a point given in rest coordinates.
+// The position of a point, given in rest coordinates, that moves with a bone.
 Point carried(const Rig& fit, int bone, std::uint32_t frame, const Point& point) {
   Rig one;
   one.bones = {fit.bones[static_cast<std::size_t>(bone)]};
@@ -169,7 +169,7 @@ TEST(BoneFit, RecoversRigidLinksAndTheirJoints) {
 }
 
 TEST(BoneFit, FollowsSmoothJoints) {
-  const Animation a = chain(300.0, 90);  // more frames than are looked at together
+  const Animation a = chain(300.0, 90);  // more frames than the sample has
   const Options options{.max_bones = 3, .max_influences = 3, .step = 3.0};
   const Rig fit = fit_bones(a, options);
   expect_well_formed(a, options, fit);
@@ -177,7 +177,7 @@ TEST(BoneFit, FollowsSmoothJoints) {
   EXPECT_LT(rms_error(a.frames, fit), 0.5 * options.step);
 }
 
-TEST(BoneFit, OneBoneIsTheMotionOfTheWhole) {
+TEST(BoneFit, OneBoneFollowsARigidMesh) {
   const Animation a = chain(0.0, 12);
   const Options options{.max_bones = 1, .max_influences = 4, .step = 0.0};
   const Rig fit = fit_bones(a, options);
@@ -185,7 +185,7 @@ TEST(BoneFit, OneBoneIsTheMotionOfTheWhole) {
   EXPECT_EQ(fit.bones.size(), 1U);
 }
 
-TEST(BoneFit, AMeshThatDoesNotMoveHasOneBone) {
+TEST(BoneFit, GivesAStaticMeshOneBone) {
   Animation a = chain(0.0, 1);
   const std::vector<double> first = a.frames.xyz;
   for (int f = 0; f < 9; ++f) {
@@ -232,7 +232,7 @@ TEST(BoneFit, SurvivesDegenerateMeshes) {
   }
 }
 
-TEST(BoneFit, GrowsStepByStep) {
+TEST(BoneFit, GrowsIncrementally) {
   const Animation a = chain(200.0, 20);
   BoneFit fit(a.frames, a.triangles, {.step = 1.0});
   EXPECT_EQ(fit.num_bones(), 1U);
@@ -243,13 +243,13 @@ TEST(BoneFit, GrowsStepByStep) {
     EXPECT_EQ(fit.num_bones(), count);
     EXPECT_LT(fit.rms_error(), error);
     error = fit.rms_error();
-    const Rig rig = fit.rig(3);  // does not change what is grown
+    const Rig rig = fit.rig(3);  // does not change the fit
     EXPECT_EQ(fit.rms_error(), error);
     expect_well_formed(a, {.max_bones = count, .step = 1.0}, rig);
   }
 }
 
-TEST(BoneFit, IsTheSameEachTime) {
+TEST(BoneFit, IsDeterministic) {
   const Animation a = chain(200.0, 20);
   const Options options{.max_bones = 6, .step = 2.0};
   const Rig first = fit_bones(a, options);

@@ -68,23 +68,23 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
   for (std::size_t b = 0; b < motions.size(); ++b) {
     const double mass = moments.mass(b);
     if (!(mass > 0.0)) continue;
-    Motion left = targets[b];  // sum of w_b (what the others leave) (p, 1)^T
+    Motion rest = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all other bones
     for (std::size_t c = 0; c < motions.size(); ++c) {
       const Eigen::Matrix4d& m = moments.block(c, b);
-      if (c != b && m(3, 3) > 0.0) left -= motions[c] * m;
+      if (c != b && m(3, 3) > 0.0) rest -= motions[c] * m;
     }
     const Vec3d sum = moments.block(b, b).block<3, 1>(0, 3);
-    const Eigen::Matrix3d h = left.leftCols<3>() - left.col(3) * sum.transpose() / mass;
+    const Eigen::Matrix3d h = rest.leftCols<3>() - rest.col(3) * sum.transpose() / mass;
     const Eigen::Matrix3d before = motions[b].leftCols<3>();
     const Eigen::Matrix3d r = closest_rotation(h, before);
     motions[b].leftCols<3>() = r;
-    motions[b].col(3) = (left.col(3) - r * sum) / mass;
+    motions[b].col(3) = (rest.col(3) - r * sum) / mass;
   }
 }
 
 namespace {
 
-// The sum of u x v over pairs of which k is the sum of v u^T.
+// The sum of u x v over pairs (u, v), where k is the sum of v u^T.
 Vec3d curl(const Eigen::Matrix3d& k) {
   return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
 }
@@ -95,8 +95,8 @@ Eigen::Matrix3d cross_matrix(const Vec3d& a) {
   return m;
 }
 
-// Sum of w_b w_c J_b^T J_c, where J = (-[R p]x, 1) is how a turn and a shift of a bone move the
-// point p that it takes to R p + t.
+// Sum over the vertices of w_b w_c J_b^T J_c. J = (-[R p]x, 1) is the derivative of the
+// position R p + t with respect to a rotation vector, applied after R, and the translation t.
 Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen::Matrix3d& rb,
                                      const Eigen::Matrix3d& rc) {
   const Eigen::Matrix3d n = rb * moments.topLeftCorner<3, 3>() * rc.transpose();
@@ -119,12 +119,12 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
   std::vector<double> a(36 * n * n, 0.0);
   std::vector<double> x(6 * n, 0.0);
   for (std::size_t b = 0; b < n; ++b) {
-    Motion left = targets[b];  // sum of w_b r (p, 1)^T, where r is what all bones leave
+    Motion residual = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all bones
     const Eigen::Matrix3d rb = motions[b].leftCols<3>();
     for (std::size_t c = 0; c < n; ++c) {
       const Eigen::Matrix4d& m = moments.block(c, b);
       if (!(m(3, 3) > 0.0)) continue;
-      left -= motions[c] * m;
+      residual -= motions[c] * m;
       if (c < b) continue;
       const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
       for (std::size_t i = 0; i < 6; ++i) {
@@ -134,10 +134,10 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
         }
       }
     }
-    const Vec3d turn = curl(left.leftCols<3>() * rb.transpose());
+    const Vec3d turn = curl(residual.leftCols<3>() * rb.transpose());
     for (std::size_t i = 0; i < 3; ++i) {
       x[6 * b + i] = turn(static_cast<Eigen::Index>(i));
-      x[6 * b + 3 + i] = left(static_cast<Eigen::Index>(i), 3);
+      x[6 * b + 3 + i] = residual(static_cast<Eigen::Index>(i), 3);
     }
   }
   for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;

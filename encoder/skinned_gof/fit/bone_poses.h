@@ -1,4 +1,4 @@
-// The poses of all bones in a frame at once, from sums over the vertices they move.
+// Solves for the poses of all bones in a frame, from sums over the vertices that follow them.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-// Sums of w_a w_b (p, 1) (p, 1)^T over the vertices for all pairs of bones. With them, and with
-// PoseTargets of the frame, the squared error of a frame is a quadratic in the bones' motions:
-// finding poses costs the same for any number of vertices.
+// Sums over the vertices of w_a w_b (p, 1) (p, 1)^T, for all pairs of bones a, b. Together with
+// the PoseTargets of a frame they give its squared error as a quadratic function of the bone
+// motions, so the time to solve for poses does not depend on the number of vertices.
 class SkinMoments {
  public:
   explicit SkinMoments(std::size_t num_bones);
@@ -24,14 +24,15 @@ class SkinMoments {
   }
   double mass(std::size_t bone) const { return block(bone, bone)(3, 3); }  // sum of w^2
   Vec3d centre(std::size_t bone) const;
-  double spread2(std::size_t bone) const;  // mean squared distance to the centre
+  double spread2(std::size_t bone) const;  // mean squared distance from the centre
 
  private:
   std::size_t num_bones_;
   std::vector<Eigen::Matrix4d> block_;
 };
 
-// Sums of w_b x (p, 1)^T over the vertices at positions x, for all bones in some frames.
+// Sums over the vertices of w_b x (p, 1)^T, for all bones in some frames; x is the position of
+// the vertex in the frame, p its rest position.
 class PoseTargets {
  public:
   PoseTargets(std::size_t num_bones, std::size_t num_frames)
@@ -49,13 +50,13 @@ class PoseTargets {
   std::vector<double> sum_;  // [bone][column][frame][3]
 };
 
-// Lowers the squared error of a frame: each bone in turn takes the best motion that the others
-// leave it. targets: PoseTargets of the frame.
+// Lowers the squared error of a frame by giving each bone in turn the best motion while the
+// others are fixed. targets: PoseTargets::of_frame().
 void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
                   std::vector<Motion>& motions);
 
-// The same for all bones at once, by a step of Gauss and Newton: slower, but it gets there
-// where vertices follow several bones. The motions must be near already.
+// Lowers the squared error with one Gauss-Newton step for all bones together: slower, but it
+// converges where vertices follow several bones. The motions must already be close.
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions);
 

@@ -28,7 +28,7 @@ class Random {
     const double y = value();
     return {x, y, value()};
   }
-  // At most about `size` from the identity, in radians and units.
+  // A motion within about `size`, in radians and units, of the identity.
   Motion motion(double size) {
     Motion m;
     const Vec3d turn = 0.5 * size * point();
@@ -41,7 +41,7 @@ class Random {
   std::mt19937 random_;
 };
 
-// A skinned mesh in one frame, with the sums that are under test made of it.
+// A skinned mesh in one frame, and the sums under test.
 struct Skin {
   std::vector<Vec3d> rest;
   std::vector<Weights> weights;
@@ -86,7 +86,7 @@ struct Skin {
   }
 };
 
-// Vertices of a beam along x that bends from each bone to the next.
+// A beam along x that bends between consecutive bones.
 Skin beam(std::size_t num_bones, Random& random) {
   Skin skin;
   for (int v = 0; v < 60; ++v) {
@@ -134,9 +134,9 @@ TEST(SkinMoments, AreSumsOverPairsOfBones) {
   EXPECT_EQ(moments.centre(1), Vec3d(1, 2, 3));
   EXPECT_LT((moments.centre(0) - Vec3d(2.6, 0.4, 1.4)).norm(), 1e-15);
   EXPECT_NEAR(moments.spread2(0), 0.16 * 12.0,
-              1e-12);  // (0.2 * 0.8) * 12, the squared distance
+              1e-12);  // variance of the weights, 0.2 * 0.8, times the squared distance, 12
   EXPECT_EQ(moments.spread2(1), 0.0);
-  EXPECT_EQ(moments.mass(2), 0.0);  // a bone of no vertex
+  EXPECT_EQ(moments.mass(2), 0.0);  // a bone without vertices
   EXPECT_EQ(moments.centre(2), Vec3d(0, 0, 0));
   EXPECT_EQ(moments.spread2(2), 0.0);
 }
@@ -162,13 +162,13 @@ TEST(PoseTargets, AreSumsOverVerticesInEachFrame) {
   }
 }
 
-// A bone without vertices stays.
+// A bone without vertices keeps its motion.
 TEST(RefinePoses, MovesBonesToTheirVertices) {
   Skin skin;
   for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)}) {
     skin.add(p, {{0, 1.0}});
   }
-  Motion turn;  // a quarter about z, and a shift
+  Motion turn;  // a quarter turn about z, and a translation
   turn << 0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7;
   skin.move_as({turn, identity_motion()});
   std::vector<Motion> motions(2, identity_motion());
@@ -177,7 +177,7 @@ TEST(RefinePoses, MovesBonesToTheirVertices) {
   EXPECT_EQ(motions[1], identity_motion());
 }
 
-// Whatever the vertices do, and however far it is.
+// For random targets and at any distance from the solution.
 TEST(RefinePoses, NeverRaisesTheError) {
   Random random(1);
   for (int i = 0; i < 30; ++i) {
@@ -190,7 +190,7 @@ TEST(RefinePoses, NeverRaisesTheError) {
       expect_rigid(motions);
       EXPECT_LE(skin.error(motions), before * (1.0 + 1e-12));
     }
-    // The last bone has the best motion that the others leave it.
+    // The motion of the last bone is optimal given the others.
     const double least = skin.error(motions);
     for (int k = 0; k < 20; ++k) {
       const Motion nudge = random.motion(0.01);
@@ -202,8 +202,8 @@ TEST(RefinePoses, NeverRaisesTheError) {
   }
 }
 
-// The step of Gauss and Newton from the vertices themselves: derivatives by differences, and
-// least squares. Parameters of a bone: the turn x after R, and the shift.
+// The Gauss-Newton step computed from the vertices, with derivatives by finite differences. The
+// parameters of a bone are a rotation vector, applied after R, and the translation.
 std::vector<Motion> step_by_differences(const Skin& skin, const std::vector<Motion>& motions) {
   constexpr double kDelta = 1e-6;
   const auto n = static_cast<Eigen::Index>(motions.size());
@@ -239,8 +239,8 @@ std::vector<Motion> step_by_differences(const Skin& skin, const std::vector<Moti
   return result;
 }
 
-// But for a little damping.
-TEST(SolvePoses, IsAStepOfGaussAndNewton) {
+// The two agree up to damping.
+TEST(SolvePoses, IsAGaussNewtonStep) {
   Random random(2);
   for (int i = 0; i < 20; ++i) {
     Skin skin = beam(3, random);
@@ -255,7 +255,7 @@ TEST(SolvePoses, IsAStepOfGaussAndNewton) {
   }
 }
 
-// Where vertices follow several bones, and from a distance at which it is meant to be used.
+// Vertices follow several bones; the start is as close as callers guarantee.
 TEST(SolvePoses, FindsTheMotionsOfBlendedBones) {
   Random random(3);
   for (const std::size_t num_bones : {1U, 2U, 5U}) {
@@ -283,8 +283,8 @@ TEST(SolvePoses, FindsTheMotionsOfBlendedBones) {
   }
 }
 
-// A shift of a bone without a turn is the mean of what its vertices lack.
-TEST(SolvePoses, ShiftsASingleBone) {
+// Without rotation, the step of a bone is the mean residual of its vertices.
+TEST(SolvePoses, TranslatesASingleBone) {
   Skin skin;
   for (const Vec3d& p : {Vec3d(1, 0, 0), Vec3d(-1, 0, 0), Vec3d(0, 2, 0), Vec3d(0, -2, 0)}) {
     skin.add(p, {{0, 1.0}});
@@ -297,7 +297,8 @@ TEST(SolvePoses, ShiftsASingleBone) {
   EXPECT_LT((motions[0].col(3) - Vec3d(10, 20, -30)).norm(), 0.05);  // damped
 }
 
-// What the vertices leave open: the turn about their line, or which of two bones does it.
+// Ambiguous cases: rotation about the line of all vertices, or two bones with the same
+// vertices.
 TEST(SolvePoses, LowersTheErrorOfDegenerateBones) {
   Random random(4);
   Skin line;
@@ -313,7 +314,7 @@ TEST(SolvePoses, LowersTheErrorOfDegenerateBones) {
   for (Skin* skin : {&line, &point, &twins, &flat}) {
     const Motion nudge = random.motion(0.2);
     for (const Vec3d& p : skin->rest) skin->wanted.push_back(moved(nudge, p));
-    // A third bone of no vertex, and one of weight 0, which both stay.
+    // A third bone without vertices, or with weight 0 only, keeps its motion.
     skin->weights[0].push_back({2, 0.0});
     std::vector<Motion> motions(4, identity_motion());
     motions[2].col(3) = motions[3].col(3) = Vec3d(7, 8, 9);

@@ -82,7 +82,7 @@ void BoneSolver::find_patch_errors() {
   }
 }
 
-// Returns how many there were.
+// Adds at most `count` bones; returns how many were added.
 std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   if (patch_error_.empty()) find_patch_errors();
   std::vector<double> error(weights_.size());
@@ -102,9 +102,9 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   return added;
 }
 
-// Patches that do not touch, first those with a large error of which a rigid motion of their
-// own would leave little.
-std::vector<std::size_t> BoneSolver::ill_explained_patches(
+// Disjoint patches in descending order of how much a rigid motion of their own would lower
+// their error.
+std::vector<std::size_t> BoneSolver::poorly_explained_patches(
     std::span<const double> error) const {
   constexpr std::size_t kTried = 12;  // tuned (off: 1): patches, for each new bone
   constexpr double kRigid =
@@ -112,9 +112,9 @@ std::vector<std::size_t> BoneSolver::ill_explained_patches(
   std::vector<double> score(sample_.patches.size());
   for (std::size_t i = 0; i < score.size(); ++i) {
     const auto& patch = sample_.patches[i];
-    const double of_patch = error[patch[0]] * static_cast<double>(patch.size());
-    if (of_patch > 0.0) {
-      score[i] = of_patch * kRigid / (kRigid + patch_error_[i] / of_patch);
+    const double total = error[patch[0]] * static_cast<double>(patch.size());
+    if (total > 0.0) {
+      score[i] = total * kRigid / (kRigid + patch_error_[i] / total);
     }
   }
   std::vector<std::size_t> order(score.size());
@@ -133,8 +133,8 @@ std::vector<std::size_t> BoneSolver::ill_explained_patches(
   return result;
 }
 
-// The motions of patches, each then taken from all vertices that follow it as well as the patch
-// does.
+// The rigid motions of patches. Each is refitted to all vertices of the sample that follow it
+// about as closely as the patch itself.
 std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     std::span<const std::size_t> patches) const {
   constexpr int kFits = 3;        // tuned (off: 1): of the motion of a patch
@@ -176,9 +176,9 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   return result;
 }
 
-// Of the motions of some patches, that which saves most.
+// The patch motion that saves the most squared error.
 BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
-  const std::vector<std::size_t> patches = ill_explained_patches(error);
+  const std::vector<std::size_t> patches = poorly_explained_patches(error);
   const auto is_known = [&](std::size_t patch) {
     return std::any_of(tried_.begin(), tried_.end(),
                        [&](const PatchMotion& m) { return m.patch == patch; });
@@ -227,7 +227,7 @@ void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
       }
     };
     fit();
-    if (!rests_move_) continue;
+    if (!refines_rest_) continue;
     rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
     fit();
   }
@@ -245,7 +245,7 @@ void BoneSolver::improve(int rounds, SkinSums& sums) {
 
 void BoneSolver::settle() {
   constexpr int kSettlingRounds = 10;  // tuned (off: 1): of improvement, with rest positions
-  rests_move_ = true;
+  refines_rest_ = true;
   SkinSums sums(sample_.positions, motions_);
   improve(kSettlingRounds, sums);
 }
@@ -268,14 +268,14 @@ void BoneSolver::improve_motions() {
   }
 }
 
-// What each bone's vertices would lose without it.
-std::vector<double> BoneSolver::missed() const {
+// [bone], the increase of the squared error if the bone is removed.
+std::vector<double> BoneSolver::losses() const {
   std::vector<double> loss(motions_.size(), 0.0);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     const std::size_t count = candidates_[v].size();
     if (count < 2) continue;
     for (const RigWeight& w : weights_[v].weights) {
-      // The others only: the bone's row and column take those of the last.
+      // Remove the bone from the Gram matrix: the last candidate takes its row and column.
       SkinSums::Gram gram = gram_[v];
       const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
       const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
@@ -307,7 +307,6 @@ double BoneSolver::error() const {
   return sum;
 }
 
-// Beyond the first.
 double BoneSolver::mean_influences() const {
   std::size_t sum = 0;
   for (const BoneWeights& w : weights_) sum += w.weights.size() - 1;
@@ -319,21 +318,22 @@ std::vector<double> BoneSolver::residuals() const {
   result.reserve(3 * sample_.positions.size());
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-      Vec3d left = sample_.trajectory(v)[f];
+      Vec3d residual = sample_.trajectory(v)[f];
       for (const RigWeight& w : weights_[v].weights) {
-        left -= w.weight * moved(motions_[w.bone][f], rest_[v]);
+        residual -= w.weight * moved(motions_[w.bone][f], rest_[v]);
       }
-      result.insert(result.end(), {left(0), left(1), left(2)});
+      result.insert(result.end(), {residual(0), residual(1), residual(2)});
     }
   }
   return result;
 }
 
-// Exchanges the bones that are missed least for new ones, if that is better.
+// Replaces the `count` least useful bones by new ones; undone and false if that does not lower
+// the error.
 bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   const BoneSolver before = *this;
   for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
-    const std::vector<double> loss = missed();
+    const std::vector<double> loss = losses();
     remove_bone(
         static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()),
         sums);
@@ -355,9 +355,9 @@ void BoneSolver::take(const BoneSolver& other) {
 }
 
 void BoneSolver::remove_worthless_bones(double worth) {
-  std::optional<SkinSums> sums;  // once one is removed
+  std::optional<SkinSums> sums;  // made once a bone is removed
   while (motions_.size() > 1) {
-    const std::vector<double> loss = missed();
+    const std::vector<double> loss = losses();
     const auto least = std::min_element(loss.begin(), loss.end());
     if (*least >= worth) break;
     if (!sums) sums.emplace(sample_.positions, motions_);

@@ -1,4 +1,4 @@
-// Finds bones from trajectories (skinning decomposition; after Le and Deng 2012).
+// Finds bones from vertex trajectories (skinning decomposition, after Le and Deng 2012).
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,14 @@
 
 namespace rlpc {
 
-// Some vertices in some frames.
+// A sample of the vertices of a GOF in a sample of its frames.
 struct BoneSample {
   std::size_t num_frames = 0;
   std::vector<Vec3d> positions;                       // [vertex][frame]
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;  // fixed: no index
-  std::vector<std::uint32_t> place;  // [num_vertices of the GOF] in the sample, or kNone
-  // Small patches, each the vertices around one: bones are looked for where one moves rigidly.
+  std::vector<std::uint32_t> place;  // [num_vertices of the GOF]: index in the sample, or kNone
+  // Small patches of the mesh, each a centre vertex, which is first, and those around it. New
+  // bones start from patches that move rigidly.
   std::vector<std::vector<std::uint32_t>> patches;
 
   std::size_t num_vertices() const { return positions.size() / num_frames; }
@@ -31,48 +32,53 @@ struct BoneSample {
   }
 };
 
-// Bones come in one at a time: each takes the motion of a patch that is rigid but ill explained
-// by the bones before it. Then weights and motions are improved in turn, and the bones that are
-// missed least are exchanged for new ones. Rest positions stay those of the first frame, in
-// which rigid parts are rigid, until all bones are there.
+// Bones are added one at a time. Each new bone takes the motion of a patch that is nearly rigid
+// but poorly explained by the existing bones. Weights and motions are then improved
+// alternately, and the least useful bones are exchanged for new ones. Until all bones are
+// found, the rest positions are those of the first frame, in which rigid parts have their true
+// shape.
 class BoneSolver {
  public:
-  // The sample is kept by reference. There is one bone at first.
+  // Starts with one bone. Keeps a reference to the sample.
   BoneSolver(const BoneSample& sample, std::size_t max_influences);
 
-  // Adds bones up to a number, in several steps; false if none was worth adding.
+  // Adds bones until there are num_bones; false if none was worth adding.
   bool grow(std::size_t num_bones);
-  // Exchanges the bones that are missed least for new ones, as often as that is better.
+  // Tries, at most `times` times, to exchange the least useful bones for new ones; keeps what
+  // lowers the error.
   void exchange_bones(int times);
-  // Improves rest positions, too; bones cannot be added after that.
+  // Improves the rest positions as well; no bones can be added afterwards.
   void settle();
-  // Leaves out bones that save less squared error than `worth`.
+  // Removes bones that save less squared error than `worth`.
   void remove_worthless_bones(double worth);
 
   double error() const;  // squared, over the sample
+  // Mean number of bones per vertex beyond the first.
   double mean_influences() const;
-  // What the bones leave: [vertex][3 * frame].
+  // The residual of bone motion: [vertex][3 * frame].
   std::vector<double> residuals() const;
 
   const BoneMotions& motions() const { return motions_; }
-  const Vec3d& rest(std::size_t vertex) const { return rest_[vertex]; }  // of the sample
+  // The rest position of a vertex of the sample.
+  const Vec3d& rest(std::size_t vertex) const { return rest_[vertex]; }
 
  private:
-  // `sums` are those of the motions, before and after.
+  // The functions below that take `sums` expect those of the current motions and keep them up
+  // to date.
   void find_patch_errors();
   bool exchange(std::size_t count, SkinSums& sums);
   void take(const BoneSolver& other);
   std::size_t add_bones(std::size_t count, SkinSums& sums);
-  std::vector<std::size_t> ill_explained_patches(std::span<const double> error) const;
+  std::vector<std::size_t> poorly_explained_patches(std::span<const double> error) const;
   struct PatchMotion {
     std::size_t patch = 0;
     std::vector<Motion> motion;
-    std::vector<double> error;  // of each vertex of the sample if it moves so
+    std::vector<double> error;  // squared error of each vertex of the sample under this motion
   };
   std::vector<PatchMotion> patch_motions(std::span<const std::size_t> patches) const;
   struct NewBone {
     std::vector<Motion> motion;
-    double saved = 0.0;  // squared error
+    double saved = 0.0;  // squared error that it saves
   };
   NewBone best_new_bone(std::span<const double> error);
   std::vector<Motion> motion_of(std::span<const std::uint32_t> vertices) const;
@@ -82,20 +88,20 @@ class BoneSolver {
   void choose_candidates(const SkinSums& sums);
   void fit_all_weights(bool new_candidates, const SkinSums& sums);
 
-  std::vector<double> missed() const;
+  std::vector<double> losses() const;
   void remove_bone(std::size_t bone, SkinSums& sums);
 
   const BoneSample& sample_;
   std::size_t max_influences_;
-  double negligible_ = 0.0;          // squared error of a vertex over the frames
-  std::vector<double> patch_error_;  // when moved rigidly; once needed
-  std::vector<PatchMotion> tried_;   // when a bone was added last: most are tried again
-  bool rests_move_ = false;
+  double negligible_ = 0.0;  // a squared error of a vertex over all frames that is rounding
+  std::vector<double> patch_error_;  // [patch], squared error if moved rigidly; lazy
+  std::vector<PatchMotion> tried_;   // cached from the previous new bone: most are tried again
+  bool refines_rest_ = false;
   BoneMotions motions_;
   std::vector<Vec3d> rest_;
-  std::vector<BoneWeights> weights_;  // of bones
-  std::vector<std::vector<std::size_t>> candidates_;
-  std::vector<SkinSums::Gram> gram_;  // of the candidates
+  std::vector<BoneWeights> weights_;  // [vertex]; here `bone` is an index of motions_
+  std::vector<std::vector<std::size_t>> candidates_;  // [vertex], bones that it may follow
+  std::vector<SkinSums::Gram> gram_;                  // [vertex], of its candidates
 };
 
 }  // namespace rlpc

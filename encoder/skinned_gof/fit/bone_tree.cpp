@@ -13,11 +13,11 @@ using Motions = std::vector<Motion>;  // one per frame
 
 struct Joint {
   Vec3d pivot = Vec3d::Zero();
-  double cost = 0.0;  // per frame: squared gap at the pivot, and how much the child turns
+  double cost = 0.0;  // summed over frames: squared gap at the pivot, and relative rotation
 };
 
-// The point that two bones move most alike; where that leaves a choice, as along the axis of a
-// hinge, near where they overlap.
+// The point that two bones move most alike. If that is ambiguous, as along the axis of a hinge,
+// the point nearest to `expected`.
 Vec3d common_point(const Motions& parent, const Motions& child, const Vec3d& expected) {
   Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
   Vec3d g = Vec3d::Zero();  // relative to the expected point
@@ -57,15 +57,16 @@ Joint joint_between(const SkinMoments& moments, const std::vector<Motions>& moti
   return joint;
 }
 
-// Turns a bone about its pinned pivot to where it does least harm; returns the harm: the sum of
-// w^2 times the squared shift of the bone's vertices.
+// Pins a bone: moves its pivot with the parent and chooses the rotation that displaces the
+// vertices least. Returns the sum of w^2 times the squared displacement of the vertices of the
+// bone.
 double pin(const Eigen::Matrix4d& moments, const Vec3d& pivot, const Motions& parent,
            Motions& motions) {
   const Vec3d sum = moments.block<3, 1>(0, 3) - moments(3, 3) * pivot;  // of w^2 (p - pivot)
   const Eigen::Matrix3d products =
       moments.block<3, 3>(0, 0) - moments.block<3, 1>(0, 3) * pivot.transpose() -
       pivot * moments.block<3, 1>(0, 3).transpose() + moments(3, 3) * pivot * pivot.transpose();
-  double harm = 0.0;
+  double damage = 0.0;
   for (std::size_t f = 0; f < motions.size(); ++f) {
     const Vec3d origin = moved(parent[f], pivot);
     const Vec3d gap = moved(motions[f], pivot) - origin;
@@ -73,12 +74,12 @@ double pin(const Eigen::Matrix4d& moments, const Vec3d& pivot, const Motions& pa
     const Eigen::Matrix3d h = free * products + gap * sum.transpose();
     const Eigen::Matrix3d r = rotation_matrix(nearest_rotation(h));
     const Eigen::Matrix3d turn = free - r;
-    harm += (turn * products * turn.transpose()).trace() + 2.0 * gap.dot(turn * sum) +
-            moments(3, 3) * gap.squaredNorm();
+    damage += (turn * products * turn.transpose()).trace() + 2.0 * gap.dot(turn * sum) +
+              moments(3, 3) * gap.squaredNorm();
     motions[f].leftCols<3>() = r;
     motions[f].col(3) = origin - r * pivot;
   }
-  return harm;
+  return damage;
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_err
     if (moments.mass(b) > moments.mass(root)) root = b;
   }
   std::vector<TreeBone> tree{{root, -1, moments.centre(root), false}};
-  std::vector<TreeBone> nearest(n);  // the best place in the tree so far
+  std::vector<TreeBone> nearest(n);  // [bone], best place in the tree so far
   std::vector<double> cost(n, std::numeric_limits<double>::infinity());
   std::vector<char> outside(n, 1);
   outside[root] = 0;
@@ -114,9 +115,9 @@ std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_err
     TreeBone& child = tree[i];
     const std::size_t parent = tree[static_cast<std::size_t>(child.parent)].bone;
     Motions pinned = motions[child.bone];
-    const double harm =
+    const double damage =
         pin(moments.block(child.bone, child.bone), child.pivot, motions[parent], pinned);
-    if (harm > pin_error) continue;
+    if (damage > pin_error) continue;
     child.pinned = true;
     motions[child.bone] = std::move(pinned);
   }

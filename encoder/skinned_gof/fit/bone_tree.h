@@ -1,4 +1,4 @@
-// Which bone hangs from which, and where (after Le and Deng 2014).
+// Builds the hierarchy of bones and their joints (after Le and Deng 2014).
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,20 @@
 namespace rlpc {
 
 struct TreeBone {
-  std::size_t bone = 0;  // as numbered in the motions
-  int parent = -1;       // position in the tree, before this one
+  std::size_t bone = 0;  // index in the motions
+  int parent = -1;       // index of an earlier element of the tree; -1: root
   Vec3d pivot = Vec3d::Zero();
   bool pinned = false;
 };
 
-// A spanning tree that starts at the heaviest bone and takes next the bone that stays closest,
-// over the frames, to one already in the tree. The pivot is the point that both move alike.
+// A spanning tree, built greedily from the heaviest bone: the next bone is the one that moves
+// least relative to a bone in the tree. The pivot of a bone is the point that it and its parent
+// move most alike.
 //
-// A pinned bone keeps its pivot where the parent carries it: `motions` of pinned bones, [bone]
-// [frame], are changed to obey exactly. A bone is pinned if that raises the squared error over
-// the frames by less than `pin_error`.
+// The pivot of a pinned bone moves exactly with its parent. A bone is pinned if that raises the
+// squared error over the frames by at most `pin_error`.
+//
+//   motions  [bone][frame]; those of pinned bones are changed accordingly
 std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_error,
                                       std::vector<std::vector<Motion>>& motions);
 

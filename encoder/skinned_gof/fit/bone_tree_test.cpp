@@ -37,7 +37,7 @@ Eigen::Matrix3d turn_by(const Vec3d& v) {
   return rotation_matrix(normalised({1.0, 0.5 * v(0), 0.5 * v(1), 0.5 * v(2)}));
 }
 
-Motion chained(const Motion& a, const Motion& b) {  // b first
+Motion chained(const Motion& a, const Motion& b) {  // applies b, then a
   Motion m;
   m.leftCols<3>() = a.leftCols<3>() * b.leftCols<3>();
   m.col(3) = moved(a, b.col(3));
@@ -51,10 +51,10 @@ Motion turn_about(const Vec3d& pivot, const Vec3d& turn) {
   return m;
 }
 
-// Rigid links along x, joined at 10, 20, ...: each turns about the end of the one before by
-// `swing`, and is off there by `gap`. The whole wanders.
+// Rigid links along x, joined at 10, 20, ... Each link rotates by `swing` about the end of the
+// one before, with an offset of `gap`. The whole chain moves.
 struct Chain {
-  std::vector<std::size_t> bone_of_link;  // bones are numbered in any order
+  std::vector<std::size_t> bone_of_link;  // a permutation
   std::vector<std::vector<Vec3d>> rest;   // [bone]
   Motions motions;
 
@@ -62,7 +62,7 @@ struct Chain {
       : bone_of_link(std::move(order)), rest(links()), motions(links()) {
     Random random(7);
     for (std::size_t l = 0; l < links(); ++l) {
-      for (std::size_t v = 0; v < 9 - l; ++v) {  // the first is the heaviest
+      for (std::size_t v = 0; v < 9 - l; ++v) {  // the first link is the heaviest
         rest[bone_of_link[l]].push_back(joint(l) + Vec3d(5, 0, 0) + 4.0 * random.point());
       }
     }
@@ -95,8 +95,8 @@ struct Chain {
     }
     return result;
   }
-  // How far other motions take the bone's vertices from where these take them, squared.
-  double harm(std::size_t bone, const std::vector<Motion>& other) const {
+  // Squared distances between the vertices of a bone under other motions and under its own.
+  double damage(std::size_t bone, const std::vector<Motion>& other) const {
     double sum = 0.0;
     for (std::size_t f = 0; f < kFrames; ++f) {
       for (const Vec3d& p : rest[bone]) {
@@ -132,7 +132,7 @@ void expect_rigid(const Motions& motions) {
   }
 }
 
-TEST(BoneTree, OfOneBoneIsItsCentre) {
+TEST(BoneTree, PutsThePivotOfASingleBoneAtItsCentre) {
   SkinMoments moments(1);
   moments.add({1, 2, 3}, std::vector<RigWeight>{{0, 1.0}});
   moments.add({3, 2, 1}, std::vector<RigWeight>{{0, 1.0}});
@@ -145,7 +145,7 @@ TEST(BoneTree, OfOneBoneIsItsCentre) {
   EXPECT_EQ(motions, Motions{{identity}});
 }
 
-// From the heaviest bone on, whatever the bones' numbers; pivots are the joints.
+// Starts at the heaviest bone, whatever the numbering; the pivots are the joints.
 TEST(BoneTree, FollowsAChain) {
   const Chain chain({2, 0, 3, 1}, 0.5, 0.0);
   Motions motions = chain.motions;
@@ -177,7 +177,7 @@ TEST(BoneTree, BranchesAtTheHeaviestBone) {
   }
 }
 
-// Along the axis of a hinge all points are alike: the pivot is near the bone's own vertices.
+// All points on the axis of a hinge are equivalent: the pivot is near the vertices of the bone.
 TEST(BoneTree, PutsThePivotOfAHingeNearTheBone) {
   Chain chain({0, 1}, 0.5, 0.0, true);
   for (Vec3d& p : chain.rest[1]) p(2) += 30.0;
@@ -187,9 +187,9 @@ TEST(BoneTree, PutsThePivotOfAHingeNearTheBone) {
   EXPECT_NEAR(tree[1].pivot(2), 30.0, 4.0);
 }
 
-// A bone that turns as the root does, at the end of another that turns: it hangs from that one
-// if it is small, since the root is far off; and from the root if that is hardly off.
-TEST(BoneTree, WeighsGapsAgainstTurns) {
+// Three bones in a row; the last rotates like the root. Its parent is the middle bone if the
+// last bone is small, because its gap to the root is large, and the root if that gap is small.
+TEST(BoneTree, WeighsGapsAgainstRotation) {
   for (const bool far : {false, true}) {
     Chain chain({0, 1, 2}, 0.5, 0.0);
     const Vec3d joint = far ? Chain::joint(2) : Chain::joint(1);
@@ -207,7 +207,7 @@ TEST(BoneTree, WeighsGapsAgainstTurns) {
   }
 }
 
-// Bones that share vertices are joined where these are.
+// Bones that share vertices are joined near the shared vertices.
 TEST(BoneTree, PutsThePivotOfAHingeWhereBonesOverlap) {
   const Chain chain({0, 1}, 0.5, 0.0, true);
   SkinMoments moments = chain.moments();
@@ -219,19 +219,19 @@ TEST(BoneTree, PutsThePivotOfAHingeWhereBonesOverlap) {
   EXPECT_LT((tree[1].pivot - Vec3d(10, 0, 30)).norm(), 0.01) << tree[1].pivot;
 }
 
-TEST(BoneTree, PinsABoneWithoutHarmAtAJoint) {
+TEST(BoneTree, PinsABoneAtAnExactJoint) {
   const Chain chain({0, 1, 2}, 0.5, 0.0);
   Motions motions = chain.motions;
   const auto tree = build_bone_tree(chain.moments(), 0.01, motions);
   for (std::size_t i : {1U, 2U}) {
     EXPECT_TRUE(tree[i].pinned);
-    EXPECT_LT(chain.harm(tree[i].bone, motions[tree[i].bone]), 0.01);
+    EXPECT_LT(chain.damage(tree[i].bone, motions[tree[i].bone]), 0.01);
   }
 }
 
-// Pinned bones obey exactly, by the turn that does least harm, and bones are pinned up to the
-// error that is allowed.
-TEST(BoneTree, PinsBonesWithTheLeastHarm) {
+// The pivots of pinned bones move exactly with the parent, with the rotation that does the
+// least damage; bones are pinned up to the allowed error.
+TEST(BoneTree, PinsBonesWithTheLeastDamage) {
   const Chain chain({0, 1}, 0.5, 0.4);
   Motions motions = chain.motions;
   const auto tree = build_bone_tree(chain.moments(), kAlways, motions);
@@ -243,8 +243,8 @@ TEST(BoneTree, PinsBonesWithTheLeastHarm) {
   for (std::size_t f = 0; f < kFrames; ++f) {
     EXPECT_LT((moved(motions[0][f], pivot) - moved(motions[1][f], pivot)).norm(), 1e-10);
   }
-  const double harm = chain.harm(1, motions[1]);
-  EXPECT_GT(harm, 0.1);
+  const double damage = chain.damage(1, motions[1]);
+  EXPECT_GT(damage, 0.1);
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     std::vector<Motion> other = motions[1];
@@ -253,17 +253,17 @@ TEST(BoneTree, PinsBonesWithTheLeastHarm) {
       m.leftCols<3>() = turn_by((i % 2 == 0 ? 0.01 : 0.3) * random.point()) * m.leftCols<3>();
       m.col(3) = origin - m.leftCols<3>() * pivot;
     }
-    EXPECT_GE(chain.harm(1, other), harm * (1.0 - 1e-9));
+    EXPECT_GE(chain.damage(1, other), damage * (1.0 - 1e-9));
   }
 
   motions = chain.motions;
-  EXPECT_TRUE(build_bone_tree(chain.moments(), 1.001 * harm, motions)[1].pinned);
+  EXPECT_TRUE(build_bone_tree(chain.moments(), 1.001 * damage, motions)[1].pinned);
   motions = chain.motions;
-  EXPECT_FALSE(build_bone_tree(chain.moments(), 0.999 * harm, motions)[1].pinned);
+  EXPECT_FALSE(build_bone_tree(chain.moments(), 0.999 * damage, motions)[1].pinned);
   EXPECT_EQ(motions, chain.motions);
 }
 
-// A bone hangs from where its parent was pinned to, not from where that was before.
+// A bone is pinned to the motion of its parent after the parent has been pinned.
 TEST(BoneTree, PinsBonesToPinnedBones) {
   const Chain chain({2, 0, 3, 1}, 0.4, 0.5);
   Motions motions = chain.motions;
@@ -282,8 +282,8 @@ TEST(BoneTree, PinsBonesToPinnedBones) {
   }
 }
 
-// Bones of no vertex, of one, and of a line; bones that do not move against each other.
-TEST(BoneTree, HasADegenerateBoneInIt) {
+// Bones without vertices, with one vertex or collinear vertices; bones without relative motion.
+TEST(BoneTree, AcceptsDegenerateBones) {
   Chain chain({0, 1, 2, 3}, 0.5, 0.1);
   chain.rest[1].clear();
   chain.rest[2].resize(1);
@@ -297,7 +297,7 @@ TEST(BoneTree, HasADegenerateBoneInIt) {
       expect_tree(build_bone_tree(chain.moments(), pin_error, motions), 4);
       expect_rigid(motions);
       if (!still) continue;
-      for (std::size_t b = 0; b < 4; ++b) EXPECT_LT(chain.harm(b, motions[b]), 1e-9) << b;
+      for (std::size_t b = 0; b < 4; ++b) EXPECT_LT(chain.damage(b, motions[b]), 1e-9) << b;
     }
   }
 }

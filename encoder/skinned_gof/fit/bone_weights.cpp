@@ -45,7 +45,7 @@ class SparseBlend {
     return {1, {best}, {1.0}, at(best, best)};
   }
 
-  // The best weights of those chosen, without the negative ones.
+  // Optimal weights of the chosen candidates, after removing those with negative weights.
   void solve(Blend& blend) const {
     for (;;) {
       unconstrained(blend);
@@ -68,7 +68,7 @@ class SparseBlend {
 
   double at(std::size_t i, std::size_t j) const { return gram_[i * stride_ + j]; }
 
-  // Minimises w^T gram w at sum 1: proportional to the inverse of gram times ones.
+  // Minimises w^T gram w subject to sum 1: w is proportional to gram^-1 times a vector of ones.
   void unconstrained(Blend& blend) const {
     const std::size_t n = blend.size;
     SmallSystem<kMost> m;

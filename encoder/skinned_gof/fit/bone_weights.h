@@ -1,4 +1,4 @@
-// Few bone weights of a vertex: not negative, of sum 1.
+// Sparse bone weights of a vertex: a few non-negative weights with sum 1.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,14 @@
 namespace rlpc {
 
 struct BoneWeights {
-  std::vector<RigWeight> weights;  // `bone` is the candidate's number; heaviest first
-  double error = 0.0;              // squared, over the frames
+  std::vector<RigWeight> weights;  // heaviest first; `bone` is the index of the candidate
+  double error = 0.0;              // squared error over the frames
 };
 
-// Weights that lower the squared error w^T gram w of a blend, where gram holds the products of
-// the candidates' deviations. Candidates come in one at a time, the best first, as long as each
-// lowers the error by more than `error_per_influence`; one whose weight would be negative goes.
+// Minimises the squared error w^T gram w of a blend of candidate bones. gram is the Gram matrix
+// of the candidates' errors. Candidates are added greedily, the best first, as long as each
+// lowers the squared error by more than `error_per_influence`; those with negative weights are
+// removed.
 //
 //   gram            [count][stride], row-major, positive semidefinite
 //   max_influences  1 to kMaxExtraBones

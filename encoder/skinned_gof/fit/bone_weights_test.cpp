@@ -13,11 +13,11 @@
 namespace rlpc {
 namespace {
 
-// The deviations of candidates over some frames; their products are the gram.
+// The errors of each candidate over some frames; their inner products are the Gram matrix.
 using Deviations = std::vector<std::vector<double>>;
 
 std::vector<double> gram_of(const Deviations& d, std::size_t stride) {
-  // What lies beyond the candidates is not read.
+  // NaN beyond the candidates: must not be read.
   std::vector<double> gram(d.size() * stride, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < d.size(); ++i) {
     for (std::size_t j = 0; j < d.size(); ++j) {
@@ -51,7 +51,8 @@ std::string text(const BoneWeights& found) {
   return result + "error " + std::to_string(found.error);
 }
 
-// Not negative, of sum 1, heaviest first, none twice; the error is that of the blend.
+// Checks that weights are non-negative with sum 1, heaviest first, without duplicates, and that
+// the error is that of the blend.
 void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t most) {
   ASSERT_GE(found.weights.size(), 1U);
   EXPECT_LE(found.weights.size(), most);
@@ -73,7 +74,8 @@ void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t mos
   EXPECT_NEAR(found.error, error_of(d, found.weights), 1e-12 * size) << text(found);
 }
 
-// The least error of blends of these candidates, in steps of 1/steps of each weight.
+// The lowest error of blends of these candidates, by enumeration with weights in multiples of
+// 1/steps.
 double least_error(const Deviations& d, const std::vector<std::uint32_t>& bones, int steps) {
   double least = std::numeric_limits<double>::infinity();
   std::vector<RigWeight> weights;
@@ -95,8 +97,8 @@ double least_error(const Deviations& d, const std::vector<std::uint32_t>& bones,
   return least;
 }
 
-// Of deviations at right angles, the weights are as 1 to their squares.
-TEST(SparseWeights, AreKnownAtRightAngles) {
+// For orthogonal errors, the optimal weights are inversely proportional to the squared norms.
+TEST(SparseWeights, AreExactForOrthogonalErrors) {
   const Deviations d{{0, 2, 0}, {1, 0, 0}, {0, 0, 4}};
   const BoneWeights all = weights_of(d, 3);
   expect_valid(d, all, 3);
@@ -122,7 +124,7 @@ TEST(SparseWeights, AreKnownAtRightAngles) {
 }
 
 // The second bone lowers the error by 0.2, the third by 0.8 - 16/21, about 0.038.
-TEST(SparseWeights, TakeABoneThatIsWorthIt) {
+TEST(SparseWeights, AddABoneThatSavesEnough) {
   const Deviations d{{0, 2, 0}, {1, 0, 0}, {0, 0, 4}};
   EXPECT_EQ(weights_of(d, 4, 0.21).weights.size(), 1U);
   EXPECT_EQ(weights_of(d, 4, 0.19).weights.size(), 2U);
@@ -130,14 +132,14 @@ TEST(SparseWeights, TakeABoneThatIsWorthIt) {
   EXPECT_EQ(weights_of(d, 4, 0.037).weights.size(), 3U);
 }
 
-TEST(SparseWeights, LeaveOutWhatWouldBeNegative) {
+TEST(SparseWeights, RemoveNegativeWeights) {
   const Deviations same_side{{1, 0}, {2, 0}, {3, 0}};
   const BoneWeights one = weights_of(same_side, 4);
   ASSERT_EQ(one.weights.size(), 1U);
   EXPECT_EQ(one.weights[0].bone, 0U);
   EXPECT_EQ(one.error, 1.0);
 
-  // The first bone is the best alone, and of no use beside the other two.
+  // The first bone is the best single one, but useless once the other two are chosen.
   const Deviations around{{1, 0}, {-0.25, 1.25}, {-0.25, -1.25}};
   const BoneWeights three = weights_of(around, 4);
   expect_valid(around, three, 4);
@@ -151,7 +153,7 @@ TEST(SparseWeights, LeaveOutWhatWouldBeNegative) {
   EXPECT_NEAR(two.error, 0.0625, 1e-6);
 }
 
-TEST(SparseWeights, AreTheBestOfTwoBones) {
+TEST(SparseWeights, AreOptimalForTwoBones) {
   std::mt19937 random(1);
   const auto value = [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; };
   for (int i = 0; i < 100; ++i) {
@@ -167,15 +169,15 @@ TEST(SparseWeights, AreTheBestOfTwoBones) {
   }
 }
 
-// One more bone at a time is not the best of all choices, but the weights are the best of
-// those chosen, more bones are never worse, and no bone is left out that would help.
-TEST(SparseWeights, AreTheBestOfTheBonesChosen) {
+// Greedy selection is not optimal. But the weights of the chosen bones are optimal, more bones
+// are never worse, and no bone that would help is left out.
+TEST(SparseWeights, AreOptimalForTheChosenBones) {
   std::mt19937 random(2);
   const auto value = [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; };
   int sizes[5] = {};
   for (int i = 0; i < 60; ++i) {
     Deviations d(6, std::vector<double>(4));
-    const double off = 0.5 * (i % 4);  // how far to one side all are
+    const double off = 0.5 * (i % 4);  // common offset of all errors
     for (auto& row : d) {
       for (double& x : row) x = value() + off;
     }
@@ -203,14 +205,14 @@ TEST(SparseWeights, AreTheBestOfTheBonesChosen) {
   EXPECT_GT(sizes[3] + sizes[4], 5);
 }
 
-TEST(SparseWeights, OfCandidatesThatMoveAlikeAreOne) {
+TEST(SparseWeights, UseOneOfIdenticalCandidates) {
   const Deviations d(5, {0.5, -1.0, 0.25});
   const BoneWeights found = weights_of(d, 4);
   expect_valid(d, found, 1);
   EXPECT_EQ(found.weights[0].bone, 0U);
 }
 
-TEST(SparseWeights, OfABoneThatIsRightAreThatBone) {
+TEST(SparseWeights, UseOnlyABoneWithoutError) {
   const BoneWeights found = weights_of({{1, 1}, {0, 0}, {2, -1}, {0, 0}}, 4);
   ASSERT_EQ(found.weights.size(), 1U);
   EXPECT_EQ(found.weights[0].bone, 1U);
@@ -225,8 +227,8 @@ TEST(SparseWeights, OfABoneThatIsRightAreThatBone) {
   EXPECT_EQ(alone.error, 25.0);
 }
 
-// The unit of length does not matter.
-TEST(SparseWeights, AreTheSameInAnyUnit) {
+// The result is independent of the unit of length.
+TEST(SparseWeights, AreScaleInvariant) {
   const Deviations d{{1, 0.2}, {-0.5, 1}, {0.1, -1.5}};
   const BoneWeights found = weights_of(d, 3);
   ASSERT_EQ(found.weights.size(), 3U);

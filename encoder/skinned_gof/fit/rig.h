@@ -1,5 +1,5 @@
-// A skinned mesh that moves nearly as a group of frames does: what the analysis finds, before
-// quantisation.
+// The rig of a GOF as the analysis finds it, before quantisation: a skinned mesh that
+// approximates the motion of the frames.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@ namespace rlpc {
 using Point = std::array<double, 3>;  // grid units
 
 struct RigPose {
-  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // of the rest shape; w, x, y, z
-  Point origin{};                                      // where the pivot goes
+  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // from the rest shape; w, x, y, z
+  Point origin{};                                      // position of the pivot
 };
 
 struct RigBone {
-  std::int32_t parent = -1;    // a bone before
+  std::int32_t parent = -1;    // index of an earlier bone; -1: root
   Point pivot{};               // in the rest shape
-  bool turns = true;           // relative to its parent
-  bool pinned = false;         // the parent takes the pivot where it goes
+  bool rotates = true;         // relative to its parent
+  bool pinned = false;         // its pivot moves with the parent
   std::vector<RigPose> poses;  // [num_frames]
 };
 
@@ -30,7 +30,7 @@ struct RigWeight {
 
 struct Rig {
   std::vector<RigBone> bones;
-  std::vector<std::vector<RigWeight>> weights;  // [num_vertices]; those of a vertex sum to 1
+  std::vector<std::vector<RigWeight>> weights;  // [num_vertices]; sum 1 for each vertex
   std::vector<Point> rest;                      // [num_vertices]
 };
 

@@ -21,7 +21,7 @@ UnitQuaternion normalised(const UnitQuaternion& q) {
   return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};
 }
 
-// Horn (1987): the unit quaternion is the largest eigenvector of a symmetric 4 x 4 matrix.
+// Horn (1987): the quaternion is the eigenvector of the largest eigenvalue of a 4 x 4 matrix.
 UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h) {
   const double size = h.cwiseAbs().maxCoeff();
   if (!(size > 0.0)) return {1, 0, 0, 0};
@@ -51,7 +51,8 @@ Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d
   constexpr double kFlat = 1e-6;  // fixed: of the trace: a turn that is hardly determined
   Eigen::Matrix3d r = start;
   for (int i = 0; i < kSteps; ++i) {
-    // Newton's step for trace(R^T h), as a turn x after R: (trace(k) I - k) x = curl of k.
+    // Newton step for trace(R^T h). x is a rotation vector applied after R:
+    // (trace(k) I - (k + k^T) / 2) x = curl of k.
     const Eigen::Matrix3d k = h * r.transpose();
     const double trace = k(0, 0) + k(1, 1) + k(2, 2);
     SmallSystem<3> m;

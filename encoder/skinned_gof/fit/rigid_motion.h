@@ -1,7 +1,7 @@
-// Rigid motions as matrices, and the one nearest to a set of point pairs.
+// Rigid motions as matrices, and the rigid motion that best fits a set of point pairs.
 #pragma once
 
-// The same sums everywhere: fixed-size matrices, unrolled in order, never vectorised.
+// Unvectorised fixed-size matrices sum in the same order on every machine.
 #ifndef EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_VECTORIZE
 #endif
@@ -11,7 +11,7 @@
 namespace rlpc {
 
 using Vec3d = Eigen::Vector3d;
-using Motion = Eigen::Matrix<double, 3, 4>;    // [R | t]: takes x to R x + t
+using Motion = Eigen::Matrix<double, 3, 4>;    // [R | t]: maps x to R x + t
 using UnitQuaternion = std::array<double, 4>;  // w, x, y, z
 
 inline Vec3d moved(const Motion& m, const Vec3d& x) { return m.leftCols<3>() * x + m.col(3); }
@@ -20,14 +20,14 @@ Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit);
 UnitQuaternion normalised(const UnitQuaternion& q);
 UnitQuaternion rotation_quaternion(const Eigen::Matrix3d& rotation);
 
-// The rotation R that maximises trace(R^T h), where h is the sum of image * original^T; where
-// that leaves a choice, the one that turns least.
+// The rotation R that maximises trace(R^T h), where h is the sum of image * original^T. If it
+// is not unique, the one with the smallest angle.
 UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h);
 
-// The same from a rotation near it, and faster.
+// The same, but faster if `start` is close to the result.
 Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d& start);
 
-// Collects pairs of a point and its image; the motion minimises the sum of squared distances.
+// Accumulates pairs of a point and its image; motion() minimises the sum of squared distances.
 class MotionFit {
  public:
   void add(const Vec3d& original, const Vec3d& image);

@@ -57,7 +57,7 @@ double agreement(const Eigen::Matrix3d& r, const Eigen::Matrix3d& h) {
   return (r.transpose() * h).trace();
 }
 
-// Kabsch: the singular vectors of h, the last one turned over where they make a reflection.
+// Kabsch's method: singular vectors of h, the last one negated if they make a reflection.
 double best_agreement(const Eigen::Matrix3d& h) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3d s = svd.singularValues();
@@ -65,14 +65,14 @@ double best_agreement(const Eigen::Matrix3d& h) {
   return s(0) + s(1) + (det < 0.0 ? -s(2) : s(2));
 }
 
-TEST(RotationMatrix, TurnsByTheQuaternion) {
+TEST(RotationMatrix, RotatesByTheQuaternion) {
   const Eigen::Matrix3d r = rotation_matrix({0.5, 0.5, 0.5, 0.5});  // x to y to z to x
   EXPECT_EQ(r * Vec3d(1, 2, 3), Vec3d(3, 1, 2));
   const Eigen::Matrix3d q = rotation_matrix({kHalf, 0, 0, kHalf});
   EXPECT_LT((q * Vec3d(1, 0, 0) - Vec3d(0, 1, 0)).norm(), 1e-15);
 }
 
-TEST(NearestRotation, OfARotationIsThatRotation) {
+TEST(NearestRotation, ReproducesARotation) {
   const std::vector<UnitQuaternion> known{{1, 0, 0, 0},          {kHalf, kHalf, 0, 0},
                                           {kHalf, 0, -kHalf, 0}, {kHalf, 0, 0, kHalf},
                                           {0.5, 0.5, 0.5, 0.5},  {0.5, -0.5, 0.5, 0.5},
@@ -85,8 +85,8 @@ TEST(NearestRotation, OfARotationIsThatRotation) {
   }
 }
 
-// Of the two quaternions of a half turn, either.
-TEST(NearestRotation, OfAHalfTurnIsThatHalfTurn) {
+// Either of the two quaternions of a half turn is correct.
+TEST(NearestRotation, ReproducesAHalfTurn) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     Eigen::Matrix3d h = -Eigen::Matrix3d::Identity();
     h(axis, axis) = 1.0;
@@ -94,22 +94,22 @@ TEST(NearestRotation, OfAHalfTurnIsThatHalfTurn) {
   }
 }
 
-TEST(NearestRotation, OfNothingIsNone) {
+TEST(NearestRotation, IsTheIdentityForAZeroMatrix) {
   expect_quaternion(nearest_rotation(Eigen::Matrix3d::Zero()), {1, 0, 0, 0}, 0.0);
 }
 
-// Points that were mirrored are turned, not mirrored: here the identity is best.
-TEST(NearestRotation, OfAReflectionIsARotation) {
+// Mirrored points give a rotation, not a reflection; here the identity is the best one.
+TEST(NearestRotation, IsARotationForAReflection) {
   const Eigen::Matrix3d h = Vec3d(3, 2, -1).asDiagonal();
   expect_quaternion(nearest_rotation(h), {1, 0, 0, 0});
-  const Eigen::Matrix3d all = -Eigen::Matrix3d::Identity();  // any half turn
+  const Eigen::Matrix3d all = -Eigen::Matrix3d::Identity();  // any half turn is optimal
   const Eigen::Matrix3d r = rotation_matrix(nearest_rotation(all));
   expect_rotation(r);
   EXPECT_NEAR(agreement(r, all), 1.0, 1e-12);
 }
 
-// Points on a line leave the turn about it open: the shortest turn, not any other.
-TEST(NearestRotation, OfALineTurnsLeast) {
+// Rotation about the line of collinear points is arbitrary: the smallest angle is chosen.
+TEST(NearestRotation, HasTheSmallestAngleForCollinearPoints) {
   const Vec3d x = Vec3d::UnitX();
   const Vec3d y = Vec3d::UnitY();
   expect_quaternion(nearest_rotation(y * x.transpose()), {kHalf, 0, 0, kHalf}, 1e-3);
@@ -119,8 +119,8 @@ TEST(NearestRotation, OfALineTurnsLeast) {
   EXPECT_LT((back * x + x).norm(), 1e-9);
 }
 
-// No rotation agrees better: neither that of Kabsch nor thousands at random.
-TEST(NearestRotation, AgreesBest) {
+// No rotation gives a larger trace: neither Kabsch's nor thousands of random ones.
+TEST(NearestRotation, MaximisesTheTrace) {
   Random random(1);
   std::vector<Eigen::Matrix3d> rotations;
   for (int i = 0; i < 3000; ++i) rotations.push_back(random.rotation());
@@ -142,7 +142,7 @@ TEST(NearestRotation, AgreesBest) {
   EXPECT_GT(reflections, 20);
 }
 
-TEST(ClosestRotation, IsTheNearestOneFromAnyStart) {
+TEST(ClosestRotation, IsTheNearestRotationFromAnyStart) {
   Random random(2);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d start = random.rotation();
@@ -150,14 +150,14 @@ TEST(ClosestRotation, IsTheNearestOneFromAnyStart) {
     const Eigen::Matrix3d goal = turn_about(random.point(), kAngles[i % 5]) * start;
     Eigen::Matrix3d spread = random.matrix();
     spread = spread * spread.transpose() + 0.2 * Eigen::Matrix3d::Identity();
-    const Eigen::Matrix3d h = goal * spread;  // of which goal is the nearest rotation
+    const Eigen::Matrix3d h = goal * spread;  // its nearest rotation is `goal`
     const Eigen::Matrix3d r = closest_rotation(h, start);
     expect_rotation(r);
     EXPECT_LT((r - goal).norm(), 1e-6) << i;
   }
 }
 
-TEST(ClosestRotation, IsARotationWhereTheTurnIsOpen) {
+TEST(ClosestRotation, IsARotationIfItIsAmbiguous) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     const Vec3d from = random.point();
@@ -185,7 +185,7 @@ Motion fit(const std::vector<std::pair<Vec3d, Vec3d>>& pairs) {
   return collected.motion();
 }
 
-TEST(MotionFit, OfNoPairIsTheIdentityAndOfOneAShift) {
+TEST(MotionFit, IsTheIdentityWithoutPairsAndATranslationWithOne) {
   Motion identity = Motion::Zero();
   identity.leftCols<3>().setIdentity();
   EXPECT_EQ(fit({}), identity);
@@ -195,7 +195,7 @@ TEST(MotionFit, OfNoPairIsTheIdentityAndOfOneAShift) {
   EXPECT_EQ(fit({{{1, 2, 3}, {5, -3, 9}}, {{1, 2, 3}, {5, -3, 9}}}), shift);
 }
 
-// Also far from the origin, where sums of products are large.
+// Includes points far from the origin, where sums of products are large.
 TEST(MotionFit, FindsTheMotionOfPoints) {
   Random random(4);
   for (const double far : {0.0, 1e6}) {
@@ -214,7 +214,7 @@ TEST(MotionFit, FindsTheMotionOfPoints) {
   }
 }
 
-// Of pairs that no motion explains, and of mirrored ones: no motion nearby is better.
+// With pairs that no rigid motion explains, and with mirrored ones, no motion nearby is better.
 TEST(MotionFit, HasTheLeastSquaredError) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {

@@ -16,7 +16,7 @@ Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 
 constexpr std::size_t kColumns = 4;  // fixed: of a motion
 
-// The motions of some bones side by side: [frame][3][bone][4].
+// The motions of some bones, interleaved: [frame][3][bone][4].
 std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motions) {
   const std::size_t columns = kColumns * motions.size();
   const std::size_t num_frames = motions.front().size();
@@ -34,7 +34,7 @@ std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motion
   return by_frame;
 }
 
-// The block of two bones in a matrix of `width` columns.
+// The 4 x 4 block of two bones in a matrix of `width` columns.
 Eigen::Matrix4d block_at(std::span<const double> matrix, std::size_t width, std::size_t row,
                          std::size_t column) {
   Eigen::Matrix4d block;
@@ -60,7 +60,7 @@ void append_columns(std::vector<double>& matrix, std::size_t width,
   }
 }
 
-// Leaves out the columns of a bone.
+// Removes the columns of a bone, in place.
 void erase_columns(std::vector<double>& matrix, std::size_t width, std::size_t bone) {
   const auto at = static_cast<std::ptrdiff_t>(kColumns * bone);
   auto to = matrix.begin();
@@ -160,7 +160,7 @@ void SkinSums::remove_bone(std::size_t bone) {
 double SkinSums::rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& rest) const {
   const Eigen::Vector4d p = homogeneous(rest);
   const double error = p.dot(product(bone, bone) * p) - 2.0 * p.dot(along(vertex, bone));
-  return std::max(error + square_[vertex], 0.0);  // but for rounding
+  return std::max(error + square_[vertex], 0.0);  // negative only by rounding
 }
 
 Vec3d SkinSums::single_rest(std::size_t vertex) const {
@@ -168,7 +168,8 @@ Vec3d SkinSums::single_rest(std::size_t vertex) const {
   Vec3d best = Vec3d::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < num_bones_; ++b) {
-    // Sums over the frames of where the rest position would be, R^T (x - t), and of its square.
+    // Sums over the frames of R^T (x - t), the rest position that fits the frame, and its
+    // square.
     const Eigen::Vector4d sums = along(vertex, b);
     const Eigen::Matrix4d& own = product(b, b);
     const Vec3d rest = sums.head<3>() - own.block<3, 1>(0, 3);
@@ -211,7 +212,7 @@ SkinSums::Gram SkinSums::gram(std::size_t vertex, std::span<const std::size_t> b
   }
   for (std::size_t i = 0; i < bones.size(); ++i) {
     double& own = gram[i * kMaxCandidates + i];
-    own = std::max(own, 0.0);  // but for rounding
+    own = std::max(own, 0.0);  // negative only by rounding
   }
   return gram;
 }

@@ -1,4 +1,4 @@
-// Errors, weights and rest positions of vertices that follow bones, from sums over frames.
+// Errors, weights and rest positions of skinned vertices, from sums over the frames.
 #pragma once
 
 #include <array>
@@ -13,34 +13,33 @@ namespace rlpc {
 
 using BoneMotions = std::vector<std::vector<Motion>>;  // [bone][frame]
 
-// The sums over the frames of M_a^T M_b for all pairs of bones, and of M_b^T x for some
-// vertices and all bones. Those of a bone are the same to the bit whatever others there are.
+// Sums over the frames of M_a^T M_b for all pairs of bones, and of M_b^T x for all bones and
+// some vertices. The sums of a bone are bit-exactly independent of which other bones there are.
 class SkinSums {
  public:
-  // positions: [vertex][frame], as many frames as the motions have; kept by reference
+  // positions: [vertex][frame], with the frames of the motions; kept by reference.
   SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions);
 
-  // As if made with others; faster by what stays.
+  // Each gives the same sums as the constructor, but faster.
   void set_positions(std::span<const Vec3d> positions);
   void set_motions(const BoneMotions& motions);
-  void add_bone(const std::vector<Motion>& motion);  // behind the others
+  void add_bone(const std::vector<Motion>& motion);  // appends a bone
   void remove_bone(std::size_t bone);
 
-  // The squared error of a vertex that follows one bone.
+  // Squared error of a vertex that follows a single bone.
   double rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& rest) const;
-  // The rest position with the least error of a vertex that follows one bone, the best one.
+  // The optimal rest position of a vertex that follows only its best bone.
   Vec3d single_rest(std::size_t vertex) const;
-  // The bones that suit a vertex best by themselves, the best first.
+  // The `count` bones with the smallest rigid_error(), in ascending order.
   std::vector<std::size_t> closest_bones(std::size_t vertex, const Vec3d& rest,
                                          std::size_t count) const;
 
-  // Squared error of a vertex at `rest` for all pairs of some bones, as the Gram matrix of
-  // their errors; [kMaxCandidates * kMaxCandidates].
+  // Gram matrix of the errors of a vertex at `rest` under each of some bones.
   static constexpr std::size_t kMaxCandidates = 8;  // fixed: size of arrays
   using Gram = std::array<double, kMaxCandidates * kMaxCandidates>;
   Gram gram(std::size_t vertex, std::span<const std::size_t> bones, const Vec3d& rest) const;
 
-  // The rest position with the least error, held weakly near `before`.
+  // The rest position with the smallest error, regularised weakly towards `before`.
   Vec3d fit_rest(std::size_t vertex, const Vec3d& before,
                  std::span<const RigWeight> weights) const;
 
@@ -60,7 +59,7 @@ class SkinSums {
   std::vector<double> by_frame_;          // the motions: [frame][3][bone][4]
   std::vector<Eigen::Matrix4d> product_;  // [bone][bone]
   std::vector<double> along_;             // [vertex][bone][4]
-  std::vector<double> square_;            // [vertex], of all positions
+  std::vector<double> square_;            // [vertex], sum of its squared positions
 };
 
 }  // namespace rlpc

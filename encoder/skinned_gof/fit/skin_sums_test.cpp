@@ -50,7 +50,7 @@ void expect_same(const SkinSums& a, const SkinSums& b, std::size_t num_bones) {
   }
 }
 
-TEST(SkinSums, AreTheErrorsOfVertices) {
+TEST(SkinSums, GiveTheErrorsOfVertices) {
   Random random(1);
   const std::vector<Vec3d> positions = random.positions();
   const BoneMotions motions = random.motions(3);
@@ -67,7 +67,7 @@ TEST(SkinSums, AreTheErrorsOfVertices) {
   }
 }
 
-TEST(SkinSums, OfBonesThatComeAndGoAreThoseOfTheBonesThatStay) {
+TEST(SkinSums, AreUnchangedByAddingAndRemovingOtherBones) {
   Random random(2);
   const std::vector<Vec3d> positions = random.positions();
   BoneMotions motions = random.motions(6);
@@ -84,7 +84,7 @@ TEST(SkinSums, OfBonesThatComeAndGoAreThoseOfTheBonesThatStay) {
   expect_same(sums, {positions, motions}, motions.size());
 }
 
-TEST(SkinSums, OfOtherVertices) {
+TEST(SkinSums, CanChangeTheirVertices) {
   Random random(3);
   const BoneMotions motions = random.motions(2);
   SkinSums sums({}, motions);

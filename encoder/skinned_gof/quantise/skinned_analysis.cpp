@@ -33,7 +33,7 @@ std::vector<std::uint8_t> layer_steps(std::size_t num_layers, bool finer) {
   return steps;
 }
 
-// Weights to integers that sum to `total`; what rounding leaves goes to the largest.
+// Rounds weights to integers with sum `total`; the largest weight absorbs the rounding error.
 Influences quantise_weights(const std::vector<RigWeight>& weights, int total) {
   std::vector<std::pair<int, std::uint32_t>> rounded;
   for (const RigWeight& w : weights) {
@@ -57,7 +57,7 @@ Influences quantise_weights(const std::vector<RigWeight>& weights, int total) {
   return influences;
 }
 
-// A motion, or the mean of some: world = turn * rest + shift, in grid units.
+// A bone motion or a weighted mean of several: world = turn * rest + shift, in grid units.
 struct MeanMotion {
   std::array<Point, 3> turn{};  // columns: images of the axes
   Point shift{};
@@ -107,15 +107,16 @@ class SkinnedAnalyser {
       gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
     }
     code_rest();
-    // Steps that are tried later may be finer.
+    // The analysis must also be valid for finer steps tried later.
     const double least = least_energy(step_ / kAnalysisServes, frames_.num_vertices);
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     return std::move(found_);
   }
 
  private:
-  // Squared weights of a bone, and their mean squared distance from the pivot.
-  std::pair<double, double> reach(std::size_t b) const {
+  // The sum of the squared weights of a bone, and that of the squared weights times the squared
+  // distances from its pivot.
+  std::pair<double, double> mass_and_moment(std::size_t b) const {
     double mass = 0.0;
     double moment = 0.0;
     for (std::size_t v = 0; v < rig_.rest.size(); ++v) {
@@ -146,11 +147,12 @@ class SkinnedAnalyser {
         bone.pivot[c] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
             round_to_int(from.pivot[c] * kPointScale), -limit, limit - 1));
       }
-      bone.rotation_flag = from.turns;
+      bone.rotation_flag = from.rotates;
       bone.origin_flag = !from.pinned;
       constexpr double kLeastMass = 1e-3;  // fixed: above zero
-      const auto [mass, moment] = reach(b);
-      // A turn by a quaternion's vector part x moves a point at distance r by 2 x r, across.
+      const auto [mass, moment] = mass_and_moment(b);
+      // A rotation with quaternion vector part x moves a point by 2 x r, r its distance from
+      // the axis.
       const double turn_step =
           step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, kLeastMass)));
       bone.rotation_step_idx = step_idx(turn_step * exact_exp2(kQuaternionFractionBits));
@@ -172,7 +174,7 @@ class SkinnedAnalyser {
     }
   }
 
-  // The mean motion of a vertex in each frame.
+  // Sets mean_ to the weighted mean of the motions of the bones of a vertex.
   void find_mean_motion(std::uint32_t v) {
     const Influences& influences = found_.gof.influences[v];
     if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
@@ -193,7 +195,7 @@ class SkinnedAnalyser {
     }
   }
 
-  // The rest position that suits the decoded bones best.
+  // The least-squares rest position for the decoded bones.
   Point fit_rest(std::uint32_t v) {
     find_mean_motion(v);
     SmallSystem<3> m;
@@ -245,7 +247,7 @@ class SkinnedAnalyser {
     }
   }
 
-  // What bones and rest positions leave.
+  // The residual of bone motion: frames minus skinned rest positions.
   TrajectoryRows displacement() {
     const std::size_t width = 3 * std::size_t{frames_.num_frames};
     return {frames_.num_vertices, width,
@@ -256,7 +258,7 @@ class SkinnedAnalyser {
             }};
   }
 
-  // Of one vertex, all frames of each coordinate.
+  // Writes the residual of one vertex: for each coordinate, all frames.
   void write_displacement(std::uint32_t v, double* row) {
     find_mean_motion(v);
     const std::size_t num_frames = frames_.num_frames;
@@ -264,11 +266,11 @@ class SkinnedAnalyser {
       const MeanMotion& motion = mean_[f];
       const double* x = frames_.at(f, v);
       for (std::size_t c = 0; c < 3; ++c) {
-        double left = x[c] - motion.shift[c];
+        double residual = x[c] - motion.shift[c];
         for (std::size_t k = 0; k < 3; ++k) {
-          left -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
+          residual -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
         }
-        row[c * num_frames + f] = left;
+        row[c * num_frames + f] = residual;
       }
     }
   }
@@ -281,15 +283,15 @@ class SkinnedAnalyser {
   double step_;
   SkinnedAnalysis found_;
   std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
-  std::vector<MeanMotion> mean_;                  // [frame], of the vertex at hand,
-  Influences mean_of_;                            // which has these
+  std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
+  Influences mean_of_;
 };
 
 }  // namespace
 
 double least_energy(double step, std::uint32_t num_vertices) {
-  // Of a trajectory with hardly a residual that is not zero, against the error that coding
-  // every factor would add, step^2 / 12; trajectories are local.
+  // Coding a trajectory adds an error of at most step^2 / 12 per vertex. Trajectories are local
+  // and most of their residuals are 0, so that error is less.
   constexpr double kOfVertex = 0.6;  // tuned (off: 0): of that error, what a factor is worth
   return kOfVertex * step * step / 12.0 * num_vertices;
 }

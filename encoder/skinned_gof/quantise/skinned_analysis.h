@@ -1,5 +1,5 @@
-// Analysis of one GOF of the Main profile: bones, influences and rest positions, quantised, and
-// the principal components of what they leave (clauses 8.10 to 8.13 backwards).
+// Analysis of one skinned GOF: quantised bones, influences and rest positions, and the
+// principal components of the residual of bone motion (inverse of clauses 8.10 to 8.13).
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 namespace rlpc {
 
 enum class Rounding : std::uint8_t {
-  kCheapest,  // by rate and distortion
-  kDeadZone,  // of spatial residuals; others likewise by rate and distortion
-  kNearest,   // where the largest error counts
+  kCheapest,  // all residuals by rate and distortion
+  kDeadZone,  // spatial residuals with a dead zone, the others by rate and distortion
+  kNearest,   // all residuals to nearest, for a target of the maximum error
 };
 
 struct SkinnedSettings {
@@ -29,11 +29,11 @@ struct SkinnedSettings {
   int outer_weight = kOuterRing;
   int outer_scale = kOuterRing;
   bool layer_steps = true;       // finer steps in coarser layers
-  bool temporal_weights = true;  // not only the orders of 8.2.2
+  bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
-  bool cobra_steps = false;            // of temporal values; else of equal distortion
-  std::uint32_t component_groups = 0;  // 0: as many as suit
-  std::uint32_t layer_groups = 0;
+  bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
+  std::uint32_t component_groups = 0;  // 0: chosen by size
+  std::uint32_t layer_groups = 0;      // 0: chosen by size
   std::size_t max_trajectories = 1024;
 
   static constexpr int kWeightBits = 6;   // tuned: of an influence
@@ -41,22 +41,21 @@ struct SkinnedSettings {
   static constexpr int kOuterRing = 3;    // tuned (off: 0): weight and scale of the outer ring
 };
 
-// Bones, influences and rest positions of a GOF, quantised, and the principal components of
-// what they leave of the motion.
 struct SkinnedAnalysis {
-  SkinnedGof gof;  // without trajectories and geometry weights
-  std::vector<BoneMotion> bones;
+  SkinnedGof gof;                                 // without trajectories and geometry weights
+  std::vector<BoneMotion> bones;                  // as decoded
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
 };
 
-// Every coded value adds about the same squared error, step^2 / 12, to the sum over all
-// coordinates of all frames.
+// Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
+// to the sum over all coordinates of all frames. step: grid units.
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step);
 
-// Energy below which a trajectory costs more than it saves, whatever its temporal vector costs.
+// The energy, in squared grid units, below which the spatial values of a trajectory alone cost
+// more than it saves.
 double least_energy(double step, std::uint32_t num_vertices);
 
 }  // namespace rlpc

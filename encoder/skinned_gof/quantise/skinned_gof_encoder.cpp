@@ -14,16 +14,15 @@
 namespace rlpc {
 namespace {
 
-// Temporal values are scaled so that their step is 2^3 units of the sums, if that can be.
+// Temporal values are scaled so that their step is 2^3 units of the sums, if possible.
 constexpr int kWantedScaleIdx = 56;  // fixed: format
 
-// Bits of a signed number with such a magnitude.
+// Width in bits of a signed number of this magnitude.
 int signed_width(std::int64_t magnitude) {
   return magnitude == 0 ? 1 : floor_log2(static_cast<std::uint64_t>(magnitude)) + 2;
 }
 
-// False: some temporal values are beyond the widest, and sums should have fewer fractional
-// bits.
+// False if a temporal value exceeds the maximum width; the sums then need fewer fraction bits.
 bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
                          TemporalValues& temporal) {
   for (std::size_t l = 0; l < temporal.size(); ++l) {
@@ -42,9 +41,9 @@ bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
   return true;
 }
 
-// Sets widths and scales of the trajectories: the sums get as many fractional bits as all
-// temporal factors need. Where scales are too far apart, returns by how many eighths of an
-// octave; else 0.
+// Sets widths and scales of the trajectories, with as many fraction bits in the sums as all
+// temporal factors need. Returns 0, or if the range of scales is too large, the excess in
+// eighths of an octave.
 int set_scales(const std::vector<std::int32_t>& largest, TemporalValues& temporal,
                int& fraction_bits) {
   std::vector<int> idx(temporal.size());
@@ -65,8 +64,8 @@ int set_scales(const std::vector<std::int32_t>& largest, TemporalValues& tempora
   return 0;
 }
 
-// Adds trajectories to a GOF, and returns their residuals: [num_vertices][trajectory]. Where
-// values do not fit their widths, with coarser steps than are asked for.
+// Adds trajectories to a GOF and returns their residuals, [num_vertices][trajectory]. Coarsens
+// the steps if values do not fit their widths.
 std::vector<std::int32_t> code_trajectories(const CodedMesh& mesh,
                                             const SkinnedAnalysis& analysis,
                                             const SkinnedSettings& settings, double step,

@@ -1,5 +1,5 @@
-// Quantisation of one GOF of the Main profile: trajectories, their spatial factors, and the
-// slices that these are cut into (clauses 8.10, 8.11 and 8.14 backwards).
+// Quantisation of one skinned GOF: trajectories, their spatial factors, and the division into
+// slices (inverse of clauses 8.10, 8.11 and 8.14).
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,17 @@
 
 namespace rlpc {
 
-// Whether as many principal components are worth a trajectory.
+// Whether at least `count` principal components are worth coding as trajectories. count: above
+// 0.
 bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
                       const SkinnedSettings& settings, double step);
 
-// Squared error of a GOF of one bone, but for a factor that hardly depends on the step, of
-// about 0.6 to 1.6: components are left out or quantised, whichever errs less.
+// Estimates the squared error of a GOF with one bone: each component adds about its energy or
+// its quantisation error, whichever is smaller. The actual error is 0.6 to 1.6 times the
+// estimate, a factor that is almost independent of the step.
 double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 
-// The GOF ready to be written.
+// Quantises the trajectories and completes the GOF. step: quantiser step, grid units.
 SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step);
 

@@ -23,17 +23,18 @@ double estimated_bytes(std::span<const std::int32_t> residual) {
   return bits / 8.0;
 }
 
-// Each group of layers but the last ends where an eighth of the vertices of the next is left,
-// or sooner, if else there were not as many groups as are asked for.
-void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t asked,
+// The layers before each group have at most an eighth of the vertices of all layers up to its
+// end. A group is smaller if it would not leave enough layers for the requested number of
+// groups.
+void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t requested,
                 SkinnedGof& gof) {
   const std::uint32_t num_layers = mesh.num_layers();
-  asked = std::min(asked, num_layers);
+  requested = std::min(requested, num_layers);
   std::vector<std::uint32_t> ends{num_layers};
   for (std::uint32_t last = num_layers; ends.size() < num_groups; ends.push_back(last)) {
     const std::size_t most = mesh.vertices_of_layers(0, last).size() / 8;
     const auto num_ends = static_cast<std::uint32_t>(ends.size());
-    const std::uint32_t first = std::max(asked, num_ends + 1) - num_ends;
+    const std::uint32_t first = std::max(requested, num_ends + 1) - num_ends;
     while (last > first && mesh.vertices_of_layers(0, last).size() > most) --last;
     if (last == ends.back()) break;
   }
@@ -45,15 +46,16 @@ void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t ask
   }
 }
 
-// Each group of trajectories has about three times as many as those before, or fewer, if else
-// there were not as many groups as are asked for.
-void cut_components(std::size_t num_vertices, std::size_t num_groups, std::size_t asked,
+// The trajectories up to the end of each group are about three times as many as those before
+// it. A group is smaller if it would not leave enough trajectories for the requested number of
+// groups.
+void cut_components(std::size_t num_vertices, std::size_t num_groups, std::size_t requested,
                     std::span<const std::int32_t> residual, SkinnedGof& gof) {
   const std::size_t count = gof.trajectories.size();
-  asked = std::min(asked, count);
+  requested = std::min(requested, count);
   std::vector<std::size_t> ends{count};
   while (ends.size() < num_groups && ends.back() > 1) {
-    const std::size_t least = std::max(asked, ends.size() + 1) - ends.size();
+    const std::size_t least = std::max(requested, ends.size() + 1) - ends.size();
     ends.push_back(std::max(ends.back() / 3 + 1, least));
   }
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());

@@ -1,4 +1,4 @@
-// The slices of a GOF, at which a stream can be cut.
+// Divides a GOF into slices, which a sub-stream extractor can drop.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,11 @@
 
 namespace rlpc {
 
-// Cuts layers and trajectories into groups: as many as cost little beside what they hold, or as
-// many as are asked for.
+// Divides layers and trajectories into groups: as many as the settings request, otherwise as
+// many as the overhead of slices allows.
 //
 //   residual  [num_vertices][trajectory of the GOF]
+//   gof       its trajectories are set; layer groups, component groups and slices are added
 void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings,
                 std::span<const std::int32_t> residual, SkinnedGof& gof);
 

@@ -15,13 +15,13 @@
 namespace rlpc {
 namespace {
 
-// Wanted values up to this one fit their width, whatever they are rounded to.
+// Wanted values up to this limit fit their width, however they are rounded.
 constexpr double kMostSpatial =
     (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;  // fixed: format
 
-// Spatial factors in grid units, by least squares against the decoded temporal vectors. The
-// matrix is nearly pc.spatial * pc.temporal; what it lacks hardly shows in those. So the
-// factors are pc.spatial * mixing.
+// Spatial factors in grid units: the least-squares fit to the decoded temporal vectors. The
+// matrix is approximated by pc.spatial * pc.temporal, since the dropped components are almost
+// orthogonal to the decoded vectors. So the factors are pc.spatial * mixing.
 class SpatialFactors {
  public:
   SpatialFactors(const ComponentsByRow& pc, const TemporalValues& temporal)
@@ -43,7 +43,7 @@ class SpatialFactors {
   }
 
  private:
-  // [component][trajectory]. Vectors that vanished in quantisation get no factor.
+  // [component][trajectory]. Temporal vectors quantised to zero get no factor.
   std::vector<double> find_mixing(const TemporalValues& temporal) const {
     constexpr double kVanished = 1e-9;  // fixed: rounding
     const std::size_t width = temporal.decoded.front().size();
@@ -74,7 +74,7 @@ class SpatialFactors {
   std::vector<double> mixing_;
 };
 
-// Residuals of vertices, each trajectory in turn, as the settings have them rounded.
+// Rounds the residuals of vertices, trajectory by trajectory, as the settings require.
 class ResidualRounding {
  public:
   ResidualRounding(const CodedMesh& mesh, std::size_t count, Rounding rounding)
@@ -84,7 +84,7 @@ class ResidualRounding {
   void start(std::uint32_t v) {
     if (choice_) choice_->start(v);
   }
-  // Of the next trajectory; wanted, in steps.
+  // The residual of the next trajectory; wanted: in steps.
   std::int32_t next(double wanted) {
     return choice_ ? choice_->next(wanted) : rounded_residual(wanted, round_up_);
   }

@@ -1,4 +1,4 @@
-// Spatial values of the trajectories of a GOF, coded in closed loop (8.11 backwards).
+// Spatial values of the trajectories of a GOF, coded in closed loop (inverse of 8.11).
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@ namespace rlpc {
 
 struct SpatialValues {
   std::vector<std::int32_t> residual;  // [num_vertices][trajectory]
-  std::vector<std::int32_t> largest;   // [trajectory], magnitude of the values
-  double excess = 0.0;                 // of the largest wanted value; above 1 it does not fit
+  std::vector<std::int32_t> largest;   // [trajectory], largest magnitude of its values
+  double excess = 0.0;  // largest wanted value / largest legal value; above 1 it does not fit
 };
 
-// Fits the decoded temporal values in least squares. There is at least one trajectory.
+// Spatial values that fit best, in the least-squares sense, with the decoded temporal values.
+// There must be at least one trajectory.
 //
-//   gof   the analysed one, with its weights of prediction
-//   step  of the quantisers, grid units
+//   gof   that of the analysis, with its geometry weights set
+//   step  quantiser step, grid units
 SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal, Rounding rounding,

@@ -15,11 +15,12 @@
 namespace rlpc {
 namespace {
 
-// What bones leave is in few places, where neighbours tell little about it.
+// The residual of bone motion is concentrated in a few places, where spatial prediction is
+// poor.
 constexpr double kTemporalErrorOfBones = 2.0;  // tuned (off: 1): of temporal values, with bones
-// Products of steps, in eighths of an octave, have a scale_idx up to this one.
+// The coarsest product of steps, in eighths of an octave, with a legal scale_idx.
 constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
-// Wanted values up to this one fit their width, whatever they are rounded to.
+// Wanted values up to this limit fit their width, however they are rounded.
 constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
 
 double largest_magnitude(const std::vector<double>& values) {
@@ -54,8 +55,8 @@ class TemporalCoder {
   }
 
  private:
-  // Codes a component with the step at which its error is as large as the others'. False: it is
-  // not worth its bits.
+  // Codes a component with the step that gives equal distortion. False: the component is not
+  // worth its bits.
   bool code(std::size_t l, int least_eighths, TemporalValues& values) {
     const std::size_t num_frames = analysis_.gof.num_frames;
     const std::vector<double>& temporal = analysis_.pc.temporal[l];
@@ -87,7 +88,7 @@ class TemporalCoder {
     return true;
   }
 
-  // The product of both steps is 2^(eighths / 8), of which the stream keeps the exponent.
+  // The exponent of the product of both steps, 2^(eighths / 8), which is what the stream codes.
   int eighths_of(std::size_t l, int least_eighths) const {
     const double error = has_bones() ? kTemporalErrorOfBones : kTemporalError;
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
@@ -96,8 +97,8 @@ class TemporalCoder {
                       least_eighths, kMostEighths);
   }
 
-  // The energy that a trajectory must save: what its temporal values cost, and its spatial
-  // factors cost and leave.
+  // The energy that a trajectory must save to be worth coding: the cost of its temporal values,
+  // and the cost and error of its spatial factors.
   double least_worth(double bits) const {
     return lambda(step_) * bits +
            least_energy(step_, static_cast<std::uint32_t>(num_vertices_));
@@ -105,8 +106,8 @@ class TemporalCoder {
 
   bool has_bones() const { return analysis_.gof.bones.size() > 1; }
 
-  // How much an error of a temporal value weighs: its sum of squared spatial factors, or as in
-  // Vasa and Skala 2009, (18) and (19), the square of their summed magnitudes.
+  // The weight of a squared error of a temporal value: the sum of squared spatial factors or,
+  // as in Vasa and Skala 2009, (18) and (19), the squared sum of their magnitudes per vertex.
   double importance(std::size_t l) const {
     constexpr double kSmallest = 1e-12;  // fixed: above zero
     if (!settings_.cobra_steps) return analysis_.pc.energy[l];

@@ -1,5 +1,5 @@
-// Temporal values of the trajectories of a GOF: which components are worth one, and their
-// values, quantised and predicted (8.14.2 backwards).
+// Temporal values of the trajectories of a GOF: selects the components worth coding, quantises
+// and predicts their values (inverse of 8.14.2).
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,27 @@
 
 namespace rlpc {
 
-// Squared error of a temporal value relative to that of a spatial one, without bones.
+// Squared error of a temporal value relative to that of a spatial value, in a GOF without
+// bones.
 inline constexpr double kTemporalError =
     0.8;  // tuned (off: 1): of temporal values, without bones
 
 struct TemporalValues {
-  std::vector<Trajectory> trajectories;      // predictors, weights and residuals
-  std::vector<int> eighths;                  // of the product of both steps, 2^(eighths / 8)
+  std::vector<Trajectory> trajectories;  // predictors, weights and residuals
+  std::vector<int> eighths;  // [trajectory], product of both steps is 2^(eighths / 8)
   std::vector<std::vector<Vec3i>> indices;   // [trajectory][frame]
   std::vector<std::vector<double>> decoded;  // [trajectory][3 * num_frames], unit vectors
-  std::size_t num_tried = 0;                 // the first components, of which some are coded
+  std::size_t num_tried = 0;  // number of leading components that factors are computed from
 
   std::size_t size() const { return trajectories.size(); }
 };
 
 struct TemporalLimits {
   std::size_t max_trajectories;
-  int least_eighths = -1000;  // finer products of steps do not fit
+  int least_eighths = -1000;  // finest product of steps that fits the format
 };
 
-// step: of the quantisers, grid units.
+// step: quantiser step, grid units.
 TemporalValues code_temporal_values(const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
                                     const TemporalLimits& limits);

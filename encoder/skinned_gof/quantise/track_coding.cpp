@@ -22,10 +22,10 @@ namespace {
 constexpr double kWeightScale = 64.0;  // fixed: of temporal_weight
 constexpr double kMaxWeight = 255.0;   // fixed: format
 constexpr int kWeightBits = 9;         // fixed: format
-// The smallest real part of a residual rotation that its vector part is divided by.
+// Lower bound of the real part that the vector part of a residual rotation is divided by.
 constexpr double kMinRealPart = 0.1;  // fixed: turns of nearly half a circle
 
-// Weights of the `count` values before that predict the series best, in least squares.
+// Least-squares weights for predicting each value from the `count` values before it.
 bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
                  std::array<std::int16_t, kMaxTemporalWeights>& weights) {
   SmallSystem<kMaxTemporalWeights> m;  // normal equations
@@ -40,7 +40,7 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
       }
     }
   }
-  // What is predicted from has quantisation errors, in each coordinate.
+  // Prediction is from decoded values, whose quantisation errors act as regularisation.
   for (std::size_t i = 0; i < n; ++i) {
     m.a[i][i] += 3.0 * step * step / 12.0 * static_cast<double>(values.size());
   }
@@ -53,7 +53,7 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
   return true;
 }
 
-// Residuals of a track, frame by frame.
+// Chooses the residuals of a track, frame by frame.
 class ResidualChoice {
  public:
   ResidualChoice(const TrackState& before, bool nearest)
@@ -61,7 +61,7 @@ class ResidualChoice {
   ResidualChoice(const ResidualChoice&) = delete;  // the context refers to the state
   ResidualChoice& operator=(const ResidualChoice&) = delete;
 
-  // Of the next frame; wanted, in steps.
+  // The residuals of the next frame; wanted: in steps.
   Vec3i next(const std::array<double, 3>& wanted) {
     Vec3i residual{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -90,7 +90,7 @@ class ResidualChoice {
 
 double lagrangian_cost(const TrackCost& cost) { return cost.error + kLambda * cost.bits; }
 
-// Nothing as soon as they cost no less than another coding.
+// The residuals with a given predictor; none, early, if they cost at least as much as `other`.
 std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,
                                            double step, const Trajectory& trajectory,
                                            const TrackCost& other, ResidualChoice& choice) {
@@ -130,7 +130,7 @@ QuaternionD inverse(const Quaternion& q) {
           -static_cast<double>(q[2]) * one, -static_cast<double>(q[3]) * one};
 }
 
-// The residual that turns what is predicted into what is wanted, in steps.
+// The residual rotation from the predicted to the wanted rotation, in steps.
 std::array<double, 3> rotation_residual(const QuaternionD& relative,
                                         const Quaternion& predicted, double step) {
   QuaternionD turn = product(inverse(predicted), relative);
@@ -145,7 +145,7 @@ std::array<double, 3> rotation_residual(const QuaternionD& relative,
   return residual;
 }
 
-// One coding of a bone with the orders that it has.
+// Codes a bone with its current orders.
 BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, Bone& bone,
                       ResidualChoice& rotations, ResidualChoice& origins) {
   BoneTracker tracker(bone, parent);
@@ -207,7 +207,8 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
 
 BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
                      TrackState& rotations, TrackState& origins, Bone& bone) {
-  // The orders do not depend on each other but for rounding: first rotations, then origins.
+  // The two orders are independent up to rounding: choose that of rotations, then that of
+  // origins.
   const auto choose = [&](int& order, int first, bool of_rotations) {
     double best = std::numeric_limits<double>::infinity();
     int best_order = first;

@@ -1,5 +1,5 @@
-// Tracks of the Main profile, 8.12 and 8.14.2 backwards: residuals in closed loop, chosen by
-// rate and distortion, with the predictor that does best.
+// Codes the tracks of bones and trajectories in closed loop, with residuals and predictors
+// chosen by rate and distortion (inverse of 8.12 and 8.14.2).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace rlpc {
 
-// Models and means of the tracks of one kind (9.8.1, 9.8.2), as they stand before the next one.
+// Models and means shared by the tracks of one type (9.8.1, 9.8.2): the state before the next
+// track.
 struct TrackState {
   explicit TrackState(std::uint32_t num_frames) : mean(num_frames, 0) {}
   ResidualModels models;
@@ -21,28 +22,32 @@ struct TrackState {
 
 struct TrackCost {
   double bits = 0.0;
-  double error = 0.0;  // squared, of all values, in squared steps
+  double error = 0.0;  // sum of squared errors of all values, in squared steps
 };
 
 struct TrackOptions {
-  bool refine = true;    // also try weights fitted to the series
-  bool nearest = false;  // residuals are not more than half a step off; else less than one
+  bool refine = true;    // also try transmitted weights, fitted to the series
+  bool nearest = false;  // round residuals to nearest; else errors are below one step
 };
 
-// A trajectory: values [num_frames] of unit `step`, 3 coordinates each. Sets predictor, weights
-// and residuals, and returns what they cost; the state moves on past it.
+// Codes a trajectory: sets predictor, weights and residuals, advances the state, and returns
+// the cost.
+//
+//   values  [num_frames], 3 coordinates each
+//   step    quantiser step, in the unit of the values
 TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double step,
                           const TrackOptions& options, TrackState& state,
                           Trajectory& trajectory);
 
-// Where a bone is to be in a frame, in world coordinates and 1/16 grid units.
+// The pose of a bone in a frame before quantisation, in world coordinates and 1/16 grid units.
 struct WantedPose {
   std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z; of unit length
-  std::array<double, 3> origin{};                      // where the pivot goes
+  std::array<double, 3> origin{};                      // position of the pivot
 };
 
-// A bone: its flags, pivot, parent and steps are given; sets orders and residuals, and returns
-// the motion that a decoder sees. The states move on past it. nearest: see above.
+// Codes a bone whose flags, pivot, parent and steps are given: sets orders and residuals,
+// advances the states, and returns the motion that a decoder recovers. nearest: as in
+// TrackOptions.
 BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
                      TrackState& rotations, TrackState& origins, Bone& bone);
 

@@ -33,7 +33,7 @@ Values smooth() {
     return std::array<double, 3>{400.0 * std::sin(0.31 * f), 90.0 * std::cos(0.2 * f), 2.0 * f};
   });
 }
-// As rough as noise, and the same each time.
+// Deterministic noise.
 Values rough() {
   return values_of([](double f) {
     return std::array<double, 3>{300.0 * std::sin(17.3 * f * f),
@@ -61,7 +61,7 @@ void expect_close(const Values& values, double most, double step,
   }
 }
 
-// The loop is closed: errors do not grow from frame to frame, whatever the predictor.
+// Coding is closed-loop: errors do not accumulate over the frames, whatever the predictor.
 TEST(CodedTrajectories, AreWithinAStep) {
   for (const Values& values : {smooth(), rough()}) {
     for (const double step : {0.01, 0.7, 3.0, 1000.0}) {
@@ -80,7 +80,7 @@ TEST(CodedTrajectories, AreWithinAStep) {
   }
 }
 
-TEST(CodedTrajectories, CostLittleWhereTheyArePredictable) {
+TEST(CodedTrajectories, CostLittleIfPredictable) {
   const auto bytes = [](const Values& values) {
     Trajectory trajectory;
     TrackState state(kFrames);
@@ -99,7 +99,7 @@ TEST(CodedTrajectories, CostLittleWhereTheyArePredictable) {
   EXPECT_LT(bytes(smooth()), of_noise * 2 / 3);
 }
 
-TEST(CodedTrajectories, WeightsFollowAnOscillation) {
+TEST(CodedTrajectories, FitWeightsToAnOscillation) {
   const Values values = values_of([](double f) {
     return std::array<double, 3>{4000.0 * std::sin(1.9 * f), 3000.0 * std::cos(1.9 * f), 0.0};
   });
@@ -113,8 +113,8 @@ TEST(CodedTrajectories, WeightsFollowAnOscillation) {
   EXPECT_LT(bytes_of(with.residual), bytes_of(without.residual) * 3 / 4);
 }
 
-// Some are beyond half a step where that saves bits, and the cost tells.
-TEST(CodedTrajectories, CostWhatTheySay) {
+// Some errors exceed half a step because that saves bits; the returned cost includes them.
+TEST(CodedTrajectories, ReportTheirCost) {
   for (const Values& values : {smooth(), rough()}) {
     for (const double step : {0.01, 3.0, 100.0, 1000.0}) {
       Trajectory trajectory;
@@ -136,8 +136,8 @@ TEST(CodedTrajectories, CostWhatTheySay) {
   }
 }
 
-// The state afterwards is that of a decoder that read the residuals.
-TEST(CodedTrajectories, LeaveTheStateOfWhatWasChosen) {
+// The final state is that of a decoder that has read the residuals.
+TEST(CodedTrajectories, LeaveTheStateOfTheChosenPredictor) {
   Trajectory trajectory;
   TrackState state(kFrames);
   const TrackCost cost = code_trajectory(rough(), 1.0, {.refine = false}, state, trajectory);
@@ -161,7 +161,7 @@ std::array<double, 4> turn(double angle, const std::array<double, 3>& axis) {
   return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
 }
 
-// A bone that turns at a steady speed while its pivot goes along a line.
+// A bone that rotates at constant speed while its pivot moves along a line.
 std::vector<WantedPose> steady_poses(double speed) {
   std::vector<WantedPose> wanted(kFrames);
   for (std::uint32_t f = 0; f < kFrames; ++f) {
@@ -175,12 +175,12 @@ Bone free_bone() {
   Bone bone;
   bone.pivot = {100, -200, 300};
   bone.rotation_flag = bone.origin_flag = true;
-  bone.rotation_step_idx = 8 * 18;  // 2^-12 of the vector part of a quaternion
+  bone.rotation_step_idx = 8 * 18;  // 2^-12 in the vector part of a quaternion
   bone.origin_step_idx = 8 * 2;     // 4: a quarter of a grid unit
   return bone;
 }
 
-// An angle step, twice: a quaternion has half of the angle.
+// The tolerance of the angle is doubled: a quaternion represents half the angle.
 void expect_close(const std::vector<WantedPose>& wanted, const BoneMotion& motion) {
   ASSERT_EQ(motion.poses.size(), wanted.size());
   for (std::size_t f = 0; f < wanted.size(); ++f) {
@@ -189,7 +189,7 @@ void expect_close(const std::vector<WantedPose>& wanted, const BoneMotion& motio
       same += wanted[f].rotation[c] * static_cast<double>(motion.poses[f].rotation[c]);
     }
     same /= static_cast<double>(1 << kQuaternionFractionBits);
-    const double sine2 = 1.0 - same * same;  // of half the angle between
+    const double sine2 = 1.0 - same * same;  // of half the angle between the rotations
     ASSERT_LT(sine2, 3.1 * std::exp2(-24)) << f;
     for (std::size_t c = 0; c < 3; ++c) {
       ASSERT_LE(std::abs(static_cast<double>(motion.poses[f].origin[c]) - wanted[f].origin[c]),
@@ -208,7 +208,7 @@ void expect_equal(const BoneMotion& a, const BoneMotion& b) {
   }
 }
 
-TEST(CodedBones, AreWhereTheyAreWanted) {
+TEST(CodedBones, FollowTheWantedPoses) {
   TrackState rotations(kFrames);
   TrackState origins(kFrames);
   std::vector<Bone> bones;
@@ -228,8 +228,8 @@ TEST(CodedBones, AreWhereTheyAreWanted) {
 }
 
 // A quaternion and its opposite are the same rotation.
-TEST(CodedBones, DoNotMindTheSignOfQuaternions) {
-  auto wanted = steady_poses(2.0 * kPi / 20.0);  // through three whole turns
+TEST(CodedBones, IgnoreTheSignOfQuaternions) {
+  auto wanted = steady_poses(2.0 * kPi / 20.0);  // three full turns
   for (std::size_t f = 0; f < wanted.size(); f += 3) {
     for (double& x : wanted[f].rotation) x = -x;
   }
@@ -239,7 +239,7 @@ TEST(CodedBones, DoNotMindTheSignOfQuaternions) {
   expect_close(wanted, code_bone(wanted, nullptr, false, rotations, origins, bone));
 }
 
-TEST(CodedBones, CostLittleWhereTheyMoveSteadily) {
+TEST(CodedBones, CostLittleInSteadyMotion) {
   TrackState rotations(kFrames);
   TrackState origins(kFrames);
   Bone bone = free_bone();
@@ -250,7 +250,7 @@ TEST(CodedBones, CostLittleWhereTheyMoveSteadily) {
   EXPECT_LT(bytes_of(bone.rotation_residual), 60U);
 }
 
-TEST(CodedBones, WithoutFlagsHaveNoResiduals) {
+TEST(CodedBones, HaveNoResidualsWithoutFlags) {
   TrackState rotations(kFrames);
   TrackState origins(kFrames);
   Bone bone;

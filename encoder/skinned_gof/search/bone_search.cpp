@@ -11,28 +11,30 @@ namespace rlpc {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// With more than two, bones overlap, and neither they nor weights are smooth.
+// With more than two influences during the fit, bones overlap, and bones and weights become
+// irregular.
 constexpr std::uint32_t kSearchInfluences =
     2;  // tuned (off: 1): bones of a vertex, of a search
 
-// Real costs without bones are low for what lowers those with bones, too, such as vertices at
-// rest: estimates are compared with each other.
+// Bones are tried if their expected cost is below this fraction of the expected cost without
+// bones. The actual cost without bones would be the wrong reference: what lowers it, such as
+// vertices at rest, lowers the actual cost with bones too.
 constexpr double kPromise = 0.9;  // tuned (off: 1e9): expected with bones, to that without
 
-// Numbers of bones worth comparing.
+// The numbers of bones to compare.
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};  // tuned: bones
 constexpr std::array<std::uint32_t, 9> kManyBones{5,  10, 15, 20, 24,
                                                   28, 36, 48, 64};  // tuned: slow
 
-// Of the sample for estimates: this part of the frames and of the vertices of the usual one.
+// Estimates use a sample with this many times fewer frames and vertices than the fit.
 constexpr std::uint32_t kQuickPart = 4;  // tuned (off: 1): of a sample
 
-// One bone that does not turn: it follows the centre of the vertices.
+// A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
   Rig rig;
   const double n = frames.num_vertices;
   rig.bones.resize(1);
-  rig.bones[0].turns = false;
+  rig.bones[0].rotates = false;
   rig.rest.assign(frames.num_vertices, Point{});
   rig.weights.assign(frames.num_vertices, {RigWeight{}});
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
@@ -66,7 +68,7 @@ BoneFit BoneSearch::fit(std::size_t influences) const {
   return {frames_, context_.triangles, {.max_influences = influences, .step = trials_.step()}};
 }
 
-// From a small sample.
+// A fit to a small sample, for estimates.
 BoneFit BoneSearch::quick_fit(std::size_t influences) const {
   return {frames_,
           context_.triangles,
@@ -88,8 +90,8 @@ SkinnedTrial BoneSearch::run(Rig rig, const BoneCounts& counts) const {
 
 Rig BoneSearch::guess_one_bone() const {
   const BoneFit one = quick_fit(1);
-  const bool turns = one.expected_cost() < one.expected_translation_cost();
-  return turns ? one.rig(1) : translation_rig(frames_);
+  const bool rotates = one.expected_cost() < one.expected_translation_cost();
+  return rotates ? one.rig(1) : translation_rig(frames_);
 }
 
 SkinnedTrial BoneSearch::try_one_bone() const {
@@ -98,7 +100,7 @@ SkinnedTrial BoneSearch::try_one_bone() const {
   return std::move(*cheaper(std::move(best), run(quick_fit(1).rig(1), {})));
 }
 
-BestTrial BoneSearch::try_asked() const {
+BestTrial BoneSearch::try_requested() const {
   BestTrial best;
   for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
     BoneFit full = fit(influences);
@@ -125,22 +127,22 @@ BoneSearch::Estimate BoneSearch::estimate(std::size_t influences) const {
   return best;
 }
 
-// What does not promise much with two influences does so less with one.
+// If bones gain little with two influences per vertex, they gain even less with one.
 BoneSearch::Estimates BoneSearch::estimates() const {
   Estimates result;
   result.of_influences.resize(search_influences_);
   for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
-    Estimate of = estimate(influences);
-    if (of.cost >= std::min(kPromise * of.translation, (1.0 + kTryMargin) * result.least))
+    Estimate next = estimate(influences);
+    if (next.cost >= std::min(kPromise * next.translation, (1.0 + kTryMargin) * result.least))
       break;
-    result.least = std::min(result.least, of.cost);
-    result.of_influences[influences - 1] = std::move(of);
+    result.least = std::min(result.least, next.cost);
+    result.of_influences[influences - 1] = std::move(next);
   }
   return result;
 }
 
 SkinnedTrial BoneSearch::search() const {
-  if (context_.settings.main.bones > 0) return std::move(*try_asked());
+  if (context_.settings.main.bones > 0) return std::move(*try_requested());
   BestTrial best = try_one_bone();
   if (context_.settings.preset == Preset::kSlow) {
     for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
@@ -153,9 +155,9 @@ SkinnedTrial BoneSearch::search() const {
   const double without = best->cost;
   const Estimates expected = estimates();
   for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-    const Estimate& of = expected.of_influences[influences - 1];
-    if (of.count == 0 || of.cost > (1.0 + kTryMargin) * expected.least) continue;
-    best = try_estimated(std::move(best), influences, of, without);
+    const Estimate& estimated = expected.of_influences[influences - 1];
+    if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) continue;
+    best = try_estimated(std::move(best), influences, estimated, without);
   }
   return std::move(*best);
 }
@@ -174,7 +176,9 @@ SkinnedTrial BoneSearch::search_near(const BoneCounts& counts, bool finer) const
   return best ? std::move(*best) : try_one_bone();
 }
 
-// About as many bones as are likely the best, unless the sample was too small to tell.
+// Tries numbers of bones from about half the estimated best number upwards. Gives up if the
+// full fit corrects the estimate so far that bones are not expected to win. without: cost
+// without bones.
 BestTrial BoneSearch::try_estimated(BestTrial best, std::uint32_t influences,
                                     const Estimate& estimate, double without) const {
   BoneFit full = fit(influences);
@@ -188,8 +192,8 @@ BestTrial BoneSearch::try_estimated(BestTrial best, std::uint32_t influences,
                     estimate.count);
 }
 
-// Growing numbers of bones, of which the first are there, until the cost rises beyond the
-// number that is likely the best.
+// Encodes with each of `counts` bones, ascending; `full` already has the first number. Stops
+// once the cost rises at or beyond the number that is likely the best.
 BestTrial BoneSearch::try_counts(BestTrial best, BoneFit& full, std::uint32_t influences,
                                  std::span<const std::uint32_t> counts,
                                  std::uint32_t likely) const {
@@ -202,10 +206,10 @@ BestTrial BoneSearch::try_counts(BestTrial best, BoneFit& full, std::uint32_t in
     if (now > (1.0 + kTryMargin) * expected) continue;
     SkinnedTrial trial =
         run(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
-    const double real = trial.cost;
+    const double actual = trial.cost;
     best = cheaper(std::move(best), std::move(trial));
-    if (real > before && count >= likely) break;
-    before = real;
+    if (actual > before && count >= likely) break;
+    before = actual;
   }
   return best;
 }

@@ -1,4 +1,4 @@
-// The choice of bones for a skinned GOF.
+// Chooses the bones of a skinned GOF: how many there are, and how many each vertex may follow.
 #pragma once
 
 #include <cstddef>
@@ -15,33 +15,36 @@
 
 namespace rlpc {
 
-// All are for the step of the trials. Everything is kept by reference.
+// All results are for the step of the trials.
 class BoneSearch {
  public:
+  // Keeps references to all arguments.
   BoneSearch(const SkinnedContext& context, const GofFrames& frames,
              const SkinnedTrials& trials);
 
-  // One bone that turns, if that is expected to cost less, else one that does not; unseen.
+  // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
+  // one that only translates.
   Rig guess_one_bone() const;
-  // The best of all numbers of bones.
+  // The cheapest trial over all numbers of bones.
   SkinnedTrial search() const;
-  // The best number of bones near the one that was best for another step: more for a finer
-  // step, fewer, and after the fewest one, for a coarser.
+  // The cheapest trial with a number of bones close to `counts`, the best for another step: the
+  // same number, and the next larger one if the new step is finer, else the next smaller one.
+  // If the latter is the smallest, a single bone as well.
   SkinnedTrial search_near(const BoneCounts& counts, bool finer) const;
 
  private:
-  // What numbers of bones are expected to cost, by a small sample.
+  // Expected costs of different numbers of bones, from a small sample.
   struct Estimate {
-    std::uint32_t count = 0;                                // of the bones that cost least
-    double cost = std::numeric_limits<double>::infinity();  // expected of these
-    double translation = 0.0;                               // the same without bones
-    std::vector<double> costs;                              // the same of all numbers tried
+    std::uint32_t count = 0;                                // the number that costs least
+    double cost = std::numeric_limits<double>::infinity();  // its expected cost
+    double translation = 0.0;   // expected cost of a single bone that only translates
+    std::vector<double> costs;  // expected costs of all numbers, as far as tried
   };
 
-  // Those with vertices that follow one bone, two, ...
+  // Estimates for each maximum number of bones per vertex.
   struct Estimates {
-    std::vector<Estimate> of_influences;  // [influences - 1]
-    double least = std::numeric_limits<double>::infinity();
+    std::vector<Estimate> of_influences;                     // [influences - 1]
+    double least = std::numeric_limits<double>::infinity();  // the lowest cost of all
   };
 
   BoneFit fit(std::size_t influences) const;
@@ -51,7 +54,7 @@ class BoneSearch {
   Estimate estimate(std::size_t influences) const;
   Estimates estimates() const;
   SkinnedTrial try_one_bone() const;
-  BestTrial try_asked() const;
+  BestTrial try_requested() const;
   BestTrial try_estimated(BestTrial best, std::uint32_t influences, const Estimate& estimate,
                           double without) const;
   BestTrial try_counts(BestTrial best, BoneFit& full, std::uint32_t influences,
@@ -62,7 +65,7 @@ class BoneSearch {
   const SkinnedTrials& trials_;
   SkinnedSettings settings_;
   std::uint32_t max_influences_;
-  std::uint32_t search_influences_;  // at most so many while bones are looked for
+  std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
 };
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// What the skinned GOFs of a sequence have in common.
+// The data shared by all skinned GOFs of a sequence.
 #pragma once
 
 #include <span>
@@ -12,13 +12,13 @@
 namespace rlpc {
 
 struct SkinnedContext {
-  const SequenceHeader& header;  // of which the grid may change
+  const SequenceHeader& header;  // its grid and level may change later
   const EncoderSettings& settings;
   std::span<const Triangle> triangles;  // decoded order
   CodedMeshes meshes;
 };
 
-// The tools that are tried first.
+// The tools that the search starts from, as far as the settings leave a choice.
 SkinnedSettings usual_settings(const EncoderSettings& settings);
 
 }  // namespace rlpc

@@ -50,8 +50,8 @@ double SkinnedTrials::cost(const SkinnedAnalysis& analysis,
 
 SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate) const {
   SkinnedAnalysis analysis = analyse(candidate);
-  const double cost_of = cost(analysis, candidate.settings);
-  return {std::move(candidate), std::move(analysis), cost_of};
+  const double candidate_cost = cost(analysis, candidate.settings);
+  return {std::move(candidate), std::move(analysis), candidate_cost};
 }
 
 SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
@@ -63,9 +63,9 @@ SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
     SkinnedTrial other = run({trial.candidate.rig, trial.candidate.counts, settings});
     return other.cost < trial.cost ? std::move(other) : std::move(trial);
   }
-  const double cost_of = cost(trial.analysis, settings);
-  if (cost_of < trial.cost) {
-    trial.cost = cost_of;
+  const double other_cost = cost(trial.analysis, settings);
+  if (other_cost < trial.cost) {
+    trial.cost = other_cost;
     trial.candidate.settings = settings;
   }
   return trial;

@@ -1,4 +1,4 @@
-// Candidates of the search for a skinned GOF, and what they cost.
+// Candidates of the search for a skinned GOF, and trial encodings of them.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace rlpc {
 
-// What bones were looked for: so many, with vertices that follow so many; 0 of one.
+// The numbers that a fit was asked for; both 0 for a single bone.
 struct BoneCounts {
   std::uint32_t bones = 0;
-  std::uint32_t influences = 0;
+  std::uint32_t influences = 0;  // maximum bones per vertex during the fit
 };
 
 struct SkinnedCandidate {
@@ -27,25 +27,26 @@ struct SkinnedCandidate {
 struct SkinnedTrial {
   SkinnedCandidate candidate;
   SkinnedAnalysis analysis;
-  double cost = 0.0;  // Lagrangian
+  double cost = 0.0;  // actual Lagrangian cost
 };
 
-// None: nothing was tried so far.
+// None: no trial so far.
 using BestTrial = std::optional<SkinnedTrial>;
 
-// The cheaper one; that before, where both cost the same.
+// The cheaper of the two; `before` in a tie.
 BestTrial cheaper(BestTrial before, SkinnedTrial trial);
 
-// Codes candidates at one step of the quantisers, grid units. Everything is kept by reference.
+// Encodes candidates at one quantiser step (grid units).
 class SkinnedTrials {
  public:
+  // Keeps references to context and frames.
   SkinnedTrials(const SkinnedContext& context, const GofFrames& frames, double step)
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
   SkinnedAnalysis analyse(const SkinnedCandidate& candidate) const;
   SkinnedTrial run(SkinnedCandidate candidate) const;
-  // The trial, or one with other settings where that costs less.
+  // Tries the candidate with other settings; returns the cheaper of the two trials.
   SkinnedTrial with_settings(SkinnedTrial trial, const SkinnedSettings& settings) const;
 
  private:
@@ -56,6 +57,7 @@ class SkinnedTrials {
   double step_;
 };
 
+// Quantises the trajectories and writes the units. step: quantiser step, grid units.
 EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
                               const SkinnedSettings& settings, double step);
 

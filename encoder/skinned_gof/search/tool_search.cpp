@@ -9,9 +9,9 @@ constexpr std::uint32_t kSmallMesh = 1000;  // tuned (off: 0): vertices; all too
 
 }  // namespace
 
-// Geometry weights cost more than they bring where rest positions tell little, and
-// parallelograms predict regular meshes of few vertices better. Where bones leave little to
-// predict, rest positions cost less without layers.
+// Geometry weights do not pay off if the rest positions say little about the motion.
+// Parallelograms predict small regular meshes better. If the residual of bone motion is small,
+// rest positions cost less without layers.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
                           SkinnedTrial best) {
   const MainTools& tools = context.settings.main;

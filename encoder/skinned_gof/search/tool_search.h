@@ -1,4 +1,4 @@
-// The choice of prediction tools for a skinned GOF.
+// Chooses the prediction tools of a skinned GOF.
 #pragma once
 
 #include "encoder/skinned_gof/search/skinned_context.h"
@@ -6,7 +6,7 @@
 
 namespace rlpc {
 
-// The best trial with the bones of this one.
+// Varies the tools of `best`, with the same bones; returns the cheapest trial.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
                           SkinnedTrial best);
 
