@@ -1,5 +1,6 @@
-// Floating-point functions with the same result on every compiler and machine: only the four
-// operations and sqrt, each correctly rounded. Encoder decisions use these in place of libm.
+// Mathematical functions with the same result on every compiler and machine: they use only the
+// four operations and sqrt, which round correctly. Encoder decisions use these in place of
+// libm.
 #pragma once
 
 #include <bit>
@@ -53,7 +54,7 @@ inline double det_sin(double x) {
 // atan(x) for 0 <= x <= 1; absolute error below 1e-15.
 inline double det_atan(double x) {
   assert(0.0 <= x && x <= 1.0);
-  // Twice to half the angle, which is then below pi / 16.
+  // Halve the angle twice; it is then at most pi / 16.
   for (int i = 0; i < 2; ++i) x /= 1.0 + std::sqrt(1.0 + x * x);
   double sum = 0.0;
   for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - sum * x * x;

@@ -16,7 +16,7 @@ TEST(DetLog2, IsExactAtPowersOfTwo) {
   }
 }
 
-TEST(DetLog2, IsThatOfTheLibraryToWithinItsError) {
+TEST(DetLog2, AgreesWithTheLibraryWithinItsError) {
   constexpr unsigned kSeed = 1;
   SCOPED_TRACE(kSeed);
   std::mt19937_64 random(kSeed);
@@ -28,7 +28,7 @@ TEST(DetLog2, IsThatOfTheLibraryToWithinItsError) {
   }
 }
 
-TEST(DetLog2, TakesTheEndsOfItsRangeAndBothSidesOfItsSeams) {
+TEST(DetLog2, IsAccurateAtItsLimitsAndSeams) {
   const double root = std::sqrt(2.0);
   for (const double x :
        {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(),
@@ -52,7 +52,7 @@ TEST(ExactExp2, IsThePowerOfTwo) {
   for (int n = -999; n < 1000; ++n) ASSERT_EQ(exact_exp2(n), std::ldexp(1.0, n));
 }
 
-TEST(DetSin, IsThatOfTheLibrary) {
+TEST(DetSin, AgreesWithTheLibrary) {
   for (int i = -1000; i <= 1000; ++i) {
     const double x = i * (1.5707963267948966 / 1000);
     ASSERT_NEAR(det_sin(x), std::sin(x), 1e-15) << x;
@@ -60,7 +60,7 @@ TEST(DetSin, IsThatOfTheLibrary) {
   EXPECT_EQ(det_sin(1e-300), 1e-300);
 }
 
-TEST(DetAtan, IsThatOfTheLibrary) {
+TEST(DetAtan, AgreesWithTheLibrary) {
   for (int i = 0; i <= 1000; ++i) {
     const double x = i / 1000.0;
     ASSERT_NEAR(det_atan(x), std::atan(x), 1e-15) << x;

@@ -18,14 +18,15 @@ namespace {
 
 using Square = Eigen::MatrixXd;
 
-// From this width on, few vectors are found faster than all.
+// From this width on, subspace iteration is faster if at most 1 / kFewPart of the vectors are
+// wanted.
 constexpr std::size_t kWide = 600;
 constexpr std::size_t kFewPart = 4;
 
-// Eigen's blocking, and with it the order of its sums, follows the cache sizes: fix them.
+// Eigen's blocking, and so the order of its sums, depends on the cache sizes: fixes them.
 void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
 
-// An eigenvector's sign is arbitrary: make its largest element positive.
+// The sign of an eigenvector is arbitrary: makes its largest element positive.
 void fix_sign(std::vector<double>& v) {
   double largest = 0.0;
   for (const double x : v) {
@@ -46,7 +47,7 @@ Square square_of(std::span<const double> lower, std::size_t width) {
   return square;
 }
 
-// Columns of a matrix, from the last to the first.
+// The last `count` columns of a matrix, from the last backwards.
 std::vector<std::vector<double>> last_columns(const Square& from, std::size_t count) {
   std::vector<std::vector<double>> vectors;
   for (Eigen::Index l = from.cols(); vectors.size() < count; --l) {
@@ -81,7 +82,8 @@ EigenPairs all_eigenvectors(std::span<const double> matrix, std::size_t width,
   return pairs;
 }
 
-// All values, and vectors one by one: faster, unless nearly all are wanted.
+// Computes all values, and vectors one at a time: faster unless almost all vectors are wanted.
+// None if they are, or if inverse iteration fails.
 std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, std::size_t width,
                                               std::size_t max_count, double least) {
   fix_eigen_blocking();
@@ -108,8 +110,8 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
   return pairs;
 }
 
-// Subspace iteration (Rutishauser 1970): a block of vectors is multiplied by the matrix and
-// made orthonormal again, until it holds the eigenvectors of the largest values.
+// Subspace iteration (Rutishauser 1970): repeatedly multiplies a block of vectors by the matrix
+// and orthonormalises it, until it spans the eigenvectors of the largest values.
 class SubspaceIteration {
  public:
   SubspaceIteration(const std::vector<double>& lower, std::size_t width)
@@ -119,10 +121,10 @@ class SubspaceIteration {
     }
   }
 
-  // None if there are too many to be found in this way.
+  // None if too many vectors are wanted for this method.
   std::optional<EigenPairs> find(std::size_t max_count, double least) {
     constexpr std::size_t kFirstCount = 16;
-    constexpr double kMargin = 0.5;  // of values that are found beyond those asked for
+    constexpr double kMargin = 0.5;  // of `least`; the block grows until a value is below
     constexpr std::size_t kMoreCount = 8;
     const std::size_t most = width_ / kFewPart;
     for (std::size_t count = kFirstCount; count <= most; count *= 2) {
@@ -142,7 +144,8 @@ class SubspaceIteration {
  private:
   static constexpr int kRounds = 6;
 
-  // The number of values above one, if they go on to fall as the second half of these does.
+  // Extrapolates the number of values above `least` from how fast the second half of the values
+  // falls.
   static double at_this_rate(const std::vector<double>& values, double least) {
     const std::size_t half = values.size() / 2;
     const double fall = det_log2(values[half] / values.back());
@@ -150,7 +153,7 @@ class SubspaceIteration {
     return static_cast<double>(values.size()) + static_cast<double>(half) * left / fall;
   }
 
-  // More vectors, of no pattern.
+  // Appends pseudo-random vectors.
   void widen(std::size_t count) {
     while (block_.size() < count) {
       std::vector<double>& v = block_.emplace_back(width_);
@@ -161,8 +164,8 @@ class SubspaceIteration {
     }
   }
 
-  // Gram-Schmidt, twice for the sake of rounding; of vectors that depend on others nothing is
-  // left.
+  // Multiplies by the matrix and orthonormalises: Gram-Schmidt, twice because of rounding.
+  // Linearly dependent vectors become 0.
   void multiply() {
     block_ = project(matrix_, width_, block_);
     for (std::size_t k = 0; k < block_.size(); ++k) {
@@ -179,7 +182,7 @@ class SubspaceIteration {
     }
   }
 
-  // Turns the vectors within the space they span to be eigenvectors (Rayleigh and Ritz).
+  // Rotates the vectors within their span to approximate eigenvectors (Rayleigh-Ritz).
   EigenPairs rotate() {
     const std::size_t count = block_.size();
     const std::vector<std::vector<double>> products = project(matrix_, width_, block_);
@@ -197,7 +200,7 @@ class SubspaceIteration {
     return pairs;
   }
 
-  // Four sums, so that additions need not wait for each other.
+  // Four partial sums, to shorten the dependency chain of additions.
   static double dot(const std::vector<double>& a, const std::vector<double>& b) {
     std::array<double, 4> sum{};
     std::size_t i = 0;
@@ -213,7 +216,7 @@ class SubspaceIteration {
 
   std::size_t width_;
   std::vector<double> matrix_;
-  std::vector<std::vector<double>> block_;  // orthonormal, or not yet
+  std::vector<std::vector<double>> block_;  // orthonormal after multiply()
   std::uint64_t random_ = 1;
 };
 

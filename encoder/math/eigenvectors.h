@@ -1,4 +1,4 @@
-// Eigenvectors of symmetric matrices without negative eigenvalues.
+// Eigenvectors of positive semidefinite symmetric matrices.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,14 @@
 namespace rlpc {
 
 struct EigenPairs {
-  std::vector<double> values;                // descending
-  std::vector<std::vector<double>> vectors;  // [count][width], orthonormal, of the first values
+  std::vector<double> values;  // descending
+  std::vector<std::vector<double>>
+      vectors;  // [count][width], orthonormal, for the first values
 };
 
-// Vectors of the values above `least`, at most max_count. Values of all vectors, or of a wide
-// matrix with few vectors of these alone and some that follow: then time is quadratic in the
-// width, not cubic.
+// The eigenvectors with eigenvalues above `least`, at most max_count. `values` has all
+// eigenvalues or, for a wide matrix of which few vectors are wanted, at least theirs; the time
+// is then quadratic in the width instead of cubic.
 //
 //   matrix  [width][width], the lower triangle is read
 //   least   not negative

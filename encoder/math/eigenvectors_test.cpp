@@ -16,8 +16,8 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// A symmetric matrix with these eigenvalues, the rest of which are `floor`: I - 2 h h^T turns
-// the axes.
+// A symmetric matrix with the given eigenvalues; all others are `floor`. The eigenvectors are
+// the axes reflected by I - 2 h h^T.
 struct Known {
   std::vector<double> matrix;
   std::vector<double> h;
@@ -46,7 +46,7 @@ struct Known {
 
 struct Case {
   std::size_t width;
-  std::size_t count;  // of values above 1
+  std::size_t count;  // number of values above 1
   double floor;
 };
 
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(NarrowAndWideFewAndMany, LeadingEigenvectors,
                                          Case{620, 0, 0.1}, Case{620, 12, 0.0},
                                          Case{620, 40, 0.3}, Case{620, 140, 0.4}));
 
-TEST(LeadingEigenvectors, AreNoMoreThanAskedFor) {
+TEST(LeadingEigenvectors, AreAtMostMaxCount) {
   for (const std::size_t width : {300U, 620U}) {
     const Known known(width, {9.0, 8.0, 5.0, 4.0}, 0.1);
     const EigenPairs pairs = leading_eigenvectors(known.matrix, width, 2, 1.0);
@@ -84,7 +84,7 @@ TEST(LeadingEigenvectors, AreNoMoreThanAskedFor) {
   }
 }
 
-TEST(LeadingEigenvectors, OfNothingAreNone) {
+TEST(LeadingEigenvectors, AreNoneForAZeroMatrix) {
   for (const std::size_t width : {300U, 620U}) {
     const std::vector<double> zeros(width * width, 0.0);
     EXPECT_TRUE(leading_eigenvectors(zeros, width, width, 0.0).vectors.empty());

@@ -12,8 +12,8 @@
 namespace rlpc {
 namespace {
 
-// A tridiagonal matrix less a multiple of the identity, as triangular factors with row
-// exchanges.
+// The LU factorisation, with row exchanges, of a tridiagonal matrix minus `shift` times the
+// identity.
 class ShiftedFactors {
  public:
   ShiftedFactors(std::span<const double> diagonal, std::span<const double> beside, double shift,
@@ -54,9 +54,9 @@ class ShiftedFactors {
  private:
   struct Row {
     double pivot = 0.0;
-    double right = 0.0;  // of the pivot, and right of that
+    double right = 0.0;  // the two elements to the right of the pivot
     double far = 0.0;
-    double factor = 0.0;  // of this row in the next
+    double factor = 0.0;  // multiple of this row subtracted from the next
     bool exchanged = false;
   };
 
@@ -67,7 +67,7 @@ class ShiftedFactors {
   std::vector<Row> rows_;
 };
 
-// Orthonormal vectors, as rows and as columns.
+// Orthonormal vectors, stored both as rows and as columns.
 class Basis {
  public:
   Basis(std::size_t width, std::size_t most) : width_(width), most_(most) {
@@ -75,8 +75,8 @@ class Basis {
     columns_.resize(width * most);
   }
 
-  // What x has of the vectors is taken off.
-  void take_off(std::vector<double>& x) const {
+  // Subtracts from x its projection onto the vectors.
+  void remove_projection(std::vector<double>& x) const {
     if (count_ == 0) return;
     const std::vector<double> parts = matrix_product(x, width_, columns_, most_);
     const std::vector<double> sum = matrix_product(parts, most_, rows_, width_);
@@ -96,7 +96,7 @@ class Basis {
   std::vector<double> columns_;
 };
 
-// False for a vector that is not one.
+// False if the vector is zero or not finite.
 bool normalise(std::vector<double>& x) {
   double largest = 0.0;
   for (const double v : x) largest = std::max(largest, std::abs(v));
@@ -111,7 +111,7 @@ bool normalise(std::vector<double>& x) {
   return true;
 }
 
-// Largest element of (matrix - value) x.
+// The largest magnitude of an element of (matrix - value) x.
 double residual(std::span<const double> diagonal, std::span<const double> beside, double value,
                 const std::vector<double>& x) {
   double worst = 0.0;
@@ -130,8 +130,10 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
     std::span<const double> diagonal, std::span<const double> beside,
     std::span<const double> values) {
   constexpr int kRounds = 3;
-  constexpr double kConverged = 1e-11;  // of the matrix
-  constexpr double kApart = 8.0;        // roundings: equal values are moved this far
+  constexpr double kConverged =
+      1e-11;  // residual relative to the largest element of the matrix
+  constexpr double kApart =
+      8.0;  // in units of rounding: equal values are separated by this much
   const std::size_t n = diagonal.size();
   double size = 0.0;
   for (const double x : diagonal) size = std::max(size, std::abs(x));
@@ -153,10 +155,10 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
     for (int round = 0; round < kRounds; ++round) {
       factors.solve(x);
       if (!normalise(x)) return std::nullopt;
-      basis.take_off(x);
+      basis.remove_projection(x);
       if (!normalise(x)) return std::nullopt;
     }
-    basis.take_off(x);  // again, for the sake of rounding
+    basis.remove_projection(x);  // again because of rounding
     if (!normalise(x) || residual(diagonal, beside, value, x) > kConverged * size) {
       return std::nullopt;
     }

@@ -1,4 +1,4 @@
-// Eigenvectors of symmetric tridiagonal matrices, of which the eigenvalues are known.
+// Eigenvectors of symmetric tridiagonal matrices with known eigenvalues.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-// Inverse iteration (Wilkinson 1965), each vector made orthogonal to those before it. None if
-// some vector does not converge, which values that are no eigenvalues would do.
+// Inverse iteration (Wilkinson 1965); each vector is orthogonalised against those before it.
+// None if a vector does not converge, for example because a value is not an eigenvalue.
 //
 //   diagonal  [n], n > 0
 //   beside    [n - 1], above and below the diagonal

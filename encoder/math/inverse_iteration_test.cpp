@@ -22,8 +22,9 @@ void expect_orthonormal(const Vectors& vectors) {
   }
 }
 
-// 2 on the diagonal and -1 beside it: values and vectors are cosines and sines.
-TEST(TridiagonalEigenvectors, OfTheSecondDifferenceAreSines) {
+// The second difference, 2 on the diagonal and -1 beside it, has known values and vectors:
+// cosines and sines.
+TEST(TridiagonalEigenvectors, AreSinesForTheSecondDifference) {
   constexpr std::size_t kWidth = 120;
   constexpr double kPi = std::numbers::pi;
   const std::vector<double> diagonal(kWidth, 2.0);
@@ -47,8 +48,8 @@ TEST(TridiagonalEigenvectors, OfTheSecondDifferenceAreSines) {
   }
 }
 
-TEST(TridiagonalEigenvectors, OfEqualValuesAreOrthogonal) {
-  // Blocks that nothing couples, with the values 3 and 1 each.
+TEST(TridiagonalEigenvectors, AreOrthogonalForEqualValues) {
+  // Decoupled blocks, each with the values 3 and 1.
   constexpr std::size_t kBlocks = 20;
   std::vector<double> diagonal;
   std::vector<double> beside;
@@ -70,14 +71,14 @@ TEST(TridiagonalEigenvectors, OfEqualValuesAreOrthogonal) {
   }
 }
 
-TEST(TridiagonalEigenvectors, OfOneNumberIsOne) {
+TEST(TridiagonalEigenvectors, IsOneForASingleElement) {
   const auto vectors =
       tridiagonal_eigenvectors(std::vector<double>{5.0}, {}, std::vector<double>{5.0});
   ASSERT_TRUE(vectors.has_value());
   EXPECT_EQ(std::abs(vectors->at(0).at(0)), 1.0);
 }
 
-TEST(TridiagonalEigenvectors, AreNoneForANumberThatIsNoValue) {
+TEST(TridiagonalEigenvectors, AreNoneForANumberThatIsNoEigenvalue) {
   const std::vector<double> diagonal{1.0, 2.0, 3.0};
   const std::vector<double> beside{0.5, 0.5};
   EXPECT_FALSE(

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t kTogether = 4;
 
-// Products of four rows with a factor each, summed first; then the sum goes to what there is.
-// Loops over outputs take two of these at a time, as what they read comes from the second
-// cache, and costs more than the arithmetic.
+// A linear combination of four rows, which is summed before it is added to an output. Loops
+// over outputs use two of these at a time: reading and writing the outputs in the second-level
+// cache costs more than the arithmetic.
 class FourProducts {
  public:
   // Factors are x[0], x[stride], ...; rows are `width` apart.
@@ -193,7 +193,7 @@ std::vector<double> as_columns(std::span<const std::vector<double>> vectors,
 
 std::vector<std::vector<double>> project(std::span<const double> rows, std::size_t width,
                                          const std::vector<std::vector<double>>& vectors) {
-  constexpr std::size_t kRowsTogether = 512;  // so that products take little memory
+  constexpr std::size_t kRowsTogether = 512;  // bounds the memory of products
   const std::size_t count = vectors.size();
   const std::size_t num_rows = rows.size() / width;
   const std::vector<double> columns = as_columns(vectors, width);

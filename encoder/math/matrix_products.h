@@ -1,5 +1,6 @@
-// The heavy products of the analysis: loops over independent outputs, each summed in one order,
-// so that vectorisation changes nothing. Matrices are row-major.
+// The time-critical matrix products of the analysis. Loops run over independent outputs, each
+// with a fixed order of summation, so that vectorisation does not change results. Matrices are
+// row-major.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +9,15 @@
 
 namespace rlpc {
 
-// Lower triangle, with the diagonal, of rows^T rows; [width][width], the rest is 0.
+// The lower triangle of rows^T rows, with the diagonal, [width][width]; all other elements are
+// 0.
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width);
 
-// The same, added to that of the rows before: if these are a multiple of 4, the sums are those
-// of all rows together.
+// Adds the Gram matrix of further rows. The result is bit-exactly that of all rows together if
+// the number of rows before is a multiple of 4.
 void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram);
 
-// Left columns of a, as many as b has rows, times b.
+// The leftmost columns of a, as many as b has rows, times b.
 //
 //   a       [num_rows][a_width]
 //   b       [inner][b_width], inner <= a_width
@@ -23,12 +25,12 @@ void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<
 std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
                                    std::span<const double> b, std::size_t b_width);
 
-// The same, added to a result.
+// Adds the same product to `result`.
 void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result);
 
-// A row times b, each sum in the order of the rows of b.
+// row * b, each element summed strictly in the order of the rows of b.
 //
 //   row     [width]
 //   b       [width][b_width]

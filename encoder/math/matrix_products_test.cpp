@@ -31,10 +31,11 @@ TEST(OrderedProduct, SumsInTheOrderOfTheRows) {
   }
 }
 
-TEST(MatrixProduct, IsTheSameARowAtATime) {
+TEST(MatrixProduct, IsTheSameRowByRow) {
   constexpr std::size_t kRows = 5;
   constexpr std::size_t kInner = 9;
-  constexpr std::size_t kWidth = 11;  // of a; of its columns, the first kInner count
+  constexpr std::size_t kWidth =
+      11;  // width of a, of which only the first kInner columns are used
   constexpr std::size_t kBWidth = 6;
   const std::vector<double> a = random_values(3, kRows * kWidth);
   const std::vector<double> b = random_values(4, kInner * kBWidth);
@@ -71,7 +72,7 @@ TEST(GramMatrix, IsTheSameFourRowsAtATime) {
   }
 }
 
-TEST(OuterProduct, IsAdded) {
+TEST(OuterProduct, IsAddedToTheSum) {
   std::vector<double> sum{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   add_outer_product(0.5, std::vector{1.0, -2.0}, std::vector{2.0, 4.0, 8.0}, sum);
   EXPECT_EQ(sum, (std::vector{2.0, 4.0, 7.0, 2.0, 1.0, -2.0}));

@@ -20,7 +20,7 @@ std::vector<double> transpose(const TrajectoryMatrix& m) {
   return t;
 }
 
-// What rounding leaves of a matrix of lower rank is no component.
+// Excludes components that are only rounding errors, in a matrix of low rank.
 double least_energy(double total_energy, double min_energy) {
   constexpr double kRankTolerance = 1e-13;
   return std::max(min_energy, kRankTolerance * total_energy);
@@ -32,7 +32,7 @@ double squared_norm(const std::vector<double>& a) {
   return sum;
 }
 
-// All rows in order, some at a time.
+// Visits all rows in order, a block at a time.
 void for_some_rows(const TrajectoryRows& rows,
                    const std::function<void(std::span<const double>)>& use) {
   constexpr std::size_t kTogether = 256;  // a multiple of 4 (add_gram_matrix)

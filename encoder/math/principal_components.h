@@ -1,4 +1,5 @@
-// Principal components of one cluster over one GOF (Amjoun and Strasser 2007, 3.3).
+// Principal component analysis of vertex trajectories over one GOF (Amjoun and Strasser 2007,
+// 3.3).
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,9 @@
 
 namespace rlpc {
 
-// Trajectories of the coded coordinates of a cluster: [num_values][num_frames], grid units.
+// One row of values over time for each spatial value: [num_values][num_frames], grid units.
 struct TrajectoryMatrix {
-  std::size_t num_values = 0;  // 3 x coded vertices, planes x, y, z
+  std::size_t num_values = 0;  // in clusters: 3 x coded vertices, planes x, y, z
   std::size_t num_frames = 0;
   std::vector<double> a;
 
@@ -18,29 +19,29 @@ struct TrajectoryMatrix {
   const double* row(std::size_t i) const { return &a[i * num_frames]; }
 };
 
-// The matrix is sum over l of spatial[l] * temporal[l]^T; temporal vectors are orthonormal,
-// spatial ones orthogonal with norm sigma, which falls with l.
+// The matrix is the sum over all components l of spatial[l] * temporal[l]^T. Temporal vectors
+// are orthonormal; spatial vectors are orthogonal with norm sigma, which falls with l.
 struct PrincipalComponents {
-  std::vector<double> energy;                 // sigma^2, descending; of all or the first
-  double total_energy = 0.0;                  // squared norm of the matrix
-  std::vector<std::vector<double>> temporal;  // [component][num_frames], for the leading ones
-  std::vector<std::vector<double>> spatial;   // [component][num_values]
+  std::vector<double> energy;  // sigma^2, descending; of all components or at least those below
+  double total_energy = 0.0;   // squared norm of the matrix
+  std::vector<std::vector<double>>
+      temporal;                              // [component][num_frames], leading components only
+  std::vector<std::vector<double>> spatial;  // [component][num_values], likewise
 };
 
-// Components with energy above min_energy, at most max_components, and the energies of these at
-// least (eigenvectors.h).
+// The components with energy above min_energy, at most max_components.
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 
-// Rows of a matrix that is never there as a whole, [num_values][num_frames].
+// A matrix [num_values][num_frames] that is generated row by row and never stored as a whole.
 struct TrajectoryRows {
   std::size_t num_values = 0;
   std::size_t num_frames = 0;
-  // Writes some rows, from the first on; each is asked for twice.
+  // Fills `rows` with consecutive rows, starting with row `first`; called twice for each row.
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };
 
-// The same of such rows, with little memory beside the result.
+// The same components of such a matrix; needs little memory besides the result.
 struct ComponentsByRow {
   double total_energy = 0.0;
   std::vector<double> energy;

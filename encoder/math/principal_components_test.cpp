@@ -16,7 +16,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// Sum of `rank` products of random vectors; full rank if there are as many.
+// The sum of `rank` outer products of random vectors.
 TrajectoryMatrix random_matrix(unsigned seed, std::size_t num_values, std::size_t num_frames,
                                std::size_t rank) {
   std::mt19937 random(seed);
@@ -60,10 +60,10 @@ struct Size {
   std::size_t num_values;
   std::size_t num_frames;
 };
-// Both sides of the Gram matrix, and the seam between them.
+// More values than frames, fewer, and equal numbers: both kinds of Gram matrix.
 const std::vector<Size> kSizes{{30, 8}, {9, 40}, {12, 12}, {12, 13}, {3, 1}, {3, 2}};
 
-TEST(PrincipalComponents, OfALowRankMatrixAreFewAndWhole) {
+TEST(PrincipalComponents, ReproduceALowRankMatrixWithFewComponents) {
   for (const Size& size : kSizes) {
     constexpr unsigned kSeed = 1;
     SCOPED_TRACE(testing::Message()
@@ -78,7 +78,7 @@ TEST(PrincipalComponents, OfALowRankMatrixAreFewAndWhole) {
   }
 }
 
-TEST(PrincipalComponents, TemporalVectorsAreOrthonormalAndSpatialOnesHaveTheEnergy) {
+TEST(PrincipalComponents, TemporalVectorsAreOrthonormalAndSpatialVectorsCarryTheEnergy) {
   for (const Size& size : kSizes) {
     constexpr unsigned kSeed = 2;
     SCOPED_TRACE(testing::Message()
@@ -99,7 +99,7 @@ TEST(PrincipalComponents, TemporalVectorsAreOrthonormalAndSpatialOnesHaveTheEner
   }
 }
 
-TEST(PrincipalComponents, EnergiesFallAndAddUpToThatOfTheMatrix) {
+TEST(PrincipalComponents, EnergiesDescendAndSumToThatOfTheMatrix) {
   for (const Size& size : kSizes) {
     constexpr unsigned kSeed = 3;
     SCOPED_TRACE(testing::Message()
@@ -121,7 +121,7 @@ TEST(PrincipalComponents, EnergiesFallAndAddUpToThatOfTheMatrix) {
   }
 }
 
-TEST(PrincipalComponents, BothSidesOfTheGramMatrixAgree) {
+TEST(PrincipalComponents, AgreeForTheTransposedMatrix) {
   constexpr unsigned kSeed = 4;
   SCOPED_TRACE(kSeed);
   const TrajectoryMatrix tall = random_matrix(kSeed, 25, 9, 9);
@@ -130,14 +130,14 @@ TEST(PrincipalComponents, BothSidesOfTheGramMatrixAgree) {
   ASSERT_EQ(a.spatial.size(), b.spatial.size());
   for (std::size_t l = 0; l < a.spatial.size(); ++l) {
     EXPECT_NEAR(a.energy[l] / b.energy[l], 1.0, 1e-9);
-    // Roles and norms are exchanged; the sign may differ.
+    // Spatial and temporal vectors swap roles and norms; signs may differ.
     const double sigma = std::sqrt(a.energy[l]);
     EXPECT_NEAR(std::abs(dot(a.temporal[l], b.spatial[l])), sigma, 1e-7 * sigma);
     EXPECT_NEAR(std::abs(dot(a.spatial[l], b.temporal[l])), sigma, 1e-7 * sigma);
   }
 }
 
-TEST(PrincipalComponents, LeadingOnesAreTheBestApproximationOfTheirNumber) {
+TEST(PrincipalComponents, LeadingComponentsAreTheBestApproximation) {
   constexpr unsigned kSeed = 5;
   SCOPED_TRACE(kSeed);
   const TrajectoryMatrix m = random_matrix(kSeed, 20, 10, 10);
@@ -158,13 +158,13 @@ TEST(PrincipalComponents, LeadingOnesAreTheBestApproximationOfTheirNumber) {
   }
 }
 
-TEST(PrincipalComponents, ThoseWithLittleEnergyAreLeftOut) {
+TEST(PrincipalComponents, DropComponentsWithLittleEnergy) {
   constexpr unsigned kSeed = 6;
   SCOPED_TRACE(kSeed);
   const TrajectoryMatrix m = random_matrix(kSeed, 20, 10, 10);
   const PrincipalComponents all = principal_components(m, 100, 0.0);
   for (std::size_t l = 1; l < all.energy.size(); ++l) {
-    constexpr double kMore = 1.0 + 1e-12;  // than rounding, which differs with their number
+    constexpr double kMore = 1.0 + 1e-12;  // rounding depends on the number of components
     const double between = 0.5 * (all.energy[l - 1] + all.energy[l]);
     EXPECT_EQ(principal_components(m, 100, between).spatial.size(), l);
     EXPECT_EQ(principal_components(m, 100, kMore * all.energy[l]).spatial.size(), l);
@@ -172,7 +172,7 @@ TEST(PrincipalComponents, ThoseWithLittleEnergyAreLeftOut) {
   }
 }
 
-// The sign of an eigenvector is not left to the library: its largest element is positive.
+// The sign of an eigenvector does not depend on the library: its largest element is positive.
 TEST(PrincipalComponents, LargestElementOfTheEigenvectorIsPositive) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -189,7 +189,7 @@ TEST(PrincipalComponents, LargestElementOfTheEigenvectorIsPositive) {
   }
 }
 
-TEST(PrincipalComponents, OfNothingAndOfZerosHaveNoVectors) {
+TEST(PrincipalComponents, HaveNoVectorsForEmptyAndZeroMatrices) {
   const PrincipalComponents nothing = principal_components({0, 5, {}}, 10, 0.0);
   EXPECT_TRUE(nothing.energy.empty());
   EXPECT_TRUE(nothing.spatial.empty());
@@ -203,8 +203,8 @@ TEST(PrincipalComponents, OfNothingAndOfZerosHaveNoVectors) {
   }
 }
 
-// Repeated rows leave components of rounding noise, or of nothing, behind the first.
-TEST(PrincipalComponents, OfRepeatedTrajectoriesAreNumbers) {
+// With repeated rows, all components but the first are rounding errors or zero.
+TEST(PrincipalComponents, AreFiniteForRepeatedTrajectories) {
   for (const Size& size : kSizes) {
     for (const double value : {1.0, 0.1, 3e-5, 1e7}) {
       TrajectoryMatrix m{size.num_values, size.num_frames, {}};
@@ -241,7 +241,7 @@ TEST(ComponentsByRow, AreThePrincipalComponents) {
   }
 }
 
-TEST(PrincipalComponents, AreTheSameEveryTime) {
+TEST(PrincipalComponents, AreDeterministic) {
   const TrajectoryMatrix m = random_matrix(7, 200, 50, 50);
   const PrincipalComponents a = principal_components(m, 20, 0.0);
   const PrincipalComponents b = principal_components(m, 20, 0.0);

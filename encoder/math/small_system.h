@@ -1,4 +1,4 @@
-// Symmetric systems of a few linear equations, solved with sums in a fixed order.
+// Solves small symmetric systems of linear equations, with sums in a fixed order.
 #pragma once
 
 #include <array>
@@ -16,10 +16,11 @@ struct SmallSystem {
 template <std::size_t N>
 struct SmallSolution {
   std::array<double, N> x{};
-  bool is_unique = true;  // else unknowns without a pivot are 0
+  bool is_unique = true;  // false: unknowns without a pivot are 0
 };
 
-// Eliminates the first n unknowns in turn; the others are 0. Pivots are above least_pivot.
+// Solves for the first n unknowns; the others are 0. Only values above least_pivot are used as
+// pivots.
 template <std::size_t N>
 SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N,
                              double least_pivot = 0.0) {

@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-// b = a x for an x that is known, and a positive definite a.
+// A system a x = b with positive definite a and known x.
 template <std::size_t N>
 void expect_recovered(std::mt19937& random, std::size_t n) {
   const auto number = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1.0; };
@@ -39,7 +39,7 @@ TEST(SolveSmall, RecoversTheUnknowns) {
   }
 }
 
-TEST(SolveSmall, UnknownsWithoutAPivotAreZero) {
+TEST(SolveSmall, SetsUnknownsWithoutAPivotToZero) {
   SmallSystem<3> system;
   system.a = {{{2.0, 0.0, 4.0}, {0.0, 0.0, 0.0}, {4.0, 0.0, 9.0}}};
   system.b = {10.0, 0.0, 21.0};
@@ -50,7 +50,7 @@ TEST(SolveSmall, UnknownsWithoutAPivotAreZero) {
   EXPECT_DOUBLE_EQ(solution.x[2], 1.0);
 }
 
-TEST(SolveSmall, PivotsMustExceedTheLeast) {
+TEST(SolveSmall, PivotsMustExceedLeastPivot) {
   SmallSystem<3> system;
   system.a = {{{1.0, 0.0, 0.0}, {0.0, 0.5, 0.0}, {0.0, 0.0, 1.0}}};
   system.b = {1.0, 1.0, 1.0};

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// to -= factor * from, of two rows of b.
+// Row `to` of b -= factor * row `from`.
 void subtract_row(std::span<double> b, std::size_t width, double factor, std::size_t from,
                   std::size_t to) {
   if (width == 1) {
@@ -23,7 +23,7 @@ SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double le
     : n_(n), factors_(std::move(a)) {
   std::vector<double> diagonal(n);
   for (std::size_t k = 0; k < n; ++k) diagonal[k] = factors_[k * n + k];
-  for (std::size_t k = 0; k < n; ++k) {  // right-looking: updates are independent of each other
+  for (std::size_t k = 0; k < n; ++k) {  // right-looking: updates are independent
     double* top = &factors_[k * n];
     if (!(top[k] > least_pivot * diagonal[k] && top[k] > 0.0)) {
       top[k] = 0.0;

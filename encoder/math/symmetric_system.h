@@ -1,4 +1,4 @@
-// Symmetric systems of any number of linear equations, solved with sums in a fixed order.
+// Solves symmetric systems of any number of linear equations, with sums in a fixed order.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace rlpc {
 
-// a x = b, by the factors L D L^T of a.
+// Solves a x = b by the factorisation a = L D L^T.
 class SymmetricSystem {
  public:
-  // Unknowns without a pivot, of which elimination leaves no more than this part of the
-  // diagonal, are 0.
+  // Default of least_pivot. A pivot at most least_pivot times the diagonal element before
+  // elimination is not used; the unknown is then 0.
   static constexpr double kRounding = 1e-14;
 
   //   a  [n][n], row-major, positive semidefinite; only the upper triangle is read
@@ -24,7 +24,7 @@ class SymmetricSystem {
 
  private:
   std::size_t n_;
-  std::vector<double> factors_;  // [n][n], rows of D L^T; a pivot of 0: none
+  std::vector<double> factors_;  // [n][n], rows of D L^T; a pivot of 0 is not used
   bool is_unique_ = true;
 };
 

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-// root^T root, of `rank` rows, and a diagonal.
+// root^T root, where root has `rank` rows, plus a diagonal matrix.
 std::vector<double> gram(std::mt19937& random, std::size_t n, std::size_t rank,
                          double diagonal) {
   std::vector<double> root(rank * n);
@@ -55,8 +55,8 @@ TEST(SymmetricSystem, RecoversTheUnknownsOfAllRightSides) {
   }
 }
 
-// Each right side is solved as if it were alone, to the bit.
-TEST(SymmetricSystem, RightSidesDoNotMix) {
+// Each right side has bit-exactly the same solution as alone.
+TEST(SymmetricSystem, RightSidesAreIndependent) {
   std::mt19937 random(2);
   constexpr std::size_t kUnknowns = 9;
   constexpr std::size_t kWidth = 6;
@@ -74,7 +74,7 @@ TEST(SymmetricSystem, RightSidesDoNotMix) {
   }
 }
 
-TEST(SymmetricSystem, UnknownsWithoutAPivotAreZeroAndTheOthersStillSolve) {
+TEST(SymmetricSystem, SetsUnknownsWithoutAPivotToZeroAndSolvesTheOthers) {
   std::mt19937 random(3);
   constexpr std::size_t kUnknowns = 6;
   const std::vector<double> a = gram(random, kUnknowns, 4, 0.0);

@@ -1,7 +1,8 @@
-// For loops over independent outputs, which any width of vectors sums in the same order.
+// RLPC_WIDEST compiles a function for several SIMD widths. Only for loops over independent
+// outputs, whose sums have the same order at every width.
 #pragma once
 
-// The choice is made before the thread sanitizer is ready for it.
+// The choice between versions runs before the thread sanitizer is initialised.
 #ifdef __SANITIZE_THREAD__  // of g++
 #define RLPC_NO_CHOICE
 #elif defined(__has_feature)
@@ -10,8 +11,8 @@
 #endif
 #endif
 
-// Compiled for wider vectors, too; the machine takes what it has. Functions must be noexcept:
-// g++ takes it for granted that no call of such a function throws.
+// Also compiles the function for AVX2; the version is chosen at load time. Functions must be
+// noexcept, because g++ assumes that calls of such functions do not throw.
 #if defined(__x86_64__) && defined(__linux__) && !defined(RLPC_NO_CHOICE)
 #define RLPC_WIDEST __attribute__((target_clones("avx2", "default")))
 #else
