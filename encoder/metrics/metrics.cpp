@@ -22,8 +22,8 @@ double squared_distance(std::span<const float> a, std::span<const float> b,
   return sum;
 }
 
-// Sum of squared distances from the mean vertex. Taken relative to the first vertex, so that it
-// is exactly 0 when all vertices coincide.
+// Sum of squared distances from the mean vertex. Coordinates are taken relative to the first
+// vertex, so that the sum is exactly 0 if all vertices coincide.
 double spread_about_mean(std::span<const float> xyz) {
   const std::size_t count = xyz.size() / 3;
   double spread = 0;
@@ -40,7 +40,7 @@ double spread_about_mean(std::span<const float> xyz) {
   return spread;
 }
 
-// 100 * part / whole; nothing of nothing is 0.
+// 100 * part / whole; 0 / 0 is 0.
 double percent(double part, double whole) {
   if (whole > 0) return 100 * part / whole;
   return part > 0 ? kInfinity : 0;
@@ -95,7 +95,7 @@ void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
   ++num_frames_;
 }
 
-// PMSE of a peak of 1.
+// PMSE of a frame for R = 1.
 double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
   const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
   return frame.squared_error / (3 * vertices);
@@ -137,7 +137,7 @@ void MetricsAccumulator::finish_psnr(Metrics& metrics) const {
   const double peak =
       metrics.max_displacement > 0 ? metrics.max_displacement : metrics.diagonal;
   for (FrameMetrics& frame : metrics.frames) {
-    // The quotient is infinite, and PSNR minus infinity, when the peak is 0.
+    // If the peak is 0, the quotient is infinite, and PSNR minus infinity.
     frame.psnr_db = frame.squared_error > 0
                         ? -10 * std::log10(mean_squared(frame) / (peak * peak))
                         : kInfinity;

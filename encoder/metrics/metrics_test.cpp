@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(Metrics, OfAnExactCopyAreZero) {
+TEST(Metrics, AreZeroForAnExactCopy) {
   MetricsAccumulator metrics(2);
   const std::vector<float> frame{0, 0, 0, 3, 4, 0};
   metrics.add_frame(frame, frame);
@@ -23,8 +23,8 @@ TEST(Metrics, OfAnExactCopyAreZero) {
   EXPECT_EQ(m.mean_psnr_db, kInfinity);
 }
 
-// Two frames of two vertices, worked out by hand.
-TEST(Metrics, AreThoseOfThePapers) {
+// Two frames of two vertices, computed by hand.
+TEST(Metrics, FollowThePapers) {
   MetricsAccumulator metrics(2);
   // Mean (1, 0, 0), spread 2; errors 0 and 0.5.
   metrics.add_frame(std::vector<float>{0, 0, 0, 2, 0, 0},
@@ -51,7 +51,7 @@ TEST(Metrics, AreThoseOfThePapers) {
   EXPECT_EQ(m.frames[0].squared_error, 0.25);
   EXPECT_DOUBLE_EQ(m.frames[0].rms_error, std::sqrt(0.125));
   EXPECT_EQ(m.frames[0].max_error_vertex, 1U);
-  EXPECT_EQ(m.frames[0].moved_vertices, 2U);  // the first frame: all
+  EXPECT_EQ(m.frames[0].moved_vertices, 2U);  // all in the first frame
   EXPECT_EQ(m.frames[1].moved_vertices, 1U);
   // PMSE = 0.25 / (3 * 2 * 16) and 2.5625 / (3 * 1 * 16).
   EXPECT_DOUBLE_EQ(m.frames[0].psnr_db, -10 * std::log10(0.25 / 96));
@@ -69,9 +69,8 @@ TEST(Metrics, TakeTheFirstOfEqualErrors) {
   EXPECT_EQ(metrics.result().max_error_vertex, 1U);
 }
 
-// 0.1 is no binary fraction: a mean by sum and division would leave a spread of rounding
-// errors.
-TEST(Metrics, OfCoincidentVerticesAreZeroOrInfinite) {
+// 0.1 is not exact in binary: computing the mean as sum / count would give a non-zero spread.
+TEST(Metrics, AreZeroOrInfiniteIfVerticesCoincide) {
   const std::vector<float> point(3 * 7, 0.1F);
   MetricsAccumulator exact(7);
   exact.add_frame(point, point);
@@ -87,7 +86,7 @@ TEST(Metrics, OfCoincidentVerticesAreZeroOrInfinite) {
   EXPECT_EQ(inexact.result().mean_psnr_db, -kInfinity);
 }
 
-TEST(Metrics, OfAStillAnimationUseTheDiagonalAsPeak) {
+TEST(Metrics, UseTheDiagonalAsPeakIfNothingMoves) {
   MetricsAccumulator metrics(2);
   const std::vector<float> frame{0, 0, 0, 10, 0, 0};
   for (int f = 0; f < 2; ++f) metrics.add_frame(frame, std::vector<float>{0, 0, 0, 10, 0, 3});
@@ -97,7 +96,7 @@ TEST(Metrics, OfAStillAnimationUseTheDiagonalAsPeak) {
   EXPECT_DOUBLE_EQ(m.frames[1].psnr_db, -10 * std::log10(9.0 / (3 * 2 * 100)));
 }
 
-TEST(Metrics, StandHugeCoordinates) {
+TEST(Metrics, AcceptHugeCoordinates) {
   MetricsAccumulator metrics(2);
   const float large = std::numeric_limits<float>::max();
   metrics.add_frame(std::vector<float>{-large, -large, -large, large, large, large},

@@ -28,7 +28,7 @@ Vector cross(const Vector& a, const Vector& b) {
 
 double length(const Vector& a) { return std::sqrt(dot(a, a)); }
 
-// Of twice the triangle's area.
+// A normal whose length is twice the area of the triangle.
 Vector normal(std::span<const float> xyz, const Triangle& t) {
   const Vector p = point(xyz, t[0]);
   return cross(minus(point(xyz, t[1]), p), minus(point(xyz, t[2]), p));
@@ -94,7 +94,8 @@ void SurfaceAccumulator::add_frame(std::span<const float> original,
   previous_decoded_.assign(decoded.begin(), decoded.end());
 }
 
-// The mean is taken before the squares are: where all edges change alike, nothing is left.
+// Computes the mean first, then the squares: the result is exactly 0 if all edges change by the
+// same ratio.
 double SurfaceAccumulator::spatial_part(std::span<const float> original,
                                         std::span<const float> decoded) {
   std::fill(weight_.begin(), weight_.end(), 0.0);
@@ -139,7 +140,8 @@ double SurfaceAccumulator::temporal_part(std::span<const float> original,
     const Pair before = temporal_edges_[v];
     temporal_edges_[v] = next;
     if (before.original == 0 || next.original == 0) continue;
-    // Of two values, dev is their distance by the geometric mean of the shares of weight.
+    // For two values, dev is their distance times the geometric mean of their normalised
+    // weights.
     const double weight = before.original + next.original;
     sum += std::abs(before.difference() - next.difference()) *
            std::sqrt(before.original * next.original) / weight;

@@ -11,7 +11,7 @@ namespace {
 
 using Frame = std::vector<float>;
 
-// A grid of side * side vertices with bumps, moved by `shift` and scaled by `scale`.
+// A bumpy grid of side * side vertices, translated by `shift` and scaled by `scale`.
 Frame sheet(std::uint32_t side, float shift, float scale) {
   Frame xyz;
   for (std::uint32_t y = 0; y < side; ++y) {
@@ -44,12 +44,12 @@ TEST(SurfaceMetrics, EdgesAreListedOnce) {
   EXPECT_EQ(edges_of(triangles), expected);
 }
 
-TEST(SurfaceMetrics, OfRigidMotionAreZero) {
+TEST(SurfaceMetrics, AreZeroUnderRigidMotion) {
   const std::vector<Triangle> triangles = sheet_triangles(5);
   SurfaceAccumulator metrics(25, triangles);
   for (const float shift : {0.0F, 1.0F, 4.0F, 4.5F}) {
     const Frame original = sheet(5, shift, 1);
-    Frame turned(original.size());  // by a quarter about z, and moved: exact in float
+    Frame turned(original.size());  // a quarter turn about z and a translation, exact in float
     for (std::size_t v = 0; v < 25; ++v) {
       turned[3 * v] = 8 - original[3 * v + 1];
       turned[3 * v + 1] = original[3 * v] - 16;
@@ -61,16 +61,16 @@ TEST(SurfaceMetrics, OfRigidMotionAreZero) {
   EXPECT_EQ(m.sted, 0);
   EXPECT_EQ(m.sted_spatial, 0);
   EXPECT_EQ(m.sted_temporal, 0);
-  // Its bumps lean elsewhere, seen from outside.
+  // The normals rotate with the mesh.
   EXPECT_GT(m.mean_normal_angle, 1);
 }
 
-TEST(SurfaceMetrics, OfScalingHaveNoSpatialPart) {
+TEST(SurfaceMetrics, HaveNoSpatialPartUnderScaling) {
   const std::vector<Triangle> triangles = sheet_triangles(4);
   SurfaceAccumulator metrics(16, triangles);
   const double diagonal = std::sqrt(9 + 9 + 0.25);
   const double apart = 0.01 * diagonal;
-  std::vector<double> changes;  // of the virtual edges
+  std::vector<double> changes;  // ed of the virtual edges
   std::vector<double> lengths;
   float shift = 0;
   for (const float step : {0.0F, 1.0F, 3.0F}) {
@@ -97,8 +97,8 @@ TEST(SurfaceMetrics, OfScalingHaveNoSpatialPart) {
   EXPECT_EQ(m.frames[2].sted_temporal, 0);
 }
 
-// A triangle with sides 3, 4, 5, whose side of 3 becomes 6.
-TEST(SurfaceMetrics, AreThoseWorkedOutByHand) {
+// A triangle with sides 3, 4 and 5; the side of length 3 is stretched to 6.
+TEST(SurfaceMetrics, AgreeWithAHandComputedExample) {
   const std::vector<Triangle> triangles{{0, 1, 2}};
   SurfaceAccumulator metrics(3, triangles);
   metrics.add_frame(Frame{0, 0, 0, 3, 0, 0, 0, 4, 0}, Frame{0, 0, 0, 6, 0, 0, 0, 4, 0});
@@ -113,7 +113,7 @@ TEST(SurfaceMetrics, AreThoseWorkedOutByHand) {
   EXPECT_EQ(m.sted, m.sted_spatial);
 }
 
-TEST(SurfaceMetrics, GrowInStepWithNoise) {
+TEST(SurfaceMetrics, AreProportionalToNoise) {
   const std::vector<Triangle> triangles = sheet_triangles(20);
   std::vector<double> sted;
   for (const float size : {0.001F, 0.002F, 0.004F}) {
@@ -135,17 +135,17 @@ TEST(SurfaceMetrics, GrowInStepWithNoise) {
 }
 
 TEST(SurfaceMetrics, NormalAnglesAreWeightedByArea) {
-  // Areas 2 and 8 in the xy plane, and one of none.
+  // Triangles of area 2 and 8 in the xy plane, and a degenerate one.
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {0, 1, 1}};
   const Frame original{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 0, 4, 0, 0, 0, 4, 0};
   Frame decoded = original;
   SurfaceAccumulator metrics(6, triangles);
   metrics.add_frame(original, decoded);
-  decoded[8] = 2;  // turned by 45 degrees
+  decoded[8] = 2;  // rotated by 45 degrees
   metrics.add_frame(original, decoded);
   decoded[16] = -4;  // upside down
   metrics.add_frame(original, decoded);
-  decoded[16] = 0;  // nothing is left of it
+  decoded[16] = 0;  // degenerate
   metrics.add_frame(original, decoded);
   const SurfaceMetrics m = metrics.result();
   EXPECT_EQ(m.frames[0].max_normal_angle, 0);
@@ -161,7 +161,7 @@ TEST(SurfaceMetrics, NormalAnglesAreWeightedByArea) {
   EXPECT_NEAR(m.mean_normal_angle, (0 + 9 + (9 + 144) + (9 + 72)) / 4.0, 1e-9);
 }
 
-TEST(SurfaceMetrics, HaveAnswersWithoutTrianglesOrSize) {
+TEST(SurfaceMetrics, AreDefinedWithoutTrianglesAndForZeroSize) {
   SurfaceAccumulator points(2, {});
   for (int f = 0; f < 3; ++f)
     points.add_frame(Frame{0, 0, 0, 0, 0, 0}, Frame{0, 1, 0, 0, 0, 2});
