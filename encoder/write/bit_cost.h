@@ -1,4 +1,4 @@
-// What bins cost, without writing them: for choices between codings.
+// Counts the bits of arithmetic-coded bins without writing them, to compare codings.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// Takes the place of a RangeEncoder. Models adapt as they do there.
+// Replaces a RangeEncoder; models adapt in the same way.
 class BitCost {
  public:
   void bin(BitModel& model, bool one) {
@@ -26,7 +26,7 @@ class BitCost {
   }
 
  private:
-  static constexpr int kOne = 16;  // fractional bits of a cost
+  static constexpr int kOne = 16;  // fraction bits of a cost
   static constexpr int kTableShift = 4;
   static inline const auto kCost = [] {
     std::array<std::uint32_t, (65536 >> kTableShift) + 1> cost{};
@@ -44,7 +44,7 @@ class BitCost {
   friend class BitEstimate;
 };
 
-// The same of what is not coded after all: models stay as they are.
+// Like BitCost, but does not adapt the models, for candidates that may be rejected.
 class BitEstimate {
  public:
   void bin(const BitModel& model, bool one) {

@@ -16,7 +16,7 @@ std::uint32_t corner_vertex(std::span<const Triangle> triangles, std::uint32_t c
   return triangles[c / 3][c % 3];
 }
 
-// Glues the half-edges of one edge, entries [first, last), in the order of their numbers.
+// Glues the half-edges of one edge in ascending order of their numbers.
 void glue_edge(std::span<const Triangle> triangles, std::span<const EdgeEntry> edge,
                std::vector<std::uint32_t>& opposite) {
   const auto runs_up = [&](const EdgeEntry& e) {
@@ -35,7 +35,8 @@ void glue_edge(std::span<const Triangle> triangles, std::span<const EdgeEntry> e
   }
 }
 
-// Counting sort by the smaller vertex index, then each vertex's few edges by the larger.
+// Sorts edges by their smaller vertex index (counting sort), then the few edges of each vertex
+// by the larger.
 void glue_all(std::uint32_t num_vertices, std::span<const Triangle> triangles,
               std::vector<std::uint32_t>& opposite) {
   const auto num_corners = static_cast<std::uint32_t>(3 * triangles.size());
@@ -52,7 +53,7 @@ void glue_all(std::uint32_t num_vertices, std::span<const Triangle> triangles,
         std::max(corner_vertex(triangles, h), corner_vertex(triangles, next_corner(h)));
     entries[first[near_end(h)]++] = {far_end, h};
   }
-  // first[v] is now where the entries of v end.
+  // first[v] is now the end of the entries of v.
   std::size_t begin = 0;
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
     const std::span<EdgeEntry> of_vertex(entries.data() + begin, first[v] - begin);

@@ -1,5 +1,5 @@
-// Cuts triangles into an oriented pseudo-manifold: which edges are glued, and which corners
-// are the same vertex instance (see 8.7.1).
+// Cuts triangles into an oriented pseudo-manifold: determines which edges are glued, and which
+// corners are the same vertex instance (see 8.7.1).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace rlpc {
 struct HalfEdges {
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  std::vector<std::uint32_t> opposite;  // kNone: mesh boundary
-  std::vector<std::uint32_t> instance;  // per corner; numbered without gaps
+  std::vector<std::uint32_t> opposite;  // [half-edge]; kNone: mesh boundary
+  std::vector<std::uint32_t> instance;  // [corner], 0 to num_instances - 1
   std::uint32_t num_instances = 0;
 };
 
@@ -33,9 +33,9 @@ inline std::uint32_t turn_right(const HalfEdges& mesh, std::uint32_t h) {
   return opposite == HalfEdges::kNone ? HalfEdges::kNone : next_corner(opposite);
 }
 
-// Half-edges a->b and b->a are glued in pairs, in the order of their triangles; what is left
-// over is boundary. Triangles must not be degenerate; indices are below num_vertices and there
-// are fewer than 2^32 / 3 triangles.
+// Glues half-edges a->b and b->a in pairs, in the order of their triangles; unpaired half-edges
+// are boundary. Triangles must not be degenerate; indices must be below num_vertices, and there
+// must be fewer than 2^32 / 3 triangles.
 HalfEdges build_half_edges(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
 }  // namespace rlpc

@@ -37,7 +37,7 @@ TEST(HalfEdges, ClosedSurfaceHasNoBoundaryAndOneInstancePerVertex) {
   EXPECT_EQ(mesh.num_instances, 4U);
 }
 
-TEST(HalfEdges, FansThatMeetInAVertexAreInstances) {
+TEST(HalfEdges, FansThatMeetInAVertexAreSeparateInstances) {
   const Triangles bow_tie{{0, 1, 2}, {0, 3, 4}};
   const HalfEdges mesh = build_half_edges(5, bow_tie);
   EXPECT_EQ(num_boundary_edges(mesh), 6U);

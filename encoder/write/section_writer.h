@@ -1,4 +1,4 @@
-// A section of a unit (9.3), writing side: what decoder/parse/section_reader.h reads.
+// Writes a section of a unit (9.3); the counterpart of decoder/parse/section_reader.h.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ class SectionWriter {
       if (!more) break;
     }
   }
-  // The section is spent.
+  // Ends the section and returns its bytes; the writer cannot be used afterwards.
   std::vector<std::uint8_t> finish() { return re_.finish(); }
 
  private:

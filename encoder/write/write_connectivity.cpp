@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kNone = HalfEdges::kNone;
 
-// Tried in turn; irregular meshes prefer small ones, grids and subdivided meshes large ones.
+// All are tried. Small values suit irregular meshes, large ones grids and subdivided meshes.
 constexpr std::array<std::uint32_t, 4> kUrgentDegrees{3, 4, 5, 6};
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
@@ -26,8 +26,8 @@ struct Input {
   std::uint32_t num_vertices = 0;
   std::vector<Triangle> regular;
   std::vector<Triangle> degenerate;
-  HalfEdges half_edges;       // of `regular`
-  bool vertex_reuse = false;  // some vertex has several instances
+  HalfEdges half_edges;       // of the triangles in `regular`
+  bool vertex_reuse = false;  // whether any vertex has several instances
 };
 
 Input analyse_input(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
@@ -72,11 +72,11 @@ class ConnectivityWriter {
   CutBorder border_;
   ConnectivityModels models_;
   ConnectivityCode code_;
-  std::vector<std::uint32_t> decoded_vertex_;  // of each input vertex
-  std::vector<bool> instance_decoded_;         // of each vertex instance
-  std::vector<bool> triangle_decoded_;         // of each regular triangle
-  std::vector<std::uint32_t> half_edge_of_;    // of each node: the half-edge on its edge
-  std::vector<std::uint32_t> node_of_;         // the inverse, as far as it is known
+  std::vector<std::uint32_t> decoded_vertex_;  // [input vertex]
+  std::vector<bool> instance_decoded_;         // [vertex instance]
+  std::vector<bool> triangle_decoded_;         // [regular triangle]
+  std::vector<std::uint32_t> half_edge_of_;    // [node], the half-edge on its edge
+  std::vector<std::uint32_t> node_of_;         // [half-edge], the inverse where known
   std::uint32_t first_open_triangle_ = 0;
 };
 
@@ -241,9 +241,9 @@ void ConnectivityWriter::degenerate_triangle(const Triangle& triangle) {
   code_.triangles.push_back(decoded);
 }
 
-// The border node at the vertex that half-edge `third` starts from, in the part of the border
-// that the triangle of `third` reaches into: turns around that vertex, both ways at once,
-// through triangles not decoded yet.
+// The border node at the vertex where half-edge `third` starts, in the part of the border that
+// the triangle of `third` touches. Walks around that vertex in both directions in lockstep,
+// through triangles not yet decoded.
 std::uint32_t ConnectivityWriter::find_target(std::uint32_t third) const {
   std::uint32_t left = third;
   std::uint32_t right = third;
@@ -261,7 +261,7 @@ std::uint32_t ConnectivityWriter::find_target(std::uint32_t third) const {
   }
 }
 
-// The node now stands for the edge opposite to a half-edge just decoded.
+// Sets the edge of a node: the one opposite to a half-edge just decoded.
 void ConnectivityWriter::cover(std::uint32_t node, std::uint32_t decoded_half_edge) {
   if (half_edge_of_.size() <= node) half_edge_of_.resize(std::size_t{node} + 1, kNone);
   const std::uint32_t h = mesh_.opposite[decoded_half_edge];
@@ -269,7 +269,7 @@ void ConnectivityWriter::cover(std::uint32_t node, std::uint32_t decoded_half_ed
   if (h != kNone) node_of_[h] = node;
 }
 
-// Vertices without a regular triangle come last, in the order of the input.
+// Numbers the vertices without a regular triangle last, in input order.
 void ConnectivityWriter::number_leftover_vertices() {
   for (std::uint32_t i = 0; i < input_.num_vertices; ++i) {
     if (decoded_vertex_[i] != kNone) continue;

@@ -1,4 +1,4 @@
-// 6.5 gof( ), writing side: what every kind of GOF begins with.
+// 6.5 gof( ), writing side: the elements common to all kinds of GOF.
 #pragma once
 
 #include <cstdint>

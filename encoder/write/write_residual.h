@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// 9.5.1 ae_residual( models, expected ); |value| <= kMaxResidual. Coder: RangeEncoder, or what
-// only counts (encoder/write/bit_cost.h).
+// 9.5.1 ae_residual( models, expected ); |value| <= kMaxResidual. Coder: RangeEncoder, or a
+// class of encoder/write/bit_cost.h.
 template <class Coder>
 void write_residual(Coder& re, ResidualModels& models, std::uint32_t expected,
                     std::int32_t value) {

@@ -45,7 +45,7 @@ std::vector<std::uint8_t> write_bone_section(const SkinnedGof& gof, int position
   return section.finish();
 }
 
-// 6.12 slice_unit( ), one after the other.
+// 6.12 slice_unit( ): writes the slices of a GOF in order.
 class SliceWriter {
  public:
   SliceWriter(const SkinnedGof& gof, const CodedMesh& mesh)

@@ -1,4 +1,4 @@
-// 6.11 and 6.12: bones of a GOF, and slices, writing side.
+// 6.11 and 6.12 Skinned GOFs and their slices, writing side.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace rlpc {
 
-// Payloads of the unit of a skinned GOF and of its slice units. All values must be legal
-// (asserted). gof.slice_layers says which slices are written.
+// Payloads of the GOF unit and the slice units of a skinned GOF.
 struct SkinnedGofPayloads {
   std::vector<std::uint8_t> gof;
   std::vector<std::vector<std::uint8_t>> slices;
 };
+// Writes the slices that gof.slice_layers lists. All values must be legal, which is asserted.
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
                                      int position_bits);
 

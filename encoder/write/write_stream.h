@@ -1,5 +1,5 @@
-// 6.3, 6.6 and 6.10, writing side: with the units of common/syntax/write_units.h, all around
-// the GOFs.
+// 6.3, 6.6 and 6.10, writing side. Together with common/syntax/write_units.h, these are all
+// units except GOFs, slices and connectivity.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// All are payloads.
+// Each returns the payload of a unit.
 Bytes write_sequence_header(const SequenceHeader& header);
 Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex);
 Bytes write_metadata(std::string_view json);

@@ -1,4 +1,4 @@
-// Residuals of a track, writing side: what decoder/parse/parse_track.h reads.
+// Writes the residuals of a track; the counterpart of decoder/parse/parse_track.h.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: means of the tracks before, which go on. Coder: as of
-// write_residual.
+// frame_mean [num_gof_frames]: running means over the tracks, updated. Coder: as in
+// write_residual().
 template <class Coder>
 void write_track(Coder& re, ResidualModels& models, std::span<std::uint32_t> frame_mean,
                  std::span<const Vec3i> residuals) {
