@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// All of `text` as a number below 2^32.
+// Parses all of `text` as a number below 2^32.
 std::optional<std::uint32_t> parse_u32(std::string_view text) {
   std::uint32_t value = 0;
   const char* const last = text.data() + text.size();
@@ -29,7 +29,7 @@ std::optional<std::uint32_t> parse_u32(std::string_view text) {
   return value;
 }
 
-// "29.97" as 2997 / 100; at most 9 digits after the point.
+// Parses "29.97" as 2997 / 100; at most 9 digits after the point.
 std::optional<FrameRate> parse_decimal(std::string_view text) {
   const std::size_t point = text.find('.');
   const std::string_view fraction = text.substr(point + 1);

@@ -1,4 +1,4 @@
-// Animations as the encoder reads them: the same triangles in every frame, vertices that move.
+// The interface through which the encoder reads animations: fixed triangles, moving vertices.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@
 
 namespace rlpc {
 
-// One line for the user: the file; the line, byte or frame in it; what was expected, and what
-// to do.
+// One line for the user: the file, the place in it (line, byte or frame), what was expected,
+// and what to do.
 struct InputError {
   std::string message;
-  bool is_limit = false;  // the input may be fine, but exceeds a limit of the caller
+  bool is_limit = false;  // the input may be valid but exceeds a limit of the caller
 };
 template <class T>
 using InputResult = Result<T, InputError>;
 
-// Random access to the frames; at most one frame is held. Not thread safe.
+// Random access to the frames; most sources hold at most one frame in memory. Not thread-safe.
 class FrameSource {
  public:
   struct Shape {
@@ -46,18 +46,18 @@ class FrameSource {
   FrameRate frame_rate() const { return shape_.frame_rate; }
   // Every index is below num_vertices(). May be empty: a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
-  // For the user, one line each: what was dropped or merged.
+  // Notes for the user, one line each, about dropped or merged data.
   const std::vector<std::string>& notes() const { return shape_.notes; }
   // All files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
 
-  // Memory held by the source, estimated.
+  // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
 
-  // Positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, all finite on
-  // success. frame < num_frames(), in any order.
+  // Reads the positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, in
+  // units; all finite on success. frame < num_frames(), in any order.
   virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
-  // For messages: the name of the file that holds a frame.
+  // The name, for messages, of the file that holds a frame.
   virtual std::string file_of(std::uint32_t /*frame*/) const { return "input"; }
 
  protected:
@@ -85,8 +85,8 @@ inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 // Without a known extension, the format is detected from the contents.
 //
 // Frame rate: `frame_rate` if given; otherwise that of the .rlpd header, or of a comment "#
-// frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), which our
-// own writers leave there; otherwise that of the times of an MDD file; otherwise 30. The sample
+// frame_rate 30000/1001" in the (first) OBJ file ("comment frame_rate ..." in PLY), as rlpcdec
+// writes it; otherwise that of the times of an MDD file; otherwise 30. The sample
 // rate of a PC2 file is not a frame rate: it counts frames per sample, is 1 in nearly every
 // file regardless of the speed, and is not used. Animations of glTF are sampled at the frame
 // rate.
@@ -94,16 +94,17 @@ struct InputOptions {
   std::string path;
   std::string points;  // empty: none
   std::optional<FrameRate> frame_rate;
-  std::string animation{};  // of glTF: a name, an index from 0, or "all"; empty: the first
-  bool weld = true;         // of glTF: merge vertices that coincide in every frame
-  // Input that needs more is an error; estimated. Files may claim far more than they hold.
+  std::string animation{};  // glTF only: name, index from 0, or "all"; empty: the first
+  bool weld = true;         // glTF only: merge vertices that coincide in every frame
+  // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };
 
-// Checks what can be checked without reading every frame; read_frame() checks the rest.
+// Opens the input and checks it as far as possible without reading every frame; read_frame()
+// checks the rest.
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options);
 
-// Whether the format may hold several animations, and vertices to weld.
+// Whether the format may contain several animations, and vertices to weld.
 bool has_clips(const InputOptions& options);
 // An error if glTF options (animation, no welding) are set for other input.
 std::optional<InputError> check_gltf_options(const InputOptions& options);
@@ -111,8 +112,8 @@ std::optional<InputError> check_gltf_options(const InputOptions& options);
 // "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
 InputResult<FrameRate> parse_frame_rate(std::string_view text);
 
-// The rate meant by a number with about five digits: an integer, N * 1000 / 1001, or
-// thousandths. None outside 2 to 1000.
+// The nearest common frame rate: an integer, N * 1000 / 1001, or thousandths. For rates that
+// are known to about five digits; none outside 2 to 1000.
 std::optional<FrameRate> frame_rate_near(double frames_per_second);
 
 }  // namespace rlpc

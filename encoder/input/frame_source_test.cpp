@@ -29,7 +29,7 @@ void put_f32(std::string& bytes, float value) {
   put_u32(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
-// A point cache that claims these counts and holds these values.
+// A PC2 file with these counts in its header, and these values.
 std::string pc2(std::uint32_t points, std::uint32_t samples, const std::vector<float>& values) {
   std::string bytes("POINTCACHE2\0", 12);
   put_u32(bytes, 1);
@@ -45,7 +45,7 @@ void put_be(std::string& bytes, std::uint32_t value) {
   for (int i = 3; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i));
 }
 
-// The same of LightWave, with times that nobody reads.
+// An MDD file (LightWave) with unused times.
 std::string mdd(std::uint32_t points, std::uint32_t frames, std::size_t times,
                 const std::vector<float>& values) {
   std::string bytes;
@@ -56,7 +56,7 @@ std::string mdd(std::uint32_t points, std::uint32_t frames, std::size_t times,
   return bytes;
 }
 
-// Annex A with one triangle per three indices.
+// An .rlpd file (Annex A); three indices make a triangle.
 std::string rlpd(std::uint32_t vertices, std::uint32_t frames, std::int32_t log2_step,
                  const std::vector<std::uint32_t>& indices,
                  const std::vector<std::int32_t>& positions) {
@@ -88,7 +88,7 @@ class FrameSourceTest : public testing::Test {
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
   }
-  // The error of opening, else that of the first frame that fails, else "".
+  // The error of opening, otherwise that of the first bad frame, otherwise "".
   static std::string error_of(const InputOptions& options) {
     const auto source = open_frame_source(options);
     if (!source) return source.error().message;
@@ -156,7 +156,7 @@ TEST_F(FrameSourceTest, RefusesEveryOtherLengthOfAPointCache) {
   expect_error({mesh, put("b.pc2", good + "x"), {}}, "the file is too long");
 }
 
-TEST_F(FrameSourceTest, RefusesWhatIsNoPointCache) {
+TEST_F(FrameSourceTest, RefusesOtherFilesAsPointCaches) {
   const std::string mesh = put("a.obj", kTriangle);
   std::string bytes = pc2(3, 1, std::vector<float>(9));
   expect_error({mesh, path("none.pc2"), {}}, "none.pc2: no such file");
@@ -167,7 +167,7 @@ TEST_F(FrameSourceTest, RefusesWhatIsNoPointCache) {
   expect_error({path("none.obj"), path("b.pc2"), {}}, "none.obj: no such file");
 }
 
-TEST_F(FrameSourceTest, ReadsAPointCacheOfLightWave) {
+TEST_F(FrameSourceTest, ReadsAnMddPointCache) {
   const std::vector<float> values{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 1e30F};
   const std::string mesh = put("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   const auto source = open_frame_source({mesh, put("a.MDD", mdd(3, 2, 2, values)), {}});
@@ -181,7 +181,7 @@ TEST_F(FrameSourceTest, ReadsAPointCacheOfLightWave) {
   }
 }
 
-TEST_F(FrameSourceTest, RefusesBrokenPointCachesOfLightWave) {
+TEST_F(FrameSourceTest, RefusesBrokenMddPointCaches) {
   const std::string mesh = put("a.obj", kTriangle);
   std::vector<float> values(18);
   const std::string good = mdd(3, 2, 2, values);
@@ -200,7 +200,7 @@ TEST_F(FrameSourceTest, RefusesBrokenPointCachesOfLightWave) {
                "b.mdd: frame 1, vertex 0 (both from 0): y is not a number");
 }
 
-TEST_F(FrameSourceTest, TellsAPointCacheByWhatIsInIt) {
+TEST_F(FrameSourceTest, DetectsAPointCacheByItsContents) {
   const std::string mesh = put("a.obj", kTriangle);
   const std::vector<float> values{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   const std::string good = mdd(3, 2, 2, values);
@@ -218,7 +218,7 @@ TEST_F(FrameSourceTest, TellsAPointCacheByWhatIsInIt) {
   }
 }
 
-TEST_F(FrameSourceTest, RefusesOptionsOfGltfForOtherFiles) {
+TEST_F(FrameSourceTest, RefusesGltfOptionsForOtherFiles) {
   const std::string mesh = put("a.obj", kTriangle);
   const std::string points = put("a.pc2", pc2(3, 1, std::vector<float>(9)));
   for (const std::string& cache : {std::string(), points}) {
@@ -238,7 +238,7 @@ TEST_F(FrameSourceTest, KnowsTheFileOfAFrame) {
   EXPECT_EQ((*open_frame_source({decoded, "", {}}))->file_of(0), decoded);
 }
 
-TEST_F(FrameSourceTest, NamesFrameAndVertexThatAreNotFinite) {
+TEST_F(FrameSourceTest, NamesFrameAndVertexOfNonFiniteValues) {
   const std::string mesh = put("a.obj", kTriangle);
   std::vector<float> values(18);
   values[9 + 7] = kNan;
@@ -262,7 +262,7 @@ TEST_F(FrameSourceTest, SortsNumbersByValue) {
 
 class MeshSequenceTest : public FrameSourceTest {
  protected:
-  // A frame that can be told by its first coordinate.
+  // A frame that is identified by its first coordinate.
   static std::string frame(int number) {
     return "v " + std::to_string(number) + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   }
@@ -290,7 +290,7 @@ TEST_F(MeshSequenceTest, ReadsFolderGlobAndPattern) {
   for (const int n : {98, 99, 100}) {
     put("w_" + std::string(n < 100 ? "0" : "") + std::to_string(n) + ".obj", frame(n));
   }
-  put("w_7.obj", frame(7));  // not three digits, so not of the pattern
+  put("w_7.obj", frame(7));  // not three digits: does not match
   EXPECT_EQ(first_coordinates(path("w_%03d.obj")), (std::vector<float>{98, 99, 100}));
 }
 
@@ -313,7 +313,7 @@ TEST_F(MeshSequenceTest, ReadsEveryFormat) {
   for (const std::string name : {"off", "ply"}) {
     EXPECT_EQ(first_coordinates(path(name + "%d." + name)), (std::vector<float>{9, 10, 11}));
     EXPECT_EQ(first_coordinates(path(name + "*." + name)), (std::vector<float>{9, 10, 11}));
-    fs::rename(path(name + "9." + name), path(name));  // told by its content
+    fs::rename(path(name + "9." + name), path(name));  // detected by its contents
     EXPECT_EQ(first_coordinates(path(name)), (std::vector<float>{9}));
   }
   expect_error({folder_.string(), "", {}}, "has .off and .ply files; choose with a pattern");
@@ -321,7 +321,7 @@ TEST_F(MeshSequenceTest, ReadsEveryFormat) {
   EXPECT_EQ(first_coordinates(folder_.string()), (std::vector<float>{10, 11}));
 }
 
-TEST_F(MeshSequenceTest, TellsAnObjFileByItsContent) {
+TEST_F(MeshSequenceTest, DetectsAnObjFileByItsContents) {
   EXPECT_EQ(first_coordinates(put("mesh", "# by hand\n" + frame(3))), (std::vector<float>{3}));
   expect_error({put("text", "voila\n"), "", {}}, "unknown kind of file");
 }
@@ -332,7 +332,7 @@ TEST_F(MeshSequenceTest, NamesTheMissingFrame) {
                "f5.obj: this frame is missing, though f6.obj exists");
 }
 
-TEST_F(MeshSequenceTest, NotesWhatMayNotBeMeant) {
+TEST_F(MeshSequenceTest, NotesSuspiciousSequences) {
   const auto notes = [&] {
     const auto source = open_frame_source({folder_.string(), "", {}});
     return source ? (*source)->notes() : std::vector<std::string>{source.error().message};
@@ -347,7 +347,7 @@ TEST_F(MeshSequenceTest, NotesWhatMayNotBeMeant) {
   put("f10.obj", frame(10));
   put("backup.obj", frame(0));
   ASSERT_EQ(notes().size(), 1U);
-  EXPECT_NE(notes()[0].find("names are of different kinds"), std::string::npos) << notes()[0];
+  EXPECT_NE(notes()[0].find("names have different forms"), std::string::npos) << notes()[0];
 }
 
 TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {

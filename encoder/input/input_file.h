@@ -1,4 +1,4 @@
-// A regular file, or standard input as "-", read at offsets; every error names it.
+// Reads regular files and standard input ("-") at any offset, with errors that name the file.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ class InputFile {
   static InputResult<InputFile> open(const std::string& path,
                                      std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-  const std::string& path() const { return path_; }  // as from name_of_input()
+  const std::string& path() const { return path_; }  // for messages: see name_of_input()
   std::uint64_t size() const { return size_; }
-  // Memory held.
+  // Memory that the contents occupy.
   std::uint64_t memory_bytes() const { return stream_ ? 0 : size_; }
   // Fills `bytes`; offset + bytes.size() <= size().
   std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
@@ -35,23 +35,24 @@ class InputFile {
   std::unique_ptr<std::ifstream> stream_;  // none: standard input
 };
 
-// Without leading white space.
+// The text without leading white space.
 inline std::string_view after_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == text.npos ? std::string_view() : text.substr(first);
 }
 
-// The first bytes, at most 64; none if it cannot be read. Reads no more of standard input.
+// The first bytes of a file, at most 64; empty if it cannot be read. Reads no more of standard
+// input.
 std::string beginning_of(const std::string& path);
 
-// `size` bytes from `offset`, within the file.
+// Reads `size` bytes from `offset`, which must be within the file.
 InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::uint64_t size);
 
-// The whole file. Refuses empty files, and those of more than max_memory_bytes.
+// Reads the whole file. Errors: an empty file, or one of more than max_memory_bytes.
 InputResult<std::string> read_whole_file(const std::string& path,
                                          std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-// For messages: the memory limit is exceeded.
+// Text for messages: the memory limit is exceeded.
 std::string memory_problem(std::uint64_t max_memory_bytes);
 
 // An error for the first NaN or infinite value of a frame.

@@ -1,4 +1,4 @@
-// The input formats. A format is a definition next to its reader, and a line in
+// The table of input formats. Each format is defined next to its reader and listed in
 // input_format.cpp.
 #pragma once
 
@@ -40,9 +40,9 @@ struct InputFormat {
 // The most reliably recognised formats come first.
 std::span<const InputFormat* const> input_formats();
 
-// By the extension, otherwise by the contents; null: unknown.
+// The format by the extension, otherwise by the contents; null: unknown.
 const InputFormat* format_of(const std::string& path);
-// By the extension alone.
+// The format by the extension only; null: unknown.
 const InputFormat* format_of_extension(const std::string& path);
 
 // ".obj, .off or .ply": the extensions of formats of these kinds.

@@ -26,7 +26,7 @@ InputResult<SingleMesh> read_mesh(const std::string& path, std::uint64_t max_mem
   const InputError unknown{name + ": not a mesh (" +
                            extensions_text({InputFormat::Holds::kMesh}) +
                            "), by neither name nor contents"};
-  // Does not read all of standard input for this.
+  // Rejects unknown formats without reading all of standard input.
   if (path == "-" && !known && !beginning_of(path).empty()) return unknown;
   const auto text = read_whole_file(path, max_memory_bytes);
   if (!text) return text.error();

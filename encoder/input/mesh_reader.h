@@ -1,4 +1,4 @@
-// One mesh from one file: a frame of a sequence, or the mesh of a point cache.
+// Reads one mesh from one file: a frame of a sequence, or the mesh of a point cache.
 #pragma once
 
 #include <cstdint>
@@ -35,18 +35,18 @@ struct MeshLimit {
 // Whether the extension of a path is that of a mesh format.
 bool is_mesh_extension(const std::string& path);
 
-// By the extension, otherwise by the contents. Error: more than max_memory_bytes for the file
-// and what is in it, or a bad file.
+// Reads a mesh in the format given by the extension, otherwise by the contents. Errors: a bad
+// file; more than max_memory_bytes for the file and its mesh.
 InputResult<SingleMesh> read_mesh(const std::string& path,
                                   std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-// Of a source with the triangles of `mesh`. The frame rate: the one given, else that of the
-// mesh, else the usual one.
+// The shape of a source with the triangles of `mesh`. The frame rate is `frame_rate` if given,
+// otherwise that of the mesh, otherwise `usual`.
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual = {});
 
-// Of the last part of `path`, in lower case: ".obj" of "a/B.OBJ".
+// The extension of `path` in lower case: ".obj" for "a/B.OBJ".
 std::string lower_extension(const std::string& path);
 
 }  // namespace rlpc

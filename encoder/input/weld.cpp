@@ -21,7 +21,7 @@ Position position(std::span<const float> xyz, std::uint32_t vertex) {
   return {xyz[first], xyz[first + 1], xyz[first + 2]};
 }
 
-// A group of vertices that coincided so far, and a position where some of them are now.
+// The vertices of a group that share a position in the current frame.
 struct Part {
   std::uint32_t leader = 0;
   Position place{};
@@ -40,13 +40,14 @@ struct PartHash {
   }
 };
 
-// Splits the groups by one frame. leader[v] is the first vertex of the group of v.
+// Splits groups whose vertices differ in a frame. leader[v] is the first vertex of the group of
+// v.
 void split(std::span<const float> xyz, std::vector<std::uint32_t>& leader) {
   std::unordered_map<Part, std::uint32_t, PartHash> leader_of;
   for (std::uint32_t v = 0; v < leader.size(); ++v) {
     const Position place = position(xyz, v);
     if (place == position(xyz, leader[v])) continue;
-    // The first to leave leads all that move to the same position.
+    // The first vertex with a different position leads a new group of all that share it.
     leader[v] = leader_of.try_emplace({leader[v], place}, v).first->second;
   }
 }
@@ -74,7 +75,7 @@ class WeldedSource : public FrameSource {
 
  private:
   std::unique_ptr<FrameSource> source_;
-  std::vector<std::uint32_t> vertices_;  // of the source
+  std::vector<std::uint32_t> vertices_;  // [welded vertex], index in the source
   std::vector<float> all_;
 };
 

@@ -1,5 +1,5 @@
-// Merges vertices that coincide in every frame, as files have them along seams of normals and
-// textures.
+// Merges vertices that coincide in every frame, as many files duplicate them along seams of
+// normals and textures.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace rlpc {
 
-// Reads all frames. Vertices keep their order, that of the first of each group. Drops
-// degenerate triangles.
+// Reads all frames. Each group of coinciding vertices becomes one vertex, in the place of its
+// first. Drops degenerate triangles. Errors: those of the source.
 InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source);
 
 // Drops triangles with fewer than three distinct corners, and adds a note with their number.

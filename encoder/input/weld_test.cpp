@@ -56,7 +56,7 @@ std::vector<float> x_of(FrameSource& source, std::uint32_t frame) {
   return x;
 }
 
-TEST(Weld, JoinsOnlyWhatCoincidesInEveryFrame) {
+TEST(Weld, MergesOnlyVerticesThatCoincideInEveryFrame) {
   const Frames frames{{1, 1, 2, 1, 2, 1}, {1, 1, 2, 3, 2, 3}, {1, 1, 2, 4, 5, 4}};
   const auto source = welded(frames, {{0, 2, 3}, {1, 4, 5}});
   EXPECT_EQ(source->num_vertices(), 4U);
@@ -71,21 +71,21 @@ TEST(Weld, JoinsOnlyWhatCoincidesInEveryFrame) {
                                       "them apart"}));
 }
 
-TEST(Weld, TellsHowManyDegenerateTrianglesItDrops) {
+TEST(Weld, ReportsTheDegenerateTrianglesItDrops) {
   const auto source = welded({{0, 0, 1, 2}}, {{0, 1, 2}, {1, 2, 3}, {2, 3, 2}, {0, 2, 3}});
   EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
   EXPECT_EQ(source->notes().back(), "dropped 2 degenerate triangles");
   EXPECT_EQ(welded({{0, 0, 1}}, {{0, 1, 2}})->notes().back(), "dropped 1 degenerate triangle");
 }
 
-TEST(Weld, KeepsWhatIsApart) {
+TEST(Weld, KeepsDistinctVertices) {
   const auto source = welded({{1, 2, 3}}, {{2, 1, 0}});
   EXPECT_EQ(x_of(*source, 0), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{2, 1, 0}}));
   EXPECT_EQ(source->notes(), (std::vector<std::string>{"a note"}));
 }
 
-TEST(Weld, TakesBothZerosForTheSame) {
+TEST(Weld, TreatsBothZerosAsEqual) {
   const auto source = welded({{1, 0.0F, -0.0F, -0.0F, 0.0F}}, {});
   EXPECT_EQ(source->num_vertices(), 2U);
 }
@@ -97,7 +97,7 @@ TEST(Weld, PassesErrorsOn) {
   EXPECT_EQ(result.error().message, "frame 1");
 }
 
-TEST(Weld, IsThatOfComparingAllPairs) {
+TEST(Weld, AgreesWithComparingAllPairs) {
   constexpr unsigned kSeed = 1;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);

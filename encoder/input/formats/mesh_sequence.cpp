@@ -69,7 +69,7 @@ struct NumberedName {
     return prefix + digits + suffix;
   }
 
-  // The number for which with() yields this name.
+  // The number for which with() gives this name.
   std::optional<std::uint64_t> number_of(const std::string& name) const {
     if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
     std::uint64_t number = 0;
@@ -99,7 +99,7 @@ std::optional<NumberedName> parse_pattern(const std::string& name) {
   return result;
 }
 
-// A file name split at its last number.
+// A file name, split at its last number.
 struct NameParts {
   std::string_view before;
   std::optional<std::uint64_t> number;
@@ -127,7 +127,7 @@ std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
     const NameParts b = parts_of(paths[i]);
     if (a.before != b.before || a.after != b.after || !a.number || !b.number) {
       return {paths[i - 1] + " and " + paths[i] + " are frames " + std::to_string(i - 1) +
-              " and " + std::to_string(i) + ", though their names are of different kinds"};
+              " and " + std::to_string(i) + ", though their names have different forms"};
     }
     if (*b.number == *a.number + 1) continue;
     if (gaps++ == 0) first_gap = paths[i - 1] + " and " + paths[i];

@@ -12,13 +12,13 @@
 
 namespace rlpc {
 
-// Files of a sequence in frame order. Finding none, a gap in a numbered sequence, or several
-// formats in a folder is an error.
+// The files of a sequence in frame order. Errors: no file; a gap in a numbered pattern; several
+// formats in a folder.
 InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder);
 InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob);
 InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern);
 
-// Orders runs of digits by value: "frame2" before "frame10".
+// Compares names with runs of digits ordered by value: "frame2" before "frame10".
 bool natural_less(std::string_view a, std::string_view b);
 
 // One file per frame, at least one. The first is read now, the others on demand; their vertex

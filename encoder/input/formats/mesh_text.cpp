@@ -9,7 +9,7 @@ namespace rlpc {
 
 namespace {
 
-// For a number outside the range of floats: whether it is too small.
+// Whether a number outside the range of floats is too small rather than too large.
 bool rounds_to_zero(const char* first, const char* last) {
   double value = 0;
   if (std::from_chars(first, last, value).ec == std::errc()) return std::abs(value) < 1;

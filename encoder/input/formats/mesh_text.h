@@ -1,4 +1,4 @@
-// Words and numbers of text mesh formats.
+// Splits text mesh formats into words and numbers.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class TextWords {
   std::string_view next();
   // The next word of this or a later line; empty at the end.
   std::string_view next_of_any_line();
-  // The rest of this line, including a comment.
+  // The rest of this line, including any comment.
   std::string_view rest();
   void next_line();
   // Bytes from the start of the text.
@@ -39,10 +39,10 @@ class TextWords {
   std::uint64_t line_;
 };
 
-// Quoted, printable, and shortened for an error message.
+// A word for error messages: quoted, made printable, and shortened.
 std::string quoted(std::string_view word);
 
-// All of `word` as a finite float, rounded correctly; otherwise `problem` says what is wrong.
+// Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
 
 // The shortest text that parse_coordinate() reads as the same number.

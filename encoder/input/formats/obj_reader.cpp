@@ -55,7 +55,7 @@ class ObjParser {
            std::to_string(num_vertices()) + "; is the file complete?";
   }
 
-  // "v x y z"; the rest of the line is ignored.
+  // Reads "v x y z" and ignores the rest of the line.
   void read_vertex() {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
@@ -78,7 +78,7 @@ class ObjParser {
     return value;
   }
 
-  // "f a b c ...": a fan from the first corner.
+  // Reads "f a b c ..." as a fan from the first corner.
   void read_face() {
     Triangle fan{};
     std::size_t corners = 0;
@@ -98,7 +98,7 @@ class ObjParser {
     }
   }
 
-  // v, v/vt, v//vn or v/vt/vn; counted from 1, or from the last vertex backwards from -1.
+  // Parses v, v/vt, v//vn or v/vt/vn; v counts from 1, or backwards from the last vertex, -1.
   std::uint32_t parse_corner(std::string_view word) {
     const char* const last = word.data() + word.size();
     std::int64_t index = 0;
@@ -121,7 +121,8 @@ class ObjParser {
     return resolve(index);
   }
 
-  // Zero-based; an index above the vertices read so far is checked at the end of the file.
+  // The zero-based index. Vertices may follow: indices beyond them are checked at the end of
+  // the file.
   std::uint32_t resolve(std::int64_t index) {
     if (index == 0) fail(words_.line(), "vertex index 0; vertices are counted from 1");
     if (index > std::numeric_limits<std::uint32_t>::max() || index < -num_vertices()) {

@@ -53,7 +53,7 @@ TEST(ObjReader, AcceptsFacesBeforeTheirVertices) {
   EXPECT_EQ(triangles_of("f 1 2 3\n" + kThreeVertices), (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(ObjReader, IgnoresWhatIsNotGeometry) {
+TEST(ObjReader, IgnoresOtherKeywords) {
   const auto mesh = parse_obj(
       "\xEF\xBB\xBFmtllib a.mtl\r\n\r\n# a comment\r\no thing\r\n"
       "v 0 0 0 1 # with w\r\nv\t1 0 0 0.5 0.5 0.5\r\n  v +0 1e0 -.5\r\nvn 0 0 1\r\nvt 0 0\r\n"
@@ -67,16 +67,17 @@ TEST(ObjReader, IgnoresWhatIsNotGeometry) {
 TEST(ObjReader, JoinsContinuedLines) {
   EXPECT_EQ(triangles_of("v 0 0 \\\n0\nv 1 0 0\r\nv 0 1 0\nf 1 \\\r\n 2\\\n 3"),
             (std::vector<Triangle>{{0, 1, 2}}));
-  expect_error("v 0 0 \\\n0\nv 1 0 x\n", "a.obj:3: \"x\"");  // the joined line counts twice
+  expect_error("v 0 0 \\\n0\nv 1 0 x\n",
+               "a.obj:3: \"x\"");  // a joined line counts as two lines
 }
 
-TEST(ObjReader, AcceptsOldLineEnds) {
+TEST(ObjReader, AcceptsCarriageReturnsAsLineEnds) {
   EXPECT_EQ(triangles_of("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").size(), 1U);
   expect_error("v 0 0 0\rv 1 0\r", "a.obj:2: a vertex needs three coordinates");
 }
 
 TEST(ObjReader, RoundsNumbersCorrectly) {
-  // Just below and above the middle of two floats: rounding to double first would go wrong.
+  // Just below and above the midpoint of two floats: rounding to double first would be wrong.
   const auto mesh = parse_obj(
       "v 1.00000017881393432617187499 1.00000017881393432617187501 1e30\n"
       "v 1e-50 -1e-400 1.4e-45\n",
@@ -90,7 +91,7 @@ TEST(ObjReader, RoundsNumbersCorrectly) {
   EXPECT_EQ(mesh->xyz[5], std::numeric_limits<float>::denorm_min());
 }
 
-TEST(ObjReader, RefusesNumbersThatAreNotFinite) {
+TEST(ObjReader, RefusesNonFiniteNumbers) {
   expect_error("v 0 0 0\nv 0 nan 0\n", "a.obj:2: \"nan\" is not finite");
   expect_error("v inf 0 0\n", "a.obj:1: \"inf\" is not finite");
   expect_error("v 0 -infinity 0\n", "a.obj:1: \"-infinity\" is not finite");
@@ -98,7 +99,7 @@ TEST(ObjReader, RefusesNumbersThatAreNotFinite) {
   expect_error("v 0 0 -1e400\n", "a.obj:1: \"-1e400\" is too large");
 }
 
-TEST(ObjReader, RefusesWhatIsNotANumber) {
+TEST(ObjReader, RefusesInvalidNumbers) {
   expect_error("v 0 0 abc\n", "a.obj:1: \"abc\" is not a number");
   expect_error("v 0 0 0x10\n", "\"0x10\" is not a number");
   expect_error("v 0 0 1.5.2\n", "\"1.5.2\" is not a number");
@@ -124,7 +125,7 @@ TEST(ObjReader, RefusesBrokenFaces) {
   }
 }
 
-TEST(ObjReader, RefusesWhatIsNotText) {
+TEST(ObjReader, RefusesBinaryFiles) {
   expect_error(std::string("v 0 0 0\n\0\1", 10), "a zero byte at byte 8");
   expect_error(
       "\x7F"
@@ -142,7 +143,7 @@ TEST(ObjReader, RefusesMissingAndEmptyFiles) {
   EXPECT_NE(folder.error().message.find("not a regular file"), std::string::npos);
 }
 
-TEST(ObjReader, FindsTheFrameRateOfOurWriters) {
+TEST(ObjReader, ReadsTheFrameRateThatRlpcdecWrites) {
   const auto mesh =
       parse_obj("# frame_rate 30000/1001\n# frame_rate 5/1\n" + kThreeVertices, "a");
   ASSERT_TRUE(mesh);
@@ -153,8 +154,7 @@ TEST(ObjReader, FindsTheFrameRateOfOurWriters) {
   EXPECT_FALSE(other->frame_rate);
 }
 
-// Any text gives a mesh or an error, never a crash: all prefixes of a file with everything in
-// it.
+// Every prefix of a file with all features gives a mesh or an error, never a crash.
 TEST(ObjReader, SurvivesEveryPrefix) {
   const std::string text = kThreeVertices + "f 1/1 2//2 \\\n3/3/3 -1\n# end \\\nv 1 2 3 \\\r\n";
   for (std::size_t n = 0; n <= text.size(); ++n) {

@@ -26,8 +26,8 @@ class OffParser {
     const std::uint32_t vertices = read_number("the number of vertices");
     const std::uint32_t faces = read_number("the number of faces");
     if (vertices == 0) fail("no vertices");
-    // The third number of the line counts edges, and is ignored. "0 0 0" and a line end; "3 0 0
-    // 0" of a face is longer.
+    // The third number of the line, the number of edges, is ignored. A vertex takes at least 6
+    // bytes, "0 0 0" and a line end; a face, "3 0 0 0", takes more.
     if ((std::uint64_t{vertices} + faces) * 6 > std::uint64_t{bytes_} + 1) {
       fail(to_string(vertices) + " vertices and " + to_string(faces) +
            " faces do not fit the " + to_string(bytes_) +
@@ -55,7 +55,7 @@ class OffParser {
     }
   }
 
-  // On the line of counts, or at the start of a face.
+  // Reads a count of the header, or the number of corners of a face.
   std::uint32_t read_number(const std::string& what) {
     return parse_number(words_.next_of_any_line(), what);
   }
@@ -75,7 +75,7 @@ class OffParser {
     return 0;
   }
 
-  // "x y z", the rest of the line is ignored; skips blank lines and comments.
+  // Reads "x y z" and ignores the rest of the line; skips blank lines and comments.
   void read_vertex() {
     words_.next_line();
     std::string_view word = words_.next_of_any_line();
@@ -94,7 +94,7 @@ class OffParser {
     }
   }
 
-  // "n a b c ...", the rest of the line is ignored: a fan from the first corner.
+  // Reads "n a b c ..." as a fan from the first corner, and ignores the rest of the line.
   void read_face(std::uint32_t vertices) {
     words_.next_line();
     const std::uint32_t corners = read_number("the number of corners of a face");

@@ -21,7 +21,7 @@ bool is_ply_float(PlyType type);
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kF32;
-  std::optional<PlyType> length;  // of a list: the integer type of its length
+  std::optional<PlyType> length;  // lists only: the integer type of the length
 };
 
 struct PlyElement {
@@ -34,8 +34,8 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;     // in the order of the file
   std::optional<FrameRate> frame_rate;  // of "comment frame_rate N/D"
-  std::size_t body = 0;                 // its first byte, and the line that begins there
-  std::uint64_t body_line = 0;
+  std::size_t body = 0;                 // offset of the first byte after the header
+  std::uint64_t body_line = 0;          // number of the line that begins there
 };
 
 // name: for error messages.

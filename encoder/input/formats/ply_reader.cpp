@@ -19,7 +19,7 @@ namespace {
 
 using std::to_string;
 
-// The values of a text body, in order; zeros after an error.
+// Reads the values of a text body in order; gives zeros after an error.
 class TextBody {
  public:
   TextBody(std::string_view text, const PlyHeader& header)
@@ -29,7 +29,7 @@ class TextBody {
   std::string place() const { return ":" + to_string(line_); }
   const std::optional<std::string>& problem() const { return problem_; }
   std::uint64_t bytes_left() const { return bytes_ - words_.position(); }
-  // A value and a blank or line end, which is optional at the end of the file.
+  // The smallest size of a value: a character and a separator, which the last value may lack.
   static std::uint64_t least_bytes(PlyType) { return 2; }
   static std::uint64_t spare_bytes() { return 1; }
 
@@ -74,7 +74,7 @@ class TextBody {
   std::optional<std::string> problem_;
 };
 
-// The same for a binary body.
+// Reads the values of a binary body, with the same interface.
 class BinaryBody {
  public:
   BinaryBody(std::string_view text, const PlyHeader& header)
@@ -192,13 +192,13 @@ class PlyReader {
     return p.name == "vertex_indices" || p.name == "vertex_index";
   }
 
-  // Before allocating: whether the counts of the header are possible and usable.
+  // Checks, before memory is allocated, that the counts of the header are possible and usable.
   std::optional<InputError> check(const PlyElement& element) const {
     std::uint64_t row_bytes = 0;
     for (const PlyProperty& p : element.properties) {
       row_bytes += Body::least_bytes(p.length.value_or(p.type));
     }
-    // No overflow: a count has 32 bits, and a row has at most a few bytes for each line of the
+    // Cannot overflow: a count has 32 bits, and a row has only a few bytes per line of the
     // header.
     const std::uint64_t needed = row_bytes * element.count;
     if (needed > body_.bytes_left() + Body::spare_bytes()) {
@@ -255,7 +255,7 @@ class PlyReader {
     return length < 0 ? 0 : static_cast<std::uint64_t>(length);
   }
 
-  // A fan from the first corner.
+  // Splits the polygon into a fan from its first corner.
   void read_polygon(const PlyProperty& list) {
     const std::uint64_t corners = length_of(list);
     if (!failed() && corners < 3) {

@@ -72,7 +72,7 @@ TEST(PlyReader, ReadsEveryLineEndOfTheHeader) {
   }
 }
 
-TEST(PlyReader, SkipsWhatItDoesNotKnow) {
+TEST(PlyReader, SkipsUnknownElementsAndProperties) {
   expect_mesh(
       "ply\nformat ascii 1.0\ncomment by hand\nobj_info none\n"
       "element camera 2\nproperty list uchar float view\nproperty int id\n"
@@ -95,7 +95,7 @@ TEST(PlyReader, ReadsPointCloudsAndTheFrameRate) {
 }
 
 TEST(PlyReader, EveryProperPrefixFails) {
-  const std::string text = kText.substr(0, kText.size() - 1);  // but for the last line end
+  const std::string text = kText.substr(0, kText.size() - 1);  // without the last line end
   for (const std::string& whole : {text, binary(true), binary(false)}) {
     for (std::size_t n = 0; n < whole.size(); ++n) {
       const std::vector<char> exact(whole.begin(),

@@ -31,9 +31,9 @@ struct Layout {
   bool big_endian = false;
   std::int32_t points = 0;
   std::int32_t frames = 0;
-  std::uint64_t first_byte = 0;  // of the positions
-  // Start and sample rate of a PC2 file are finite. They are not used, but otherwise the file
-  // is probably damaged.
+  std::uint64_t first_byte = 0;  // offset of the positions
+  // Whether start and sample rate of a PC2 file are finite. They are not used, but if they are
+  // not finite, the file is probably damaged.
   bool has_rate = true;
 };
 
@@ -120,12 +120,12 @@ InputResult<Layout> read_header(InputFile& file, const std::string& mesh_path,
   if (is_pc2 || extension == ".pc2") return read_pc2_header(file);
   auto layout = read_mdd_header(file);
   if (extension == ".mdd") return layout;
-  // MDD is recognised only by matching numbers.
+  // MDD has no signature: the numbers of the header must match.
   if (layout && !check_layout(file, *layout, mesh_path, num_vertices)) return layout;
   return is_no_cache(file.path(), mesh_path, num_vertices);
 }
 
-// The beginning of standard input: PC2, or possibly MDD.
+// Whether standard input that begins with `begin` is PC2 or may be MDD.
 bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
   if (begin.starts_with(kPc2Magic)) return true;
   return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
@@ -133,9 +133,10 @@ bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
 
 // The times of an MDD file.
 struct FrameTimes {
-  // If they are evenly spaced seconds; other times are frame numbers, or meaningless.
+  // Set if the times are evenly spaced seconds; otherwise they are frame numbers or
+  // meaningless.
   std::optional<FrameRate> rate;
-  bool may_be_times = true;  // finite and not descending
+  bool may_be_times = true;  // they are finite and not descending
 };
 
 InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
@@ -155,7 +156,7 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
   }
   if (count < 2) return told;
   const double interval = (times.back() - times.front()) / static_cast<double>(count - 1);
-  constexpr double kUneven = 0.02;  // of an interval
+  constexpr double kUneven = 0.02;  // tolerance as a fraction of the interval
   for (std::size_t f = 0; f < count; ++f) {
     const double expected = times.front() + interval * static_cast<double>(f);
     if (!(std::abs(times[f] - expected) <= kUneven * interval)) return told;
@@ -168,8 +169,7 @@ float load_value(std::span<const char> bytes, std::size_t offset, const Layout& 
   return layout.big_endian ? load_f32_be(bytes, offset) : load_f32(bytes, offset);
 }
 
-// Whether the first frame is not the mesh itself, but the mesh turned from Y-up to Z-up or
-// back.
+// Whether the first frame differs from the mesh by a rotation from Y-up to Z-up or back.
 InputResult<bool> has_other_axes(InputFile& file, const Layout& layout,
                                  const std::vector<float>& mesh) {
   struct Axes {

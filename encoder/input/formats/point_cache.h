@@ -4,7 +4,7 @@
 // samples; then x, y, z of each point of each sample; 32-bit, little-endian.
 // MDD: int32 frames, int32 points, a float time for each frame; then x, y, z of each point of
 // each frame; 32-bit, big-endian.
-// Start and sample rate are not used (see InputOptions).
+// Start and sample rate of PC2 are not used (see InputOptions).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace rlpc {
 
-// PC2 is recognised by its beginning, MDD by its extension; anything else (standard input) is
-// MDD if its header matches the mesh and the file size.
+// PC2 is recognised by its signature, MDD by its extension. Other files, and standard input,
+// are MDD if the header matches the mesh and the file size.
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
     const std::optional<FrameRate>& frame_rate,

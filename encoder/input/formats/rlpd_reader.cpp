@@ -69,7 +69,7 @@ InputResult<RlpdHeader> read_header(InputFile& file) {
   return header;
 }
 
-// Frames present, from the size of the file.
+// The number of frames present, from the size of the file.
 InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader& header) {
   const std::string& path = file.path();
   if (header.num_vertices == 0) return InputError{path + ": no vertices (byte 8)"};
@@ -147,9 +147,9 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
   if (!header) return header.error();
   const auto frames = count_frames(*file, *header);
   if (!frames) return frames.error();
-  // Held as bytes and as triangles.
-  const std::uint64_t of_mesh = 24 * std::uint64_t{header->num_triangles};
-  if (of_mesh + file->memory_bytes() > max_memory_bytes) {
+  // Triangles are held twice, as bytes and as indices.
+  const std::uint64_t mesh_bytes = 24 * std::uint64_t{header->num_triangles};
+  if (mesh_bytes + file->memory_bytes() > max_memory_bytes) {
     return InputError{file->path() + ": " + memory_problem(max_memory_bytes)};
   }
   auto triangles = read_triangles(*file, *header);
@@ -157,7 +157,7 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
   FrameSource::Shape shape{header->num_vertices, *frames,
                            frame_rate.value_or(header->frame_rate), std::move(*triangles)};
   shape.files = {path};
-  shape.memory_bytes = of_mesh / 2 + file->memory_bytes();
+  shape.memory_bytes = mesh_bytes / 2 + file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
 }

@@ -1,4 +1,4 @@
-// Decoder output (Annex A) as input.
+// Reads decoder output (.rlpd, Annex A) as input.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// Reads the frames that are present, which may be fewer than the header announces.
+// Reads the frames that are present, which may be fewer than the header states.
 InputResult<std::unique_ptr<FrameSource>> open_rlpd(
     const std::string& path, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);

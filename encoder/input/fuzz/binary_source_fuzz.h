@@ -1,4 +1,5 @@
-// What the fuzz targets of the binary readers share: inputs as files, and a source read whole.
+// Shared by the fuzz targets of the binary readers: inputs as files, and reading a whole
+// source.
 #pragma once
 
 #include <sys/mman.h>
@@ -15,7 +16,7 @@
 
 namespace rlpc {
 
-// A file in memory, for readers that want a path.
+// A file in memory, for readers that require a path.
 class MemoryFile {
  public:
   explicit MemoryFile(std::span<const std::uint8_t> bytes)
@@ -35,7 +36,7 @@ class MemoryFile {
   std::string path_;
 };
 
-// Reads every frame; those that the source gives are finite.
+// Reads every frame and checks that all values are finite.
 inline void read_all_frames(FrameSource& source) {
   fuzz_check(source.num_vertices() >= 1 && source.num_frames() >= 1);
   for (const Triangle& t : source.triangles()) {

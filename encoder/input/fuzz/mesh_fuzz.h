@@ -1,4 +1,5 @@
-// What the fuzz targets of the mesh readers check; files are called "fuzz.mesh".
+// Shared by the fuzz targets of the mesh readers: the properties they check. Files are called
+// "fuzz.mesh".
 #pragma once
 
 #include <cmath>

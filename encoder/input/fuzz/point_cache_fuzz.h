@@ -1,5 +1,5 @@
-// A point cache of any content for a mesh of 1 to 256 vertices. Input: vertices minus 1, 1
-// byte; the point cache.
+// Shared by the fuzz targets of point caches: a mesh of 1 to 256 vertices with a point cache.
+// Input: number of vertices minus 1, 1 byte; the contents of the point cache.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// `extension`: of the name that the cache is given.
+// extension: that of the point cache file.
 inline void read_point_cache(const std::uint8_t* data, std::size_t size,
                              const std::string& extension) {
   FuzzInput input(data, size);

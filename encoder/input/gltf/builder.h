@@ -1,4 +1,4 @@
-// Small glTF documents for tests.
+// Builds small glTF documents for tests.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// The document is `json`, to be added to and broken; its one buffer is `bytes`.
+// The document is `json`, which tests may modify freely; its only buffer is `bytes`.
 class GltfBuilder {
  public:
   GltfBuilder() {
@@ -20,8 +20,7 @@ class GltfBuilder {
             {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
   }
 
-  // A buffer view, and an accessor of it of "VEC3" or another type. T is that of the
-  // components.
+  // Adds a buffer view and an accessor of type "VEC3" or another; T is the component type.
   template <class T>
   std::size_t add(const char* type, const std::vector<T>& values) {
     json["accessors"].push_back({{"bufferView", add_view(values)},
@@ -30,7 +29,7 @@ class GltfBuilder {
                                  {"type", type}});
     return json["accessors"].size() - 1;
   }
-  // Of small integers that stand for -1 to 1, or 0 to 1.
+  // The same for small integers that represent -1 to 1, or 0 to 1.
   template <class T>
   std::size_t add_normalized(const char* type, const std::vector<T>& values) {
     const std::size_t accessor = add(type, values);
@@ -47,7 +46,7 @@ class GltfBuilder {
     return json["bufferViews"].size() - 1;
   }
 
-  // Each gives the index of what it adds.
+  // Each returns the index of what it adds.
   std::size_t add_mesh(const nlohmann::json& primitive) {
     return push("meshes", {{"primitives", {primitive}}});
   }
@@ -60,7 +59,7 @@ class GltfBuilder {
     json[array].push_back(element);
     return json[array].size() - 1;
   }
-  // To the last animation: a channel and a sampler of its own.
+  // Adds a channel, with its own sampler, to the last animation.
   void add_channel(std::size_t node, const char* path, std::size_t input, std::size_t output,
                    const char* interpolation) {
     nlohmann::json& animation = json["animations"].back();
@@ -79,7 +78,7 @@ class GltfBuilder {
     if (!data.empty()) file += word(data.size()) + std::string("BIN\0", 4) + data;
     return file;
   }
-  // The buffer in a file of its own.
+  // The document with its buffer in a separate file.
   std::string gltf(const std::string& uri) const {
     nlohmann::json whole = with_buffer();
     whole["buffers"][0]["uri"] = uri;

@@ -24,7 +24,7 @@ void check_ascending(const std::vector<float>& times, std::uint32_t accessor,
   }
 }
 
-// No value may be the zero quaternion.
+// Rejects zero quaternions.
 void check_rotations(const GltfTrack& track, std::uint32_t accessor, GltfErrors& errors) {
   const bool cubic = track.interpolation == GltfInterpolation::kCubicSpline;
   for (std::size_t i = cubic ? 1 : 0; i < track.values.size() / 4; i += cubic ? 3 : 1) {

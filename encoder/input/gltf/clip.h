@@ -19,24 +19,26 @@ struct GltfClip {
   };
 
   std::vector<Channel> channels;
-  double start = 0.0;  // seconds: the first time of any track, and the last
-  double end = 0.0;
+  double start = 0.0;  // first time of all tracks, seconds
+  double end = 0.0;    // last time of all tracks
 
-  // Frames from the start to the end, with a tolerance of a thousandth of a frame, and of the
+  // Number of frames from start to end, with a tolerance of a thousandth of a frame plus the
   // rounding of times to 32-bit floats.
   double num_frames(const FrameRate& rate) const;
-  // Rounded like the times of keys, so that a frame at a key matches it exactly.
+  // The time of a frame, rounded like the times of keys so that a frame at a key matches it
+  // exactly.
   double time_of(std::uint32_t frame, const FrameRate& rate) const;
 };
 
-// For messages: the first ones, quoted.
+// The first animation names, quoted, for messages.
 std::string gltf_animation_names(const GltfDocument& document);
 
-// The animations that `name` selects: "" the first if any, "all", a name, or an index from 0.
+// The animations that `name` selects: a name, an index from 0, "all", or "" for the first if
+// any.
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                                              const std::string& name, GltfErrors& errors);
 
-// Complete only if there are no errors.
+// Reads an animation; complete only if there are no errors.
 GltfClip read_gltf_clip(const GltfDocument& document, std::uint32_t animation,
                         GltfValues& values, GltfErrors& errors);
 

@@ -1,4 +1,4 @@
-// What the tests of glTF input have in common: documents as files, and what is read of them.
+// Shared by the tests of glTF input: writes documents as files and reads them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class GltfFilesTest : public testing::Test {
     return path.string();
   }
 
-  // Without welding, unless asked for.
+  // Opens the document, by default without welding.
   std::unique_ptr<FrameSource> open(const GltfBuilder& builder,
                                     const std::string& animation = "", bool weld = false,
                                     FrameRate rate = {}) const {
@@ -55,7 +55,7 @@ class GltfFilesTest : public testing::Test {
     for (std::size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], want[i], 1e-6) << i;
   }
 
-  // The error of opening, else that of the first frame that fails, else "".
+  // The error of opening, otherwise that of the first bad frame, otherwise "".
   static std::string error_of_file(const std::string& path, const std::string& animation = "",
                                    const GltfLimits& limits = {}) {
     const auto source = open_gltf({path, "", {}, animation, true}, limits);
@@ -78,7 +78,7 @@ class GltfFilesTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-// Corners of the triangle that most of these tests move.
+// Corners of the triangle that most tests animate.
 inline const std::vector<float> kCorners{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
 // One triangle without indices, as the mesh of the only root, node 0.

@@ -1,4 +1,4 @@
-// glTF files of others against bakes made by others, where these files are.
+// Compares third-party glTF files with point caches baked by other software, where available.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kPc2HeaderBytes = 32;
 
-// A point cache, without the triangles that its reader asks for.
+// A point cache without a mesh, which our reader would require.
 struct Bake {
   explicit Bake(const std::string& path) : text(*read_whole_file(path)) {}
   std::uint32_t num_vertices() const { return load_u32(text, 16); }
@@ -29,7 +29,7 @@ struct Bake {
   std::string text;
 };
 
-// Of the box around all frames.
+// The diagonal of the box around all frames.
 double diagonal_of(const Bake& bake) {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,4 @@
-// Documents that lie, whatever they lie about: an error, and neither memory nor time without
-// end.
+// Documents with false claims of any kind give an error in bounded memory and time.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +31,7 @@ TEST_F(GltfClaimsTest, EveryProperPrefixFails) {
   }
 }
 
-TEST_F(GltfClaimsTest, DepthExhaustsNoStack) {
+TEST_F(GltfClaimsTest, DeepNestingDoesNotExhaustTheStack) {
   const std::size_t depth = 1000000;
   const std::string deep = std::string(depth, '[') + std::string(depth, ']');
   expect_text(error_of_file(put("a.gltf", deep)), "expected an object");
@@ -46,8 +45,8 @@ TEST_F(GltfClaimsTest, DepthExhaustsNoStack) {
   EXPECT_EQ(error_of(builder), "");
 }
 
-// Each value of a document that has everything, replaced by what it should not be.
-TEST_F(GltfClaimsTest, EveryValueMayBeAnything) {
+// Replaces each value of a document with all features by an invalid one.
+TEST_F(GltfClaimsTest, SurvivesAnyReplacedValue) {
   GltfBuilder good = moving_triangle();
   Json& primitive = good.json["meshes"][0]["primitives"][0];
   primitive["attributes"]["JOINTS_0"] = good.add("VEC4", std::vector<std::uint8_t>(12));
@@ -103,7 +102,7 @@ TEST_F(GltfClaimsTest, ClaimsWithoutBytes) {
               "meshes[0].primitives[0]: found 833333334 vertices more, expected at most");
   builder.json["accessors"][0]["count"] = 50000001;
   expect_text(error_of(builder), "accessors[0].count: found 50000001, expected at most");
-  // Every node shows the mesh once more.
+  // Every node instantiates the mesh again.
   builder = one_triangle();
   for (int n = 0; n < 9; ++n) builder.add_root({{"mesh", 0}});
   GltfLimits limits;
@@ -114,7 +113,7 @@ TEST_F(GltfClaimsTest, ClaimsWithoutBytes) {
   limits = {};
   limits.max_triangles = 9;
   expect_text(error_of(builder, "", limits), "found more triangles, expected at most 9");
-  // The same bytes again and again.
+  // The same bytes are used repeatedly.
   builder = one_triangle();
   for (int t = 0; t < 99; ++t) {
     builder.json["meshes"][0]["primitives"][0]["targets"].push_back({{"POSITION", 0}});
@@ -133,7 +132,7 @@ TEST_F(GltfClaimsTest, ClaimsWithoutBytes) {
               "accessors[1].count: found 3000, expected at most");
 }
 
-// Many nodes with many targets or joints: neither memory nor time is their product.
+// Memory and time do not grow with the product of nodes and targets or joints.
 TEST_F(GltfClaimsTest, ProductsOfCounts) {
   constexpr std::size_t kMany = 30000;
   GltfBuilder builder = one_triangle();
@@ -147,7 +146,7 @@ TEST_F(GltfClaimsTest, ProductsOfCounts) {
   EXPECT_EQ(error_of(builder), "");
 }
 
-// Whatever the limit of memory is, it ends in an error or in a source that says what it takes.
+// Any memory limit gives an error, or a source that reports its memory correctly.
 TEST_F(GltfClaimsTest, MemoryHasALimit) {
   GltfBuilder builder = moving_triangle();
   Json& primitive = builder.json["meshes"][0]["primitives"][0];
@@ -174,7 +173,7 @@ TEST_F(GltfClaimsTest, MemoryHasALimit) {
   EXPECT_GT(refused, 100);
 }
 
-TEST_F(GltfClaimsTest, TimesWithoutEnd) {
+TEST_F(GltfClaimsTest, HugeTimes) {
   GltfBuilder builder = moving_triangle();
   const auto last = [&](float time) {
     GltfBuilder copy = builder;

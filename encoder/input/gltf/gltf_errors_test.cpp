@@ -1,4 +1,4 @@
-// What is wrong with a glTF document is told with its place, what was found and what expected.
+// Errors of glTF documents state the place, what was found and what was expected.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class GltfErrorsTest : public GltfFilesTest {
     EXPECT_TRUE(error.starts_with((folder_ / "a.glb: ").string())) << error;
     expect_text(error, part);
   }
-  // Changes a document that is good in one way.
+  // Modifies a valid document in one place.
   void expect_broken(const GltfBuilder& good, const std::function<void(Json&)>& change,
                      const std::string& part) const {
     GltfBuilder builder = good;
@@ -32,7 +32,7 @@ class GltfErrorsTest : public GltfFilesTest {
   }
 };
 
-TEST_F(GltfErrorsTest, ContainersThatLie) {
+TEST_F(GltfErrorsTest, InconsistentContainers) {
   const std::string good = one_triangle().glb();
   const auto expect_changed = [&](std::size_t at, const std::string& bytes,
                                   const std::string& part) {
@@ -74,7 +74,7 @@ TEST_F(GltfErrorsTest, ExtensionsThatChangeTheMesh) {
       good, [](Json& j) { j["asset"]["minVersion"] = "2.1"; }, "asset.minVersion");
 }
 
-TEST_F(GltfErrorsTest, TypesOfJson) {
+TEST_F(GltfErrorsTest, WrongJsonTypes) {
   const GltfBuilder good = moving_triangle();
   const auto set = [](const char* pointer, const Json& value) {
     return [=](Json& json) { json[Json::json_pointer(pointer)] = value; };
@@ -115,7 +115,7 @@ TEST_F(GltfErrorsTest, TypesOfJson) {
   expect_broken(good, set("/animations/0/channels/0/target/node", 9), "target.node: found 9");
 }
 
-TEST_F(GltfErrorsTest, RangesThatLieOutsideOfTheirBuffers) {
+TEST_F(GltfErrorsTest, RangesOutsideTheirBuffers) {
   const GltfBuilder good = moving_triangle();
   const auto set = [](const char* pointer, const Json& value) {
     return [=](Json& json) { json[Json::json_pointer(pointer)] = value; };
@@ -148,7 +148,7 @@ TEST_F(GltfErrorsTest, RangesThatLieOutsideOfTheirBuffers) {
   expect_error(second, "buffers[1].uri: found nothing, expected a URI; only the first buffer");
 }
 
-TEST_F(GltfErrorsTest, BuffersThatAreNotThere) {
+TEST_F(GltfErrorsTest, MissingBuffers) {
   const GltfBuilder builder = one_triangle();
   const auto expect_uri = [&](const std::string& uri, const std::string& part) {
     expect_text(error_of_file(put("in/a.gltf", builder.gltf(uri))), part);
@@ -176,7 +176,7 @@ TEST_F(GltfErrorsTest, BuffersThatAreNotThere) {
   expect_uri("data:a/b;base64,AAAA", "buffers[0].byteLength: found 36, expected at most 3");
 }
 
-TEST_F(GltfErrorsTest, ValuesThatAreNotFinite) {
+TEST_F(GltfErrorsTest, NonFiniteValues) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   GltfBuilder builder = moving_triangle();
@@ -193,7 +193,7 @@ TEST_F(GltfErrorsTest, ValuesThatAreNotFinite) {
   EXPECT_NE(error_of_file(put("a.gltf", R"({"asset": {"version": "2.0"}, "a": 1e999})")), "");
 }
 
-TEST_F(GltfErrorsTest, NodesThatAreNoTree) {
+TEST_F(GltfErrorsTest, NodesThatAreNotATree) {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"] = {{{"children", {1, 2}}}, {{"mesh", 0}}, {{"children", {1}}}};
   expect_error(builder,
@@ -217,7 +217,7 @@ TEST_F(GltfErrorsTest, NodesThatAreNoTree) {
   expect_error(builder, "scenes: expected a mesh with triangles");
 }
 
-TEST_F(GltfErrorsTest, AnimationsThatCannotBe) {
+TEST_F(GltfErrorsTest, InvalidAnimations) {
   const GltfBuilder good = moving_triangle();
   const auto expect_sampler = [&](const char* part, const std::vector<float>& times,
                                   const std::vector<float>& values, const char* how = "LINEAR",
@@ -260,7 +260,7 @@ TEST_F(GltfErrorsTest, AnimationsThatCannotBe) {
   expect_text(error_of(one_triangle(), "all"), "no \"all\" there; the file has none");
 }
 
-TEST_F(GltfErrorsTest, MeshesThatCannotBe) {
+TEST_F(GltfErrorsTest, InvalidMeshes) {
   const auto with_indices = [](const std::vector<std::uint16_t>& indices, int mode) {
     GltfBuilder builder = one_triangle();
     Json& primitive = builder.json["meshes"][0]["primitives"][0];
@@ -298,7 +298,7 @@ TEST_F(GltfErrorsTest, MeshesThatCannotBe) {
   expect_error(builder, "accessors[0].sparse.count: found 4, expected an integer from 1 to 3");
 }
 
-TEST_F(GltfErrorsTest, SkinsThatCannotBe) {
+TEST_F(GltfErrorsTest, InvalidSkins) {
   GltfBuilder good = one_triangle();
   Json& attributes = good.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] = good.add("VEC4", std::vector<std::uint8_t>(12, 1));

@@ -34,7 +34,7 @@ TEST_F(GltfPrimitiveTest, ReadsEveryKindOfTriangles) {
   }
 }
 
-TEST_F(GltfPrimitiveTest, LeavesPointsAndLinesOutAndSaysSo) {
+TEST_F(GltfPrimitiveTest, DropsPointsAndLinesWithANote) {
   GltfBuilder builder = one_triangle();
   for (const int mode : {0, 1, 2, 3}) {
     builder.json["meshes"][0]["primitives"].push_back(
@@ -46,7 +46,7 @@ TEST_F(GltfPrimitiveTest, LeavesPointsAndLinesOutAndSaysSo) {
             (std::vector<std::string>{"dropped 4 primitives of points or lines"}));
 }
 
-// Two targets: the first moves vertex 1 along y, the second all along z.
+// Two targets: the first moves vertex 1 along y, the second moves all vertices along z.
 GltfBuilder with_targets() {
   GltfBuilder builder = one_triangle();
   const std::size_t up = builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 4, 0, 0, 0, 0});
@@ -104,7 +104,7 @@ TEST_F(GltfPrimitiveTest, ReadsSparseAccessors) {
   EXPECT_EQ(frame_of(*open(builder), 0), std::vector<float>(9));
 }
 
-TEST_F(GltfPrimitiveTest, ReadsIntegersAsKhrMeshQuantizationHasThem) {
+TEST_F(GltfPrimitiveTest, ReadsIntegersOfKhrMeshQuantization) {
   const auto positions_of = [&](const auto& integers, bool normalized) {
     GltfBuilder builder;
     builder.json["extensionsUsed"] = {"KHR_mesh_quantization"};
@@ -133,7 +133,8 @@ TEST_F(GltfPrimitiveTest, ReadsIntegersAsKhrMeshQuantizationHasThem) {
 
 TEST_F(GltfPrimitiveTest, FollowsStrides) {
   GltfBuilder builder;
-  const std::vector<float> both{0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0, 9};  // a number between
+  const std::vector<float> both{0, 0, 0, 9, 1, 0,
+                                0, 9, 0, 1, 0, 9};  // with an unused number in between
   builder.add("VEC3", both);
   builder.json["bufferViews"][0]["byteStride"] = 16;
   builder.json["accessors"][0]["count"] = 3;
@@ -141,7 +142,7 @@ TEST_F(GltfPrimitiveTest, FollowsStrides) {
   EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
 }
 
-// The triangle on two joints, 10 along x and 20 along y; the skin is bound where x is 1 less.
+// The triangle follows two joints, 10 along x and 20 along y; the bind pose is at x - 1.
 GltfBuilder with_skin(const std::vector<std::uint8_t>& joints,
                       const std::vector<float>& weights) {
   GltfBuilder builder = one_triangle();
@@ -157,7 +158,7 @@ GltfBuilder with_skin(const std::vector<std::uint8_t>& joints,
   builder.push("skins",
                {{"joints", {1, 2}}, {"inverseBindMatrices", builder.add("MAT4", inverse)}});
   builder.json["nodes"][0]["skin"] = 0;
-  builder.json["nodes"][0]["translation"] = {1000, 0, 0};  // which a skin does not follow
+  builder.json["nodes"][0]["translation"] = {1000, 0, 0};  // ignored by skins
   return builder;
 }
 
@@ -174,7 +175,7 @@ TEST_F(GltfPrimitiveTest, WeightsNeedNotAddUpToOne) {
             (std::vector<float>{11, 0, 0, 7, 10, 0, 1, 21, 0}));
 }
 
-TEST_F(GltfPrimitiveTest, TakesMoreSetsOfJoints) {
+TEST_F(GltfPrimitiveTest, ReadsSeveralSetsOfJoints) {
   GltfBuilder builder =
       with_skin(std::vector<std::uint8_t>(12), {.5F, 0, 0, 0, .5F, 0, 0, 0, 1, 0, 0, 0});
   Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
@@ -185,14 +186,14 @@ TEST_F(GltfPrimitiveTest, TakesMoreSetsOfJoints) {
   expect_near(frame_of(*open(builder), 0), {1 + 10 / 3.0F, 40 / 3.0F, 0, 12, 0, 0, 11, 1, 0});
 }
 
-TEST_F(GltfPrimitiveTest, BindsAsTheNodesAreWithoutInverseMatrices) {
+TEST_F(GltfPrimitiveTest, BindsToTheNodePoseWithoutInverseMatrices) {
   GltfBuilder builder =
       with_skin(std::vector<std::uint8_t>(12), {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   builder.json["skins"][0].erase("inverseBindMatrices");
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{10, 0, 0, 11, 0, 0, 10, 1, 0}));
 }
 
-TEST_F(GltfPrimitiveTest, SkinsWhatTargetsHaveMoved) {
+TEST_F(GltfPrimitiveTest, AppliesSkinsAfterMorphTargets) {
   GltfBuilder builder =
       with_skin(std::vector<std::uint8_t>(12, 1), {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   builder.json["nodes"][2]["rotation"] = {0, 0, 1, 0};  // half a turn
@@ -202,7 +203,7 @@ TEST_F(GltfPrimitiveTest, SkinsWhatTargetsHaveMoved) {
   expect_near(frame_of(*open(builder), 0), {-1, 20, 0, -2, 16, 0, -1, 19, 0});
 }
 
-TEST_F(GltfPrimitiveTest, AnimatesJointsThatAreInNoScene) {
+TEST_F(GltfPrimitiveTest, AnimatesJointsOutsideTheScene) {
   GltfBuilder builder =
       with_skin(std::vector<std::uint8_t>(12), {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   builder.json["scenes"][0]["nodes"] = {0};
@@ -214,7 +215,7 @@ TEST_F(GltfPrimitiveTest, AnimatesJointsThatAreInNoScene) {
             (std::vector<float>{1, 0, 4, 2, 0, 4, 1, 1, 4}));
 }
 
-TEST_F(GltfPrimitiveTest, DropsTrianglesWithoutThreeCornersInAnyCase) {
+TEST_F(GltfPrimitiveTest, AlwaysDropsTrianglesWithoutThreeDistinctCorners) {
   GltfBuilder builder = one_triangle();
   builder.json["meshes"][0]["primitives"][0]["indices"] =
       builder.add("SCALAR", std::vector<std::uint32_t>{0, 1, 1, 2, 1, 0});

@@ -27,7 +27,7 @@ TEST_F(GltfSourceTest, ReadsAMeshWithoutAnimationAsOneFrame) {
   EXPECT_EQ(frame_of(*source, 0), kCorners);
 }
 
-TEST_F(GltfSourceTest, TellsTheContainerByContent) {
+TEST_F(GltfSourceTest, DetectsTheContainerByItsContents) {
   const GltfBuilder builder = one_triangle();
   for (const char* name : {"a.glb", "a.gltf", "a.GLB", "a.model", "a"}) {
     const auto source = open_frame_source({put(name, builder.glb()), "", {}});
@@ -97,13 +97,13 @@ TEST_F(GltfSourceTest, PutsVerticesInTheOrderOfTheScene) {
   EXPECT_EQ(open(builder)->num_vertices(), 24U);  // all roots, node 2 among them
 }
 
-TEST_F(GltfSourceTest, TurnsTrianglesOfMirroringNodes) {
+TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodes) {
   GltfBuilder builder = one_triangle();
   builder.add_root({{"mesh", 0}, {"scale", {1, -1, 1}}});
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 1, 2}, {3, 5, 4}}));
 }
 
-TEST_F(GltfSourceTest, TakesMatricesOfNodes) {
+TEST_F(GltfSourceTest, AppliesMatricesOfNodes) {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"][0]["matrix"] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 6, 7, 5, 8, 7, 3, 6, 7}));
@@ -177,12 +177,12 @@ TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
   track("scale", "VEC3", {1, 1, 1, 3, 3, 3}, "LINEAR");
   track("translation", "VEC3", {0, 0, 5, 9, 9, 9}, "STEP");
   const auto source = open(builder, "", false, {1, 1});
-  // Half way: 90 degrees, twice the size, not yet elsewhere.
+  // Half way: rotated by 90 degrees, twice the size, translation not yet applied.
   expect_near(frame_of(*source, 1), {0, 0, 5, 0, 2, 5, -2, 0, 5});
   expect_near(frame_of(*source, 2), {9, 9, 9, 6, 9, 9, 9, 6, 9});
 }
 
-TEST_F(GltfSourceTest, TakesRotationsInNormalizedIntegers) {
+TEST_F(GltfSourceTest, ReadsRotationsAsNormalizedIntegers) {
   GltfBuilder builder = one_triangle();
   builder.push("animations", Json::object());
   const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
@@ -191,7 +191,7 @@ TEST_F(GltfSourceTest, TakesRotationsInNormalizedIntegers) {
   expect_near(frame_of(*open(builder, "", false, {1, 1}), 1), {0, 0, 0, 0, 1, 0, -1, 0, 0});
 }
 
-TEST_F(GltfSourceTest, LeavesOutWhatExtensionsMoveAndSaysSo) {
+TEST_F(GltfSourceTest, IgnoresAnimationByExtensionsWithANote) {
   GltfBuilder builder = moving_triangle();
   Json& channels = builder.json["animations"][0]["channels"];
   channels.push_back({{"sampler", 0},
@@ -205,7 +205,7 @@ TEST_F(GltfSourceTest, LeavesOutWhatExtensionsMoveAndSaysSo) {
                                       "dropped 1 animation channel of extensions"}));
 }
 
-TEST_F(GltfSourceTest, SaysWhatElseItLeavesOut) {
+TEST_F(GltfSourceTest, NotesOtherOmissions) {
   GltfBuilder builder = moving_triangle();
   builder.json["animations"].push_back(builder.json["animations"][0]);
   builder.json["animations"][1]["name"] = "Run";
@@ -241,7 +241,7 @@ TEST_F(GltfSourceTest, ListsWhatItDrops) {
                                 "textures, skeleton, cameras, lights, names of nodes"}));
 }
 
-TEST_F(GltfSourceTest, RefusesMeshesWithoutAnything) {
+TEST_F(GltfSourceTest, RefusesEmptyMeshes) {
   GltfBuilder builder = one_triangle();
   builder.json["accessors"][0].erase("bufferView");
   builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
@@ -255,9 +255,9 @@ TEST_F(GltfSourceTest, RefusesMeshesWithoutAnything) {
   EXPECT_EQ(open(flat)->triangles().size(), 1U);  // without welding, its corners differ
 }
 
-TEST_F(GltfSourceTest, WeldsUnlessToldNotTo) {
+TEST_F(GltfSourceTest, WeldsByDefault) {
   GltfBuilder builder;
-  // Two triangles with an edge in common, as six vertices; and one that is none.
+  // Two triangles that share an edge, as six vertices, and a degenerate one.
   const std::vector<float> xyz{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1,
                                0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0};
   builder.add_root(

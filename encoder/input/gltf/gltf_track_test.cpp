@@ -17,7 +17,7 @@ double sample_one(const GltfTrack& track, double time) {
   return value;
 }
 
-// A turn by `degrees` about z, of any length.
+// A rotation by `degrees` about z, as a quaternion of any length.
 std::vector<float> turn(double degrees, double length = 1.0) {
   const double half = degrees / 2 * 3.14159265358979323846 / 180;
   return {0, 0, static_cast<float>(std::sin(half) * length),
@@ -33,7 +33,7 @@ GltfTrack turns(const std::vector<std::vector<float>>& quaternions, Interpolatio
   return track;
 }
 
-// Degrees about z; q and -q are the same turn.
+// The angle about z in degrees; q and -q are the same rotation.
 double degrees_of(const GltfQuaternion& q) {
   EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1.0, 1e-12);
   return 2 * std::atan2(q[2], q[3]) * 180 / 3.14159265358979323846;
@@ -50,7 +50,7 @@ TEST(GltfTrack, StepsHoldEachValueUntilTheNext) {
   EXPECT_EQ(sample_one(track, 9), 30);
 }
 
-TEST(GltfTrack, LinearTracksAreStraightAndStayAtTheirEnds) {
+TEST(GltfTrack, LinearTracksAreStraightAndHeldAtTheirEnds) {
   const GltfTrack track{Interpolation::kLinear, 2, {1, 2, 4}, {10, 0, 20, 1, 40, -1}};
   std::vector<double> value(2);
   sample(track, 1.25, value);
@@ -81,14 +81,14 @@ TEST(GltfTrack, OneKeyIsAConstant) {
   EXPECT_EQ(sample_one({Interpolation::kCubicSpline, 1, {3}, {1, 7, 2}}, 4), 7);
 }
 
-TEST(GltfTrack, RotationsTurnEvenly) {
+TEST(GltfTrack, RotationsHaveConstantSpeed) {
   const GltfTrack track = turns({turn(10), turn(100)}, Interpolation::kLinear);
   for (const double t : {0.0, 0.1, 0.5, 0.9, 1.0}) {
     EXPECT_NEAR(degrees_of(sample_rotation(track, t)), 10 + 90 * t, 1e-4) << t;
   }
 }
 
-TEST(GltfTrack, RotationsGoTheShorterWayRound) {
+TEST(GltfTrack, RotationsTakeTheShorterArc) {
   std::vector<float> negative = turn(30);
   for (float& x : negative) x = -x;
   const GltfTrack track = turns({turn(-30), negative}, Interpolation::kLinear);
@@ -97,14 +97,14 @@ TEST(GltfTrack, RotationsGoTheShorterWayRound) {
   EXPECT_NEAR(std::abs(degrees_of(sample_rotation(far, 0.5))), 180, 1e-4);
 }
 
-TEST(GltfTrack, SmallAndLargeTurnsAreExact) {
+TEST(GltfTrack, SmallAndLargeRotationsAreExact) {
   for (const double degrees : {0.0, 1e-30, 1e-3, 89.0, 179.999}) {
     const GltfTrack track = turns({turn(0), turn(degrees)}, Interpolation::kLinear);
     EXPECT_NEAR(degrees_of(sample_rotation(track, 0.75)), 0.75 * degrees, 1e-4) << degrees;
   }
 }
 
-TEST(GltfTrack, RotationsNeedNoUnitLength) {
+TEST(GltfTrack, RotationsAreNormalised) {
   const GltfTrack linear = turns({turn(0, 0.5), turn(90, 3)}, Interpolation::kLinear);
   EXPECT_NEAR(degrees_of(sample_rotation(linear, 1.0 / 3)), 30, 1e-4);
   const GltfTrack step = turns({turn(40, 1e-20), turn(90)}, Interpolation::kStep);
@@ -125,7 +125,7 @@ TEST(GltfTrack, CubicRotationsHaveUnitLength) {
   EXPECT_NEAR(degrees_of(sample_rotation(track, 1)), 90, 1e-4);
 }
 
-TEST(GltfTrack, SlerpIsThatOfTheLibrary) {
+TEST(GltfTrack, SlerpAgreesWithTheLibrary) {
   constexpr unsigned kSeed = 1;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);

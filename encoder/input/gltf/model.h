@@ -1,4 +1,4 @@
-// A glTF document read completely: all that determines its vertices at any time.
+// A glTF document, read completely: everything that determines its vertices at any time.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// Limits of a document, in addition to memory. A few bytes can stand for any number of frames,
-// zeros or instances, so its size bounds nothing.
+// Limits of a document, in addition to memory. They are necessary because a few bytes can
+// describe any number of frames, zeros or instances.
 struct GltfLimits {
   std::uint64_t max_vertices = 3 * std::uint64_t{kLevels.back().max_triangles};  // not welded
   std::uint64_t max_triangles = 3 * std::uint64_t{kLevels.back().max_triangles};
@@ -28,9 +28,9 @@ struct GltfLimits {
 struct GltfModel {
   struct Skin {
     std::vector<std::uint32_t> joints;  // nodes
-    std::vector<Affine> inverse_bind;   // as many
+    std::vector<Affine> inverse_bind;   // [joint]
   };
-  // A primitive, placed by a node.
+  // A primitive in the scene, placed by a node.
   struct Instance {
     std::uint32_t node = 0;
     std::optional<std::uint32_t> skin;
@@ -39,7 +39,7 @@ struct GltfModel {
   };
 
   std::vector<GltfNode> nodes;
-  // Default weights of the targets of each mesh, for nodes without their own.
+  // [mesh], default weights of its targets, for nodes without weights of their own.
   std::vector<std::vector<double>> weights;
   GltfScene scene;
   std::vector<Skin> skins;
@@ -47,8 +47,8 @@ struct GltfModel {
   std::vector<GltfGeometry> geometries;
   std::vector<Instance> instances;
   std::uint64_t num_vertices = 0;
-  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate: "N/D", as our writer puts it
-  std::vector<std::string> notes;       // as FrameSource has them
+  std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
+  std::vector<std::string> notes;       // see FrameSource
   std::vector<std::string> files;       // likewise
   std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated
 };

@@ -4,7 +4,7 @@ namespace rlpc {
 
 namespace {
 
-// The properties of a node that tracks change.
+// The properties of a node that tracks can animate.
 struct Place {
   GltfVec3 translation;
   GltfQuaternion rotation;

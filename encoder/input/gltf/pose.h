@@ -1,4 +1,4 @@
-// The nodes of a glTF document at a time of a clip.
+// Evaluates the nodes of a glTF document at a time of a clip.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 namespace rlpc {
 
 struct GltfPose {
-  std::vector<Affine> to_scene;  // of each node
-  // For nodes whose weights the clip animates: [num_targets] of their meshes.
+  std::vector<Affine> to_scene;  // [node], its map to scene coordinates
+  // By node, for nodes whose weights are animated: [num_targets of the mesh].
   std::map<std::uint32_t, std::vector<double>> weights;
 };
 
-// The pose of the document, moved by the clip; null: not moved.
+// The pose at a time of the clip. clip: null for the pose without animation.
 GltfPose pose_of(const std::vector<GltfNode>& nodes, const GltfScene& scene,
                  const GltfClip* clip, double time);
 

@@ -77,7 +77,7 @@ class GeometryReader {
           geometry.influences.push_back({joints[set][i], weights[set][i]});
         }
       }
-      // Follows viewers for a vertex without any weight.
+      // A vertex without any weight follows its first joint, as in viewers.
       if (geometry.influences.size() == first) {
         geometry.influences.push_back({joints[0][4 * v], 1.0F});
       }
@@ -103,7 +103,7 @@ class GeometryReader {
     }
   }
 
-  // Vertices in the order in which they form triangles.
+  // The vertices in the order of the index list.
   std::vector<std::uint32_t> corners(std::uint32_t num_vertices) {
     if (!primitive_.indices) {
       std::vector<std::uint32_t> all(num_vertices);
@@ -185,7 +185,7 @@ void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& po
   for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {
     const GltfVec3 p{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
     GltfVec3 sum{};
-    double total = 0.0;  // integer or rounded weights do not add up to 1
+    double total = 0.0;  // may differ from 1 for integer or rounded weights
     for (auto i = geometry.first_influence[v]; i < geometry.first_influence[v + 1]; ++i) {
       const GltfInfluence& influence = geometry.influences[static_cast<std::size_t>(i)];
       const GltfVec3 moved = joints[influence.joint](p);

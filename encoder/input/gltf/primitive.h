@@ -1,4 +1,4 @@
-// Vertices and triangles of one primitive of a glTF mesh, and their positions in a pose.
+// Reads one primitive of a glTF mesh, and computes its positions in a pose.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// One of the joints that a vertex follows.
+// A joint that a vertex follows.
 struct GltfInfluence {
   std::uint32_t joint = 0;
   float weight = 0.0F;  // above 0
@@ -20,14 +20,14 @@ struct GltfInfluence {
 
 struct GltfGeometry {
   struct Target {
-    std::size_t number = 0;  // of the mesh
+    std::size_t number = 0;  // index among the targets of the mesh
     std::vector<GltfDelta> deltas;
   };
 
   std::vector<float> base;      // xyz per vertex
-  std::vector<Target> targets;  // those that move a vertex
-  // Of vertex v: from influences[first_influence[v]] up to, not including, that of v + 1; at
-  // least one. Both are empty without a skin.
+  std::vector<Target> targets;  // only those that move a vertex
+  // The influences of vertex v, at least one, are influences[first_influence[v]] up to, but not
+  // including, influences[first_influence[v + 1]]. Both are empty without a skin.
   std::vector<GltfInfluence> influences;
   std::vector<std::uint64_t> first_influence;
   std::vector<Triangle> triangles;
@@ -35,17 +35,18 @@ struct GltfGeometry {
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };
 
-// num_joints: of its skin; 0: none, and influences are not read. Joints and indices are in
-// range. Complete only if there are no errors.
+// num_joints: joints of the skin; 0: no skin, influences are not read. Joints and indices of
+// the result are in range. Complete only if there are no errors.
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
                                 GltfValues& values, GltfErrors& errors);
 
-// Base plus weighted targets, before nodes or joints are applied: 3 per vertex. Weights: of all
-// targets of the mesh.
+// Sets positions, 3 values per vertex, to base plus weighted targets, before nodes or joints
+// are applied. weights: [target of the mesh].
 void morph(const GltfGeometry& geometry, std::span<const double> weights,
            std::vector<double>& positions);
 
-// To the scene, by the map of a node, or by the weighted maps of the joints. out: 3 per vertex.
+// Maps positions to the scene, by the map of a node or the weighted maps of joints. out: 3
+// values per vertex.
 void place(const std::vector<double>& positions, const Affine& node, std::span<float> out);
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,
                      const std::vector<Affine>& joints, std::span<float> out);

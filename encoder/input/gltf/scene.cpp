@@ -38,14 +38,14 @@ std::vector<std::uint32_t> depth_first(const std::vector<GltfNode>& nodes,
   return order;
 }
 
-// If all nodes have at most one parent, and not all are below a root: one that is its own
-// ancestor.
+// A node that is its own ancestor. All nodes must have at most one parent, and not all may be
+// below a root.
 std::uint32_t node_of_cycle(const GltfScene& scene) {
   std::vector<bool> reached(scene.parent.size());
   for (const std::uint32_t node : scene.parents_first) reached[node] = true;
   std::uint32_t node = 0;
   while (reached[node]) ++node;
-  // No path upwards ends, so each leads into a cycle.
+  // A node that is not below a root leads upwards into a cycle.
   while (!reached[node]) {
     reached[node] = true;
     node = *scene.parent[node];

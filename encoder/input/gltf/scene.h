@@ -1,4 +1,4 @@
-// The nodes of a glTF document as trees, and those in the scene.
+// The node hierarchy of a glTF document, and the nodes of its scene.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 namespace rlpc {
 
 struct GltfScene {
-  std::vector<std::optional<std::uint32_t>> parent;  // of each node
-  std::vector<std::uint32_t> parents_first;          // all nodes
-  std::vector<std::uint32_t> with_mesh;  // nodes of the scene, each before its children
+  std::vector<std::optional<std::uint32_t>> parent;  // [node]
+  std::vector<std::uint32_t> parents_first;          // all nodes, parents before children
+  std::vector<std::uint32_t> with_mesh;              // nodes of the scene with a mesh, likewise
 };
 
-// Errors: a node with two parents, a cycle, a scene that does not begin at roots.
+// Errors: a node with two parents, a cycle, a scene that lists a node with a parent.
 GltfScene read_gltf_scene(const GltfDocument& document, GltfErrors& errors);
 
 }  // namespace rlpc

@@ -19,7 +19,7 @@ namespace {
 
 using std::to_string;
 
-// First frame of each clip in the sequence, then the total number.
+// The first frame of each clip in the sequence, then the total number of frames.
 InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
                                                      const FrameRate& rate,
                                                      const std::string& path,
@@ -110,7 +110,7 @@ class GltfSource : public FrameSource {
 
   std::string path_;
   GltfModel model_;
-  std::vector<std::uint32_t> first_frame_;  // of each clip, then the total number
+  std::vector<std::uint32_t> first_frame_;  // [clip], then the total number of frames
   std::vector<double> positions_;
 };
 

@@ -9,11 +9,11 @@
 
 namespace rlpc {
 
-// Vertices are in the order of the scene, depth first, before welding; frames are evaluated on
-// demand. An animation is sampled from its first time to its last, every 1 / frame_rate
-// (default 30); `all` animations follow each other. Without animations: one frame.
+// Vertices are in depth-first order of the scene before welding; frames are evaluated on
+// demand. An animation is sampled from its first to its last time at the frame rate (default
+// 30); with `all`, animations follow one another. Without animations, there is one frame.
 //
-// Points and lines are dropped. Required extensions that change the mesh are refused.
+// Points and lines are dropped. Errors include required extensions that change the mesh.
 InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits = {});
 

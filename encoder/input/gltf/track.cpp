@@ -11,11 +11,12 @@ namespace rlpc {
 
 namespace {
 
-// A time among the keys of a track: `part` of the way from `key` to the next one.
+// A time relative to the keys of a track: the fraction `part` of the way from `key` to the
+// next.
 struct Place {
   std::size_t key = 0;
-  double part = 0.0;      // 0 at the last key, and where the value is held
-  double duration = 0.0;  // from key to key
+  double part = 0.0;      // 0 where the value is held
+  double duration = 0.0;  // from `key` to the next, seconds
 };
 
 Place find_place(const GltfTrack& track, double time) {

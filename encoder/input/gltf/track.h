@@ -1,4 +1,4 @@
-// Animation of one property of one node: keys and their interpolation.
+// The animation of one property of one node: keys and their interpolation.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,19 @@ namespace rlpc {
 
 struct GltfTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
-  std::size_t width = 0;      // numbers of a value
+  std::size_t width = 0;      // numbers per value
   std::vector<float> times;   // seconds, ascending, at least one
-  std::vector<float> values;  // per time `width`; cubic: in-tangent, value, out-tangent
+  std::vector<float> values;  // `width` per time; cubic: in-tangent, value, out-tangent
 };
 
-// The value is held before the first key and after the last. out: [width].
+// Evaluates a track. Before the first key and after the last, the value is held. out: [width].
 void sample(const GltfTrack& track, double time, std::span<double> out);
 
-// A unit quaternion from a track of unit quaternions: linear means spherical, the shorter way
-// round.
+// Evaluates a track of unit quaternions: linear interpolation is spherical, along the shorter
+// arc.
 GltfQuaternion sample_rotation(const GltfTrack& track, double time);
 
-// Of any length; 0 yields no rotation.
+// Normalises a quaternion; zero gives the identity.
 GltfQuaternion unit_quaternion(const GltfQuaternion& q);
 
 }  // namespace rlpc

@@ -9,7 +9,7 @@ namespace {
 using std::to_string;
 
 struct View {
-  GltfRange range;  // stride 0: elements follow each other
+  GltfRange range;  // stride 0: tightly packed
   std::uint64_t size = 0;
 };
 
@@ -89,7 +89,8 @@ class AccessorReader {
     return sparse;
   }
 
-  // The place of `count` elements of `size` bytes; `counted` is the value with the count.
+  // The range of `count` elements of `size` bytes. counted: the JSON value that gives the
+  // count.
   GltfRange range(const GltfValue& value, const GltfValue& counted, std::uint64_t count,
                   std::uint64_t size) const {
     const std::uint32_t number = value["bufferView"].index(views_.size(), "bufferViews");

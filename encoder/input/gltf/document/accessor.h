@@ -1,4 +1,4 @@
-// Accessors of a glTF document, resolved through buffer views to ranges of buffers.
+// Reads the accessors of a glTF document and resolves buffer views to ranges of buffers.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct GltfAccessor {
   };
 
   std::string type;         // "VEC3"
-  std::uint32_t width = 1;  // components of an element
+  std::uint32_t width = 1;  // components per element
   GltfComponent component = GltfComponent::kF32;
   bool normalized = false;
   std::uint64_t count = 0;
@@ -49,7 +49,7 @@ struct GltfAccessor {
   std::optional<Sparse> sparse;   // elements that replace those of the base
 };
 
-// Each lies within its buffers, if there are no errors.
+// If there are no errors, all accessors lie within their buffers.
 std::vector<GltfAccessor> read_gltf_accessors(const GltfValue& root,
                                               const std::vector<GltfBuffer>& buffers,
                                               GltfErrors& errors);

@@ -24,7 +24,7 @@ struct Affine {
   }
 };
 
-// First b, then a.
+// The composition: applies b, then a.
 inline Affine operator*(const Affine& a, const Affine& b) {
   Affine product;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ inline Affine affine_of_columns(const std::vector<double>& columns) {
   return map;
 }
 
-// Below 0: the map mirrors.
+// The determinant of the linear part; negative if the map mirrors.
 inline double determinant(const Affine& map) {
   const auto& [a, b, c] = map.row;
   return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +

@@ -24,7 +24,7 @@ int base64_value(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;
   if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;  // the second of each: RFC 4648, 5
+  if (c == '+' || c == '-') return 62;  // '-' and '_' are URL-safe base64: RFC 4648, 5
   return c == '/' || c == '_' ? 63 : -1;
 }
 
@@ -52,7 +52,7 @@ int hex_value(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-// "%20" is a blank.
+// Decodes percent-encoded characters: "%20" is a blank.
 std::string percent_decoded(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -64,12 +64,12 @@ std::string percent_decoded(std::string_view uri) {
   return text;
 }
 
-// Whether it stays in its folder, or goes below.
+// Whether a path stays in or below its folder, ignoring links.
 bool stays_inside(const fs::path& path) {
   return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
 }
 
-// False if a link on the way leads out. True of paths that do not exist.
+// Whether a path stays in or below the folder after resolving links; true if it does not exist.
 bool is_below(const fs::path& path, const fs::path& folder) {
   std::error_code missing;
   const fs::path real = fs::canonical(path, missing);
@@ -148,7 +148,7 @@ std::optional<GltfBuffers::Place> GltfBuffers::find_file(const std::string& plac
   const fs::path relative(percent_decoded(uri));
   const std::size_t colon = uri.find(':');
   const fs::path of_document = fs::path(file_.file.path()).parent_path();
-  // Never "-" alone, which is standard input.
+  // With its folder, so that it is never "-", which is standard input.
   const fs::path folder = of_document.empty() ? fs::path(".") : of_document;
   if (!stays_inside(relative) || (colon != uri.npos && colon < uri.find('/')) ||
       !is_below(folder / relative, folder)) {

@@ -1,4 +1,4 @@
-// The bytes of a glTF document: in its binary chunk, in data URIs, in other files.
+// Reads the buffers of a glTF document: from its binary chunk, data URIs and other files.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,23 @@ struct GltfBuffer {
   std::optional<std::string> uri;  // none: the binary chunk
 };
 
-// Opens buffers on demand. Reads only files in the folder of the document (for standard input,
-// the current folder) or below it, also through links: a document cannot make the programs read
-// anything else.
+// Opens buffers on demand. For security, reads only files in or below the folder of the
+// document (for standard input, the current folder), after resolving links.
 class GltfBuffers {
  public:
   GltfBuffers(std::vector<GltfBuffer> buffers, GltfFile& file, GltfErrors& errors);
 
-  // Bytes that the document and its buffers really hold, as far as known.
+  // Actual bytes of the document and its buffers, as far as known.
   std::uint64_t bytes_at_hand() const { return bytes_at_hand_; }
-  // Whether a buffer is complete. To be called before allocating memory for its contents.
+  // Whether a buffer is complete; to be checked before allocating memory for its contents.
   bool available(std::uint32_t buffer);
   // The buffer must be available, and offset + bytes.size() at most its size.
   void read(std::uint32_t buffer, std::uint64_t offset, std::span<char> bytes);
-  // The document, and the files used so far that it refers to.
+  // The document and the files it refers to, as far as used.
   std::vector<std::string> files() const;
 
  private:
-  // The bytes of a buffer: in `file` from `offset` on, or in `text`.
+  // Where the bytes of a buffer are: in `file` from `offset` on, or in `text`.
   struct Place {
     InputFile* file = nullptr;
     std::uint64_t offset = 0;
@@ -51,7 +50,7 @@ class GltfBuffers {
   GltfFile& file_;
   GltfErrors& errors_;
   std::map<std::string, InputFile> others_;  // by path
-  std::map<std::uint32_t, Place> places_;    // of the buffers used so far
+  std::map<std::uint32_t, Place> places_;    // by buffer, as far as used
   std::uint64_t bytes_at_hand_;
 };
 

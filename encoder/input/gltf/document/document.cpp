@@ -11,7 +11,7 @@ namespace {
 
 using std::to_string;
 
-// Extensions that do not affect positions; and integer positions, which are supported.
+// Extensions that do not affect positions, and KHR_mesh_quantization, which is supported.
 bool is_supported(const std::string& extension) {
   static const char* const kHarmless[] = {
       "KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",
@@ -30,7 +30,7 @@ void check_extensions(const GltfValue& required) {
   }
 }
 
-// The file can be read without these, but looks different.
+// Extensions without which the file can be read, but looks different.
 std::vector<std::string> left_out(const GltfValue& used) {
   std::vector<std::string> found;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -50,7 +50,7 @@ bool any_named(const GltfValue& values) {
   return false;
 }
 
-// Contents that a stream does not carry, as users call them.
+// Contents that a stream does not carry, in the words of users.
 std::vector<std::string> dropped(const GltfValue& root) {
   struct Attribute {
     const char* name;

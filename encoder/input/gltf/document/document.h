@@ -1,5 +1,5 @@
-// The parts of a glTF document that determine positions. Indices are in range, and accessors
-// within their buffers; the buffers themselves have not been read.
+// The parts of a glTF document that determine positions, validated but without buffer contents:
+// indices are in range, and accessors within their buffers.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +29,10 @@ struct GltfPrimitive {
   GltfMode mode = GltfMode::kTriangles;
   std::optional<std::uint32_t> indices;  // accessors, here and below
   std::uint32_t positions = 0;
-  bool is_compressed = false;  // by an extension; perhaps readable only with it
-  std::vector<std::optional<std::uint32_t>> targets;  // without positions: no motion
-  std::vector<std::uint32_t> joints;                  // as many as weights
+  bool is_compressed = false;  // compressed by an extension; may be unreadable without it
+  std::vector<std::optional<std::uint32_t>>
+      targets;                        // none: the target does not move positions
+  std::vector<std::uint32_t> joints;  // as many as weights
   std::vector<std::uint32_t> weights;
 
   bool has_triangles() const { return mode >= GltfMode::kTriangles; }
@@ -39,7 +40,7 @@ struct GltfPrimitive {
 
 struct GltfMesh {
   std::vector<GltfPrimitive> primitives;  // those with positions
-  std::size_t num_targets = 0;            // of each primitive
+  std::size_t num_targets = 0;            // per primitive
   std::vector<double> weights;            // [num_targets]
 };
 
@@ -47,11 +48,11 @@ struct GltfNode {
   std::optional<std::uint32_t> mesh;
   std::optional<std::uint32_t> skin;
   std::vector<std::uint32_t> children;
-  std::optional<Affine> matrix;  // instead of the next three
+  std::optional<Affine> matrix;  // replaces the next three members
   GltfVec3 translation{0, 0, 0};
   GltfQuaternion rotation{0, 0, 0, 1};  // of length 1
   GltfVec3 scale{1, 1, 1};
-  std::optional<std::vector<double>> weights;  // instead of those of the mesh
+  std::optional<std::vector<double>> weights;  // replace those of the mesh
 };
 
 struct GltfSkin {
@@ -89,7 +90,7 @@ struct GltfDocument {
   std::vector<GltfAnimation> animations;
   std::optional<std::vector<std::uint32_t>>
       scene;  // its nodes; none: all nodes without a parent
-  // Extensions that are not read, though they would change shapes or motions.
+  // Unsupported extensions that would change shapes or motions.
   std::vector<std::string> extensions_left_out;
   // Contents other than positions and their motion: "UVs", "materials".
   std::vector<std::string> dropped;

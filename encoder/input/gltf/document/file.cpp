@@ -73,12 +73,13 @@ InputResult<Chunks> find_chunks(InputFile& file) {
   return chunks;
 }
 
-// JSON values follow brackets, commas and colons; each takes at most this much, including the
-// spare capacity of arrays and maps. An object becomes at most a node of the scene.
+// Upper bound of the memory of a document. Each JSON value follows a bracket, comma or colon;
+// the size per value includes the spare capacity of arrays and maps. The largest structure made
+// of an object is a node.
 std::uint64_t bytes_of_document(std::string_view text) {
   constexpr std::uint64_t kOfValue = 112;
   constexpr std::uint64_t kOfObject = 1200;
-  constexpr std::uint64_t kOfCharacter = 3;  // in the text, the JSON, and names or data of it
+  constexpr std::uint64_t kOfCharacter = 3;  // in the text, in the JSON, and in names or data
   std::uint64_t bytes = kOfCharacter * text.size();
   for (const char c : text) {
     if (c == '[' || c == ',' || c == ':') bytes += kOfValue;
@@ -87,7 +88,7 @@ std::uint64_t bytes_of_document(std::string_view text) {
   return bytes;
 }
 
-// Strips the class and number that the library puts before its messages.
+// Strips the prefix with class and number from messages of the library.
 std::string message_of(const nlohmann::json::exception& error) {
   const std::string_view text = error.what();
   const std::size_t end = text.find("] ");
@@ -115,7 +116,7 @@ InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_
   if (!text) return text.error();
   const std::uint64_t document_bytes = bytes_of_document(*text);
   if (document_bytes > max_memory_bytes - file->memory_bytes()) return too_large;
-  // Parsing and destruction use stacks of their own: deep nesting cannot exhaust ours.
+  // The library parses and destroys values without recursion: deep nesting is safe.
   try {
     auto json = std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text));
     return GltfFile{std::move(*file), std::move(json), chunks.binary, document_bytes};

@@ -1,4 +1,4 @@
-// The container of a glTF 2.0 document: .gltf is JSON, .glb JSON and one binary chunk.
+// Reads the container of a glTF 2.0 document: .gltf is JSON, .glb is JSON and a binary chunk.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ struct GltfFile {
 
   InputFile file;
   std::shared_ptr<const nlohmann::json> json;
-  std::optional<Chunk> binary;  // of a .glb, within the file
-  // Maximum memory of the document while it is read: as JSON and as a GltfDocument.
+  std::optional<Chunk> binary;  // .glb only; lies within the file
+  // Upper bound of the memory for the document as JSON and as a GltfDocument.
   std::uint64_t document_bytes = 0;
 };
 
-// Distinguished by contents, not by name.
+// .gltf and .glb are distinguished by contents, not by name.
 InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

@@ -1,7 +1,8 @@
-// Values of a glTF document that know their path in it.
+// Access to the JSON values of a glTF document, with error messages that give their path.
 //
-// Readers ask for what glTF 2.0 requires. The first violation is kept as an error, and the read
-// yields a legal value, so that readers check only once, before they use the result.
+// Readers request what glTF 2.0 requires. The first violation is kept as an error, and the
+// request gives a legal value, so that readers need to check only once, before they use the
+// result.
 #pragma once
 
 #include <cstddef>
@@ -34,10 +35,10 @@ class GltfErrors {
   std::optional<InputError> first_;
 };
 
-// A value, or the place where one is missing. Refers to the document and the errors.
+// A value, or the place of a missing value. Keeps references to the document and the errors.
 class GltfValue {
  public:
-  // Sums of these, and products with small numbers, fit 64 bits.
+  // Sums of such integers, and products with small numbers, fit 64 bits.
   static constexpr std::uint64_t kMaxInteger = std::uint64_t{1} << 53;
   struct Range {
     std::uint64_t min;
@@ -55,13 +56,13 @@ class GltfValue {
   // Elements of an array; 0 if it does not exist.
   std::size_t size() const;
 
-  // Without `absent`, the value must exist.
+  // Typed values. If the value does not exist: `absent` if given, otherwise an error.
   std::uint64_t integer(Range range, std::optional<std::uint64_t> absent = {}) const;
   bool boolean(bool absent) const;
   std::string text(const std::optional<std::string>& absent = {}) const;
   // Exactly `count` numbers; `absent` if it does not exist.
   std::vector<double> numbers(std::size_t count, const std::vector<double>& absent) const;
-  // Below `count`, the size of the array `of`.
+  // An index below `count`, the size of the array `of`.
   std::uint32_t index(std::size_t count, const char* of) const;
   std::optional<std::uint32_t> index_if_any(std::size_t count, const char* of) const;
 

@@ -1,4 +1,4 @@
-// Memory of a glTF document, counted before it is allocated.
+// Counts the memory of a glTF document before it is allocated.
 #pragma once
 
 #include <cstdint>

@@ -79,7 +79,7 @@ bool GltfValues::has_float_type(std::uint32_t accessor, std::string_view type,
 
 bool GltfValues::take(std::uint32_t accessor, std::uint64_t elements) {
   const GltfAccessor& a = accessors_[accessor];
-  // First, as it determines the number of bytes.
+  // Checked first, as it determines the number of bytes.
   const auto missing = [&](const GltfRange& range) {
     return !buffers_.available(range.buffer);
   };
@@ -111,7 +111,7 @@ void GltfValues::each_element(const GltfRange& range, std::uint64_t count, std::
   }
 }
 
-// visit(element, bytes), elements ascending.
+// Calls visit(element, bytes) in ascending order of elements.
 template <class Visit>
 void GltfValues::each_sparse(std::uint32_t accessor, const Visit& visit) {
   const GltfAccessor& a = accessors_[accessor];
@@ -134,7 +134,8 @@ void GltfValues::each_sparse(std::uint32_t accessor, const Visit& visit) {
                });
 }
 
-// Skips elements without a buffer; sparse ones are visited again, with their values.
+// Skips elements without a buffer. Visits sparse elements a second time, with their final
+// values.
 template <class Visit>
 void GltfValues::each(std::uint32_t accessor, const Visit& visit) {
   const GltfAccessor& a = accessors_[accessor];

@@ -1,5 +1,5 @@
-// The contents of accessors of a glTF document. Values must be finite, and of the types allowed
-// for their use; the first violation is an error.
+// Reads the contents of accessors of a glTF document. Values must be finite and of a type
+// allowed for their use; the first violation is an error.
 #pragma once
 
 #include <array>
@@ -31,16 +31,16 @@ class GltfValues {
              std::uint64_t spare_values, GltfMemory& memory, GltfErrors& errors);
 
   const GltfAccessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  // For what is built from values.
+  // To count the memory of data built from values.
   GltfMemory& memory() { return memory_; }
 
   // [count][width]; integers become floats, exactly unless normalised.
   std::vector<float> floats(std::uint32_t accessor, std::string_view type, Integers integers);
   // [count][width], unsigned.
   std::vector<std::uint32_t> integers(std::uint32_t accessor, std::string_view type);
-  // Of a VEC3, those that are not zero; ascending vertices.
+  // The non-zero elements of a VEC3, in ascending order of vertices.
   std::vector<GltfDelta> deltas(std::uint32_t accessor);
-  // Of a MAT4, with the last row taken as 0, 0, 0, 1.
+  // The elements of a MAT4, whose last row is taken as 0, 0, 0, 1.
   std::vector<Affine> matrices(std::uint32_t accessor);
 
  private:
