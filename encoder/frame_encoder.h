@@ -1,5 +1,5 @@
-// RLPC encoder for frames that come one after another: a public interface beside
-// rlpc_encoder.h, for those who cannot go back to earlier frames, or hold all of them.
+// RLPC encoder for frames that arrive one by one: the public interface for sources that cannot
+// be read repeatedly. rlpc_encoder.h has the interface for all others.
 //
 //   auto encoder = rlpc::FrameEncoder::create(format, settings, sink);
 //   if (!encoder) return complain(encoder.error().message);
@@ -8,19 +8,20 @@
 //   }
 //   const auto report = encoder->finish();
 //
-// GOFs are of equal length, at most settings.gof_frames (128 by default), and each is encoded
-// when its last frame is there: its bytes go to the sink at once. Memory is that of one GOF and
-// its analysis, of the mesh, and 16 bytes for each GOF (the index), however long the sequence.
+// GOFs have equal length, at most settings.gof_frames (128 by default). Each is encoded when
+// its last frame has been added, and its bytes are passed to the sink at once. Memory is that
+// of the mesh, one GOF and its analysis, plus 16 bytes per GOF for the index, whatever the
+// length of the sequence.
 //
-// Where encode() meets the target over the whole sequence, here each GOF meets it by itself,
-// within 2 % where encode() does: KG error relative to the spread of its own frames; largest
-// error; or bits, with a share of all that is no GOF by the number of its frames. So the whole
-// stream meets it as well. GOFs that do not vary alike cost more this way than with encode().
+// encode() meets the target over the whole sequence; here each GOF meets it separately, with
+// the same tolerance: a KG error relative to the spread of its own frames, a maximum error, or
+// a rate that includes a share, by its number of frames, of all bits outside GOFs. Thus the
+// whole stream meets the target too. If the motion varies between GOFs, this costs more than
+// encode().
 //
-// The level stands before the first GOF and cannot be changed later: it is the lowest that
-// allows the mesh, the GOFs, and twice what the first GOF needed of factors, clusters,
-// components and bytes. A later GOF that needs more is an error, which FrameFormat::least_level
-// avoids.
+// The level is written before the first GOF and cannot change. It is the lowest that allows the
+// mesh, the length of the GOFs, and twice the factors, clusters, components and unit size of
+// the first GOF. A later GOF that needs more is an error; FrameFormat::least_level avoids it.
 #pragma once
 
 #include <array>
@@ -35,38 +36,40 @@
 
 namespace rlpc {
 
-// What has to be known before the first frame.
+// Properties of the sequence that must be known before the first frame.
 struct FrameFormat {
   std::uint32_t num_vertices = 0;  // at least 1
-  std::uint32_t num_frames = 0;    // at least 1: as many frames have to come
+  std::uint32_t num_frames = 0;    // at least 1; exactly this many frames must be added
   FrameRate frame_rate;
   std::vector<Triangle> triangles;  // indices below num_vertices; may be empty
-  // No coordinate of any frame is outside. A box that is far too large makes the grid coarser.
+  // Bounding box of all frames, in units, within 2^100. A box that is much too large makes the
+  // grid coarser.
   std::array<float, 3> box_min{};
   std::array<float, 3> box_max{};
-  std::uint32_t least_level = 1;  // of the stream, 1 to 4
+  std::uint32_t least_level = 1;  // lowest level that the stream may declare, 1 to 4
 };
 
 class FrameEncoder {
  public:
-  // Errors: a format that cannot be; settings that encode() would refuse; what no level allows.
-  // Nothing goes to the sink before the first GOF is encoded.
+  // Errors: an invalid format; settings that encode() would refuse; a mesh or length that no
+  // level allows; too much memory. Nothing is passed to the sink before the first GOF is
+  // encoded.
   static InputResult<FrameEncoder> create(FrameFormat format, EncoderSettings settings,
                                           ByteSink sink);
   FrameEncoder(FrameEncoder&&) noexcept;
   FrameEncoder& operator=(FrameEncoder&&) noexcept;
   ~FrameEncoder();
 
-  // The next frame: [num_vertices][3], in units. Errors: a wrong number of values; a coordinate
-  // outside the box, or not a number, with frame, vertex and axis; more frames than announced;
-  // a GOF beyond the level; a sink that failed. After an error, all calls repeat it.
+  // Adds the next frame: [num_vertices][3], in units. Errors: a wrong number of values; a NaN,
+  // or a coordinate outside the box; more than num_frames frames; a GOF that needs a higher
+  // level; a sink that failed. Errors are sticky.
   std::optional<InputError> add_frame(std::span<const float> xyz);
-  // After the last frame: writes the end of the stream. Errors: fewer frames than announced; a
-  // sink that failed. Metrics are those of the whole sequence, without those of each frame;
-  // step is that of the last GOF; target_met: by every GOF.
+  // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames; a
+  // sink that failed. The metrics are those of the whole sequence, without single frames; step
+  // is that of the last GOF; target_met: in every GOF.
   InputResult<EncodeReport> finish();
 
-  // Frames so far.
+  // The number of frames added so far.
   std::uint32_t num_added() const;
 
  private:

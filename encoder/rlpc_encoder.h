@@ -2,11 +2,14 @@
 //
 //   rlpc::EncoderSettings settings;
 //   settings.target = {rlpc::Target::kKg, 0.1};
-//   const auto report = rlpc::encode(source, settings, [&](auto bytes) { return write(bytes);
-//   }); if (!report) return complain(report.error().message);
+//   const auto sink = [&](auto bytes) { return write(bytes); };
+//   const auto report = rlpc::encode(source, settings, sink);
+//   if (!report) return complain(report.error().message);
 //
-// The same input and settings give the same bytes on every compiler and machine. Memory is that
-// of the raw GOFs being searched over; frames are read from the source as often as needed.
+// The same input and settings give the same bytes with every compiler and on every machine. The
+// encoder holds the frames of one GOF at a time, and the analyses of all GOFs if they are small
+// enough; it reads frames from the source repeatedly. Use FrameEncoder (frame_encoder.h) for
+// frames that can be read only once.
 #pragma once
 
 #include <cstdint>
@@ -25,60 +28,65 @@
 
 namespace rlpc {
 
-// In which coordinates clusters are analysed; kAuto compares.
+// Coordinates in which clusters are analysed. kAuto: the cheaper of the two for each GOF.
 enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
 
-// Which three vertices carry a local frame: a triangle of the mesh, as in the paper, or
-// vertices spread over the cluster. kAuto: triangles with qu and qc, else spread.
+// The three vertices that define a local coordinate frame: a triangle of the mesh, as in the
+// paper, or distant vertices of the cluster. kAuto: triangles if qu and qc are set, else
+// distant vertices.
 enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
 
-// How hard the encoder searches. The syntax is the same.
+// Search effort. Does not affect the syntax or the requirements on decoders.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 
-// Which tools a stream uses; Main needs decoders of version 1.1.
+// Profile of the stream; Main requires decoders of version 1.1.
 enum class Profile : std::uint8_t { kBaseline, kMain };
 
-// Parameters that only the Baseline profile has.
+// Parameters of the Baseline profile.
 struct BaselineTools {
-  std::uint32_t clusters = 0;    // N of the paper; 0: chosen for each GOF
-  bool rdo = true;               // components go to clusters by rate and distortion
-  bool rate_in_vectors = false;  // as the paper counts it; else in estimated bits
-  int qu = 0;  // bits of eigenshapes, coefficients and seed positions relative to
-  int qc = 0;  // their ranges, as in the paper; 0: steps of equal distortion
-  int qdelta = 0;
+  std::uint32_t clusters = 0;    // per GOF, N of the paper, up to 1024; 0: chosen for each GOF
+  bool rdo = true;               // allocate components to clusters by rate and distortion
+  bool rate_in_vectors = false;  // the rate of rdo: vectors as in the paper, or estimated bits
+  // Bits relative to the range of values, as in the paper; 0: steps of equal distortion. qu and
+  // qc must be set together, with Target::kNone and a number of components.
+  int qu = 0;      // eigenshapes, up to 20
+  int qc = 0;      // coefficients, up to 20
+  int qdelta = 0;  // seed positions, up to 24
   FrameMode frame_mode = FrameMode::kAuto;
   SeedMode seed_mode = SeedMode::kAuto;
 };
 
-// Parameters that only the Main profile has; each tool can be left out, for comparison.
+// Parameters of the Main profile. Each tool can be disabled, for comparison.
 struct MainTools {
-  std::uint32_t bones = 0;               // of a GOF; 0: chosen
+  std::uint32_t bones = 0;               // maximum per GOF, up to 1024; 0: chosen
   std::optional<Prediction> prediction;  // of spatial factors; none: chosen
-  std::uint32_t influences = 0;          // most bones of a vertex, 1 to 4; 0: chosen
-  bool geometry_weights = true;          // in the prediction by layers
-  bool outer_ring = true;                // likewise
-  bool layer_steps = true;               // finer steps in coarser layers
-  bool temporal_weights = true;          // transmitted ones, beside the four fixed predictors
-  bool cobra_steps = false;  // of basis vectors: those of Vasa and Skala 2009, (18), (19)
-  // Cluster GOFs where they cost less. They have none of the tools above, and no slices: if
-  // anything here is not as by default, all GOFs are of bones.
+  std::uint32_t influences = 0;          // maximum bones per vertex, 1 to 4; 0: chosen
+  bool geometry_weights = true;          // geometry weights in Prediction::kLayers
+  bool outer_ring = true;                // outer rings in Prediction::kLayers
+  bool layer_steps = true;               // finer quantiser steps in coarser layers
+  bool temporal_weights = true;  // transmitted weights besides the four fixed predictors
+  bool cobra_steps = false;      // temporal steps of Vasa and Skala 2009, (18), (19)
+  // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools
+  // above; if any member of this structure differs from its default, all GOFs are skinned.
   bool clusters = true;
-  std::uint32_t component_groups = 0;  // slices: 0 for the default
-  std::uint32_t layer_groups = 0;
+  std::uint32_t component_groups = 0;  // groups of trajectories for slices; 0: by size
+  std::uint32_t layer_groups = 0;      // groups of vertex layers for slices; 0: by size
 
   bool operator==(const MainTools&) const = default;
 };
 
+// Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
-// What the settings of the quantisers are searched for.
+// The error or rate that the encoder aims for. It stays at most 2 % below, if possible, and
+// exceeds the target only if that cannot be met (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {
-    kNone,  // quantisers as given
-    kKg,    // KG error in per cent: reached from below, within 2 %
-    kBpvf,  // bits per vertex and frame: likewise
-    // Largest distance of a vertex from its original, in units: likewise, or as close as was
-    // found where it jumps, or less where that saves bytes.
+    kNone,  // no search; quantisers as set
+    kKg,    // KG error in per cent
+    kBpvf,  // bits per vertex per frame
+    // Maximum distance of a vertex from its original, in units. May end further below the
+    // target, as this error jumps with the quantiser step, or if that saves bytes.
     kMaxError,
   };
   Kind kind = kKg;
@@ -91,22 +99,23 @@ struct EncoderSettings {
   Profile profile = Profile::kMain;
   Target target;
   Preset preset = Preset::kMedium;
-  // Per cluster (L of the paper) or, of the Main profile, per GOF; 0: by rate and distortion.
+  // Baseline: average per cluster (L of the paper). Main: maximum per GOF. Up to 1024; 0:
+  // chosen by rate and distortion.
   std::uint32_t components = 0;
-  BaselineTools baseline;        // as by default unless profile is kBaseline
-  MainTools main;                // as by default unless it is kMain
-  std::uint32_t gof_frames = 0;  // longest GOF; 0: the default; kWholeSequence: one GOF
+  BaselineTools baseline;        // must be left at its defaults unless profile is kBaseline
+  MainTools main;                // must be left at its defaults unless profile is kMain
+  std::uint32_t gof_frames = 0;  // maximum frames per GOF; 0: 128; kWholeSequence: one GOF
   bool keep_order = false;       // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
-  std::string metadata;  // JSON text for a metadata unit; empty: none
-  // What needs more is an error before it is begun. Estimated, for animations that compress
-  // badly; with what the source keeps.
+  std::string metadata;  // JSON text, not validated, up to 1 MiB; empty: no metadata unit
+  // Encodings that may need more memory fail before they start. The estimate is for animations
+  // that compress badly, and includes the memory held by the source.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };
 
-// Bits of the stream by what they are for.
+// Bits of the stream by purpose.
 struct PartBits {
-  std::uint64_t headers = 0;  // signature, unit headers and CRCs, sequence header, end
+  std::uint64_t headers = 0;  // stream and sequence header, index, end of sequence
   std::uint64_t connectivity = 0;
   std::uint64_t vertex_order = 0;
   std::uint64_t gofs = 0;
@@ -118,24 +127,26 @@ struct EncodeReport {
   SequenceHeader header;
   Metrics metrics;  // of the decoded float32 positions, in input vertex order
   std::uint64_t bytes = 0;
-  double bpvf = 0.0;
+  double bpvf = 0.0;  // bits per vertex per frame, everything included
   PartBits bits;
   std::uint32_t num_gofs = 0;
-  std::uint32_t clusters = 0;  // or bones, over all GOFs
-  std::uint32_t components = 0;
-  double step = 0.0;         // units; 0 with qu and qc
-  std::uint32_t trials = 0;  // encodings made in search of the target
-  bool target_met = true;
-  std::vector<std::uint32_t> input_vertex;  // per decoded vertex, its index in the input
+  std::uint32_t clusters = 0;               // clusters or bones, over all GOFs
+  std::uint32_t components = 0;             // components or trajectories, over all GOFs
+  double step = 0.0;                        // quantiser step, units; 0 with qu and qc
+  std::uint32_t trials = 0;                 // encodings during the search for the target
+  bool target_met = true;                   // the target is not exceeded
+  std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };
 
-// Takes the next bytes of the stream; false stops the encoder (disk full, for example).
+// Receives the next bytes of the stream. False stops the encoder, for example if the disk is
+// full.
 using ByteSink = std::function<bool(std::span<const std::uint8_t>)>;
-// Called now and then with the fraction done, 0 to 1, for people who wait.
+// Called occasionally with the fraction done, 0 to 1, to show progress.
 using Progress = std::function<void(double)>;
 
-// Encodes a whole sequence. Errors: what the source reports; what no level allows; settings
-// that contradict each other, or that the profile does not have; a sink that failed.
+// Encodes a whole sequence. Errors: those of the source; an animation that no level allows;
+// contradictory settings, or settings of the other profile; too much memory; a sink that
+// failed.
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress = {});
 

@@ -313,8 +313,8 @@ TEST(FrameEncoder, ALaterGofThatNeedsAHigherLevelIsAnError) {
     return std::string();
   };
   EXPECT_EQ(encode_noise(1),
-            "frames 176 to 351 need level 2 (specification, Annex B), but the stream was begun "
-            "at level 1: encode again with that as the least level, or with fewer components");
+            "frames 176 to 351 need level 2 (specification, Annex B), but the stream has "
+            "level 1: encode again with a higher least level, or with fewer components");
   EXPECT_EQ(encode_noise(2), "");
 }
 

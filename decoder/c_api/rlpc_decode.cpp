@@ -135,9 +135,8 @@ bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_valu
   if (buffer == nullptr && num_values == 0 && wanted == 0) return true;
   handle.error.set(RLPC_BAD_ARGUMENT, buffer == nullptr
                                           ? "the buffer is null"
-                                          : "the buffer is said to have " +
-                                                std::to_string(num_values) + " values, not " +
-                                                std::to_string(wanted));
+                                          : "the buffer has " + std::to_string(num_values) +
+                                                " values, not " + std::to_string(wanted));
   return false;
 }
 

@@ -13,8 +13,8 @@
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
 struct rlpc_encoder {
   std::optional<rlpc::FrameEncoder> encoder;
-  std::vector<std::uint32_t> input_vertex;  // once finished
-  std::size_t num_values = 0;               // of a frame
+  std::vector<std::uint32_t> input_vertex;  // set by rlpc_encoder_finish
+  std::size_t num_values = 0;               // per frame
   rlpc_write_function write = nullptr;
   void* user = nullptr;
   bool write_failed = false;
@@ -26,16 +26,16 @@ namespace rlpc {
 namespace {
 
 rlpc_encode_options default_options() {
-  const EncoderSettings usual;
+  const EncoderSettings defaults;
   rlpc_encode_options options{};
   options.struct_size = sizeof options;
   options.profile = RLPC_MAIN;
   options.preset = RLPC_MEDIUM;
   options.target = RLPC_TARGET_KG;
-  options.target_value = usual.target.value;
+  options.target_value = defaults.target.value;
   options.hash_mode = RLPC_HASH_GOF;
   options.least_level = 1;
-  options.max_memory_bytes = usual.max_memory_bytes;
+  options.max_memory_bytes = defaults.max_memory_bytes;
   return options;
 }
 
@@ -47,7 +47,7 @@ rlpc_frame_format default_format() {
   return format;
 }
 
-// None: a value outside its enumeration.
+// None if a value is outside its enumeration.
 std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   EncoderSettings settings;
   switch (options.profile) {
@@ -215,7 +215,7 @@ rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz, size
       return encoder->error.set(
           RLPC_BAD_ARGUMENT, xyz == nullptr
                                  ? "the frame is null"
-                                 : "the frame is said to have " + std::to_string(num_values) +
+                                 : "the frame has " + std::to_string(num_values) +
                                        " values, not " + std::to_string(encoder->num_values));
     }
     if (const auto error = encoder->encoder->add_frame({xyz, num_values})) {
@@ -243,8 +243,7 @@ rlpc_status rlpc_encoder_vertex_order(rlpc_encoder* encoder, uint32_t* input_ver
       return encoder->error.set(RLPC_BAD_ARGUMENT, "the stream is not finished");
     }
     if (input_vertex == nullptr || num_values != encoder->input_vertex.size()) {
-      return encoder->error.set(RLPC_BAD_ARGUMENT,
-                                "the buffer must have room for each vertex once");
+      return encoder->error.set(RLPC_BAD_ARGUMENT, "num_values must be the number of vertices");
     }
     std::copy(encoder->input_vertex.begin(), encoder->input_vertex.end(), input_vertex);
     return RLPC_OK;

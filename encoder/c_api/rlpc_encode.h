@@ -11,18 +11,17 @@
 //   if (status != RLPC_OK) fprintf(stderr, "%s\n", rlpc_encoder_error_text(encoder));
 //   rlpc_encoder_close(encoder);
 //
-// Frames go in one by one; memory is bounded by one group of frames (GOF) and its analysis.
-// Each GOF is encoded, and its bytes are passed to the caller, with its last frame; that call
-// takes nearly all of the time. Each GOF meets the target by itself, and so does the whole
-// stream (see frame_encoder.h). The same frames and options give the same bytes on every
-// machine. Nothing throws or aborts. A handle is used by one thread at a time; different
-// handles are independent.
+// Frames are added one by one; memory is bounded by one group of frames (GOF) and its analysis.
+// Adding the last frame of a GOF encodes the GOF and passes its bytes to the callback; this
+// call takes almost all of the time. Each GOF meets the target separately, and thus the whole
+// stream does (see frame_encoder.h). The same frames and options give the same bytes on every
+// machine. No function throws or aborts. A handle may be used by one thread at a time;
+// different handles are independent.
 //
-// Memory: frames and reports are in the caller's buffers, and output is passed to a callback;
-// the handle is the only thing to free, and it can live in the caller's memory as well (place).
-// The analysis allocates with C++ operator new, without a hook for other allocators. If memory
-// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
-// everything.
+// Memory: frames and reports are in buffers of the caller, and output is passed to a callback.
+// Only the handle must be closed; it can be placed in memory of the caller (place). The
+// analysis uses C++ operator new and no other allocator. If memory runs out, calls return
+// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
 #pragma once
 
 #include <stddef.h>
@@ -37,7 +36,7 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef struct rlpc_encoder rlpc_encoder;
 
-// What must be known before the first frame.
+// Properties of the sequence that must be known before the first frame.
 typedef struct rlpc_frame_format {
   size_t struct_size;             // rlpc_frame_format_init sets it
   uint32_t num_vertices;          // at least 1
@@ -59,7 +58,7 @@ typedef enum rlpc_preset { RLPC_FAST = 0, RLPC_MEDIUM = 1, RLPC_SLOW = 2 } rlpc_
 typedef enum rlpc_target {
   RLPC_TARGET_KG = 1,         // KG error in per cent
   RLPC_TARGET_BPVF = 2,       // bits per vertex and frame
-  RLPC_TARGET_MAX_ERROR = 3,  // largest distance of a vertex from its original, in units
+  RLPC_TARGET_MAX_ERROR = 3,  // maximum distance of a vertex from its original, in units
 } rlpc_target;
 
 typedef enum rlpc_hash_mode {
@@ -74,30 +73,32 @@ typedef struct rlpc_encode_options {
   uint32_t preset;      // default RLPC_MEDIUM
   uint32_t target;      // default RLPC_TARGET_KG; approached from below, within 2 % if possible
   double target_value;  // default 0.1; above zero and finite
-  uint32_t gof_frames;  // longest GOF; 0: 128. UINT32_MAX: one GOF, of all frames
-  uint32_t components;  // per GOF (Main) or cluster (Baseline), up to 1024; 0: chosen
-  uint32_t keep_order;  // 1: decoders restore the vertex order of the input; 0: they do not
-  uint32_t hash_mode;   // default RLPC_HASH_GOF
-  uint32_t least_level;  // default 1; more where an error message asks for it
+  uint32_t gof_frames;  // maximum frames per GOF; 0: 128; UINT32_MAX: one GOF of all frames
+  // Main: maximum per GOF; Baseline: average per cluster; up to 1024; 0: chosen.
+  uint32_t components;
+  uint32_t keep_order;   // 1: decoders restore the vertex order of the input; 0: they do not
+  uint32_t hash_mode;    // default RLPC_HASH_GOF
+  uint32_t least_level;  // lowest level that the stream may declare, 1 to 4; default 1
   // JSON text to carry along, not validated, up to 1 MiB; null: none. Copied.
   const char* metadata;
   // Memory for the handle: rlpc_encoder_bytes() bytes, aligned as by malloc, valid until the
   // handle is closed. Null: allocated by the library.
   void* place;
   size_t place_bytes;
-  uint64_t max_memory_bytes;  // if exceeded: RLPC_LIMIT_EXCEEDED; default 32 GiB; estimated
+  // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB.
+  uint64_t max_memory_bytes;
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
   size_t struct_size;  // as passed to rlpc_encoder_finish
   uint64_t num_bytes;
-  double bpvf;  // bits per vertex and frame, everything counted
+  double bpvf;  // bits per vertex per frame, everything included
   double kg_error_percent;
-  double rms_error;  // units
+  double rms_error;  // units, as max_error
   double max_error;
   uint32_t num_gofs;
   uint32_t level;
-  uint32_t target_met;  // 1: in every GOF
+  uint32_t target_met;  // 1: met in every GOF
 } rlpc_encode_report;
 
 // Receives the next bytes of the stream. Returns 0 on success.
@@ -111,32 +112,33 @@ RLPC_API void rlpc_encode_options_init(rlpc_encode_options* options, size_t stru
 // Size of a handle, for rlpc_encode_options.place.
 RLPC_API size_t rlpc_encoder_bytes(void);
 
-// Begins a stream. options may be null. On failure, *encoder is still a handle, for its error
-// text, and must be closed; it is null only if an argument is null or invalid, or if there is
-// no memory for a handle. RLPC_BAD_INPUT: no stream can represent this; RLPC_LIMIT_EXCEEDED:
-// encoding may need more than max_memory_bytes.
+// Begins a stream. options may be null: defaults. On failure, *encoder is still a handle, which
+// provides the error text and must be closed; it is null only if an argument is null or
+// invalid, or if there is no memory for a handle. RLPC_BAD_INPUT: no stream can represent the
+// format; RLPC_LIMIT_EXCEEDED: encoding may need more than max_memory_bytes.
 RLPC_API rlpc_status rlpc_encoder_create(const rlpc_frame_format* format,
                                          const rlpc_encode_options* options,
                                          rlpc_write_function write, void* user,
                                          rlpc_encoder** encoder);
-// Without rlpc_encoder_finish the stream is incomplete. encoder may be null.
+// Releases the handle. Without rlpc_encoder_finish before, the stream is incomplete. encoder
+// may be null.
 RLPC_API void rlpc_encoder_close(rlpc_encoder* encoder);
 
 // The error of the last failed call; "" if none failed. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_encoder_error_text(const rlpc_encoder* encoder);
 
-// The next frame: x, y and z of each vertex, in units. num_values: 3 * num_vertices.
-// RLPC_BAD_INPUT: a coordinate outside the box, or more frames than announced; RLPC_IO_FAILED:
+// Adds the next frame: x, y and z of each vertex, in units. num_values: 3 * num_vertices.
+// RLPC_BAD_INPUT: a coordinate outside the box, or more than num_frames frames; RLPC_IO_FAILED:
 // the callback failed. These errors are sticky.
 RLPC_API rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz,
                                             size_t num_values);
-// After the last frame: ends the stream. RLPC_BAD_INPUT: fewer frames than announced. report
-// may be null, otherwise struct_size is sizeof *report.
+// Ends the stream, after the last frame. RLPC_BAD_INPUT: fewer than num_frames frames. report
+// may be null; otherwise struct_size is sizeof *report.
 RLPC_API rlpc_status rlpc_encoder_finish(rlpc_encoder* encoder, rlpc_encode_report* report,
                                          size_t struct_size);
-// After rlpc_encoder_finish: the input index of each decoded vertex. (With keep_order, vertices
-// are decoded in input order.) num_values: num_vertices.
+// After rlpc_encoder_finish: the input index of each decoded vertex. (With keep_order, decoders
+// restore the input order.) num_values: num_vertices.
 RLPC_API rlpc_status rlpc_encoder_vertex_order(rlpc_encoder* encoder, uint32_t* input_vertex,
                                                size_t num_values);
 

@@ -46,7 +46,7 @@ std::optional<InputError> check_format(const FrameFormat& format) {
                       std::to_string(format.num_frames)};
   }
   if (format.frame_rate.numerator == 0 || format.frame_rate.denominator == 0) {
-    return InputError{"a frame rate has no zero in it"};
+    return InputError{"the frame rate has a zero numerator or denominator"};
   }
   if (format.least_level < 1 || format.least_level > kMaxLevelIdc) {
     return InputError{"levels are 1 to " + std::to_string(kMaxLevelIdc) + ", not " +
@@ -256,9 +256,9 @@ std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& ne
   return InputError{"frames " + std::to_string(span.first) + " to " +
                     std::to_string(span.first + span.count - 1) + " need level " +
                     std::to_string(header.level_idc) +
-                    " (specification, Annex B), but the stream was begun at level " +
+                    " (specification, Annex B), but the stream has level " +
                     std::to_string(level_idc) +
-                    ": encode again with that as the least level, or with fewer components"};
+                    ": encode again with a higher least level, or with fewer components"};
 }
 
 std::optional<InputError> FrameEncoder::Impl::encode_gof() {
