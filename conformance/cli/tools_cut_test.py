@@ -242,7 +242,7 @@ class CuttingErrors(CutTest):
         before = path.read_bytes()
         self.path("link.rlpc").symlink_to(path)
         for output in (path, self.path("link.rlpc"), f"{self.folder}/./in.rlpc"):
-            self.fails(64, "is an input, too", "rlpcinfo", path, "--extract", "layers=1", "-o",
+            self.fails(64, "is also an input", "rlpcinfo", path, "--extract", "layers=1", "-o",
                        output)
         self.assertEqual(path.read_bytes(), before)
         self.assertEqual(self.files(), ["in.rlpc", "link.rlpc"])

@@ -92,9 +92,9 @@ class SamePlaces(ToolsTest):
         (self.path("linked.obj")).symlink_to(obj)
         self.before["linked.obj"] = self.before["clip.obj"]
         for output in (obj, self.path("linked.obj"), self.path(".") / "clip.obj"):
-            self.refused("is an input, too", "rlpcenc", obj, "-o", output)
-        self.refused("is an input, too", "rlpcenc", obj, "--points", pc2, "-o", pc2)
-        self.refused("is an input, too", "rlpcenc", obj, "-o", out, "--order-map", obj)
+            self.refused("is also an input", "rlpcenc", obj, "-o", output)
+        self.refused("is also an input", "rlpcenc", obj, "--points", pc2, "-o", pc2)
+        self.refused("is also an input", "rlpcenc", obj, "-o", out, "--order-map", obj)
         self.refused("two names", "rlpcenc", obj, "-o", out, "--order-map", out)
         for options in (["-o", "-", "--json"], ["-o", "-", "--order-map", "-"],
                         ["-o", out, "--order-map", "-", "--json"]):
@@ -109,7 +109,7 @@ class SamePlaces(ToolsTest):
         out = self.path("x.rlpc")
         for source in (frames, frames / "w_*.obj", frames / "w_%d.obj"):
             self.fails(64, "is an RLPC stream", "rlpcenc", source, "-o", frame)
-            self.fails(64, "is an input, too", "rlpcenc", source, "-o", out, "--order-map", frame)
+            self.fails(64, "is also an input", "rlpcenc", source, "-o", out, "--order-map", frame)
             self.fails(64, "choose another name", "rlpccmp", source, source, "--csv", frame)
         self.assertEqual(frame.read_bytes(), last)
         self.assertFalse(out.exists())
@@ -127,16 +127,16 @@ class SamePlaces(ToolsTest):
             "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
                             {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
             "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
-        self.fails(64, "is an input, too", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
+        self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
         self.assertEqual(self.path("data.bin").read_bytes(), buffer)
         self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
 
     def test_of_the_decoder(self):
         stream = self.path("a.rlpc")
-        self.refused("is an input, too", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
-        self.refused("is an input, too", "rlpcdec", stream, "--html", stream)
-        self.refused("is an input, too", "rlpcinfo", stream, "--html", stream)
-        # The mesh beside the output, which the command line does not name.
+        self.refused("is also an input", "rlpcdec", stream, "-o", stream, "--format", "rlpd")
+        self.refused("is also an input", "rlpcdec", stream, "--html", stream)
+        self.refused("is also an input", "rlpcinfo", stream, "--html", stream)
+        # The mesh that nobody named.
         self.refused("clip.obj: already exists", "rlpcdec", stream, "-o", self.path("clip.pc2"),
                      code=4)
         self.refused("another name", "rlpcdec", stream, "-o", self.path("x.obj"), "--format",

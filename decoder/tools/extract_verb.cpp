@@ -141,7 +141,7 @@ int extract(const ExtractOptions& o) {
   auto source = file_or_standard_input(o.input, o.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
   if (OutputFile::is_same_file(o.output, o.input)) {
-    return complain(o.output + ": is an input, too; choose another name for the output",
+    return complain(o.output + ": is also an input; choose another name for the output",
                     kExitUsage);
   }
   auto cutter = SubStreamExtractor::open(std::move(*source), o.cut, o.limits);

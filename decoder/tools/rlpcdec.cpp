@@ -377,7 +377,7 @@ int main(int argc, char** argv) try {
   for (const std::string& read : {options.input, options.html.reference, options.html.player}) {
     for (const std::string& written : {options.output, options.html.output}) {
       if (!rlpc::OutputFile::is_same_file(written, read)) continue;
-      return complain(written + ": is an input, too; choose another name for the output",
+      return complain(written + ": is also an input; choose another name for the output",
                       rlpc::kExitUsage);
     }
   }

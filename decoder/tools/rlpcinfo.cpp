@@ -141,7 +141,7 @@ int main(int argc, char** argv) try {
   auto* extract = add_options(app, options);
   if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
-    return complain(options.html + ": is an input, too; choose another name for the output",
+    return complain(options.html + ": is also an input; choose another name for the output",
                     rlpc::kExitUsage);
   }
   if (options.json && (options.html == "-" || options.output == "-")) {

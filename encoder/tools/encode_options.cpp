@@ -18,8 +18,305 @@
 namespace rlpc {
 namespace {
 
-// Settings beyond CLI11's conversions; returns what is wrong with them.
-std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
+constexpr const char* kExamples = R"(Examples
+  rlpcenc cow.obj --points cow.pc2 -o cow.rlpc
+  rlpcenc frames/ -o walk.rlpc --quality fine
+  rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5
+  rlpcenc fox.glb --animation Run -o run.rlpc)";
+
+constexpr const char* kDetails = R"(More examples
+  rlpcenc frames/ --kg 0.3 --dry-run                     how large would it be?
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.01
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all \
+      --clusters 30 --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo \
+      --frame lcf                         the settings of the RLPCA paper
+
+INPUT is one of
+  mesh.obj --points cache.pc2   triangles from the mesh (OBJ, PLY, OFF), frames
+                                from the point cache (PC2, MDD)
+  folder/                       every .obj in it (or .ply, .off), in numeric
+                                order
+  walk_%04d.obj, 'walk_*.obj'   the matching files, in numeric order
+  mesh.obj                      a single frame (also .ply, .off)
+  walk.glb, walk.gltf           a glTF 2.0 scene: skins, morph targets, animated
+                                nodes
+  clip.rlpd                     decoded positions
+  -                             any single file, from standard input
+
+The format is taken from the extension, otherwise detected from the contents.
+
+Qualities
+  word               KG error   mean normal deviation
+  preview            1 %        2 to 9 degrees: dents are visible
+  good (default)     0.1 %      0.2 to 1.3 degrees: hardly visible
+  fine               0.03 %     below 0.4 degrees
+  visually-lossless  0.01 %     below 0.13 degrees: half a step of an 8-bit
+                                display
+
+The KG error (Karni and Gotsman) is the RMS distance between original and
+decoded vertices, divided by the RMS distance of the vertices from the centre of
+their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
+length, a mean normal deviation of about one degree.
+
+--dry-run encodes animations of up to 1024 frames (or eight times --gof, if that
+is more) and reports the exact size. Of longer ones it encodes eight sections
+and reports an estimate ("about").
+
+Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
+reached; 64 wrong usage.)";
+
+// Option groups of the help page.
+constexpr const char* kInput = "Input";
+constexpr const char* kQuality = "Quality (at most one; default: --quality good)";
+constexpr const char* kOutput = "Output";
+constexpr const char* kMore = "More output";
+
+std::vector<std::string> quality_words() {
+  std::vector<std::string> words;
+  words.reserve(kQualities.size());
+  for (const NamedQuality& q : kQualities) words.emplace_back(q.word);
+  return words;
+}
+
+struct CommandLine {
+  explicit CommandLine(EncodeOptions& to) : options(to) {}
+
+  EncodeOptions& options;
+  std::string fps;
+  std::string gof = "128";
+  std::string metadata_path;
+  std::optional<double> kg;
+  std::optional<double> bpvf;
+  std::optional<double> max_error;
+};
+
+// The check of CLI11 itself accepts NaN.
+const CLI::Validator kAboveZero(
+    [](const std::string& word) {
+      double value = 0.0;
+      const bool number = CLI::detail::lexical_cast(word, value);
+      return number && std::isfinite(value) && value > 0.0
+                 ? ""
+                 : "expected a number above 0, found `" + word + "`";
+    },
+    "NUMBER");
+
+// Adds an option that takes one of a few words.
+template <class T>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
+                        const std::map<std::string, T>& words, const std::string& what) {
+  const auto set = [&value, words](const std::string& word) { value = words.at(word); };
+  return app.add_option_function<std::string>(name, set, what)
+      ->check(CLI::IsMember(words).description(""))
+      ->option_text("WORD");
+}
+
+// Adds a flag that turns off a default.
+CLI::Option* add_off_switch(CLI::App& app, const std::string& name, bool& value,
+                            const std::string& what) {
+  return app.add_flag_callback(
+      name, [&value] { value = false; }, what);
+}
+
+void add_input_options(CLI::App& app, CommandLine& line) {
+  app.add_option("INPUT", line.options.input.path,
+                 "Mesh, folder or pattern of meshes, or glTF file; - for standard input")
+      ->required();
+  app.add_option("--points", line.options.input.points,
+                 "Point cache (.pc2, .mdd) with the frames of INPUT")
+      ->option_text("FILE")
+      ->group(kInput);
+  app.add_option("--fps", line.fps,
+                 "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, otherwise 30)")
+      ->option_text("RATE")
+      ->group(kInput);
+  app.add_option("--animation", line.options.input.animation,
+                 "glTF: name, index from 0, or `all` in sequence (default: first)")
+      ->option_text("NAME")
+      ->group(kInput);
+  add_off_switch(app, "--no-weld", line.options.input.weld,
+                 "glTF: keep vertices that coincide in every frame apart")
+      ->group(kInput);
+}
+
+void add_quality_options(CLI::App& app, CommandLine& line) {
+  auto* word = app.add_option("--quality", line.options.quality,
+                              CLI::detail::join(quality_words(), ", "))
+                   ->check(CLI::IsMember(quality_words()).description(""))
+                   ->option_text("WORD")
+                   ->group(kQuality);
+  auto* kg = app.add_option("--kg", line.kg, "KG error in per cent")->option_text("PERCENT");
+  auto* bpvf = app.add_option("--bpvf", line.bpvf, "Bits per vertex and frame");
+  auto* max_error =
+      app.add_option("--max-error", line.max_error, "Largest vertex error, in units of INPUT");
+  bpvf->option_text("BITS");
+  max_error->option_text("DISTANCE");
+  for (auto* option : {kg, bpvf, max_error}) option->check(kAboveZero)->group(kQuality);
+  kg->excludes(bpvf)->excludes(max_error);
+  bpvf->excludes(max_error);
+  word->excludes(kg)->excludes(bpvf)->excludes(max_error);
+}
+
+void add_output_options(CLI::App& app, CommandLine& line) {
+  EncodeOptions& o = line.options;
+  auto* output =
+      app.add_option("-o,--output", o.output, "Stream to write; - for standard output")
+          ->option_text("FILE")
+          ->group(kOutput);
+  auto* dry_run =
+      app.add_flag("--dry-run", o.dry_run, "Report the expected size and error; write nothing")
+          ->excludes(output)
+          ->group(kOutput);
+  add_choice<Preset>(
+      app, "--preset", o.settings.preset,
+      {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
+      "Search effort: fast, medium (default), slow")
+      ->group(kOutput);
+  app.add_option(
+         "--gof", line.gof,
+         "Maximum frames per group (default: 128), or `all`: smallest file, slow seeking")
+      ->option_text("FRAMES")
+      ->group(kOutput);
+  auto* keep_order =
+      app.add_flag("--keep-order", o.settings.keep_order, "Store the vertex order of INPUT")
+          ->group(kOutput);
+  app.add_flag("--json", o.json, "Report as JSON on standard output")->group(kOutput);
+  app.add_flag("-v,--verbose", o.verbose, "Also report the encoder's choices")->group(kOutput);
+  app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kOutput);
+
+  app.add_option("--order-map", o.order_map,
+                 "Write, per decoded vertex, its index in INPUT (glTF: after welding)")
+      ->option_text("FILE")
+      ->excludes(dry_run)
+      ->excludes(keep_order)
+      ->group(kMore);
+  add_choice<HashMode>(
+      app, "--hash", o.settings.hash_mode,
+      {{"gof", HashMode::kGof}, {"frame", HashMode::kFrame}, {"none", HashMode::kNone}},
+      "Hashes of decoded positions, one per: gof (default), frame, none")
+      ->group(kMore);
+  app.add_option("--metadata", line.metadata_path, "JSON file to carry along")
+      ->check(CLI::ExistingFile)
+      ->option_text("FILE")
+      ->group(kMore);
+  app.add_option("--max-memory", o.settings.max_memory_bytes,
+                 "Refuse input that may need more, for example 500MB (default: 32GB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->option_text("SIZE")
+      ->group(kMore);
+}
+
+void add_method_options(CLI::App& app, CommandLine& line) {
+  const std::string method = "Both profiles";
+  add_choice<Profile>(app, "--profile", line.options.settings.profile,
+                      {{"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
+                      "Profile of the stream: main (default), baseline")
+      ->group(method);
+  app.add_option("--components", line.options.settings.components,
+                 "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
+                 "rate and distortion)")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N")
+      ->group(method);
+}
+
+void add_baseline_options(CLI::App& app, CommandLine& line) {
+  const std::string baseline = "Baseline profile only: parameters of the RLPCA paper";
+  BaselineTools& t = line.options.settings.baseline;
+  const auto add_number = [&](const char* name, auto& value, int least, int most,
+                              const char* what) {
+    app.add_option(name, value, what)
+        ->check(CLI::Range(least, most))
+        ->option_text("N")
+        ->group(baseline);
+  };
+  add_number("--clusters", t.clusters, 1, 1024,
+             "Clusters per GOF, N of the paper (default: chosen)");
+  add_number("--qu", t.qu, 2, 20, "Bits of eigenshapes; with --qc, instead of a quality");
+  add_number("--qc", t.qc, 2, 20, "Bits of coefficients");
+  add_number("--qdelta", t.qdelta, 2, 24, "Bits of seed positions (default: from the quality)");
+  add_off_switch(app, "--no-rdo", t.rdo, "The same number of components in every cluster")
+      ->group(baseline);
+  add_choice<bool>(app, "--rdo-rate", t.rate_in_vectors, {{"bits", false}, {"vectors", true}},
+                   "With --components, the budget that clusters share: bits (default), or "
+                   "vectors as in the paper")
+      ->group(baseline);
+  add_choice<FrameMode>(
+      app, "--frame", t.frame_mode,
+      {{"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}},
+      "Coordinates of clusters: auto (default), lcf (local coordinate frames), world")
+      ->group(baseline);
+  add_choice<SeedMode>(app, "--seeds", t.seed_mode,
+                       {{"auto", SeedMode::kAuto},
+                        {"triangle", SeedMode::kTriangle},
+                        {"spread", SeedMode::kSpread}},
+                       "Vertices that carry local coordinate frames: auto (default), triangle, "
+                       "spread")
+      ->group(baseline);
+}
+
+void add_main_options(CLI::App& app, CommandLine& line) {
+  const std::string tools = "Main profile only; any of these disables cluster GOFs";
+  MainTools& t = line.options.settings.main;
+  const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t most,
+                              const char* what) {
+    app.add_option(name, value, what)
+        ->check(CLI::Range(std::uint32_t{1}, most))
+        ->option_text("N")
+        ->group(tools);
+  };
+  add_number("--bones", t.bones, 1024, "Maximum bones per GOF (default: chosen)");
+  add_number("--influences", t.influences, kMaxExtraBones,
+             "Maximum bones per vertex (default: chosen)");
+  add_choice<std::optional<Prediction>>(
+      app, "--prediction", t.prediction,
+      {{"auto", std::nullopt},
+       {"none", Prediction::kNone},
+       {"parallelogram", Prediction::kParallelogram},
+       {"parallelograms", Prediction::kParallelograms},
+       {"layers", Prediction::kLayers}},
+      "Of spatial factors: auto (default), none, parallelogram, parallelograms (all), layers")
+      ->group(tools);
+  add_choice<bool>(app, "--basis-steps", t.cobra_steps, {{"equal", false}, {"cobra", true}},
+                   "Quantiser steps of temporal factors: equal (distortion, default), cobra")
+      ->group(tools);
+  add_off_switch(app, "--no-geometry-weights", t.geometry_weights,
+                 "Predict from plain means of 1-rings")
+      ->group(tools);
+  add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
+      ->group(tools);
+  add_off_switch(app, "--no-layer-steps", t.layer_steps,
+                 "The same quantiser steps in all layers")
+      ->group(tools);
+  add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
+                 "Only the fixed predictors of temporal factors")
+      ->group(tools);
+  add_off_switch(app, "--no-clusters", t.clusters,
+                 "Bones in all GOFs, even where clusters cost less")
+      ->group(tools);
+  add_number("--component-groups", t.component_groups, 255,
+             "Cut points among trajectories, at most one each (default: by size)");
+  add_number("--layer-groups", t.layer_groups, 255,
+             "Cut points among vertex layers, at most one each (default: by size)");
+}
+
+void add_options(CLI::App& app, CommandLine& line) {
+  add_input_options(app, line);
+  add_quality_options(app, line);
+  add_output_options(app, line);
+  add_method_options(app, line);
+  add_main_options(app, line);
+  add_baseline_options(app, line);
+  add_help(app,
+           {"INPUT [--points CACHE] -o OUT.rlpc [OPTIONS]",
+            {kInput, kQuality, kOutput},
+            kExamples,
+            kDetails},
+           RLPC_VERSION);
+}
+
+// Completes the settings that CLI11 cannot convert; returns the error, if any.
+std::optional<std::string> finish_settings(const CommandLine& line) {
   EncodeOptions& o = line.options;
   EncoderSettings& s = o.settings;
   if (!line.fps.empty()) {
@@ -49,8 +346,8 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   return std::nullopt;
 }
 
-// Outputs that would overwrite an input or each other; nothing is written yet.
-std::optional<std::string> check_places(const EncodeCommandLine& line) {
+// Rejects outputs that would overwrite an input or each other, before anything is written.
+std::optional<std::string> check_places(const CommandLine& line) {
   const EncodeOptions& o = line.options;
   if (o.output.empty() && !o.dry_run) return "--output is required (or --dry-run)";
   const std::string standard = " cannot both go to standard output";
@@ -62,7 +359,7 @@ std::optional<std::string> check_places(const EncodeCommandLine& line) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& other : read) {
       if (!OutputFile::is_same_file(written, other)) continue;
-      return written + ": is an input, too; choose another name for the output";
+      return written + ": is also an input; choose another name for the output";
     }
   }
   if (OutputFile::is_same_file(o.output, o.order_map)) {
@@ -87,7 +384,7 @@ std::optional<InputError> read_metadata(const EncodeCommandLine& line) {
   if (metadata.starts_with("\xEF\xBB\xBF")) {
     return InputError{line.metadata_path + ": begins with a byte order mark; JSON has none"};
   }
-  // The JSON library takes a zero byte for the end.
+  // The JSON library treats a zero byte as the end of the text.
   if (metadata.find('\0') != std::string::npos || !nlohmann::json::accept(metadata)) {
     return InputError{line.metadata_path + ": not valid JSON in UTF-8"};
   }

@@ -12,8 +12,8 @@ namespace rlpc {
 struct EncodeOptions {
   InputOptions input;
   std::string output;     // "-": standard output
-  std::string order_map;  // the same; empty: none
-  std::string quality;    // the word given, if any
+  std::string order_map;  // "-": standard output; empty: none
+  std::string quality;    // the word given; empty: none
   bool dry_run = false;
   bool json = false;
   bool verbose = false;
@@ -23,8 +23,8 @@ struct EncodeOptions {
 
 enum EncodeExitCode : int { kEncoded = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };
 
-// Reads the command line, and the metadata file that it names. Returns the exit code if nothing
-// is left to do: after --help, or after reporting an error.
+// Reads the command line, and the metadata file that it names. Returns the exit code if the
+// program should end: after --help, or after reporting an error.
 std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& options);
 
 // Prints the message on standard error; returns `code`.

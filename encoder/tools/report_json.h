@@ -1,4 +1,4 @@
-// Figures as JSON, under the same names in all programs.
+// Reports as JSON, with the same names in all programs.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// rlpcenc: animations to .rlpc streams.
+// rlpcenc: encodes animations as .rlpc streams.
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               r.trials, s(r.trials));
 }
 
-// Whether floats this far from the origin are spaced wider than the error.
+// Whether the spacing of floats this far from the origin exceeds the error.
 bool is_far_away(const EncodeReport& report) {
   double farthest = 0.0;
   for (const std::int32_t origin : report.header.grid.origin) {
@@ -70,21 +70,21 @@ bool is_far_away(const EncodeReport& report) {
          kFloatSteps * report.metrics.rms_error;
 }
 
-// Reports a target that is met by a wide margin.
+// Reports an error or rate that is far below the target.
 void tell_if_far_below(const Target& target, const EncodeReport& report) {
   constexpr double kNear = 0.95;
-  constexpr double kNoError = 0.002;  // per cent: about the error of the finest grid
+  constexpr double kNoError = 0.002;  // KG error in per cent, about that of the finest grid
   const bool is_exact = report.metrics.kg_error_percent < kNoError;
   if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
-    complain(
-        std::string("fewer bits than --bpvf allows: ") +
-        (is_exact ? "this is as exact as it gets" : "no encoding was found that comes closer"));
+    complain(std::string("fewer bits than --bpvf allows: ") +
+             (is_exact ? "this is the highest precision"
+                       : "no encoding was found that comes closer"));
   }
   const double error = target.kind == Target::kMaxError ? report.metrics.max_error
                                                         : report.metrics.kg_error_percent;
   if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
     complain(
-        "a smaller error than asked for: no encoding was found that saves by coming closer");
+        "the error is smaller than requested: no smaller file was found closer to the target");
   }
 }
 
@@ -115,9 +115,8 @@ std::string advice(const EncodeOptions& o, const EncodeReport& report) {
     return "Try " + reachable + (report.num_gofs > 1 ? ", or a longer --gof" : "");
   }
   if (is_far_away(report)) {
-    return "The animation lies so far from the origin that floats are coarser than that: move "
-           "it there, or try " +
-           reachable;
+    return "The animation is so far from the origin that floats are coarser than the target: "
+           "move it to the origin, or try a larger error";
   }
   return (o.settings.components > 0 ? "Try more --components, or " : "Try ") + reachable;
 }
@@ -134,7 +133,8 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
       kTargetMissed);
 }
 
-// A target whose error should not be visible. RMS errors are about proportional to KG errors.
+// Suggests a target whose error should not be visible. RMS errors are roughly proportional to
+// KG errors.
 std::string finer(const EncodeOptions& o, const Visibility& v) {
   const Target& target = o.settings.target;
   if (target.kind == Target::kNone) return "larger --qu and --qc";
@@ -151,7 +151,8 @@ std::string finer(const EncodeOptions& o, const Visibility& v) {
   return (target.kind == Target::kKg ? "--kg " : "--max-error ") + std::string(text);
 }
 
-// Not with --quality preview, nor if the target was missed: it is obvious then.
+// Does not warn with --quality preview or if the target was missed: visible errors are expected
+// then.
 void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
   std::fprintf(
@@ -228,7 +229,7 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   return report;
 }
 
-// Doubts whether INPUT is what was meant.
+// Notes if INPUT is probably not what the user meant.
 std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
   std::vector<std::string> notes;
   if (source.triangles().empty())
@@ -241,7 +242,7 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
   return notes;
 }
 
-// An output that would overwrite a file of the input, even one that the input refers to.
+// An output that would overwrite an input file, including files that the input refers to.
 std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& read : source.files()) {
@@ -255,7 +256,7 @@ int run(const EncodeOptions& o) {
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
   if (const auto written = written_over(o, **source)) {
-    return complain(*written + ": is an input, too; choose another name for the output",
+    return complain(*written + ": is also an input; choose another name for the output",
                     kUsage);
   }
   const std::string name = name_of_input(o.input.path);
@@ -271,8 +272,7 @@ int run(const EncodeOptions& o) {
   return tell(o, **source, {std::move(*report), frames});
 }
 
-// Large blocks, as of a GOF, are returned to the system when freed. glibc would keep them, and
-// let a second heap grow next to the first.
+// Makes glibc return large blocks, such as those of a GOF, to the system when they are freed.
 void return_large_blocks() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
