@@ -4,12 +4,12 @@
 namespace rlpc {
 
 // 8.4 Local coordinate frames
-inline constexpr int kLocalFractionBits = 4;  // of local coordinates
+inline constexpr int kLocalFractionBits = 4;  // local coordinates: 1/16 grid step
 inline constexpr int kLocalBits = 31;         // local coordinates are clipped to this width
-inline constexpr int kAxisFractionBits = 30;  // of the unit vectors
+inline constexpr int kAxisFractionBits = 30;  // unit vectors of the axes
 
 // 8.12 Bones
 inline constexpr int kQuaternionFractionBits = 30;
-inline constexpr int kPointFractionBits = 4;  // of the rest shape, and where bones take it
+inline constexpr int kPointFractionBits = 4;  // positions of the rest shape and of moved points
 
 }  // namespace rlpc

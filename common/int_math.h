@@ -17,7 +17,8 @@ constexpr std::int64_t round2(std::int64_t x, int n) {
 }
 static_assert(round2(5, 1) == 3 && round2(-5, 1) == -2);  // ties go up
 
-// 8.11.1 ShiftBy(x, shift): as round2 if shift > 0; |x| * 2^-shift < 2^62 else.
+// 8.11.1 ShiftBy(x, shift): round2 if shift > 0, otherwise x * 2^-shift, which must be below
+// 2^62.
 constexpr std::int64_t shift_by(std::int64_t x, int shift) {
   return shift > 0 ? round2(x, shift) : x * (std::int64_t{1} << -shift);
 }

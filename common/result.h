@@ -1,4 +1,4 @@
-// Errors and results. A bad stream or file yields an Error; a bad caller is an assert.
+// Errors and results. Bad streams and files give an Error; caller errors are asserted.
 #pragma once
 
 #include <cassert>

@@ -8,11 +8,11 @@
 
 namespace rlpc {
 
-// The mean of a fast and a slow estimate of P(bin == 1), both in 1/65536. Both start as plain
-// averages, until their own rate is reached.
+// The mean of a fast and a slow estimate of P(bin == 1), both in 1/65536. Each starts as a
+// plain average of the bins, until its adaptation rate is reached.
 class BitModel {
  public:
-  // In 1/65536, 71 to 65465: the cost of either bin stays finite.
+  // In 1/65536, in the range 71 to 65465, which bounds the cost of a bin.
   std::uint32_t probability() const { return (fast_ + slow_) >> 1; }
 
   void update(bool bin) {

@@ -37,7 +37,7 @@ TEST(BitModel, NeverLeavesItsBounds) {
     std::mt19937 random(seed);
     BitModel model;
     for (int i = 0; i < 20000; ++i) {
-      // Runs of one value, so that both bounds are approached, and sharp changes.
+      // Long runs of one value, which approach both bounds, and sudden changes.
       const bool bin = random() % 8 == 0;
       const std::uint64_t run = 1 + random() % (1U << (random() % 11));
       for (std::uint64_t k = 0; k < run && i < 20000; ++k, ++i) {
@@ -49,7 +49,7 @@ TEST(BitModel, NeverLeavesItsBounds) {
   }
 }
 
-// The first bins count fully: one of them moves both estimates half the way.
+// The first bins have full weight: the first moves both estimates half way.
 TEST(BitModel, LearnsFastAtFirst) {
   BitModel model;
   model.update(true);
@@ -80,7 +80,7 @@ TEST(BitModel, EveryBinMovesTheProbabilityTowardsIt) {
   }
 }
 
-TEST(BitModel, ConvergesToTheShareOfOnes) {
+TEST(BitModel, ConvergesToTheFractionOfOnes) {
   for (const unsigned per_mille : {20U, 100U, 500U, 800U, 980U}) {
     constexpr unsigned kSeed = 4;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", " << per_mille << " per mille");

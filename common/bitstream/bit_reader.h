@@ -1,4 +1,4 @@
-// Fixed-length and Exp-Golomb codes of clause 9.2, most significant bit first.
+// Reads the fixed-length and Exp-Golomb codes of clause 9.2, most significant bit first.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +31,9 @@ class BitReader {
   // ue(): at most 32 bits of value; se(): the signed mapping of clause 9.2.
   std::uint32_t ue(const char* element, Range range, const char* rule);
   std::int32_t se(const char* element, Range range, const char* rule);
-  // Zero bits up to the next byte (rule R-BIT-02).
+  // Reads zero bits up to the next byte boundary (rule R-BIT-02).
   void byte_alignment();
-  // The bytes after a byte-aligned position.
+  // The bytes from the current position on, which must be byte-aligned.
   std::span<const std::uint8_t> remaining_bytes() const;
   // Fails unless every byte has been read (rule R-BIT-03).
   void expect_end();

@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr Range kAny{0, 0xFFFFFFFE};
 constexpr Range kAnySigned{-2147483647, 2147483647};
 
-// Exactly `size` bytes on the heap, so that a read past them is seen.
+// Exactly `size` bytes on the heap, so that sanitizers detect a read past them.
 Bytes prefix_of(const Bytes& bytes, std::size_t size) {
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
 }
@@ -32,7 +32,7 @@ void expect_error(const BitReader& r, Errc code, const std::string& rule,
   EXPECT_EQ(r.error()->bit_pos, bit_pos);
 }
 
-TEST(BitReader, TakesTheMostSignificantBitFirst) {
+TEST(BitReader, ReadsTheMostSignificantBitFirst) {
   // 1 | 010 | 1100 0011 | 1010
   const Bytes bytes{0b1010'1100, 0b0011'1010};
   BitReader r(bytes);
@@ -45,7 +45,7 @@ TEST(BitReader, TakesTheMostSignificantBitFirst) {
   EXPECT_FALSE(r.error());
 }
 
-TEST(BitReader, KnowsTheExpGolombCodesOfTheText) {
+TEST(BitReader, ReadsTheExpGolombCodesOfTheSpecification) {
   // 0 -> 1, 1 -> 010, 2 -> 011, 3 -> 00100, then 0001000 (7) and the stop bits of the byte
   const Bytes bytes{0b1010'0110, 0b0100'0001, 0b0000'0000};
   BitReader r(bytes);
@@ -107,7 +107,7 @@ TEST(BitReader, ReadsWhatTheWriterWrote) {
   }
 }
 
-TEST(BitReader, EveryLengthOfExpGolombCodeComesBack) {
+TEST(BitReader, EveryLengthOfExpGolombCodeRoundTrips) {
   for (int zeros = 0; zeros < 32; ++zeros) {
     const auto first = static_cast<std::uint32_t>((std::uint64_t{1} << zeros) - 1);
     const auto last = static_cast<std::uint32_t>((std::uint64_t{2} << zeros) - 2);
@@ -131,7 +131,8 @@ TEST(BitReader, EveryLengthOfExpGolombCodeComesBack) {
   }
 }
 
-// The value 2^32 - 1 and more have codes of 32 zeros; no element has them in its range.
+// The values from 2^32 - 1 have codes with 32 zeros; they are outside the range of every
+// element.
 TEST(BitReader, CodesOf32ZerosAreReadAndOutOfRange) {
   const Bytes bytes{0, 0, 0, 0, 0x80, 0, 0, 0, 0};
   BitReader r(bytes);
@@ -243,7 +244,7 @@ TEST(BitReader, AlignmentBitsAreZero) {
   EXPECT_FALSE(r.error());
 }
 
-TEST(BitReader, BytesLeftOverAreInvalid) {
+TEST(BitReader, UnreadBytesAreInvalid) {
   const Bytes bytes{0x12, 0x34};
   BitReader r(bytes, 80);
   r.u(8, "value");
@@ -260,7 +261,7 @@ class Log : public Trace {
   std::string text;
 };
 
-TEST(BitReader, TracesEveryElementUpToTheOneThatIsWrong) {
+TEST(BitReader, TracesEveryElementUpToTheFirstError) {
   BitWriter w;
   w.u(5, 17);
   w.ue(6);

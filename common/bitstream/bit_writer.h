@@ -1,4 +1,4 @@
-// Fixed-length and Exp-Golomb codes of clause 9.2, most significant bit first.
+// Writes the fixed-length and Exp-Golomb codes of clause 9.2, most significant bit first.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class BitWriter {
   void ue(std::uint32_t value);  // value <= 2^32 - 2
   void se(std::int32_t value);
   void byte_alignment();
-  // Both need a byte-aligned position.
+  // Both require a byte-aligned position.
   void append(const std::vector<std::uint8_t>& bytes);
   std::vector<std::uint8_t> take();
 

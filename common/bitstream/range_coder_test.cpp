@@ -1,4 +1,4 @@
-// The two halves of the range coder against each other (clause 9.3).
+// Tests range encoder and decoder against each other (clause 9.3).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A bin with one of a few models, or bits without one.
+// A bin with one of a few models, or bypass bits.
 struct Symbol {
   int model = 0;  // index; -1: bypass
   int bits = 1;
@@ -38,7 +38,7 @@ Bytes encode(const Symbols& symbols) {
   return re.finish();
 }
 
-// Values of the same symbols as the section gives them.
+// The values of the same symbols, decoded from the section.
 struct Decoded {
   std::vector<std::uint32_t> values;
   bool starts_legally = false;
@@ -76,7 +76,7 @@ Bytes expect_round_trip(const Symbols& symbols) {
   EXPECT_FALSE(decode(longer, symbols).at_exact_end);
   const Bytes shorter(section.begin(), section.end() - 1);  // of exact size on the heap
   const Decoded cut = decode(shorter, symbols);
-  // What is left may be a whole section of other symbols, but not of these.
+  // The remaining bytes may be a complete section of other symbols, but not of these.
   EXPECT_FALSE(cut.at_exact_end && cut.values == expected);
   EXPECT_TRUE(cut.overrun || cut.values != expected);
   return section;
@@ -101,7 +101,7 @@ Symbols random_symbols(std::mt19937& random, std::size_t count, unsigned ones_pe
   return symbols;
 }
 
-TEST(RangeCoder, RandomSymbolsComeBackAndTheSectionHasExactlyTheirBytes) {
+TEST(RangeCoder, RandomSymbolsRoundTripAndUseAllBytesOfTheSection) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -112,14 +112,14 @@ TEST(RangeCoder, RandomSymbolsComeBackAndTheSectionHasExactlyTheirBytes) {
   }
 }
 
-TEST(RangeCoder, SymbolsOfOneValueTakeNextToNothing) {
+TEST(RangeCoder, SymbolsOfOneValueTakeAlmostNoSpace) {
   for (const std::uint32_t value : {0U, 1U}) {
     const Bytes section = expect_round_trip(Symbols(100000, Symbol{0, 1, value}));
     EXPECT_LT(section.size(), 100000 * 0.0017 / 8 + 20);  // -log2(65465 / 65536) bits each
   }
 }
 
-TEST(RangeCoder, BypassTakesEveryWidth) {
+TEST(RangeCoder, BypassSupportsEveryWidth) {
   for (int bits = 0; bits <= 32; ++bits) {
     const std::uint32_t all = bits == 0 ? 0 : 0xFFFFFFFFU >> (32 - bits);
     Symbols symbols;
@@ -138,7 +138,7 @@ TEST(RangeCoder, AnEmptySectionIsOneByte) {
   EXPECT_TRUE(empty.overrun());
 }
 
-// The symbols that a decoder reads from bytes, whatever they are.
+// The symbols that a decoder reads from arbitrary bytes.
 Symbols symbols_of(const Bytes& bytes, std::size_t count, bool with_models) {
   RangeDecoder rd(bytes);
   std::vector<BitModel> models(kModels);
@@ -153,9 +153,10 @@ Symbols symbols_of(const Bytes& bytes, std::size_t count, bool with_models) {
   return symbols;
 }
 
-// Symbols along a number just below or above a round one keep `low` close under it, so that
-// many 0xFF bytes are held back; what follows sends a carry through all of them, or not.
-TEST(RangeCoder, CarriesRunThroughManyBytes) {
+// Symbols that describe a number close to a round one keep `low` just below it, so that many
+// 0xFF bytes are held back. The following symbols propagate a carry through all of them, or
+// none.
+TEST(RangeCoder, CarriesPropagateThroughManyBytes) {
   std::size_t longest_ones = 0;
   std::size_t longest_zeros = 0;
   for (const int first : {0x01, 0x7F, 0x80, 0xC3}) {
@@ -188,7 +189,7 @@ TEST(RangeCoder, CarriesRunThroughManyBytes) {
   EXPECT_GT(longest_zeros, 50U);
 }
 
-TEST(RangeCoder, SymbolsReadFromRandomBytesComeBack) {
+TEST(RangeCoder, SymbolsReadFromRandomBytesRoundTrip) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -206,14 +207,14 @@ TEST(RangeCoder, SectionsThatStartWithFourTimes255AreIllegal) {
   EXPECT_TRUE(RangeDecoder(Bytes{0xFF, 0xFF, 0xFF, 0xFE}).starts_legally());
   EXPECT_TRUE(RangeDecoder(Bytes{0xFF, 0xFF, 0xFF}).starts_legally());
   EXPECT_TRUE(RangeDecoder(Bytes{0x00, 0xFF, 0xFF, 0xFF}).starts_legally());
-  // The largest section that an encoder writes: ones without a model, all the way up.
+  // The largest section that an encoder can write: bypass bits that are all 1.
   const Bytes section = expect_round_trip(Symbols(40, Symbol{-1, 32, 0xFFFFFFFF}));
   EXPECT_EQ(section[0], 0xFF);
   EXPECT_NE((Bytes{section[0], section[1], section[2], section[3]}), Bytes(4, 0xFF));
 }
 
-// An illegal start still leaves a decoder that keeps its invariants.
-TEST(RangeCoder, DecodingGoesOnAfterAnIllegalStart) {
+// After an illegal start, the decoder still keeps its invariants.
+TEST(RangeCoder, DecodingContinuesAfterAnIllegalStart) {
   const Bytes section(10, 0xFF);
   RangeDecoder rd(section);
   EXPECT_EQ(rd.bypass(8), 0xFFU);
@@ -243,7 +244,7 @@ TEST(RangeCoder, BitsSpentGrowWithTheInformation) {
   }
 }
 
-TEST(RangeCoder, SectionsAreAsLongAsTheirInformation) {
+TEST(RangeCoder, SectionsAreAsLongAsTheirEntropy) {
   for (const unsigned ones_per_mille : {30U, 300U, 900U}) {
     constexpr unsigned kSeed = 5;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", " << ones_per_mille);

@@ -57,7 +57,7 @@ class RangeDecoder {
   bool starts_legally() const { return starts_legally_; }
   // True if the section held exactly the bytes that were needed (rule R-RNG-01).
   bool at_exact_end() const { return taken_ == section_.size() + 3; }
-  // Past the end: the caller may stop decoding.
+  // Whether bytes past the end were needed; the caller may stop decoding.
   bool overrun() const { return taken_ > section_.size() + 3; }
   // Bits consumed so far, rounded up; for traces and error positions.
   std::uint64_t bits_spent() const {

@@ -1,4 +1,4 @@
-// What handles of the C API share: memory, error, and keeping exceptions inside.
+// Shared by the handles of the C API: memory, errors, and containment of exceptions.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class HandleError {
     return set(status, text);
   }
   void clear() { text_[0] = '\0'; }
-  rlpc_status broken() const { return broken_; }  // RLPC_OK: usable
+  rlpc_status broken() const { return broken_; }  // RLPC_OK: the handle is usable
   const char* text() const { return text_.data(); }
 
  private:
@@ -37,7 +37,8 @@ class HandleError {
   rlpc_status broken_ = RLPC_OK;
 };
 
-// Calls `call`, which returns a status. Handle has a HandleError `error`.
+// Calls `call`, which returns a status, and converts exceptions. Handle has a member
+// HandleError error.
 template <class Handle, class Call>
 rlpc_status guarded(Handle* handle, const Call& call) noexcept {
   if (handle == nullptr) return RLPC_BAD_ARGUMENT;
@@ -55,8 +56,8 @@ rlpc_status guarded(Handle* handle, const Call& call) noexcept {
   }
 }
 
-// A new handle, at `place` unless that is null. Handle has a flag `is_placed`. Null if `place`
-// is too small or not aligned, or if there is no memory.
+// Makes a new handle, at `place` unless that is null. Null if `place` is too small or not
+// aligned, or if there is no memory. Handle has a member bool is_placed.
 template <class Handle>
 Handle* make_handle(void* place, std::size_t place_bytes) noexcept {
   static_assert(alignof(Handle) <= alignof(std::max_align_t));
@@ -78,8 +79,8 @@ void close_handle(Handle* handle) noexcept {
   }
 }
 
-// Structures of the API begin with struct_size, their size in the caller's version, which may
-// be older than ours. Options: the defaults, as far as the caller knows them.
+// Structures of the API begin with struct_size, their size in the version of the caller, which
+// may be older. Sets options to their defaults, up to that size.
 template <class T>
 void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   if (theirs == nullptr || struct_size < sizeof(std::size_t)) return;
@@ -88,8 +89,8 @@ void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   theirs->struct_size = struct_size;
 }
 
-// `ours` holds the defaults of members that the caller does not know. False: not initialised,
-// or members are set that this version does not know.
+// Reads options of the caller; `ours` must hold the defaults, for members that the caller does
+// not know. False: not initialised, or members that this version does not know are set.
 template <class T>
 bool take_struct(const T* theirs, T& ours) {
   constexpr std::size_t kMostBytes = 4096;

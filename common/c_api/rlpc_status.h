@@ -14,15 +14,15 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef enum rlpc_status {
   RLPC_OK = 0,
-  RLPC_END = 1,             // not an error: no further frame, and the stream was complete
+  RLPC_END = 1,             // not an error: no further frames, and the stream was complete
   RLPC_BAD_STREAM = 2,      // not a conforming stream: damaged or truncated
-  RLPC_UNSUPPORTED = 3,     // a later version
+  RLPC_UNSUPPORTED = 3,     // a later version of the format
   RLPC_LIMIT_EXCEEDED = 4,  // exceeds the limits of the options
   RLPC_IO_FAILED = 5,       // a file or a callback failed
-  RLPC_BAD_INPUT = 6,       // the animation or the settings
-  RLPC_BAD_ARGUMENT = 7,    // null, a wrong number of values, a frame that does not exist
+  RLPC_BAD_INPUT = 6,       // invalid animation or settings
+  RLPC_BAD_ARGUMENT = 7,    // null, wrong number of values, no such frame
   RLPC_OUT_OF_MEMORY = 8,
-  RLPC_INTERNAL_ERROR = 9,  // a bug
+  RLPC_INTERNAL_ERROR = 9,  // a bug in the library
 } rlpc_status;
 // NOLINTEND(readability-identifier-naming)
 

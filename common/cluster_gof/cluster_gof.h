@@ -31,7 +31,7 @@ struct Component {
 
 struct Cluster {
   bool lcf_flag = false;
-  std::array<std::uint32_t, 3> seed_vertex{};  // if lcf_flag: three distinct vertices
+  std::array<std::uint32_t, 3> seed_vertex{};  // only with lcf_flag: three distinct vertices
   std::vector<Component> components;
 };
 
@@ -39,7 +39,7 @@ struct Cluster {
 // clusters in order, their seeds in order, each vertex once.
 struct SeedTrack {
   std::uint32_t vertex = 0;
-  std::uint32_t anchor = 0;  // index of the track of seed 0 of the cluster; itself for seed 0
+  std::uint32_t anchor = 0;     // track of seed 0 of the cluster; for seed 0, this track
   std::vector<Vec3i> residual;  // [num_gof_frames]
 };
 
@@ -54,7 +54,7 @@ struct ClusterGof : GofHeader {
       cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
 };
 
-// In cluster_of_vertex: the vertex is a seed, and reconstructed from its track alone.
+// Value of cluster_of_vertex for seed vertices, which are reconstructed from their tracks.
 inline constexpr std::uint16_t kSeedCluster = 0xFFFF;
 
 }  // namespace rlpc

@@ -20,7 +20,7 @@ namespace rlpc {
 struct ClusterModels {
   BitModel lcf_flag;
   std::array<BitModel, 3> cluster_predicted_flag;
-  std::vector<BitModel> cluster_idx;  // binary tree, node n at index n
+  std::vector<BitModel> cluster_idx;  // [node of the binary tree]
   std::array<BitModel, kMaxPredictorOrder> temporal_predictor;
   std::array<BitModel, kMaxSpatialPredictor> spatial_predictor;
   ResidualModels header;
@@ -33,7 +33,8 @@ struct ClusterModels {
 // 9.6.2 Predicted cluster, from the neighbours already decoded.
 struct ClusterPrediction {
   std::uint16_t cluster = 0;
-  std::size_t context = 0;  // of cluster_predicted_flag: no neighbour, all agree, they differ
+  // Of cluster_predicted_flag; 0: no neighbour, 1: the neighbours agree, 2: they differ.
+  std::size_t context = 0;
 };
 
 inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_neighbours,
@@ -53,7 +54,7 @@ inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_
 // 9.6.4 Expected magnitude of a temporal residual.
 class TemporalContext {
  public:
-  // frame_mean [num_gof_frames]: mean of the previous components, per frame.
+  // frame_mean [num_gof_frames]: running mean over the previous components, per frame; updated.
   TemporalContext(std::span<std::uint32_t> frame_mean, const Component& component)
       : frame_mean_(frame_mean) {
     const int bits = component.temporal_bits - component.scale_idx / 8 + 4;

@@ -9,7 +9,7 @@ inline constexpr int kMaxFractionBits = 24;
 inline constexpr int kMaxPredictorOrder = 4;
 inline constexpr int kMaxSpatialBits = 24;
 inline constexpr int kMaxTemporalBits = 26;
-inline constexpr int kTemporalIndexBits = 24;  // width of a temporal value before scaling
+inline constexpr int kTemporalIndexBits = 24;  // width of temporal values before scaling
 inline constexpr int kMaxScaleIdx = 127;
 
 // Spatial values are summed in tiles of this size (common/kernels): small enough for the

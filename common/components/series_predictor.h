@@ -1,5 +1,6 @@
-// 8.2.2 Physical predictors of a series: order 0 predicts zero, 1 the value before, 2 constant
-// speed, 3 constant acceleration, 4 constant change of acceleration (Vasa and Skala 2009, 4).
+// 8.2.2 Physical predictors of a series (Vasa and Skala 2009, 4). Order 0 predicts zero, order
+// 1 the previous value; orders 2, 3 and 4 assume constant speed, acceleration and change of
+// acceleration.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 
 namespace rlpc {
 
-// The first values of a series have fewer predecessors, which limits the order. series(i) gives
-// the value at i < f. |values| < 2^32, so the prediction is below 2^36.
+// Predicts the value at f. The order is limited to the number of predecessors. series(i)
+// returns the value at i < f; |values| < 2^32, so the prediction is below 2^36.
 template <class Series>
 std::int64_t predict_series(const Series& series, std::uint32_t f, int order) {
   switch (std::min<std::uint32_t>(f, static_cast<std::uint32_t>(order))) {

@@ -55,14 +55,14 @@ TEST(PredictSeries, OrderAboveTheDegreeOfAPolynomialIsExact) {
         for (int order = degree + 1; order <= 4; ++order) {
           ASSERT_EQ(predict(values, f, order), values[f]) << degree << " " << order;
         }
-        // One order less misses by the highest difference, which is constant and not zero.
+        // The next lower order is off by the highest difference, a non-zero constant.
         ASSERT_TRUE(degree == 0 || predict(values, f, degree) != values[f]);
       }
     }
   }
 }
 
-TEST(PredictSeries, OfTheLargestPositionsIsFifteenTimesAsLarge) {
+TEST(PredictSeries, IsAtMostFifteenTimesTheLargestPosition) {
   const std::int64_t most = std::int64_t{1} << 23;
   EXPECT_EQ(predict({most, -most, most, -most}, 4, 4), -15 * most);
 }

@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// 9.6.1: running magnitude of residuals: a fast and a slow mean, 8 fractional bits.
+// 9.6.1: running magnitude of residuals: a fast and a slow mean, with 8 fractional bits.
 struct RunningMagnitude {
   std::uint32_t fast = 0;
   std::uint32_t slow = 0;
@@ -24,12 +24,12 @@ struct RunningMagnitude {
   }
 };
 
-// 9.6.1 ClippedMagnitude( residual ): as of a running mean, with 8 fractional bits.
+// 9.6.1 ClippedMagnitude( residual ): scaled to 8 fractional bits, as running means are.
 constexpr std::uint32_t clipped_magnitude(std::int32_t residual) {
   return std::min<std::uint32_t>(magnitude_of(residual), 0x100000) << 8;
 }
 
-// Small numbers of cluster and component headers, coded as differences.
+// Fields of cluster and component headers that are coded as differences.
 enum class HeaderField : std::uint8_t {
   kNumComponents,
   kScaleIdx,
@@ -37,11 +37,11 @@ enum class HeaderField : std::uint8_t {
   kTemporalBits
 };
 
-// 9.6.3 and 9.8.2 Expected magnitude of a residual of a track: of a seed vertex, a bone, or a
-// trajectory.
+// 9.6.3 and 9.8.2 Expected magnitude of a residual of a track (of a seed vertex, a bone or a
+// trajectory).
 class TrackContext {
  public:
-  // frame_mean [num_gof_frames]: mean of the previous tracks, per frame.
+  // frame_mean [num_gof_frames]: running mean over the previous tracks, per frame; updated.
   explicit TrackContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
   std::uint32_t expected(std::uint32_t f, std::size_t c) const {
     return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;

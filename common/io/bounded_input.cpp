@@ -42,7 +42,7 @@ void PipedInput::read_block(std::size_t bytes) {
 PipedInput::State PipedInput::read_rest(std::uint64_t max_bytes) {
   beginning();
   while (state_ == State::kReading && size_ <= max_bytes) {
-    // One more than allowed.
+    // One byte more than allowed, to detect excess.
     read_block(
         static_cast<std::size_t>(std::min<std::uint64_t>(kBlockBytes, max_bytes - size_ + 1)));
   }

@@ -35,7 +35,7 @@ File file_with(const std::vector<std::uint8_t>& bytes) {
   return file;
 }
 
-TEST(PipedInput, GivesBackWhatItRead) {
+TEST(PipedInput, ReturnsWhatItRead) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65},
@@ -49,7 +49,7 @@ TEST(PipedInput, GivesBackWhatItRead) {
     std::vector<std::uint8_t> all(size);
     input.copy(0, all);
     EXPECT_EQ(all, bytes);
-    for (std::size_t at = 0; at + 3 < size; at += size / 17 + 1) {  // across borders, too
+    for (std::size_t at = 0; at + 3 < size; at += size / 17 + 1) {  // across blocks, too
       std::vector<std::uint8_t> part(std::min(size - at, kBlock + 2));
       input.copy(at, part);
       EXPECT_TRUE(
@@ -59,7 +59,7 @@ TEST(PipedInput, GivesBackWhatItRead) {
   }
 }
 
-TEST(PipedInput, StopsBehindItsBound) {
+TEST(PipedInput, StopsBeyondItsLimit) {
   const auto bytes = some_bytes((std::size_t{3} << 20) + 100);
   for (const std::uint64_t bound : {std::uint64_t{0}, std::uint64_t{10}, std::uint64_t{64},
                                     std::uint64_t{1000}, std::uint64_t{bytes.size() - 1}}) {
@@ -73,7 +73,7 @@ TEST(PipedInput, StopsBehindItsBound) {
   EXPECT_EQ(input.read_rest(bytes.size()), State::kWhole);
 }
 
-TEST(PipedInput, TakesNoMoreFromItsFileThanItNeeds) {
+TEST(PipedInput, ReadsNoMoreThanNecessary) {
   const File file(std::fopen("/dev/zero", "rb"), &std::fclose);
   std::setvbuf(file.get(), nullptr, _IONBF, 0);
   PipedInput input(file.get());
@@ -81,13 +81,13 @@ TEST(PipedInput, TakesNoMoreFromItsFileThanItNeeds) {
   EXPECT_EQ(input.read_rest(5000000), State::kTooLarge);
 }
 
-TEST(PipedInput, SaysThatReadingFailed) {
+TEST(PipedInput, ReportsThatReadingFailed) {
   const File folder(std::fopen("/", "rb"), &std::fclose);  // opens, but cannot be read
   PipedInput input(folder.get());
   EXPECT_EQ(input.read_rest(kNoBound), State::kFailed);
 }
 
-TEST(SmallFile, HasABound) {
+TEST(SmallFile, HasALimit) {
   const std::string path = testing::TempDir() + "/bounded_input_small_file";
   const File file(std::fopen(path.c_str(), "wb"), &std::fclose);
   std::fputs("12345", file.get());

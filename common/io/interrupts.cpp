@@ -18,7 +18,7 @@ struct Unfinished {
   std::vector<std::string> paths;
 };
 
-// Never destroyed: an interrupt may come while the process ends.
+// Never destroyed, because a signal may arrive while the process ends.
 Unfinished& unfinished() {
   static auto& list = *new Unfinished;
   return list;
@@ -29,13 +29,13 @@ Unfinished& unfinished() {
     if (sigismember(&signals, other) == 1) std::signal(other, SIG_DFL);
   }
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-  unfinished().mutex.lock();  // held for good: nothing new is started
+  unfinished().mutex.lock();  // never unlocked: no new file may be added
   for (const std::string& path : unfinished().paths) {
     std::error_code ignored;
     std::filesystem::remove_all(path, ignored);
   }
   std::raise(signal);
-  std::abort();  // not reached: the default of all three is to end
+  std::abort();  // not reached: the default action of all three ends the process
 }
 
 }  // namespace

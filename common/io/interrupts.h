@@ -1,4 +1,4 @@
-// Signals such as Ctrl-C: a program that they end leaves nothing unfinished behind.
+// Handling of signals such as Ctrl-C: a program that they end removes its unfinished files.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace rlpc {
 // of write(), like a full disk.
 void handle_interrupts();
 
-// The list of files, and folders with their contents, that a signal removes.
+// Adds a file, or a folder with its contents, to the list that a signal removes.
 void add_unfinished(const std::string& path);
-void remove_unfinished(const std::string& path);  // from the list
+void remove_unfinished(const std::string& path);  // takes it off the list
 
-// Delays signals while it exists, for steps that belong together. Nests.
+// Delays signals while it exists, to make several steps atomic. May be nested.
 class HoldInterrupts {
  public:
   HoldInterrupts();

@@ -15,7 +15,7 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// The first character; none: invalid UTF-8.
+// Decodes the first character; none: invalid UTF-8.
 std::optional<Character> first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);

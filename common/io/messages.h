@@ -1,4 +1,4 @@
-// Messages on a terminal that quote names and texts of others.
+// Prints messages on a terminal safely, even if they quote untrusted names and text.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace rlpc {
 
-// The path, or "standard input" for "-".
+// A path for messages: "standard input" for "-".
 inline std::string name_of_input(const std::string& path) {
   return path == "-" ? "standard input" : path;
 }
 
-// Text as UTF-8 that is harmless to a terminal: control characters, directional controls and
+// Text as UTF-8 that is safe to print: control characters, directional controls and
 // invalid UTF-8 are escaped as \x1B. For a single line:
 std::string printable(std::string_view text);
-// Keeps line ends and tabs.
+// The same, but keeps line ends and tabs.
 std::string printable_lines(std::string_view text);
 
-// "500 MiB" if exact, otherwise "123456 bytes".
+// A number of bytes: "500 MiB" if exact, otherwise "123456 bytes".
 std::string size_text(std::uint64_t bytes);
 
 // Prints "TOOL: MESSAGE", escaped, as a line of standard error.

@@ -27,7 +27,7 @@ std::size_t longest_name(const fs::path& folder) {
   return longest > 0 ? static_cast<std::size_t>(longest) : NAME_MAX;
 }
 
-// "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...; of a long name, the beginning.
+// Temporary names: "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...; long names are cut.
 std::string temporary_name(const fs::path& path, int attempt) {
   const std::string end = ".partial" + (attempt == 0 ? "" : std::to_string(attempt));
   std::string name = path.filename().string();
@@ -40,7 +40,7 @@ std::string temporary_name(const fs::path& path, int attempt) {
   return (path.parent_path() / (name + end)).string();
 }
 
-// The target of a name, whether or not it exists.
+// Resolves symbolic links, whether or not the target exists.
 OutputResult<std::string> end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;
   fs::path at = path;
@@ -54,7 +54,7 @@ OutputResult<std::string> end_of_links(const std::string& path) {
   return output_error(path, "follow the link", ELOOP);
 }
 
-// A replacement keeps the permissions of the file.
+// Gives a replacement the permissions of the file that it replaces.
 void take_permissions(int file, const struct stat& replaced) {
   mode_t mode = replaced.st_mode & 0777;
   // In another group, the same bits would grant access to others.
@@ -62,12 +62,12 @@ void take_permissions(int file, const struct stat& replaced) {
       fchown(file, static_cast<uid_t>(-1), replaced.st_gid) != 0) {
     mode &= 0707;
   }
-  // File systems without permissions refuse, and have nothing to protect.
+  // Fails harmlessly on file systems without permissions.
   if (fchmod(file, mode) != 0) return;
 }
 
-// Flushes to the disk, so that a system crash leaves the old or the new contents. Not all file
-// systems and files support it.
+// Flushes to the disk, so that after a system crash the file has either the old or the new
+// contents. Not supported by all file systems and files.
 std::optional<OutputError> sync(const std::string& path, int file) {
   if (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) {
     return std::nullopt;

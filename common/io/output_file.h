@@ -1,4 +1,4 @@
-// Files that get their names only when complete.
+// Output files and folders that appear under their names only when complete.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ struct OutputError {
 template <class T>
 using OutputResult = Result<T, OutputError>;
 
-// Bytes that may be written in total to the files that share it.
+// A limit on the bytes written in total to all files that share it.
 struct OutputLimit {
   explicit OutputLimit(std::uint64_t bytes) : max_bytes(bytes), left(bytes) {}
-  // The error of `path`, which exceeds it.
+  // The error if `path` exceeds the limit.
   OutputError exceeded(const std::string& path) const;
 
   std::uint64_t max_bytes;
@@ -41,7 +41,7 @@ class OutputFile {
   // none.
   static OutputResult<OutputFile> create(const std::string& path,
                                          std::shared_ptr<OutputLimit> limit = nullptr);
-  // In a TemporaryFolder, under its own name.
+  // Creates a file in a TemporaryFolder, under its own name.
   static OutputResult<OutputFile> create_within(const std::string& path,
                                                 std::shared_ptr<OutputLimit> limit = nullptr);
 
@@ -56,8 +56,8 @@ class OutputFile {
   std::optional<OutputError> close();
   // After close(): gives the file its name.
   std::optional<OutputError> commit();
-  // Whether writing `a` would overwrite `b`: both lead to the same file, existing or not. Never
-  // true of devices, pipes and "-".
+  // Whether writing `a` would overwrite `b`: both names refer to the same file, existing or
+  // not. False for devices, pipes and "-".
   static bool is_same_file(const std::string& a, const std::string& b);
   // The name as the caller gave it.
   const std::string& path() const { return path_; }
@@ -81,10 +81,10 @@ class OutputFile {
 // Writes the whole contents and commits.
 std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes);
 
-// A folder whose files get their names together.
+// A new folder that appears, with all its files, only when complete.
 class TemporaryFolder {
  public:
-  // Next to `path` under a new name, or inside it if `path` is a folder.
+  // Creates a temporary folder next to `path`, or inside it if `path` is a folder.
   static OutputResult<TemporaryFolder> create(const std::string& path);
 
   TemporaryFolder(TemporaryFolder&& other) noexcept;

@@ -18,7 +18,7 @@ int num_syncs = 0;
 int sync_error = 0;  // 0: none
 }  // namespace
 
-// In place of the system's.
+// Replaces the function of the system.
 extern "C" int fsync(int /*file*/) {
   ++num_syncs;
   errno = sync_error;
@@ -54,7 +54,7 @@ class OutputFileTest : public testing::Test {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
-  // Writes all of it; the message of what failed, or "".
+  // Writes a whole file; returns the error message, or "".
   std::string write(const std::string& name, const std::string& text) const {
     auto file = OutputFile::create(path(name));
     if (!file) return file.error().message;
@@ -65,7 +65,7 @@ class OutputFileTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(OutputFileTest, TakesItsNameOnlyOnceItIsComplete) {
+TEST_F(OutputFileTest, AppearsOnlyWhenComplete) {
   put("a", "before");
   {
     auto file = OutputFile::create(path("a"));
@@ -80,7 +80,7 @@ TEST_F(OutputFileTest, TakesItsNameOnlyOnceItIsComplete) {
   EXPECT_EQ(num_files(), 1);
 }
 
-TEST_F(OutputFileTest, LeavesNothingOfWhatIsNotCommitted) {
+TEST_F(OutputFileTest, IsRemovedUnlessCommitted) {
   put("a", "before");
   for (const bool closed : {false, true}) {
     auto file = OutputFile::create(path("a"));
@@ -92,7 +92,7 @@ TEST_F(OutputFileTest, LeavesNothingOfWhatIsNotCommitted) {
   EXPECT_EQ(num_files(), 1);
 }
 
-TEST_F(OutputFileTest, IsOnTheDiskBeforeItHasItsName) {
+TEST_F(OutputFileTest, IsFlushedBeforeItIsRenamed) {
   num_syncs = 0;
   auto file = OutputFile::create(path("a"));
   ASSERT_TRUE(file);
@@ -108,12 +108,12 @@ TEST_F(OutputFileTest, IsNotCommittedIfTheDiskFails) {
   EXPECT_NE(write("a", "after").find("cannot write: Input/output error"), std::string::npos);
   EXPECT_EQ(content("a"), "before");
   EXPECT_EQ(num_files(), 1);
-  sync_error = EINVAL;  // there is nothing to sync
+  sync_error = EINVAL;  // cannot be synced
   EXPECT_EQ(write("a", "after"), "");
   sync_error = 0;
 }
 
-TEST_F(OutputFileTest, WritesNoFileOfOthers) {
+TEST_F(OutputFileTest, DoesNotTouchForeignFiles) {
   put("a.partial", "of another process");
   EXPECT_EQ(write("a", "text"), "");
   EXPECT_EQ(content("a"), "text");
@@ -122,7 +122,7 @@ TEST_F(OutputFileTest, WritesNoFileOfOthers) {
 
 fs::perms permissions(const std::string& path) { return fs::status(path).permissions(); }
 
-TEST_F(OutputFileTest, KeepsThePermissionsOfWhatItReplaces) {
+TEST_F(OutputFileTest, KeepsThePermissionsOfTheReplacedFile) {
   const mode_t before = umask(022);
   put("a", "before");
   for (const unsigned mode : {0600U, 0644U, 0666U, 0640U, 0755U}) {
@@ -157,7 +157,7 @@ TEST_F(OutputFileTest, FollowsLinks) {
   EXPECT_TRUE(OutputFile::is_same_file(path("to_link"), path("far/not_yet")));
 }
 
-TEST_F(OutputFileTest, RefusesLinksThatLeadNowhere) {
+TEST_F(OutputFileTest, RefusesUnresolvableLinks) {
   fs::create_symlink("none/a", path("to_no_folder"));
   fs::create_symlink("round", path("round"));
   EXPECT_NE(write("to_no_folder", "").find("there is no folder"), std::string::npos);
@@ -165,7 +165,7 @@ TEST_F(OutputFileTest, RefusesLinksThatLeadNowhere) {
   EXPECT_EQ(num_files(), 2);
 }
 
-TEST_F(OutputFileTest, TakesTheLongestNamesThereAre) {
+TEST_F(OutputFileTest, SupportsNamesOfMaximumLength) {
   const auto longest = static_cast<std::size_t>(pathconf(folder_.c_str(), _PC_NAME_MAX));
   for (std::size_t size = longest - 10; size <= longest; ++size) {
     const std::string name(size, 'n');
@@ -189,12 +189,12 @@ TEST_F(OutputFileTest, TakesTheLongestNamesThereAre) {
   }
 }
 
-TEST_F(OutputFileTest, SaysWhatIsWrongWithAPlace) {
+TEST_F(OutputFileTest, ReportsWhyAPlaceIsUnusable) {
   EXPECT_NE(write("none/a", "").find("there is no folder"), std::string::npos);
   EXPECT_NE(write("", "").find("is a folder"), std::string::npos);
 }
 
-TEST_F(OutputFileTest, KnowsTheSameFileByOtherNames) {
+TEST_F(OutputFileTest, RecognisesTheSameFileByOtherNames) {
   put("a", "");
   put("b", "");
   fs::create_symlink("a", path("link"));
@@ -214,7 +214,7 @@ TEST_F(OutputFileTest, KnowsTheSameFileByOtherNames) {
 
 using TemporaryFolderTest = OutputFileTest;
 
-TEST_F(TemporaryFolderTest, TakesItsNameOrLeavesNothing) {
+TEST_F(TemporaryFolderTest, AppearsCompleteOrNotAtAll) {
   for (const bool committed : {false, true}) {
     auto folder = TemporaryFolder::create(path("new"));
     ASSERT_TRUE(folder);
@@ -231,7 +231,7 @@ TEST_F(TemporaryFolderTest, TakesItsNameOrLeavesNothing) {
   EXPECT_EQ(num_files(), 1);
 }
 
-TEST_F(TemporaryFolderTest, ItsFilesKeepPermissionsAndFollowLinks) {
+TEST_F(TemporaryFolderTest, FilesKeepPermissionsAndFollowLinks) {
   put("a", "before");
   put("far", "before");
   fs::permissions(path("a"), fs::perms{0600});

@@ -3,7 +3,7 @@
 
 namespace rlpc {
 
-// Returns `code`; or, if that is 0 but standard output could not be written completely, reports
+// Returns `code`. But if that is 0 and standard output could not be written completely, reports
 // this on standard error and returns `failed`.
 int after_standard_output(const char* tool, int code, int failed);
 

@@ -1,4 +1,4 @@
-// Shared PCA model (clause 8.5): sums of products of temporal and spatial factors, exact in
+// The PCA model (clause 8.5): sums of products of temporal and spatial factors, exact in
 // integers. All go through 16 x 16 -> 32-bit products; sums are exact, so that every order of
 // summation and every vector width gives the same result.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// Narrower spatial factors are shifted up to this width, so that temporal factors can be short.
+// Narrower spatial factors are normalised to this width, so that temporal factors can be short.
 inline constexpr int kSpatialNormBits = 13;
 
 // Table 8-1: 2^(i / 8) with 15 fractional bits.
@@ -32,19 +32,18 @@ constexpr int spatial_factor_bits(int spatial_bits) {
   return spatial_bits > kSpatialNormBits ? spatial_bits : kSpatialNormBits;
 }
 
-// Factors laid out for the sum over their components. Those of more than 16 bits are split into
-// two limbs of at most 14, so that all products are of 16 x 16 bits.
+// Factors of all components, laid out for summation. Factors of more than 16 bits are split
+// into two limbs of at most 14 bits, so that all products are of 16 x 16 bits.
 class ComponentSum {
  public:
-  // num_values: spatial values of a component. num_rows: its temporal values, of frames or of
-  // coordinates of frames.
+  // num_values: spatial values per component. num_rows: temporal values per component, one per
+  // frame or per coordinate of a frame.
   ComponentSum(std::size_t num_values, std::size_t num_rows,
                const Kernels& loops = kernels().back())
       : num_values_(num_values), num_rows_(num_rows), loops_(loops) {}
 
-  // temporal [num_rows] scaled; spatial before normalisation: value i is spatial[i * stride].
-  // The widths are the declared ones: spatial within spatial_bits (at most 24), temporal within
-  // temporal_bits (26).
+  // Adds a component. temporal [num_rows]: scaled, within temporal_bits (at most 26). spatial:
+  // before normalisation, within spatial_bits (at most 24); value i is spatial[i * stride].
   void add(std::span<const std::int32_t> temporal, int temporal_bits,
            std::span<const std::int32_t> spatial, int spatial_bits, std::size_t stride = 1);
 
@@ -56,7 +55,7 @@ class ComponentSum {
                 std::span<std::int64_t> sums) const;
 
  private:
-  // Components whose products together stay within 31 bits, and count 2^shift times.
+  // Components whose products have a sum within 31 bits, scaled by 2^shift.
   struct Group {
     int shift = 0;
     std::int64_t bound = 0;

@@ -19,7 +19,7 @@ struct Factor {
   int spatial_bits = 1;
 };
 
-// The plain twin of ComponentSum: 8.5.3 as it stands, in 128 bits.
+// The plain twin of ComponentSum: 8.5.3 literally, in 128 bits.
 std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t num_values,
                               std::size_t frame) {
   std::vector<Int128> sums(num_values, 0);
@@ -99,7 +99,7 @@ TEST(ComponentSum, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   }
 }
 
-TEST(ComponentSum, SumsRowsOfATileAsOneByOne) {
+TEST(ComponentSum, SumsRowsOfATileLikeSingleRows) {
   std::mt19937 random(1);
   constexpr std::size_t kRows = 30;
   const std::vector<Factor> factors =
@@ -120,7 +120,7 @@ TEST(ComponentSum, SumsRowsOfATileAsOneByOne) {
   }
 }
 
-TEST(ComponentSum, TakesSpatialValuesByTheirStride) {
+TEST(ComponentSum, ReadsSpatialValuesWithAStride) {
   ComponentSum set(2, 1);
   set.add(std::vector<std::int32_t>{3}, 3, std::vector<std::int32_t>{5, 99, -7}, 13, 2);
   std::vector<std::int64_t> sums(2);
@@ -128,9 +128,10 @@ TEST(ComponentSum, TakesSpatialValuesByTheirStride) {
   EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
 }
 
-TEST(ComponentSum, WithoutComponentsSumsToZero) { expect_sums_of_the_plain_twin({}, 9, 2); }
+TEST(ComponentSum, IsZeroWithoutComponents) { expect_sums_of_the_plain_twin({}, 9, 2); }
 
-// Extremes of the declared widths in all combinations of signs, as many as a level allows.
+// Factors at the extremes of their widths, in all combinations of signs, as many as a level
+// allows.
 void expect_saturating_sums(int spatial_bits, int temporal_bits, std::size_t count) {
   SCOPED_TRACE(testing::Message() << spatial_bits << " x " << temporal_bits);
   const std::int32_t s = 1 << (spatial_bits - 1);
@@ -182,7 +183,7 @@ TEST(ScaleTable, IsTheRoundedPowerOfTwo) {
   }
 }
 
-TEST(ScaleTemporal, IsThePowerOfTwoOfTheTextAndClips) {
+TEST(ScaleTemporal, IsThePowerOfTwoOfTheSpecificationAndClips) {
   EXPECT_EQ(scale_temporal(1000, 32, 26), 1000);  // scale 1
   EXPECT_EQ(scale_temporal(-1000, 40, 26), -2000);
   EXPECT_EQ(scale_temporal(1000, 0, 26), 63);    // 62.5, up

@@ -12,8 +12,8 @@
 
 namespace rlpc {
 
-// Factors of some components, interleaved in pairs; the last pair of an odd number of
-// components is padded with zeros.
+// Factors of some components, interleaved in pairs; with an odd number of components, the last
+// pair is padded with zeros.
 struct FactorPairs {
   const std::int16_t* temporal;  // [num_pairs][temporal_rows][2]
   std::size_t temporal_rows;
@@ -23,13 +23,13 @@ struct FactorPairs {
 
 // Rest positions moved by a bone.
 struct BoneArms {
-  // From the pivot, |arm| <= 2^29; of [size] each, and three more numbers can be read.
+  // [size]: position relative to the pivot, |arm| <= 2^29; three more numbers must be readable.
   std::array<const std::int32_t*, 3> arm;
   const std::int32_t* weight;  // likewise
   std::size_t size;
 };
 
-// How positions follow from sums.
+// Parameters of the conversion from sums to positions.
 struct PositionWidths {
   int weight_bits;
   int fraction_bits;
@@ -41,10 +41,10 @@ struct Kernels {
   // sums [num_rows][kTileValues]. The caller has checked that they fit.
   void (*sum_products)(const FactorPairs& factors, std::size_t first_row, std::size_t num_rows,
                        std::int32_t* sums);
-  // sums[i] += values[i] * weight, n times.
+  // sums[i] += values[i] * weight for i < n.
   void (*add_weighted)(const std::int32_t* values, std::int32_t weight, std::size_t n,
                        std::int64_t* sums);
-  // 8.12.3 Moved point, for one coordinate: places[i] = where a bone takes a rest position,
+  // 8.12.3 Moved point, for one coordinate: places[i] = the rest position as moved by the bone,
   // times its weight; places [kTileValues], those past the size are undefined. axis: that
   // coordinate of the axes of the bone. |axis| <= 2^30 + 16, |origin| <= 2^30.
   void (*weighted_places)(const BoneArms& arms, const std::array<std::int32_t, 3>& axis,
@@ -55,7 +55,7 @@ struct Kernels {
                     const PositionWidths& widths, std::int32_t* positions);
 };
 
-// The kernels that this machine can run: the plain ones first, the fastest last.
+// The kernels that this machine supports: the plain ones first, the fastest last.
 std::span<const Kernels> kernels();
 
 }  // namespace rlpc

@@ -22,8 +22,8 @@ RLPC_AVX2 __m256i load_widened(const std::int32_t* p) {
   return _mm256_cvtepi32_epi64(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
 }
 
-// round2 of 64-bit numbers below 2^62 in magnitude. AVX2 lacks a 64-bit arithmetic shift: they
-// are made positive first.
+// round2 of 64-bit numbers below 2^62 in magnitude. They are made positive first, because AVX2
+// lacks a 64-bit arithmetic shift.
 class Round2 {
  public:
   RLPC_AVX2 explicit Round2(int n)
@@ -41,7 +41,7 @@ class Round2 {
   __m256i after_;
 };
 
-// Sums of kRows rows and two vectors of values, which stay in registers.
+// Sums for kRows rows and two vectors of values, held in registers.
 template <std::size_t kRows>
 RLPC_AVX2 void sum_block(const FactorPairs& factors, std::size_t first_row, std::size_t i,
                          std::int32_t* sums) {
@@ -108,7 +108,7 @@ RLPC_AVX2 void weighted_places(const BoneArms& arms, const std::array<std::int32
     const __m256i of_z = _mm256_mul_epi32(z, load_widened(arms.arm[2] + i));
     const __m256i sum =
         _mm256_add_epi64(_mm256_add_epi64(of_x, of_y), _mm256_add_epi64(of_z, half));
-    // The turned arm has 32 bits, and products only look at those.
+    // The rotated arm has 32 bits, which is all that the products read.
     const __m256i turned = _mm256_srli_epi64(sum, kQuaternionFractionBits);
     const __m256i weight = load_widened(arms.weight + i);
     store(places + i,

@@ -1,4 +1,4 @@
-// Twins of the plain loops of kernels.cpp.
+// AVX2 twins of the plain loops of kernels.cpp.
 #pragma once
 
 #include "common/kernels/kernels.h"
@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Only for machines with AVX2.
+// Must only be called on machines with AVX2.
 extern const Kernels kKernelsAvx2;
 
 }  // namespace rlpc

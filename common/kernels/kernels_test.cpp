@@ -1,4 +1,4 @@
-// Every loop that the machine can run against the text of the specification.
+// Compares all kernels that the machine supports with the text of the specification.
 #include "common/kernels/kernels.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-// Mostly numbers of any size, and the extremes often.
+// Numbers of random width, often at the extremes.
 std::int64_t random_within(std::mt19937_64& random, std::int64_t least, std::int64_t most) {
   switch (random() % 8) {
     case 0:
@@ -49,7 +49,7 @@ TEST_P(EachTileLoop, SumsProductsOfAnyRowsAndPairs) {
     const auto num_pairs = static_cast<std::size_t>(1 + random() % 8);
     const auto rows = static_cast<std::size_t>(1 + random() % 9);
     const auto first = static_cast<std::size_t>(random() % 3);
-    // 16 products together within 31 bits, or one with both factors at their extremes.
+    // 16 products with a sum within 31 bits, or one with both factors at their extremes.
     const std::int64_t s_most = seed % 2 == 0 ? (1 << 13) : (1 << 15);
     const std::int64_t t_most = seed % 2 == 0 ? (1 << 14) : (1 << 15);
     std::vector<std::int16_t> temporal(2 * num_pairs * (first + rows + 1));
@@ -136,7 +136,7 @@ TEST_P(EachTileLoop, RoundsAndClipsPositions) {
                                 2 + static_cast<int>(random() % 23)};
     std::vector<std::int64_t> places(kTileValues);
     std::vector<std::int64_t> displacements(kTileValues);
-    // Sums near those that are not clipped, and any.
+    // Sums close to the clipping limits, and any others.
     const std::int64_t moved = std::int64_t{3} << (29 + widths.fraction_bits);
     for (std::int64_t& x : displacements) {
       const std::int64_t most = random() % 2 == 0 ? moved : kSum;

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// Sums of kRows rows and two vectors of values, which stay in registers.
+// Sums for kRows rows and two vectors of values, held in registers.
 template <std::size_t kRows>
 void sum_block(const FactorPairs& factors, std::size_t first_row, std::size_t i,
                std::int32_t* sums) {

@@ -1,4 +1,4 @@
-// Twin of the plain loop that dominates decoding time (kernels.cpp).
+// WebAssembly SIMD twin of the plain loop that dominates decoding time (kernels.cpp).
 #pragma once
 
 #include "common/kernels/kernels.h"

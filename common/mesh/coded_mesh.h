@@ -1,5 +1,5 @@
 // 8.10 Prediction along the mesh: the coding order of the vertices of a skinned GOF, and the
-// vertices that each is predicted from.
+// vertices from which each is predicted.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class CodedMesh {
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(index_.size()); }
   // CodedOrder
   std::span<const std::uint32_t> order() const;
-  // CodedRing and CodedOuterRing: vertices before v in the order.
+  // CodedRing and CodedOuterRing of v: vertices that precede v in the order.
   std::span<const std::uint32_t> ring(std::uint32_t v) const;
   std::span<const std::uint32_t> outer_ring(std::uint32_t v) const;
   std::span<const Parallelogram> parallelograms(std::uint32_t v) const {
@@ -41,7 +41,7 @@ class CodedMesh {
   const Topology& topology_;
   const VertexLayers& layers_;
   std::vector<std::uint32_t> index_;        // 0, 1, 2, ...
-  std::vector<std::uint32_t> layer_first_;  // [num_layers + 1]: place in the order
+  std::vector<std::uint32_t> layer_first_;  // [num_layers + 1], index in the order
 };
 
 }  // namespace rlpc

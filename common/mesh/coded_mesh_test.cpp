@@ -37,7 +37,7 @@ Mesh disc(std::uint32_t rings) {
   return Mesh(1 + 8 * rings, triangles);
 }
 
-TEST(CodedMesh, WithoutLayersIsInDecodedOrder) {
+TEST(CodedMesh, IsInDecodedOrderWithoutLayers) {
   const Mesh m = disc(3);
   for (const Prediction p :
        {Prediction::kNone, Prediction::kParallelogram, Prediction::kParallelograms}) {
@@ -57,7 +57,7 @@ TEST(CodedMesh, WithoutLayersIsInDecodedOrder) {
   }
 }
 
-TEST(CodedMesh, WithoutEarlierNeighboursTheRingIsTheVertexBefore) {
+TEST(CodedMesh, RingIsThePreviousVertexWithoutEarlierNeighbours) {
   const Mesh m(4, {{0, 1, 3}});
   const CodedMesh mesh(Prediction::kNone, m.topology, m.layers);
   EXPECT_EQ(copy_of(mesh.ring(0)), Indices{});
@@ -66,7 +66,7 @@ TEST(CodedMesh, WithoutEarlierNeighboursTheRingIsTheVertexBefore) {
   EXPECT_EQ(copy_of(mesh.ring(3)), (Indices{0, 1}));
 }
 
-TEST(CodedMesh, OfManyEarlierNeighboursTheLastSevenAreTheRing) {
+TEST(CodedMesh, RingIsTheLastSevenOfManyEarlierNeighbours) {
   std::vector<Triangle> fan;
   for (std::uint32_t i = 0; i < 8; ++i) fan.push_back({i, i + 1, 9});
   const Mesh m(10, fan);
@@ -74,7 +74,7 @@ TEST(CodedMesh, OfManyEarlierNeighboursTheLastSevenAreTheRing) {
   EXPECT_EQ(copy_of(mesh.ring(9)), (Indices{2, 3, 4, 5, 6, 7, 8}));
 }
 
-TEST(CodedMesh, WithLayersFollowsThem) {
+TEST(CodedMesh, FollowsTheLayersIfPresent) {
   const Mesh m = disc(6);
   const CodedMesh mesh(Prediction::kLayers, m.topology, m.layers);
   ASSERT_GT(mesh.num_layers(), 2U);
@@ -89,8 +89,8 @@ TEST(CodedMesh, WithLayersFollowsThem) {
   EXPECT_TRUE(outer);
 }
 
-// 8.10.1: whatever the groups, together they are all vertices, in order.
-TEST(CodedMesh, LayersShareOutTheOrder) {
+// 8.10.1: any division into groups gives all vertices in order.
+TEST(CodedMesh, LayerGroupsPartitionTheOrder) {
   const Mesh m = disc(6);
   const CodedMesh mesh(Prediction::kLayers, m.topology, m.layers);
   std::mt19937 random(1);
@@ -111,7 +111,7 @@ TEST(CodedMesh, LayersShareOutTheOrder) {
   EXPECT_TRUE(mesh.vertices_of_layers(1, 1).empty());
 }
 
-// What a decoder knows when it comes to a vertex.
+// A decoder knows all vertices of the rings when it reaches a vertex.
 TEST(CodedMesh, RingsComeBeforeTheirVertex) {
   const Mesh m = disc(6);
   for (const Prediction p : {Prediction::kNone, Prediction::kLayers}) {

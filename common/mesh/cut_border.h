@@ -2,10 +2,10 @@
 // rest. Parser and writer drive the same machine, so that both see the same states and
 // contexts.
 //
-// The border consists of closed loops of nodes. A node stands for the directed edge from its
-// vertex to the vertex of the next node, as the triangle still to come on that edge will run
-// it. Every operation takes constant time; memory is a few words per node, and nodes number at
-// most three per component plus one per new vertex or join.
+// The border consists of closed loops of nodes. A node represents the directed edge from its
+// vertex to the vertex of the next node, in the orientation of the triangle not yet decoded on
+// that edge. Every operation takes constant time. Memory is a few words per node; there are at
+// most three nodes per component plus one per new vertex or join.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class CutBorder {
   Triangle glue_next();                  // requires can_glue_next( )
   Triangle join(std::uint32_t target);   // requires is_join_target( target ); as add_vertex( )
 
-  // 8.7.6 Walk( forward, distance ): the node so many steps after the gate's end, or before the
-  // gate; distance >= 1.
+  // 8.7.6 Walk( forward, distance ): the node `distance` steps after the end of the gate, or
+  // before the gate; distance >= 1.
   std::uint32_t walk(bool forward, std::uint32_t distance) const;
   bool is_join_target(std::uint32_t node) const {
     return node < num_nodes() && nodes_[node].alive && node != gate_ && node != next(gate_);
@@ -52,7 +52,7 @@ class CutBorder {
   std::uint32_t previous(std::uint32_t node) const { return nodes_[node].previous; }
   std::uint32_t vertex(std::uint32_t node) const { return nodes_[node].vertex; }
   bool is_boundary(std::uint32_t node) const { return nodes_[node].boundary; }
-  // Triangles decoded so far at the node's vertex.
+  // Number of triangles decoded so far at the vertex of the node.
   std::uint32_t degree(std::uint32_t node) const { return degree_[nodes_[node].vertex]; }
 
  private:
@@ -74,7 +74,7 @@ class CutBorder {
   Triangle count_triangle(std::uint32_t v0, std::uint32_t v1, std::uint32_t v2);
   void touch(std::uint32_t node);
 
-  std::vector<Node> nodes_;  // in order of creation; dead ones stay
+  std::vector<Node> nodes_;  // in order of creation, including removed ones
   std::vector<std::uint32_t> degree_;
   std::vector<std::uint32_t> urgent_;
   std::size_t first_urgent_ = 0;

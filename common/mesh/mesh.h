@@ -1,4 +1,4 @@
-// What a stream carries, apart from its positions: plain types shared by encoder and decoder.
+// Plain types shared by encoder and decoder: triangles, positions, frame rate, grid.
 #pragma once
 
 #include <array>

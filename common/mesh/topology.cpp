@@ -20,7 +20,8 @@ ListOfLists<T> group(std::uint32_t num_vertices,
   return {std::move(first), std::move(items)};
 }
 
-// Sorts (vertex, item) pairs: by counting, and by comparing those of a vertex, which are few.
+// Sorts (vertex, item) pairs: by vertex with a counting sort, then the few items of each
+// vertex.
 template <class T>
 void sort_pairs(std::uint32_t num_vertices, std::vector<std::pair<std::uint32_t, T>>& pairs) {
   std::vector<std::uint32_t> end(num_vertices + 1, 0);
@@ -52,7 +53,7 @@ ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
   return group(num_vertices, pairs);
 }
 
-// For an edge of a triangle: its higher vertex, and the opposite one.
+// An edge of a triangle: its higher vertex, and the vertex opposite to it.
 struct EdgeOf {
   std::uint32_t high;
   std::uint32_t across;

@@ -30,7 +30,7 @@ std::set<Corners> parallelograms(const Topology& topology, std::size_t v) {
   return set;
 }
 
-TEST(Topology, OfAPointCloudIsEmpty) {
+TEST(Topology, IsEmptyForAPointCloud) {
   const Topology topology = make_topology(3, {});
   ASSERT_EQ(topology.earlier_neighbours.size(), 3U);
   ASSERT_EQ(topology.parallelograms.size(), 3U);
@@ -40,7 +40,7 @@ TEST(Topology, OfAPointCloudIsEmpty) {
   }
 }
 
-TEST(Topology, NeighboursAreEarlierAscendingAndListedOnce) {
+TEST(Topology, NeighboursAreEarlierAscendingAndUnique) {
   const Topology topology =
       make_topology(6, Triangles{{5, 3, 1}, {1, 3, 5}, {5, 4, 3}, {0, 5, 1}});
   EXPECT_EQ(neighbours(topology, 0), Indices{});
@@ -89,7 +89,7 @@ TEST(Topology, ATriangleListedTwiceHasNoParallelogram) {
   for (std::size_t v = 0; v < 3; ++v) EXPECT_TRUE(topology.parallelograms[v].empty());
 }
 
-// By the sentences of 8.3.1 and 8.3.2, with sets and maps.
+// A literal implementation of 8.3.1 and 8.3.2, with sets and maps.
 struct Plain {
   std::vector<std::set<std::uint32_t>> neighbours;
   std::vector<std::multiset<Corners>> parallelograms;
@@ -118,7 +118,7 @@ Plain plain_topology(std::uint32_t num_vertices, const Triangles& triangles) {
   return plain;
 }
 
-TEST(Topology, IsThatOfTheDefinitionOnRandomTriangles) {
+TEST(Topology, FollowsTheDefinitionOnRandomTriangles) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);

@@ -52,7 +52,7 @@ struct TriangulationList {
   std::array<Triangulation, 42> items{};
 };
 
-// 8.9.4 Triangulations of a polygon: [n] are those of n corners.
+// 8.9.4 Triangulations of a polygon: [n] are those of polygons with n corners.
 constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
   std::array<TriangulationList, kMaxRing + 1> all{};
   all[2].size = 1;
@@ -75,9 +75,9 @@ constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
 constexpr std::array<TriangulationList, kMaxRing + 1> kTriangulations = triangulate_all();
 static_assert(kTriangulations[6].size == 14 && kTriangulations[7].size == 42);
 
-// 8.9.2 Rest of the mesh: its triangles. Those of a vertex are linked through their corners, so
-// that one is removed in constant time; corner k of triangle i is 3 * i + k. Each corner holds
-// the vertices of the other two, so that a walk along a vertex's corners reads nothing else.
+// 8.9.2 Rest of the mesh: its triangles. The corners at a vertex form a linked list, so that a
+// triangle is removed in constant time; corner k of triangle i is 3 * i + k. Each corner holds
+// the vertices of the other two corners, so that a walk around a vertex reads nothing else.
 class Rest {
  public:
   Rest(std::uint32_t num_vertices, std::span<const Triangle> triangles)
@@ -91,7 +91,7 @@ class Rest {
   }
 
   std::uint32_t valence(std::uint32_t v) const { return valence_[v]; }
-  // The corners at a vertex, until kNone.
+  // Iterates over the corners at a vertex; kNone: end.
   std::uint32_t first(std::uint32_t v) const { return first_[v]; }
   std::uint32_t next(std::uint32_t corner) const { return corners_[corner].next; }
   // The other two vertices of a triangle, in its orientation.
@@ -99,7 +99,7 @@ class Rest {
     return corners_[corner].others;
   }
 
-  // Triangle i was removed before, or is new.
+  // Adds triangle i, which was removed before or is new.
   void add(std::uint32_t i, const Triangle& t) {
     link(3 * i, t[0], {t[1], t[2]});
     link(3 * i + 1, t[1], {t[2], t[0]});
@@ -153,7 +153,7 @@ struct Surroundings {
   std::array<std::uint32_t, std::size_t{2} * kMaxValence * kMaxRing + 1> vertices{};
 };
 
-// Layers, pass by pass.
+// Builds the layers pass by pass.
 class LayerMaker {
  public:
   LayerMaker(std::uint32_t num_vertices, std::span<const Triangle> triangles)
@@ -179,19 +179,19 @@ class LayerMaker {
   VertexLayers layers_;
   std::uint8_t num_passes_ = 0;
   std::vector<std::uint8_t> locked_in_pass_;  // [num_vertices]
-  std::vector<std::uint32_t> removed_;        // in order
-  std::vector<std::size_t> removed_before_;   // [pass - 1]: how many before that pass
+  std::vector<std::uint32_t> removed_;        // in order of removal
+  std::vector<std::size_t> removed_before_;   // [pass - 1], vertices removed before that pass
   // Vertices removed in this pass, in order, for outer_ring.
   std::vector<std::uint32_t> around_;
   std::vector<std::uint32_t> around_end_;
   // [num_vertices]: 0, except within a function that sets it: place in a fan or
   // a ring plus 1
   std::vector<std::uint8_t> place_;
-  Surroundings surroundings_;  // of the vertex at hand
+  Surroundings surroundings_;  // of the current vertex
 };
 
-// 8.9.3 Ring of a vertex: FindRing( v ), none if the triangles around v are not a fan, which
-// each vertex around starts and ends once at most.
+// 8.9.3 Ring of a vertex: FindRing( v ); none if the triangles around v are not a fan, in which
+// each vertex around v starts at most one triangle and ends at most one.
 std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   assert(rest_.valence(v) > 0 && rest_.valence(v) <= kMaxFan);
   std::array<std::uint32_t, kMaxFan> starts{};
@@ -207,7 +207,7 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
     is_fan = is_fan && place_[starts[i]] == 0;
     place_[starts[i]] = static_cast<std::uint8_t>(i + 1);
   }
-  // The triangle that starts where one ends, plus 1; and, as bits, all that do.
+  // By vertex: 1 + the triangle that starts there; and a bit set of all triangles that do.
   std::array<std::uint8_t, kMaxFan> follower{};
   unsigned followers = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -239,8 +239,8 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   return ring;
 }
 
-// [i][place + 1]: the edge between two places in a ring; none from a place to itself, nor where
-// there is no place.
+// [i][place + 1]: the edge between two places in a ring; none from a place to itself, or
+// without a place.
 constexpr std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges_to_places() {
   std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges{};
   for (std::size_t i = 0; i < kMaxRing; ++i) {
@@ -251,10 +251,9 @@ constexpr std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges_to_place
   return edges;
 }
 
-// 8.9.5 Choice of a triangulation: edges between vertices that are no
-// neighbours in the ring, but share a triangle of the rest, or have many
-// triangles both. And 8.9.6 Removal of a vertex: VerticesAroundRing( v, ring ), here in any
-// order.
+// 8.9.5 Choice of a triangulation: the forbidden edges, between vertices that are not
+// neighbours in the ring but share a triangle of the rest, or that both have many triangles.
+// Also 8.9.6 Removal of a vertex: VerticesAroundRing( v, ring ), here in any order.
 void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
   static constexpr auto kEdgesToPlaces = edges_to_places();
   EdgeSet sides = ring.closed ? edge(0, ring.size - 1) : 0;
@@ -278,7 +277,7 @@ void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
       for (const std::uint32_t u : rest_.others(c)) {
         const std::uint8_t place = place_[u];
         found |= kEdgesToPlaces[i][place];
-        // Without branches: half of them are new.
+        // Branch-free, because about half of the vertices are new.
         surroundings_.vertices[count] = u;
         count += place == 0 ? 1 : 0;
         place_[u] = place == 0 ? kNoPlace : place;

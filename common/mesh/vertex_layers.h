@@ -1,4 +1,4 @@
-// Order of the vertices from coarse to fine, from connectivity alone (clause 8.9).
+// Orders the vertices from coarse to fine, from connectivity alone (clause 8.9).
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kMaxRing = 7;        // vertices of a ring
-inline constexpr std::size_t kMaxOuterRing = 24;  // and of an outer ring
-inline constexpr std::uint32_t kMaxLayers = 212;  // of up to 2^23 vertices
+inline constexpr std::size_t kMaxRing = 7;        // vertices in a ring
+inline constexpr std::size_t kMaxOuterRing = 24;  // vertices in an outer ring
+inline constexpr std::uint32_t kMaxLayers = 212;  // for up to 2^23 vertices
 
 // A short list for each vertex, in one flat array, in the order in which they were set.
 class VertexLists {
@@ -37,8 +37,8 @@ struct VertexLayers {
   std::uint32_t num_layers = 1;
   std::vector<std::uint8_t> layer_of_vertex;  // [num_vertices]: 0 is the base, the coarsest
   std::vector<std::uint32_t> layer_order;     // all vertices, by layer, then by index
-  VertexLists ring;        // in the order of the walk; of the base: ascending
-  VertexLists outer_ring;  // ascending; of the base: empty
+  VertexLists ring;        // in the order of the walk; in the base: ascending
+  VertexLists outer_ring;  // ascending; in the base: empty
 };
 
 // 8.9 Vertex layers
@@ -46,8 +46,8 @@ struct VertexLayers {
 //   num_vertices  at most 2^23
 //   triangles     at most 2^24, of any kind; indices < num_vertices
 //
-// The vertices of ring[v] and outer_ring[v] come before v in layer_order, and are of lower
-// layers if v is not of the base. Time and memory are linear in vertices and triangles.
+// The vertices of ring[v] and outer_ring[v] precede v in layer_order, and are in lower layers
+// unless v is in the base. Time and memory are linear in vertices and triangles.
 VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
 }  // namespace rlpc

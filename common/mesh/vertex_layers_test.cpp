@@ -50,7 +50,7 @@ Mesh bipyramid(std::uint32_t n) {
   add_bipyramid(mesh.triangles, 2, n);
   return mesh;
 }
-// closed: both ways round, a torus
+// closed: wraps in both directions, a torus
 Mesh grid(std::uint32_t width, std::uint32_t height, bool closed) {
   Mesh mesh{width * height, {}};
   for (std::uint32_t y = 0; y < height - (closed ? 0 : 1); ++y) {
@@ -68,13 +68,13 @@ VertexLayers make_layers(const Mesh& mesh) {
   return rlpc::make_layers(mesh.num_vertices, mesh.triangles);
 }
 
-TEST(Layers, OfNothingAreTheBase) {
+TEST(Layers, AreEmptyForAnEmptyMesh) {
   const VertexLayers layers = make_layers({0, {}});
   EXPECT_EQ(layers.num_layers, 1U);
   EXPECT_TRUE(layers.layer_order.empty());
 }
 
-TEST(Layers, OfAPointCloudAreTheBase) {
+TEST(Layers, AreOnlyTheBaseForAPointCloud) {
   const VertexLayers layers = make_layers({3, {}});
   EXPECT_EQ(layers.num_layers, 1U);
   EXPECT_EQ(layer_of_vertex(layers), (Indices{0, 0, 0}));
@@ -84,7 +84,7 @@ TEST(Layers, OfAPointCloudAreTheBase) {
   EXPECT_EQ(ring(layers, 2), Indices{1});
 }
 
-TEST(Layers, ATriangleAndATetrahedronStay) {
+TEST(Layers, KeepATriangleAndATetrahedronInTheBase) {
   EXPECT_EQ(make_layers({3, {{0, 1, 2}}}).num_layers, 1U);
   EXPECT_EQ(make_layers({4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}}}).num_layers, 1U);
 }
@@ -102,8 +102,8 @@ TEST(Layers, AnOpenFanLosesItsCentre) {
   EXPECT_EQ(outer_ring(layers, 0), Indices{}) << "4 and 5 are gone";
 }
 
-TEST(Layers, VerticesOfFewTrianglesGoFirst) {
-  // Of a strip, the ends go; of a double tetrahedron, an apex and not the belt.
+TEST(Layers, VerticesWithFewTrianglesAreRemovedFirst) {
+  // A strip loses its ends; a double tetrahedron loses an apex, not a vertex of the belt.
   const VertexLayers strip = make_layers({4, {{0, 1, 2}, {0, 2, 3}}});
   EXPECT_EQ(strip.layer_order, (Indices{0, 2, 3, 1}));
   EXPECT_EQ(ring(strip, 1), (Indices{2, 0}));
@@ -113,8 +113,8 @@ TEST(Layers, VerticesOfFewTrianglesGoFirst) {
   EXPECT_EQ(ring(belt, 3), (Indices{0, 1, 2}));
 }
 
-TEST(Layers, AnEarLeavesNoHole) {
-  // The corner 4 hangs on the edge 1-2 of a tetrahedron.
+TEST(Layers, RemovingAnEarLeavesNoHole) {
+  // Vertex 4 is attached to the edge 1-2 of a tetrahedron.
   const VertexLayers layers =
       make_layers({5, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}, {2, 1, 4}}});
   EXPECT_EQ(layers.layer_order, (Indices{0, 1, 2, 3, 4}));
@@ -142,15 +142,15 @@ TEST(Layers, TheFirstOfEquallyGoodTriangulationsWithoutOldEdgesIsTaken) {
   EXPECT_EQ(outer_ring(layers, 0), Indices{}) << "5 is of the same layer";
 }
 
-TEST(Layers, AFanThatTurnsRoundIsNone) {
-  // Around 0: 1 2 3 4, of which 2-3 runs the other way.
+TEST(Layers, AFanWithInconsistentWindingIsNotAFan) {
+  // Around 0: 1 2 3 4, where 2-3 has the opposite orientation.
   const Triangles outside{{5, 2, 1}, {5, 3, 2}, {5, 4, 3}, {5, 1, 4}};
   Triangles triangles{{0, 1, 2}, {0, 3, 2}, {0, 3, 4}, {0, 4, 1}};
   triangles.insert(triangles.end(), outside.begin(), outside.end());
   EXPECT_EQ(make_layers({6, triangles}).layer_of_vertex[0], 0);
 }
 
-TEST(Layers, TwoFansAtAVertexAreNone) {
+TEST(Layers, TwoFansAtAVertexAreNotAFan) {
   // Two tetrahedra, and two triangles, that meet in 0.
   const VertexLayers closed = make_layers({7,
                                            {{0, 1, 2},
@@ -165,7 +165,7 @@ TEST(Layers, TwoFansAtAVertexAreNone) {
   EXPECT_EQ(make_layers({5, {{0, 1, 2}, {0, 3, 4}}}).layer_of_vertex[0], 0);
 }
 
-TEST(Layers, VerticesOfManyTrianglesAddNothingToOuterRings) {
+TEST(Layers, VerticesWithManyTrianglesAddNothingToOuterRings) {
   const VertexLayers twelve = make_layers(bipyramid(12));
   EXPECT_EQ(ring(twelve, 2), (Indices{0, 13, 1, 3}));
   EXPECT_EQ(outer_ring(twelve, 2), (Indices{5, 7, 9, 11}));
@@ -185,13 +185,13 @@ TEST(Layers, BaseVerticesHaveTheHighestOfTheirEarlierNeighbours) {
   EXPECT_EQ(ring(layers, 8), Indices{7});
 }
 
-TEST(Layers, DegenerateTrianglesDoNotCount) {
+TEST(Layers, DegenerateTrianglesAreIgnored) {
   const VertexLayers layers = make_layers({4, {{0, 1, 2}, {0, 2, 3}, {0, 0, 3}, {1, 3, 1}}});
   EXPECT_EQ(ring(layers, 1), (Indices{2, 0}));
   EXPECT_EQ(layers.num_layers, 2U);
 }
 
-TEST(Layers, TwoVerticesOfManyTrianglesGetNoNewEdge) {
+TEST(Layers, TwoVerticesWithManyTrianglesGetNoNewEdge) {
   // Bipyramids between the same apexes: around each other vertex, only 0-1 can
   // be new at last.
   constexpr std::uint32_t kBipyramids = 3000;
@@ -200,7 +200,7 @@ TEST(Layers, TwoVerticesOfManyTrianglesGetNoNewEdge) {
   EXPECT_EQ(base_size(make_layers(mesh)), 2 + 3 * kBipyramids);
 }
 
-// What the clause promises of every mesh.
+// Checks the properties that the clause guarantees for every mesh.
 void check(const Mesh& mesh) {
   const VertexLayers layers = make_layers(mesh);
   const std::uint32_t n = mesh.num_vertices;
@@ -259,8 +259,8 @@ bool are_equal(const VertexLayers& x, const VertexLayers& y) {
   return true;
 }
 
-// A surface with everything wrong that can be: holes, turned and repeated
-// triangles, and some between any vertices.
+// A surface with many defects: holes, flipped and repeated triangles, and triangles between
+// random vertices.
 Mesh random_mesh(std::mt19937& random) {
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   Mesh mesh = below(4) == 0 ? bipyramid(3 + below(40))
@@ -295,7 +295,7 @@ Mesh random_mesh(std::mt19937& random) {
   return mesh;
 }
 
-TEST(Layers, KeepWhatTheClausePromises) {
+TEST(Layers, HaveTheGuaranteedProperties) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -332,8 +332,8 @@ std::uint32_t digest(const VertexLayers& layers) {
   return hash;
 }
 
-// The digests are those of the pseudo-code of the clause.
-TEST(Layers, AreThoseOfTheClause) {
+// The digests were computed by the pseudo-code of the clause.
+TEST(Layers, AgreeWithThePseudoCode) {
   EXPECT_EQ(digest(make_layers(grid(25, 20, false))), 3503261680U);
   EXPECT_EQ(digest(make_layers(grid(25, 20, true))), 4047958968U);
   EXPECT_EQ(digest(make_layers(bipyramid(300))), 2994101135U);

@@ -21,7 +21,7 @@ class GeometryWeights {
   GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 
-  // Of the vertices of the ring of v, then of its outer ring.
+  // The weights of the vertices of the ring of v, then of its outer ring.
   std::span<const std::int32_t> operator[](std::uint32_t v) const {
     return std::span(weights_).subspan(first_[v], first_[v + 1] - first_[v]);
   }

@@ -20,7 +20,7 @@ using Rest = std::vector<Vec3i>;
 using Weights = std::vector<std::int32_t>;
 using Real3 = std::array<double, 3>;
 
-// One vertex, after those of its ring and of its outer ring.
+// A mesh of one vertex preceded by the vertices of its ring and outer ring.
 struct Patch {
   std::size_t ring_size = 0;
   Rest rest;  // ring, outer ring, then the vertex
@@ -81,8 +81,8 @@ struct Exact {
   bool solved = false;
 };
 
-// The formula of 8.11 in real numbers: w = w0 + d, d = At (A At + lambda)^-1 r, of which the
-// ring loses the mean. Nothing is rounded.
+// The formula of 8.11 in floating point, without rounding: w = w0 + d, d = At (A At +
+// lambda)^-1 r, where the mean of d over the ring is subtracted.
 Exact exact_weights(const Patch& patch) {
   const std::size_t n = patch.ring_size;
   const std::size_t m = patch.outer_size();
@@ -168,8 +168,8 @@ Patch random_patch(Random& random, std::int32_t bound) {
   return patch;
 }
 
-// Rings as meshes have them, wide and not flat: the integers follow the formula up to the 11
-// bits of the offsets and the 14 of the moments.
+// For typical rings, which are wide and not flat, the integers follow the formula within the
+// precision of the offsets (11 bits) and the moments (14 bits).
 TEST(GeometryWeights, FollowTheFormula) {
   Random random(1);
   double sum = 0.0;
@@ -204,8 +204,8 @@ TEST(GeometryWeights, FollowTheFormula) {
   EXPECT_LT(sum / count, 0.0006);
 }
 
-// With the least damping, a ring that spans space places the vertex where it is.
-TEST(GeometryWeights, PlaceTheVertexWhereItIs) {
+// With the least damping, a ring that spans space predicts the exact position of the vertex.
+TEST(GeometryWeights, PredictTheExactPosition) {
   Random random(2);
   for (int i = 0; i < 500; ++i) {
     Patch patch;
@@ -228,7 +228,7 @@ TEST(GeometryWeights, PlaceTheVertexWhereItIs) {
 }
 
 // 8.11.1: everything is relative to the centre of the ring.
-TEST(GeometryWeights, DoNotDependOnWhereTheMeshIs) {
+TEST(GeometryWeights, AreInvariantUnderTranslation) {
   Random random(3);
   for (int i = 0; i < 500; ++i) {
     Patch patch = random_patch(random, 1 << 20);
@@ -238,19 +238,20 @@ TEST(GeometryWeights, DoNotDependOnWhereTheMeshIs) {
   }
 }
 
-TEST(GeometryWeights, OfARegularRingAreThePlainOnes) {
+TEST(GeometryWeights, ArePlainWeightsForARegularRing) {
   Patch patch;
   patch.ring_size = 4;
   patch.rest = {{1000, 0, 0}, {0, 1000, 0}, {-1000, 0, 0}, {0, -1000, 0}, {0, 0, 0}};
   EXPECT_EQ(weights_of(patch), (Weights{4096, 4096, 4096, 4096}));
-  // What rounding leaves goes to the first: 3 / 5461.33, and 5 / 3276.8 with ring and outer.
+  // The first vertex absorbs the rounding error: 3 / 5461.33, and 5 / 3276.8 with an outer
+  // ring.
   patch.ring_size = 3;
   patch.rest = {{900, 0, 0}, {-450, 780, 0}, {-450, -780, 0}, {0, 0, 0}};
   EXPECT_EQ(weights_of(patch), (Weights{5462, 5461, 5461}));
 }
 
 // (16 + a) / 16 n and -a / 16 m.
-TEST(GeometryWeights, PlainOnesOfAnOuterRingAreNegative) {
+TEST(GeometryWeights, PlainWeightsOfAnOuterRingAreNegative) {
   Patch patch;
   patch.ring_size = 4;
   patch.rest = {{1000, 0, 0}, {0, 1000, 0},  {-1000, 0, 0}, {0, -1000, 0},
@@ -261,8 +262,8 @@ TEST(GeometryWeights, PlainOnesOfAnOuterRingAreNegative) {
   EXPECT_EQ(weights_of(patch), (Weights{7936, 7936, 7936, 7936, -7680, -7680}));
 }
 
-// A ring of one vertex says nothing about the place; there is no outer ring then.
-TEST(GeometryWeights, OfOneVertexAreItAlone) {
+// A ring of one vertex does not determine a position; there is no outer ring then.
+TEST(GeometryWeights, UseOnlyTheVertexOfARingOfOne) {
   Patch patch;
   patch.ring_size = 1;
   patch.rest = {{5, 6, 7}, {100, 0, 0}};
@@ -270,9 +271,9 @@ TEST(GeometryWeights, OfOneVertexAreItAlone) {
   EXPECT_EQ(weights_of(patch), Weights{kOne});
 }
 
-// Moments of 14 bits have no room for the least damping: the determinant is zero, and the
-// plain weights stay.
-TEST(GeometryWeights, OfALineWithLittleDampingAreThePlainOnes) {
+// Moments of 14 bits cannot represent the least damping: the determinant is zero, and the plain
+// weights are kept.
+TEST(GeometryWeights, ArePlainWeightsForALineWithLittleDamping) {
   Patch patch;
   patch.ring_size = 4;
   patch.weights.damping_log2 = 15;
@@ -284,7 +285,7 @@ TEST(GeometryWeights, OfALineWithLittleDampingAreThePlainOnes) {
 }
 
 // Points, lines and planes, in all directions, at the ends of all ranges.
-TEST(GeometryWeights, OfSingularRingsSumToOne) {
+TEST(GeometryWeights, SumToOneForSingularRings) {
   Random random(4);
   for (int i = 0; i < 20000; ++i) {
     Patch patch = random_patch(random, 1);
@@ -311,8 +312,8 @@ TEST(GeometryWeights, OfSingularRingsSumToOne) {
   }
 }
 
-// Corners of the range only: offsets, moments and changes as large as they get.
-TEST(GeometryWeights, OfTheLargestOffsetsSumToOne) {
+// Only corners of the range: offsets, moments and changes are as large as possible.
+TEST(GeometryWeights, SumToOneForTheLargestOffsets) {
   Random random(5);
   for (int i = 0; i < 20000; ++i) {
     Patch patch = random_patch(random, 1);

@@ -12,11 +12,11 @@ namespace rlpc {
 
 class ValuePrediction {
  public:
-  // weights: null for rest positions, and without layers.
+  // weights: null for rest positions and for GOFs without layers.
   ValuePrediction(const CodedMesh& mesh, bool is_rest, const GeometryWeights* weights)
       : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(kernels().back()) {}
 
-  // values [num_vertices][n] and prediction [n], n factors.
+  // values: [num_vertices][n]; prediction: [n]; n: number of factors.
   void predict(std::uint32_t v, std::span<const std::int32_t> values,
                std::span<std::int64_t> prediction) const;
 

@@ -10,10 +10,10 @@
 
 namespace rlpc {
 
-// From StartInfluences( ) to EndInfluences( ), for one vertex after the other.
+// The processes from StartInfluences( ) to EndInfluences( ), for one vertex after another.
 class InfluencePrediction {
  public:
-  // influences [num_vertices]: of the preceding vertices; must outlive it.
+  // influences [num_vertices]: set for the preceding vertices; must outlive the object.
   InfluencePrediction(std::span<const Influences> influences, std::uint32_t num_bones,
                       int weight_bits)
       : influences_(influences), num_bones_(num_bones), total_(1 << weight_bits) {}
@@ -44,7 +44,7 @@ class InfluencePrediction {
  private:
   struct Candidate {
     std::uint16_t bone;
-    std::int64_t sum;  // of the weights in the ring
+    std::int64_t sum;  // sum of its weights in the ring
   };
 
   void add_influence(std::uint32_t bone, std::int64_t weight);
@@ -57,7 +57,7 @@ class InfluencePrediction {
   Influences found_;
   int num_extra_ = 0;
   int left_ = 0;
-  std::uint32_t magnitude_before_ = 0;  // 8 fractional bits
+  std::uint32_t magnitude_before_ = 0;  // magnitude of the previous residual, 8 fractional bits
 };
 
 }  // namespace rlpc

@@ -24,7 +24,7 @@ std::vector<Influence> list_of(const Influences& influences) {
   return {influences.begin(), influences.end()};
 }
 
-TEST(Influences, WithoutARingAreTheFirstBone) {
+TEST(Influences, AreTheFirstBoneWithoutARing) {
   const std::vector<Influences> none(1);
   InfluencePrediction prediction(none, 5, 6);
   prediction.start({});
@@ -34,7 +34,7 @@ TEST(Influences, WithoutARingAreTheFirstBone) {
   EXPECT_EQ(list_of(prediction.finish()), (std::vector<Influence>{{0, 64}}));
 }
 
-TEST(Influences, OfTheRingAreCandidatesInOrderOfTheirWeights) {
+TEST(Influences, CandidatesAreInOrderOfTheirWeightsInTheRing) {
   const std::vector<Influences> known{of({{7, 10}, {3, 6}}), of({{3, 12}, {2, 4}}),
                                       of({{9, 16}}), of({{2, 4}, {5, 8}, {1, 4}})};
   InfluencePrediction prediction(known, 20, 4);
@@ -58,7 +58,7 @@ TEST(Influences, OfTheRingAreCandidatesInOrderOfTheirWeights) {
       << "the first candidate comes last and gets what is left";
 }
 
-TEST(Influences, ThatTheRingSharesArePassedOn) {
+TEST(Influences, AreInheritedIfTheRingAgrees) {
   const Influences shared = of({{4, 40}, {6, 20}, {1, 4}});
   const std::vector<Influences> known(5, shared);
   InfluencePrediction prediction(known, 8, 6);
@@ -71,8 +71,8 @@ TEST(Influences, ThatTheRingSharesArePassedOn) {
   EXPECT_EQ(list_of(prediction.finish()), (std::vector<Influence>{{6, 20}, {1, 4}, {4, 40}}));
 }
 
-// 9.8.3: half of the mean difference from the mean, with 4 fractional bits, and 5/16 of the
-// residual before, whose magnitude is clipped to 2^20.
+// 9.8.3: half the mean absolute deviation, with 4 fractional bits, plus 5/16 of the previous
+// residual, whose magnitude is clipped to 2^20.
 TEST(Influences, ExpectedResidualsFollowTheDifferencesInTheRing) {
   const std::vector<Influences> known{of({{0, 40}, {1, 24}}), of({{0, 60}, {1, 4}}),
                                       of({{0, 64}})};
@@ -126,7 +126,7 @@ TEST(Influences, NoBoneCanBeAddedWithoutWeightOrWithoutBones) {
   EXPECT_EQ(list_of(of_three.finish()), (std::vector<Influence>{{2, 16}}));
 }
 
-// A ring of 7 can bring 56 candidates. After 7 influences, nothing but the first counts.
+// A ring of 7 can give 56 candidates. After 7 influences, only the first candidate is added.
 TEST(Influences, AreAtMostEight) {
   std::vector<Influences> known;
   for (std::uint16_t u = 0; u < 7; ++u) {
@@ -151,8 +151,8 @@ TEST(Influences, AreAtMostEight) {
   EXPECT_EQ(found.list[7], (Influence{0, 93}));
 }
 
-// Whatever a stream holds, a vertex has 1 to 8 different bones whose weights are above zero and
-// sum to the total: skinning relies on it.
+// Skinning relies on this: whatever the stream contains, a vertex has 1 to 8 distinct bones
+// with positive weights that sum to the total.
 TEST(RandomInfluences, AreLegalWhateverTheResiduals) {
   std::mt19937 random(1);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };

@@ -32,8 +32,8 @@ inline constexpr int kMaxTemporalPredictor = 7;
 using TrackResiduals = std::vector<Vec3i>;
 
 struct Bone {
-  std::int32_t parent = -1;  // an earlier bone
-  Vec3i pivot{};             // 1/16 grid units, a signed number of position_bits + 5 bits
+  std::int32_t parent = -1;  // index of an earlier bone; -1: root
+  Vec3i pivot{};             // 1/16 grid units, signed, position_bits + 5 bits
   bool rotation_flag = false;
   std::uint32_t rotation_step_idx = 0;
   int rotation_order = 1;  // 1 to kMaxPredictorOrder
@@ -46,7 +46,7 @@ struct Bone {
 
 struct Influence {
   std::uint16_t bone = 0;
-  std::uint16_t weight = 0;  // greater than 0; those of a vertex sum to 2^weight_bits
+  std::uint16_t weight = 0;  // above 0; the weights of a vertex sum to 2^weight_bits
   bool operator==(const Influence&) const = default;
 };
 
@@ -78,20 +78,20 @@ struct SkinnedGof : GofHeader {
   Prediction prediction = Prediction::kLayers;
   WeightSettings weights;
   std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
-  std::vector<std::uint8_t> layer_step;         // of each layer, 1 to kMaxLayerStep
+  std::vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
   std::vector<Bone> bones;
   std::uint32_t num_component_groups = 0;
-  // End of each group among the spatial factors; [0] is kRestFactors. Groups without any slice
-  // are missing.
+  // [group], the end of each component group among the spatial factors; [0] is kRestFactors.
+  // Groups without any slice are absent.
   std::vector<std::size_t> group_end{kRestFactors};
-  std::vector<std::uint32_t> slice_layers;  // [groups]: layer groups present of each
+  std::vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
   std::vector<Trajectory> trajectories;
   std::vector<Influences> influences;  // [num_vertices]
-  // [groups][num_vertices * factors of the group]: residuals, in steps of the layer.
+  // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
   std::vector<std::vector<std::int32_t>> vertex_residual;
 };
 
-// Width of rest positions, of 4 fractional bits.
+// Width of rest positions, including 4 fractional bits.
 constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
 // Factors [first, end) of the spatial factors of a GOF, as declared.

@@ -19,7 +19,7 @@ namespace rlpc {
 inline constexpr std::size_t kActivityContexts = 5;
 using VertexModels = std::array<ResidualModels, kActivityContexts>;
 
-// 9.8.1: of the bone section.
+// 9.8.1: models of the bone section.
 struct BoneModels {
   BitModel rotation_flag;
   BitModel origin_flag;
@@ -29,7 +29,7 @@ struct BoneModels {
   ResidualModels origin;
 };
 
-// 9.8.1: of the slices of a GOF, except those of spatial residuals.
+// 9.8.1: models of the slices of a GOF, except those of spatial residuals.
 struct SliceModels {
   std::array<BitModel, kMaxTemporalPredictor> temporal_predictor;
   std::array<BitModel, kMaxExtraBones> extra_bone_flag;
@@ -46,7 +46,7 @@ class VertexContexts {
 
   // Call before the residuals of a vertex, which follow factor by factor.
   void start(std::uint32_t v);
-  // Of the next residual.
+  // The expected magnitude of the next residual.
   std::uint32_t expected() const {
     const std::uint64_t sum =
         96 * std::uint64_t{mean_[next_]} + 48 * std::uint64_t{ring_mean_[next_]} +
@@ -79,9 +79,9 @@ class VertexContexts {
   std::vector<std::uint32_t> mean_;       // ComponentMean, [num_factors]
   std::vector<std::uint8_t> magnitudes_;  // ResidualMagnitude, [num_vertices][num_factors]
   std::vector<std::uint16_t> sums_;       // [num_factors]
-  // Of the vertex:
+  // State of the current vertex:
   std::uint32_t vertex_ = 0;
-  std::size_t next_ = 0;                   // factor
+  std::size_t next_ = 0;                   // next factor
   std::vector<std::uint32_t> ring_mean_;   // [num_factors]
   std::vector<std::uint32_t> outer_mean_;  // [num_factors]
   std::uint32_t latest_mean_ = 0;

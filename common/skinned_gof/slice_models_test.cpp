@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
 
-// Rings as they come, not those of a mesh.
+// Random rings, not those of a mesh.
 struct Rings {
   explicit Rings(std::uint32_t n) : topology(make_topology(n, {})) {
     layers.layer_of_vertex.assign(n, 0);
@@ -27,7 +27,7 @@ struct Rings {
   VertexLayers layers;
 };
 
-// The contexts (9.8.4) as the text has them: factor by factor, with divisions.
+// The contexts of 9.8.4 literally: factor by factor, with divisions.
 class TextContexts {
  public:
   TextContexts(const CodedMesh& mesh, std::size_t num_factors)
@@ -88,7 +88,7 @@ TEST(VertexContexts, StartAtAMagnitudeOfOne) {
   EXPECT_EQ(contexts.activity(), 2U);
 }
 
-TEST(VertexContexts, TellBusyVerticesFromQuietOnes) {
+TEST(VertexContexts, DistinguishBusyFromQuietVertices) {
   const Rings rings(40);
   const CodedMesh mesh = rings.mesh();
   VertexContexts contexts(mesh, 8);
@@ -104,7 +104,7 @@ TEST(VertexContexts, TellBusyVerticesFromQuietOnes) {
   EXPECT_EQ(contexts.activity(), 4U);
 }
 
-TEST(VertexContexts, AreThoseOfTheText) {
+TEST(VertexContexts, AgreeWithTheSpecification) {
   std::mt19937 random(1);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   std::array<int, kActivityContexts> seen{};
@@ -143,7 +143,7 @@ TEST(VertexContexts, AreThoseOfTheText) {
 }
 
 // The largest residuals throughout: means and sums stay within their stated widths.
-TEST(VertexContexts, HoldTheLargestResiduals) {
+TEST(VertexContexts, SupportTheLargestResiduals) {
   Rings rings(30);
   for (std::uint32_t v = 7; v < 30; ++v) {
     rings.layers.ring.set(v, std::vector<std::uint32_t>{v - 1, v - 2, v - 3, v - 7});

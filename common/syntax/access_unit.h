@@ -1,6 +1,6 @@
 // One GOF of a stream as parsed: the GOF unit, its slice units, and its hash. Made by
-// decoder/parse/access_unit_parser.h; all inspection of GOFs goes through it, and make_recon()
-// (decoder/recon/gof_recon.h) decodes it.
+// AccessUnitParser (decoder/parse), inspected by all programs, decoded by make_recon()
+// (decoder/recon/gof_recon.h).
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@
 
 namespace rlpc {
 
-// One of each kind, in the order of GofKind.
+// A GOF of any kind; the alternatives are in the order of GofKind.
 using AnyGof = std::variant<ClusterGof, SkinnedGof>;
 
 // 6.12 slice_unit( )
 struct SliceEntry {
   std::uint32_t component_group_idx = 0;
   std::uint32_t layer_group_idx = 0;
-  std::uint32_t num_trajectories = 0;  // whose temporal values are in it
-  std::uint64_t bytes = 0;             // of the unit
+  std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
+  std::uint64_t bytes = 0;             // size of the unit
 };
 
 struct AccessUnit {
   AnyGof gof;
   std::vector<SliceEntry> slices;  // in the order of the stream
   std::optional<GofHash> hash;     // none: no hash unit, or not requested
-  std::uint64_t gof_bytes = 0;     // of the GOF unit
+  std::uint64_t gof_bytes = 0;     // size of the GOF unit
   // Slices were dropped on request (SliceCut): they are not among `slices`, and the hash does
   // not match the remaining positions.
   bool is_cut = false;

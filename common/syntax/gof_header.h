@@ -10,7 +10,7 @@ enum class GofKind : std::uint8_t {
   kSkinned,   // 6.11: bones, and trajectories for the residual
 };
 
-// For messages: "cluster" or "skinned", as in "skinned GOF".
+// The main elements of a kind, for messages: "clusters", "bones".
 constexpr const char* kind_name(GofKind kind) {
   return kind == GofKind::kSkinned ? "skinned" : "cluster";
 }

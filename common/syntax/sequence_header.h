@@ -1,4 +1,4 @@
-// 6.3 Sequence header, and what the levels of Annex B allow.
+// 6.3 Sequence header, and the limits of the levels of Annex B.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ inline constexpr int kMaxPositionBits = 24;
 inline constexpr std::int32_t kMinGridLog2Step = -150;
 inline constexpr std::int32_t kMaxGridLog2Step = 120;
 inline constexpr std::int32_t kMaxGridOrigin = 1 << 26;
-inline constexpr std::uint32_t kMaxFrames = 1U << 24;  // of a sequence, at every level
+inline constexpr std::uint32_t kMaxFrames = 1U << 24;  // per sequence, at every level
 
-inline constexpr std::uint32_t kMaxMetadataBytes = 1U << 20;  // of metadata_json
+inline constexpr std::uint32_t kMaxMetadataBytes = 1U << 20;  // size of metadata_json
 
 // Table B-1
 struct Level {
@@ -27,10 +27,10 @@ struct Level {
   std::uint32_t max_triangles;
   std::uint32_t max_gof_frames;
   std::uint32_t max_clusters;
-  std::uint32_t max_components;   // of one cluster
-  std::uint64_t max_gof_values;   // vertices x frames of a GOF
-  std::uint64_t max_gof_factors;  // spatial and temporal values of a GOF
-  std::uint64_t max_unit_bytes;   // of the payload of a critical unit
+  std::uint32_t max_components;   // per cluster, or trajectories
+  std::uint64_t max_gof_values;   // vertices x frames per GOF
+  std::uint64_t max_gof_factors;  // spatial and temporal values per GOF
+  std::uint64_t max_unit_bytes;   // payload of a critical unit
 };
 
 consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
@@ -43,7 +43,8 @@ inline constexpr std::array<Level, 4> kLevels{{
 }};
 inline constexpr std::uint32_t kMaxLevelIdc = static_cast<std::uint32_t>(kLevels.size());
 
-// One structure, members spelled as the syntax elements (values, where an element is minus 1).
+// Members are named after the syntax elements; elements named _minus1 are stored as their
+// values.
 struct SequenceHeader {
   std::uint32_t profile_idc = kProfileBaseline;
   std::uint32_t level_idc = 1;

@@ -1,4 +1,4 @@
-// What parsing and reconstruction of all GOFs of a stream share.
+// The data shared by parsing and reconstruction of all GOFs of a stream.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Set once, before the first GOF; then only read, by any number of threads.
+// Set before the first GOF, then read-only: any number of threads may use it.
 struct StreamContext {
   SequenceHeader header;
   Topology topology;
@@ -20,7 +20,7 @@ struct StreamContext {
   StreamContext(const StreamContext&) = delete;
   StreamContext& operator=(const StreamContext&) = delete;
 
-  // After the header. triangles: in decoded order, read during the call.
+  // To be called once the header is set. triangles: in decoded order, read during the call.
   void set_connectivity(std::span<const Triangle> triangles) {
     topology = make_topology(header.num_vertices, triangles);
     if (header.profile_idc == kProfileMain) meshes.emplace(topology, triangles);

@@ -1,4 +1,4 @@
-// Outer layer of a stream (clause 6.1 and 6.2): signature, version and units.
+// The outer layer of a stream (clauses 6.1 and 6.2): signature, version and unit types.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace rlpc {
 
-// 6.1: the first byte is not text, and a transfer that converts line ends is detected.
+// 6.1: the first byte is not text, and the line ends reveal transfers that convert them.
 inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
                                                         'C',  0x0D, 0x0A, 0x1A};
 
 inline constexpr std::uint32_t kVersionMajor = 1;
-inline constexpr std::uint32_t kVersionMinor = 1;  // the newest that this code knows
+inline constexpr std::uint32_t kVersionMinor = 1;  // the newest supported
 
 inline constexpr std::size_t kStreamHeaderBytes = 10;  // signature and version
 inline constexpr std::size_t kUnitHeaderBytes = 5;     // ancillary_flag, unit_type, unit_size
@@ -34,7 +34,7 @@ enum class UnitType : std::uint8_t {
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;
 
-// R-STR-03: a minor version that is not known, or not that of the stream's profile.
+// R-STR-03: an unknown minor version, or not that of the profile of the stream.
 inline Error unsupported_minor_version() {
   return {Errc::kUnsupported, "R-STR-03", "version_minor", 72};
 }

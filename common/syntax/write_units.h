@@ -1,4 +1,4 @@
-// 6.1, 6.2 and 6.7 to 6.9, writing side, for the encoder and the sub-stream extractor.
+// 6.1, 6.2 and 6.7 to 6.9, writing side, shared by the encoder and the sub-stream extractor.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace rlpc {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Of the version that has the profile.
+// Signature and version; the version is that of the profile.
 Bytes write_stream_header(std::uint32_t profile_idc);
-// A payload with its header and CRC.
+// A unit: the payload with its header and CRC.
 Bytes write_unit(UnitType type, const Bytes& payload);
-// The rest are payloads.
+// The functions below return payloads.
 Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame);
 
 struct GofEntry {
   std::uint32_t num_frames;
-  std::uint64_t bytes;  // from its unit to that of the next GOF
+  std::uint64_t bytes;  // from its GOF unit to the next
 };
 Bytes write_gof_index(std::uint64_t first_gof_offset, std::span<const GofEntry> gofs);
 Bytes write_end_of_sequence(std::uint32_t index_distance);

@@ -19,7 +19,7 @@ class ElementNames final : public Trace {
     before_ = bit_pos;
   }
   std::string text;
-  bool in_order = true;  // positions never go back
+  bool in_order = true;  // positions never decrease
 
  private:
   std::string last_;

@@ -1,5 +1,4 @@
-// Shared by the fuzz targets: reads numbers off the front of an input, and checks in every
-// build.
+// Shared by the fuzz targets: parsing of inputs, and checks that are active in every build.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +32,7 @@ class FuzzInput {
   std::span<const std::uint8_t> rest_;
 };
 
-// A property that must hold for every input; unlike an assertion, whatever the build.
+// Checks a property that must hold for every input; unlike assert, also in release builds.
 inline void fuzz_check(bool holds) {
   if (!holds) std::abort();
 }

@@ -20,7 +20,7 @@ struct SkinnedGofSizes {
   std::uint32_t max_frames = 8;
   std::uint32_t max_bones = 6;
   std::uint32_t max_groups = 4;
-  std::uint32_t max_components = 4;  // of a group
+  std::uint32_t max_components = 4;  // per group
 };
 
 class RandomSkinnedGof {
@@ -44,7 +44,7 @@ class RandomSkinnedGof {
   CodedMesh coded_mesh() const { return {gof.prediction, topology, layers}; }
 
  private:
-  static constexpr int kResidualBits = 28;  // of a magnitude
+  static constexpr int kResidualBits = 28;  // maximum width of a magnitude
   static_assert(kMaxResidual == (1U << kResidualBits) - 1);
 
   // The high bits of Knuth's linear congruential generator.
@@ -60,7 +60,7 @@ class RandomSkinnedGof {
     if (kind == 1) return most;
     return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
   }
-  // Within this many bits, but occasionally of any size.
+  // A residual within this many bits, but occasionally of any size.
   std::int32_t residual(int bits) {
     if (random() % 64 == 0) bits = kResidualBits;
     const std::uint32_t range = std::uint32_t{1} << bits;

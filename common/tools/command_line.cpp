@@ -15,7 +15,7 @@ namespace rlpc {
 namespace {
 
 constexpr int kUsage = 64;
-constexpr std::size_t kColumn = 26;  // where descriptions begin
+constexpr std::size_t kColumn = 26;  // start of descriptions
 constexpr std::size_t kWidth = 80;
 
 // "  --name VALUE          description", wrapped.
@@ -80,7 +80,7 @@ class HelpPages : public CLI::Formatter {
   HelpText text_;
 };
 
-// Letters to insert, remove or replace.
+// Edit distance: letters to insert, remove or replace.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -94,7 +94,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The option that was probably meant; "": none is near.
+// The option that was probably meant; "": none is similar.
 std::string similar_option(const CLI::App& app, const std::string& word) {
   std::string nearest;
   std::size_t least = 3;

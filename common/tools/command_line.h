@@ -1,5 +1,5 @@
-// The command line of a program, on top of CLI11: --help fits one screen, --help-all has it
-// all.
+// Command lines of the programs, based on CLI11: --help fits on one screen, --help-all is
+// complete.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,15 +12,15 @@ namespace rlpc {
 struct HelpText {
   std::string usage;                     // "INPUT -o OUT [OPTIONS]"
   std::vector<std::string> main_groups;  // the groups of options that --help shows
-  std::string examples;                  // last on both pages
-  std::string details;                   // on the page of --help-all only
+  std::string examples;                  // at the end of both pages
+  std::string details;                   // --help-all only
 };
 
-// Adds --help, --help-all and --version, after all other options. The placeholder of an
-// option's value ("FILE") is its option_text(); nothing else of CLI11's own is shown.
+// Adds --help, --help-all and --version; to be called after adding all other options. The
+// placeholder of a value ("FILE") is the option_text() of the option.
 void add_help(CLI::App& app, HelpText text, const std::string& version);
 
-// Reads the command line. Returns the exit code if nothing is left to do: 0 after a help page,
+// Reads the command line. Returns the exit code if the program should end: 0 after a help page,
 // 64 after an error, which is reported on standard error.
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv);
 

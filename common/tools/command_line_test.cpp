@@ -26,7 +26,7 @@ struct Program {
     add_help(app, {"IN [OPTIONS]", {"Main"}, "Examples\n  program x", "Details"}, "1.2.3");
   }
 
-  // The exit code; 1000: the program goes on.
+  // The exit code; 1000: the program continues.
   int run(std::vector<std::string> words) {
     words.insert(words.begin(), "program");
     std::vector<char*> argv;
@@ -93,7 +93,7 @@ TEST(CommandLine, ReadsOptions) {
   EXPECT_EQ(p.said, "");
 }
 
-TEST(CommandLine, SuggestsWhatWasMeant) {
+TEST(CommandLine, SuggestsSimilarOptions) {
   const std::string more = "\nRun with --help for more information.\n";
   const auto complaint = [&](const std::vector<std::string>& words) {
     Program p;

@@ -1,5 +1,5 @@
-// 8.1 Decoding a GOF: residuals to integer positions, frame by frame. Used by the decoder, and
-// by the encoder for closed-loop coding.
+// 8.1 Decoding a GOF: reconstructs integer positions from residuals, frame by frame. Used by
+// the decoder, and by the encoder for closed-loop coding.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class SpatialPrediction {
                     std::span<const std::uint16_t> cluster_of_vertex,
                     std::span<const std::uint32_t> local_index);
 
-  // 8.3.3 Prediction of a spatial value, at index i from the values before it.
+  // 8.3.3 Prediction of a spatial value: the one at index i, from the values before it.
   std::int64_t predict(SpatialPredictor predictor, std::span<const std::int32_t> plane,
                        std::size_t i) const;
 
@@ -49,11 +49,11 @@ std::vector<std::int32_t> recon_spatial(const Component& component,
 
 class ClusterRecon {
  public:
-  // Prepares the GOF; all arguments are only read, during the call. Cannot fail: parse has
+  // Prepares the GOF. Reads the arguments only during the call. Cannot fail: parsing has
   // checked every range, and sums are clipped.
   ClusterRecon(const SequenceHeader& header, const Topology& topology, const ClusterGof& gof);
 
-  // Positions of one frame of the GOF, grid units, [num_vertices][3].
+  // Reconstructs the positions of one frame of the GOF, grid units, [num_vertices][3].
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const;
   // The same for frames first to first + count - 1, [count][num_vertices][3].
   void frames(std::uint32_t first, std::uint32_t count,

@@ -14,7 +14,7 @@ namespace {
 using Positions = std::vector<std::int32_t>;
 
 constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
-constexpr int kUnitScale = 32;  // scale_idx that leaves temporal values as they are
+constexpr int kUnitScale = 32;  // the scale_idx of scale 1
 
 SequenceHeader header_of(std::uint32_t num_vertices, int position_bits = 20) {
   SequenceHeader header;
@@ -31,7 +31,8 @@ ClusterGof world_gof(std::uint32_t num_vertices, std::uint32_t num_frames) {
   return gof;
 }
 
-// Spatial values are not normalised (13 bits or more), so that products are in 1/16 grid steps.
+// Spatial values have 13 bits or more: they are not normalised, and products are in 1/16 grid
+// steps.
 Component component_of(std::vector<std::int32_t> temporal, std::vector<std::int32_t> spatial) {
   Component component;
   component.scale_idx = kUnitScale;
@@ -108,7 +109,7 @@ TEST(ClusterRecon, TemporalValuesArePredictedAndClippedTo24Bits) {
   EXPECT_EQ(values[3], -most - 1);
 }
 
-// Two triangles on a square; every vertex in its place.
+// Two triangles that form a square.
 struct Square {
   Topology topology = make_topology(4, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
   std::vector<std::uint32_t> vertices{0, 1, 2, 3};
@@ -133,17 +134,18 @@ struct Square {
 
 using Values = std::vector<std::int32_t>;
 
-TEST(SpatialValues, WithoutPredictorAreTheResiduals) {
+TEST(SpatialValues, AreTheResidualsWithoutPredictor) {
   EXPECT_EQ(Square().values(SpatialPredictor::kNone, {10, 4, -3, 7}), (Values{10, 4, -3, 7}));
 }
 
 TEST(SpatialValues, NeighboursPredictTheirMean) {
-  // 0: first place; 1: from 0; 2: from 0 and 1, (10 + 14) / 2; 3: from 1 and 2, (14 + 9) / 2 up
+  // 0: not predicted; 1: from 0; 2: from 0 and 1, (10 + 14) / 2; 3: from 1 and 2, (14 + 9) / 2,
+  // rounded up
   EXPECT_EQ(Square().values(SpatialPredictor::kNeighbours, {10, 4, -3, 7}),
             (Values{10, 14, 9, 19}));
 }
 
-TEST(SpatialValues, ParallelogramsPredictWhereThereIsOne) {
+TEST(SpatialValues, ParallelogramsPredictIfThereIsOne) {
   // 3: 14 + 9 - 10
   EXPECT_EQ(Square().values(SpatialPredictor::kParallelogram, {10, 4, -3, 7}),
             (Values{10, 14, 9, 20}));
@@ -164,7 +166,7 @@ TEST(SpatialValues, ArePredictedOnlyFromTheSameCluster) {
   square.vertices = {0, 3};
   square.cluster_of_vertex = {0, 1, 1, 0};
   square.local_index = {0, 0, 1, 1};
-  // 3 has no neighbour left: from the place before
+  // 3 has no neighbour in the cluster: predicted from the previous vertex
   EXPECT_EQ(square.values(SpatialPredictor::kNeighbours, {10, 4}), (Values{10, 14}));
 }
 
@@ -203,7 +205,7 @@ TEST(ClusterRecon, LocalCoordinatesMoveWithTheSeeds) {
                                                        306, 100, 200, 300, 100, 204, 303}));
 }
 
-TEST(ClusterRecon, WithoutComponentsVerticesAreAtTheOrigin) {
+TEST(ClusterRecon, VerticesAreAtTheOriginWithoutComponents) {
   EXPECT_EQ(frame_of(header_of(2), world_gof(2, 1), 0), Positions(6, 0));
   ClusterGof gof = lcf_gof(1);
   gof.seed_tracks[0].residual = {{4, 6, 8}};
@@ -217,7 +219,7 @@ TEST(ClusterRecon, ClustersShareSeedsAndMayBeEmpty) {
   ClusterGof gof = lcf_gof(1);
   gof.clusters.resize(3);
   gof.clusters[1] = gof.clusters[0];
-  gof.clusters[1].seed_vertex = {1, 3, 0};  // the same seeds, x the other way
+  gof.clusters[1].seed_vertex = {1, 3, 0};  // the same seeds, x reversed
   gof.cluster_of_vertex[4] = 1;             // cluster 2 is empty
   gof.seed_tracks[0].residual = {{0, 0, 0}};
   gof.seed_tracks[1].residual = {{10, 0, 0}};
@@ -230,7 +232,7 @@ TEST(ClusterRecon, ClustersShareSeedsAndMayBeEmpty) {
             (Positions{0, 10, 0, 10, 0, 0, 6, 2, 3, 0, 0, 0, 4, 2, -3}));
 }
 
-TEST(ClusterRecon, WorldAndLocalClustersStandSideBySide) {
+TEST(ClusterRecon, CombinesWorldAndLocalClusters) {
   ClusterGof gof = lcf_gof(1);
   gof.clusters.resize(2);
   gof.cluster_of_vertex[4] = 1;
@@ -268,7 +270,7 @@ TEST(ClusterRecon, SaturatingInputsAreClippedNotWrapped) {
   EXPECT_EQ((Positions{frame_of(header_of(5, 24), gof, 0)[6]}), Positions{most});
 }
 
-TEST(ClusterRecon, FramesCanBeAskedForInAnyOrder) {
+TEST(ClusterRecon, ReconstructsFramesInAnyOrder) {
   ClusterGof gof = world_gof(2, 4);
   gof.clusters[0].components = {component_of({10, 5, -3, 8}, {160, 32, 16, -48, 64, 16})};
   gof.clusters[0].components[0].temporal_predictor = 2;

@@ -11,7 +11,7 @@ Vec3l cross(const Vec3l& a, const Vec3l& b) {
 
 bool is_zero(const Vec3l& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-// 8.4.2 Degenerate seed triangles: a direction across x, for seeds that lie on one line.
+// 8.4.2 Degenerate seed triangles: a direction perpendicular to x, for collinear seeds.
 Vec3l direction_across(const Vec3l& x) {
   std::size_t smallest = 0;
   const auto magnitude = [&](std::size_t c) { return x[c] < 0 ? -x[c] : x[c]; };

@@ -1,4 +1,5 @@
-// Local coordinate frames (clause 8.4): from the integer positions of three seed vertices.
+// Local coordinate frames (clause 8.4), computed from the integer positions of three seed
+// vertices.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 namespace rlpc {
 
 struct Lcf {
-  Vec3l doubled_origin;       // p1 + p2: the midpoint, doubled so that it stays an integer
+  Vec3l doubled_origin;       // p1 + p2: the midpoint, doubled to be an integer
   std::array<Vec3l, 3> axis;  // x, y, z; unit vectors with 30 fractional bits
 };
 

@@ -21,7 +21,7 @@ Int128 dot(const Vec3l& a, const Vec3l& b) {
   return Int128{a[0]} * b[0] + Int128{a[1]} * b[1] + Int128{a[2]} * b[2];
 }
 
-// Unit length to 2^-26, right angles to 2^-26, and a right-handed system.
+// Checks that the axes are orthonormal within 2^-26 and right-handed.
 void expect_orthonormal(const Lcf& lcf) {
   const Int128 tolerance = Int128{1} << 34;  // 2^60 is 1
   for (std::size_t i = 0; i < 3; ++i) {
@@ -55,7 +55,7 @@ TEST(Lcf, HasTheFrameOfARightAngle) {
   EXPECT_EQ(lcf.axis[2], (Vec3l{0, 0, kOne}));
 }
 
-TEST(Lcf, OnlyTheSideOfTheThirdSeedMattersForTheAxes) {
+TEST(Lcf, AxesDependOnlyOnTheSideOfTheThirdSeed) {
   // x along -y of the world, the third seed towards +z: normal x cross side is -x.
   const Lcf lcf = make_lcf({0, 0, 0}, {0, -5, 0}, {0, 9, 4});
   EXPECT_EQ(lcf.axis[0], (Vec3l{0, -kOne, 0}));
@@ -78,7 +78,7 @@ TEST(Lcf, AxesAreOrthonormal) {
   }
 }
 
-// Triangles as thin as positions of 24 bits allow, and as large.
+// The thinnest and largest triangles of 24-bit positions.
 TEST(Lcf, AxesOfExtremeTrianglesAreOrthonormal) {
   const std::vector<std::int32_t> values{kLeast, kLeast + 1, -1, 0, 1, kMost - 1, kMost};
   for (const std::int32_t a : values) {
@@ -93,7 +93,7 @@ TEST(Lcf, AxesOfExtremeTrianglesAreOrthonormal) {
   }
 }
 
-TEST(Lcf, WhereTheFirstTwoSeedsCoincideAxesAreThoseOfTheWorld) {
+TEST(Lcf, HasWorldAxesIfTheFirstTwoSeedsCoincide) {
   for (const Vec3i& third : {Vec3i{7, -3, 9}, Vec3i{1, 2, 3}, Vec3i{kMost, kLeast, 0}}) {
     const Lcf lcf = make_lcf({1, 2, 3}, {1, 2, 3}, third);
     EXPECT_EQ(lcf.doubled_origin, (Vec3l{2, 4, 6}));
@@ -104,7 +104,7 @@ TEST(Lcf, WhereTheFirstTwoSeedsCoincideAxesAreThoseOfTheWorld) {
 }
 
 // z = x cross the world axis of the smallest coordinate of x, the first one in a tie.
-TEST(Lcf, SeedsOnALineTakeADirectionAcrossX) {
+TEST(Lcf, CollinearSeedsUseADirectionPerpendicularToX) {
   struct Case {
     Vec3i along;
     Vec3l y;
@@ -133,7 +133,7 @@ TEST(Lcf, SeedsOnALineTakeADirectionAcrossX) {
   }
 }
 
-TEST(Lcf, SeedsOnARandomLineGiveAFrame) {
+TEST(Lcf, RandomCollinearSeedsGiveAFrame) {
   constexpr unsigned kSeed = 2;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);

@@ -17,7 +17,7 @@ using Track = std::vector<Vec3i>;  // [num_gof_frames], grid units
 std::int64_t predict_seed(const ClusterGof& gof, const std::vector<Track>& tracks,
                           std::size_t index, std::uint32_t f, std::size_t c);
 
-// All tracks. Cannot fail: positions are clipped to position_bits.
+// Reconstructs all tracks. Cannot fail: positions are clipped to position_bits.
 std::vector<Track> recon_seed_tracks(const ClusterGof& gof, int position_bits);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ ClusterGof tracks_of(std::vector<SeedTrack> tracks, std::uint32_t num_frames) {
   return gof;
 }
 
-TEST(SeedTracks, WithoutPredictorAreTheScaledResiduals) {
+TEST(SeedTracks, AreTheScaledResidualsWithoutPredictor) {
   ClusterGof gof = tracks_of({{4, 0, {{1, -2, 3}, {5, 0, -7}}}}, 2);
   gof.seed_predictor = 0;
   gof.seed_step = 10;
@@ -31,7 +31,8 @@ TEST(SeedTracks, WithoutPredictorAreTheScaledResiduals) {
   EXPECT_EQ(tracks[0], (Track{{10, -20, 30}, {50, 0, -70}}));
 }
 
-// In frame 0 the anchor is predicted from the track before, the others from their anchor.
+// In frame 0, anchors are predicted from the previous track, and other tracks from their
+// anchor.
 TEST(SeedTracks, FirstFrameIsPredictedFromOtherTracks) {
   const ClusterGof gof = tracks_of({{0, 0, {{100, 0, 0}}},
                                     {1, 0, {{1, 1, 1}}},
@@ -75,7 +76,7 @@ TEST(SeedTracks, FollowPolynomialsWithoutResidualsAfterTheFirstFrames) {
   }
 }
 
-// With coupling, a track also follows what its anchor does against its own prediction.
+// With coupling, the prediction of a track includes the prediction residual of its anchor.
 TEST(SeedTracks, CoupledTracksFollowTheirAnchor) {
   const std::vector<Vec3i> jumps{{5, 0, 0}, {100, -40, 3}, {-7, 0, 0}, {0, 0, 90}};
   ClusterGof gof = tracks_of({{0, 0, jumps}, {1, 0, {{11, 22, 33}}}}, 4);
@@ -84,7 +85,7 @@ TEST(SeedTracks, CoupledTracksFollowTheirAnchor) {
     gof.seed_predictor = order;
     const std::vector<Track> tracks = recon_seed_tracks(gof, 24);
     for (std::size_t f = 0; f < 4; ++f) {
-      // Order 0 predicts zero, so that nothing carries the offset of frame 0 on.
+      // Order 0 predicts zero, so the offset of frame 0 is not carried on.
       const Vec3i offset = order == 0 && f > 0 ? Vec3i{0, 0, 0} : Vec3i{11, 22, 33};
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_EQ(tracks[1][f][c], tracks[0][f][c] + offset[c]) << order << " " << f;
@@ -97,8 +98,8 @@ TEST(SeedTracks, CoupledTracksFollowTheirAnchor) {
   for (std::size_t f = 0; f < 4; ++f) EXPECT_EQ(apart[1][f], (Vec3i{16, 22, 33}));
 }
 
-// Saturating inputs: the twin computes each step in floating point of 64 bits, which is exact
-// here, and clips.
+// Saturating inputs. The reference computes each step in double precision, which is exact here,
+// and clips.
 TEST(SeedTracks, AreClippedToPositionBitsWhateverTheResiduals) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kScaledBits = 28;  // floor of the logarithm of the largest coordinate, scaled
+constexpr int kScaledBits = 28;  // FloorLog2 of the largest coordinate after scaling
 constexpr int kResidualBits = 31;
 constexpr int kOriginBits = 31;
 
@@ -92,7 +92,7 @@ Quaternion BoneTracker::predicted_rotation() const {
   return normalize_quaternion(sums);
 }
 
-// Position of the pivot when moved by the parent in the next frame.
+// The position of the pivot if it moves with the parent in the next frame.
 Vec3l BoneTracker::anchor() const {
   if (parent_ == nullptr) return motion_.pivot;
   return moved_point(parent_->poses[motion_.poses.size()], parent_->pivot, motion_.pivot);

@@ -1,4 +1,4 @@
-// 8.12 Bones: rigid motions from residuals, in integers.
+// 8.12 Bones: reconstructs rigid motions from residuals, in integers.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ std::int64_t step_of(std::uint32_t idx);
 Quaternion normalize_quaternion(Quaternion q);
 // 8.12.4 RotationAfter( p, q ): q followed by p, a unit quaternion; |coordinates of q| <= 2^30.
 Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
-// 8.12.4 AxesOf( q ): images of the x, y and z axis.
+// 8.12.4 AxesOf( q ): the images of the x, y and z axis.
 std::array<Vec3l, 3> axes_of(const Quaternion& q);
 
-// A bone in one frame.
+// The pose of a bone in one frame.
 struct BonePose {
   Quaternion rotation = kNoRotation;
   std::array<Vec3l, 3> axes{};
@@ -47,7 +47,7 @@ Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point);
 // encoder derives them from the predictions.
 class BoneTracker {
  public:
-  // parent: the complete motion of the parent; null if there is none.
+  // parent: the complete motion of the parent; null for a root.
   BoneTracker(const Bone& bone, const BoneMotion* parent);
 
   // Prediction for the next frame: the rotation relative to the parent, and the origin that
@@ -70,7 +70,7 @@ class BoneTracker {
   std::vector<Vec3l> offset_;
 };
 
-// All bones of a GOF.
+// Reconstructs all bones of a GOF.
 std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames);
 
 }  // namespace rlpc

@@ -37,7 +37,7 @@ Real4 unit(const Quaternion& q) {
   return u;
 }
 
-// Hamilton's product in floating point, by the vector form: independent of the code.
+// The quaternion product in floating point, in vector form, as an independent reference.
 Real4 times(const Real4& p, const Real4& q) {
   const auto cross = [](const Real4& a, const Real4& b, std::size_t c) {
     const std::size_t i = 1 + c % 3;
@@ -85,7 +85,7 @@ TEST(Steps, DoubleEveryEighth) {
   }
 }
 
-TEST(Quaternions, OfZeroIsNoRotation) {
+TEST(Quaternions, ZeroIsNormalisedToNoRotation) {
   EXPECT_EQ(normalize_quaternion({0, 0, 0, 0}), kNoRotation);
 }
 
@@ -112,22 +112,22 @@ TEST(Quaternions, AreOfUnitLengthAndKeepTheirDirection) {
       const Real4 exact = unit(q);
       for (std::size_t c = 0; c < 4; ++c) {
         ASSERT_LE(std::abs(u[c]), kOneI);
-        // Scaled to 29 bits, a coordinate has an error of 1/2 there: 2 here, and 4 of the norm.
+        // Scaling to 29 bits causes an error of 1/2 per coordinate: 2 here, and 4 in the norm.
         ASSERT_NEAR(static_cast<double>(u[c]), exact[c] * kOne, 8.0) << bits;
       }
     }
   }
 }
 
-TEST(Quaternions, ProductsAreThoseOfHamilton) {
+TEST(Quaternions, ProductsAreHamiltonProducts) {
   Random random(2);
   for (int i = 0; i < 20000; ++i) {
     const Quaternion p = random.rotation();
     const Quaternion q = i % 2 == 0 ? random.rotation() : random.quaternion(30);
-    Quaternion corner{kOneI, kOneI - 1, -kOneI, kOneI - 1};  // as long as a turn can be
+    Quaternion corner{kOneI, kOneI - 1, -kOneI, kOneI - 1};  // the maximum length
     if (i % 7 == 0) std::rotate(corner.begin(), corner.begin() + i % 4, corner.end());
     const Quaternion& second = i % 7 == 0 ? corner : q;
-    if (length_of(second) < kOne / 16) continue;  // little left of its direction
+    if (length_of(second) < kOne / 16) continue;  // too short to have a precise direction
     const Quaternion r = rotation_after(p, second);
     const Real4 exact = times(unit(p), unit(second));
     for (std::size_t c = 0; c < 4; ++c) {
@@ -136,8 +136,8 @@ TEST(Quaternions, ProductsAreThoseOfHamilton) {
   }
 }
 
-// To the last bit: what the pseudo-code of 8.12.4 gives.
-TEST(Quaternions, AreThoseOfTheText) {
+// Bit-exact results of the pseudo-code of 8.12.4.
+TEST(Quaternions, AgreeWithThePseudoCode) {
   const Quaternion p = normalize_quaternion({3, -1, 2, 5});
   const Quaternion q = normalize_quaternion({7, 1, -1, 1});
   EXPECT_EQ(p, (Quaternion{515808888, -171936296, 343872592, 859681480}));
@@ -169,7 +169,7 @@ TEST(Quaternions, NoRotationIsNeutral) {
   }
 }
 
-TEST(Axes, OfNoRotationAndOfQuarterTurnsAreExact) {
+TEST(Axes, AreExactForNoRotationAndQuarterTurns) {
   EXPECT_EQ(axes_of(kNoRotation),
             (std::array<Vec3l, 3>{{{kOneI, 0, 0}, {0, kOneI, 0}, {0, 0, kOneI}}}));
   const Quaternion about_z = normalize_quaternion({1 << 20, 0, 0, 1 << 20});
@@ -181,7 +181,7 @@ TEST(Axes, OfNoRotationAndOfQuarterTurnsAreExact) {
   }
 }
 
-TEST(Axes, AreTheTurnedAxes) {
+TEST(Axes, AreTheRotatedAxes) {
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const Quaternion q = random.rotation();
@@ -198,7 +198,7 @@ TEST(Axes, AreTheTurnedAxes) {
   }
 }
 
-TEST(MovedPoint, OfThePivotIsTheOrigin) {
+TEST(MovedPoint, MapsThePivotToTheOrigin) {
   Random random(5);
   BonePose pose;
   pose.rotation = random.rotation();
@@ -215,14 +215,14 @@ TEST(MovedPoint, IsRoundedToTheNearest) {
   EXPECT_EQ(moved_point(pose, pivot, {7, 0, 0}), (Vec3l{-1, 2, -1}));
 }
 
-// Points and pivots at the ends of their ranges, against floating point; an overflow would be
-// off by far more than the tolerance.
-TEST(MovedPoint, HoldsAtTheEndsOfItsRange) {
+// Compares points and pivots at the ends of their ranges with floating point; an overflow would
+// exceed the tolerance by far.
+TEST(MovedPoint, IsAccurateAtTheEndsOfItsRange) {
   Random random(6);
   constexpr std::int64_t kPoint = (std::int64_t{1} << 31) - 1;
   constexpr std::int64_t kPivot = std::int64_t{1} << 28;
   for (int i = 0; i < 5000; ++i) {
-    // The main diagonal to an axis makes the sum of products largest.
+    // Rotating the main diagonal onto an axis maximises the sum of products.
     const Quaternion q =
         i % 2 == 0 ? random.rotation()
                    : normalize_quaternion({888'073'834, 0, 325'057'583 * (i % 4 - 2),
@@ -248,7 +248,7 @@ TEST(MovedPoint, HoldsAtTheEndsOfItsRange) {
   }
 }
 
-// Motion of a bone (8.12.2) in floating point, but for the integer steps.
+// Motion of a bone (8.12.2) in floating point, except for the integer steps.
 class RealBone {
  public:
   RealBone(const Bone& bone, const RealBone* parent) : bone_(bone), parent_(parent) {}
@@ -299,7 +299,7 @@ class RealBone {
     const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};
   }
-  // The polynomial through the last values, of a degree one below the order.
+  // The polynomial through the last values; its degree is the order minus 1.
   template <class T>
   static T extrapolated(const std::vector<T>& series, int order) {
     T next{};
@@ -338,7 +338,7 @@ Bone random_bone(Random& random, std::size_t index) {
   bone.rotation_residual.resize(kFrames);
   bone.origin_residual.resize(kFrames);
   for (std::uint32_t f = 0; f < kFrames; ++f) {
-    // Polynomials would soon leave the range.
+    // High-order polynomials would soon leave the range.
     const bool rare = f < 2 || f % 5 == 0;
     for (std::size_t c = 0; c < 3; ++c) {
       bone.rotation_residual[f][c] =
@@ -370,7 +370,7 @@ TEST(RandomBones, MoveAsInFloatingPoint) {
         const BonePose& pose = motions[b].poses[f];
         EXPECT_EQ(pose.axes, axes_of(pose.rotation));
         for (std::size_t c = 0; c < 4; ++c) {
-          // Extrapolation of order 4 makes errors of rounding grow with the cube of the frames.
+          // Under order 4, rounding errors grow with the cube of the number of frames.
           ASSERT_NEAR(static_cast<double>(pose.rotation[c]) / kOne, exact[b].rotations[f][c],
                       1e-4)
               << b << " " << f;
@@ -384,8 +384,8 @@ TEST(RandomBones, MoveAsInFloatingPoint) {
   }
 }
 
-// Flags that are off: what residuals there are does not count.
-TEST(Bones, WithoutFlagsStayOrFollowTheirParent) {
+// Residuals are ignored if the flags are off.
+TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
   Random random(7);
   Bone still;
   still.pivot = {5, -6, 7};
@@ -403,12 +403,12 @@ TEST(Bones, WithoutFlagsStayOrFollowTheirParent) {
   for (std::uint32_t f = 0; f < kFrames; ++f) {
     const BonePose& pose = motions[1].poses[f];
     EXPECT_EQ(pose.origin, moved_point(motions[0].poses[f], motions[0].pivot, {5, -6, 7}));
-    // The parent's rotation, normalised once more.
+    // The rotation of the parent, normalised again.
     EXPECT_EQ(pose.rotation, rotation_after(motions[0].poses[f].rotation, kNoRotation));
   }
 }
 
-TEST(Bones, PredictionsAreWhatZeroResidualsGive) {
+TEST(Bones, ZeroResidualsReproduceThePredictions) {
   Random random(8);
   for (std::size_t i = 0; i < 50; ++i) {
     Bone bone = random_bone(random, 0);
@@ -426,8 +426,9 @@ TEST(Bones, PredictionsAreWhatZeroResidualsGive) {
   }
 }
 
-// A turn's vector part is clipped to 31 bits: a quarter turn about an axis, to either side.
-TEST(Bones, TheLargestTurnIsAQuarter) {
+// The vector part of a rotation is clipped to 31 bits: a quarter turn about an axis, in either
+// direction.
+TEST(Bones, TheLargestRotationIsAQuarterTurn) {
   for (const int sign : {1, -1}) {
     Bone bone;
     bone.rotation_flag = true;

@@ -186,7 +186,7 @@ void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
   }
 }
 
-// Rest positions of a tile as moved by their bones, times the sum of the weights.
+// Adds the rest positions of a tile as moved by their bones, times the weights.
 void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   const auto runs =
       std::span(runs_).subspan(first_run_[tile], first_run_[tile + 1] - first_run_[tile]);

@@ -1,5 +1,5 @@
-// 8.10 and 8.14: a skinned GOF, from residuals to integer positions, frame by frame. Used by
-// the decoder, and by the encoder for closed-loop coding.
+// 8.10 and 8.14: reconstructs the integer positions of a skinned GOF from residuals, frame by
+// frame. Used by the decoder, and by the encoder for closed-loop coding.
 #pragma once
 
 #include <array>
@@ -42,19 +42,19 @@ Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> va
 // 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
 std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory);
 
-// 8.14.3 Positions: a point moved by its bones, by their weights; 4 fractional bits, |point| <
-// 2^31. The plain twin of what SkinnedRecon does for many vertices.
+// 8.14.3 Positions: the weighted mean of a point moved by its bones; 4 fractional bits, |point|
+// < 2^31. The plain twin of the computation of SkinnedRecon for many vertices.
 Vec3l skinned_point(const Influences& influences, int weight_bits,
                     std::span<const BoneMotion> bones, std::uint32_t f, const Vec3l& point);
 
 class SkinnedRecon {
  public:
-  // Prepares the GOF; all arguments are only read, during the call. Cannot fail.
+  // Prepares the GOF. Reads the arguments only during the call. Cannot fail.
   SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
                const Kernels& loops = kernels().back());
 
-  // Positions of frames first to first + count - 1 of the GOF, grid units,
-  // [count][num_vertices][3]. Several frames at a time are faster than one.
+  // Reconstructs frames first to first + count - 1 of the GOF, grid units,
+  // [count][num_vertices][3]. Several frames at a time are faster than single ones.
   void frames(std::uint32_t first, std::uint32_t count,
               std::span<std::int32_t> positions) const;
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const {
@@ -63,7 +63,7 @@ class SkinnedRecon {
   std::uint32_t num_frames() const { return num_frames_; }
 
  private:
-  // Influences of one bone on vertices of a tile: places first to end - 1 in the lists below.
+  // Influences of one bone on vertices of a tile: elements first to end - 1 of the lists below.
   struct Run {
     std::uint32_t bone;
     std::uint32_t first;
@@ -85,9 +85,9 @@ class SkinnedRecon {
   std::vector<Run> runs_;
   std::vector<std::size_t> first_run_;  // [tiles + 1]
   // Influences, by tile, then by bone:
-  std::array<std::vector<std::int32_t>, 3> arm_;  // of the rest position from the pivot
+  std::array<std::vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
   std::vector<std::int32_t> weight_;
-  std::vector<std::uint8_t> place_;  // of the vertex in its tile
+  std::vector<std::uint8_t> place_;  // index of the vertex in its tile
   ComponentSum factors_;             // row 3 * f + c: coordinate c of frame f
 };
 

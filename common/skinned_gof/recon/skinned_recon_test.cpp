@@ -14,9 +14,9 @@
 namespace rlpc {
 namespace {
 
-using Plane = std::vector<std::int64_t>;  // of one factor, by vertex
+using Plane = std::vector<std::int64_t>;  // [vertex], values of one factor
 
-// 8.10 and 8.14 as the text has them: factor by factor, and nothing arranged for speed.
+// 8.10 and 8.14 literally, factor by factor, without optimisation.
 class TextRecon {
  public:
   explicit TextRecon(const RandomSkinnedGof& from)
@@ -115,8 +115,8 @@ class TextRecon {
   std::optional<GeometryWeights> weights_;
 };
 
-// Slices of all kinds are absent in some of them.
-TEST(RandomSkinnedGofs, ReconstructAsInTheText) {
+// Some of them lack slices of all kinds.
+TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   std::array<int, 4> predictions{};
   int absent = 0;
   for (unsigned seed = 1; seed <= 600; ++seed) {
@@ -142,7 +142,7 @@ TEST(RandomSkinnedGofs, ReconstructAsInTheText) {
   EXPECT_GT(absent, 100);
 }
 
-TEST(RecoveredValues, OfRestPositionsAreThoseOfTheText) {
+TEST(RecoveredValues, OfRestPositionsAreAsSpecified) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     const RandomSkinnedGof from(seed, {.max_vertices = 120, .max_frames = 1});
@@ -156,8 +156,8 @@ TEST(RecoveredValues, OfRestPositionsAreThoseOfTheText) {
   }
 }
 
-// 8.10.3: of the edges 1 9, 5 6 and 3 9, the latest is the last; with what lies across them.
-TEST(ValuePredictions, TakeTheLatestParallelogramOrTheMeanOfAll) {
+// 8.10.3: of the edges 1 9, 5 6 and 3 9, the last is the latest.
+TEST(ValuePredictions, UseTheLatestParallelogramOrTheMeanOfAll) {
   const std::vector<Triangle> triangles{{10, 1, 9}, {1, 0, 9},  {10, 5, 6},
                                         {5, 2, 6},  {3, 10, 9}, {3, 9, 4}};
   const Topology topology = make_topology(11, triangles);
@@ -178,7 +178,7 @@ TEST(ValuePredictions, TakeTheLatestParallelogramOrTheMeanOfAll) {
   EXPECT_EQ(predicted(Prediction::kNone, false), 0);
 }
 
-// A mesh at rest under one bone that does nothing.
+// A mesh at rest with one bone that does not move.
 RandomSkinnedGof still(unsigned seed) {
   RandomSkinnedGof from(seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0});
   from.header.position_bits = 16;
@@ -186,7 +186,7 @@ RandomSkinnedGof still(unsigned seed) {
   return from;
 }
 
-TEST(SkinnedRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
+TEST(SkinnedRecon, RepeatsTheRestShapeWithoutMotion) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const RandomSkinnedGof from = still(seed);
     const CodedMesh mesh = from.coded_mesh();
@@ -202,7 +202,7 @@ TEST(SkinnedRecon, WithoutMotionShowsTheRestShapeInEachFrame) {
   }
 }
 
-// 8.14.1: vertices of absent layers lie in the middle of their rings.
+// 8.14.1: vertices of absent layers are at the mean of their rings.
 TEST(SkinnedRecon, PredictsVerticesOfAbsentLayers) {
   int absent = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
@@ -236,7 +236,7 @@ TEST(Trajectories, FollowTheOrdersOfSeries) {
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{16, 40, 3}));
   t.temporal_predictor = 2;
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{23, 70, 6}));
-  t.temporal_predictor = 3;  // 25 goes on with the squares
+  t.temporal_predictor = 3;  // 25 continues the squares
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 110, 2}));
   t.temporal_predictor = 4;  // 4 * 40 - 6 * 10 + 4 * 20 - 10
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 170, -11}));
@@ -252,7 +252,7 @@ TEST(Trajectories, FollowTheirWeights) {
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{21, -3, 2}));  // 20.875, -3.375, 2.375
   t.temporal_predictor = 7;
   EXPECT_EQ(predict_trajectory(t, values), (Vec3l{46, -3, 3}));  // 45.875, -3.375, 3.125
-  // While there are too few values, the one before.
+  // With too few predecessors, the previous value is the prediction.
   EXPECT_EQ(predict_trajectory(t, std::span(values).first(2)), (Vec3l{-7, 3, 1}));
   EXPECT_EQ(predict_trajectory(t, {}), (Vec3l{0, 0, 0}));
 }
@@ -291,7 +291,7 @@ TEST(SkinnedPoint, IsTheWeightedMeanOfItsBones) {
   EXPECT_EQ(skinned_point(two, 2, bones, 1, {7, 8, 9}), (Vec3l{82, 8, 7}));
 }
 
-TEST(FactorGroups, FollowEachOther) {
+TEST(FactorGroups, AreConsecutive) {
   SkinnedGof gof;
   gof.group_end = {3, 5, 9};
   EXPECT_EQ(factor_group(gof, 0).first, 0U);
