@@ -1,4 +1,4 @@
-// Implements decoder/rlpc_decoder.h: from access unit to access unit, and from frame to frame.
+// Implements Decoder (decoder/rlpc_decoder.h): iterates over access units and their frames.
 #include <algorithm>
 #include <cassert>
 #include <string>
@@ -86,7 +86,7 @@ Result<bool> Decoder::Impl::load_gof() {
   return true;
 }
 
-// The GOF of a unit, prefetched or parsed now.
+// The GOF that begins with a unit, prefetched or parsed now.
 Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   const std::uint32_t first_frame = stream_.next_first_frame();
   if (prefetch_) {

@@ -1,4 +1,4 @@
-// Stream errors in words.
+// Describes stream errors in words.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// The limit behind an Errc::kLimitExceeded.
+// The limit that an Errc::kLimitExceeded refers to.
 enum class ExceededLimit : std::uint8_t { kVertices, kTriangles, kFrames, kMemory };
 
 inline ExceededLimit exceeded_limit(const Error& error) {
@@ -41,7 +41,8 @@ inline std::string describe_limit(const Error& error) {
          " of memory, more than the limit";
 }
 
-// For example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is damaged or ...".
+// An error as text, for example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is
+// damaged or ...".
 inline std::string describe_error(const Error& error) {
   const std::string where = "bit " + std::to_string(error.bit_pos) + ": " + error.element;
   const std::string rule =

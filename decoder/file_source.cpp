@@ -57,7 +57,8 @@ Error cannot_open(int code) {
   return Error{Errc::kIo, "", why, 0};
 }
 
-// A stream, possibly damaged by a transfer: at least half of the signature matches.
+// Whether the bytes may begin a stream, possibly damaged by a transfer: half of the signature
+// matches.
 bool begins_like_stream(std::span<const std::uint8_t> bytes) {
   std::size_t right = 0;
   for (std::size_t i = 0; i < std::min(bytes.size(), kSignature.size()); ++i) {

@@ -1,4 +1,4 @@
-// Streams in files, and from standard input.
+// Byte sources for files and standard input.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// The default of DecodeLimits.
+// The default memory limit of DecodeLimits.
 inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
 
 // Reads from a file as needed. A pipe or a device is read to its end and buffered, unless its
@@ -18,10 +18,10 @@ inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
 // Errc::kLimitExceeded: more than max_memory_bytes to buffer.
 Result<std::unique_ptr<ByteSource>> file_source(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes);
-// The same for standard input.
+// Opens standard input in the same way.
 Result<std::unique_ptr<ByteSource>> standard_input_source(
     std::uint64_t max_memory_bytes = kUsualMemoryBytes);
-// Standard input for "-", otherwise the file.
+// Opens standard input for "-", otherwise the file.
 inline Result<std::unique_ptr<ByteSource>> file_or_standard_input(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes) {
   return path == "-" ? standard_input_source(max_memory_bytes)

@@ -14,7 +14,7 @@
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
 struct rlpc_decoder {
   std::optional<rlpc::Decoder> decoder;
-  std::vector<std::int32_t> positions;  // of a frame converted to floats
+  std::vector<std::int32_t> positions;  // of a frame to be converted to floats
   rlpc::HandleError error;
   bool is_placed = false;
 };

@@ -14,10 +14,10 @@
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
 //   rlpc_decoder_close(decoder);
 //
-// Frames come out one by one. Memory is bounded by one group of frames (GOF) plus four frames,
-// whatever the length of the stream, and by max_memory_bytes, whatever the stream claims.
-// Nothing throws or aborts. A handle is used by one thread at a time; different handles are
-// independent.
+// Frames are decoded one by one. Memory is bounded by one group of frames (GOF) plus four
+// frames, whatever the length of the stream, and by max_memory_bytes, whatever the stream
+// claims. No function throws or aborts. A handle may be used by one thread at a time; different
+// handles are independent.
 //
 // Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
 // it can live in the caller's memory as well (place). Internally the decoder allocates with C++
@@ -86,7 +86,7 @@ typedef struct rlpc_source {
 } rlpc_source;
 // NOLINTEND(readability-identifier-naming)
 
-// Sets all to the defaults. struct_size: sizeof *options.
+// Sets all members to their defaults. struct_size: sizeof *options.
 RLPC_API void rlpc_decode_options_init(rlpc_decode_options* options, size_t struct_size);
 
 // Size of a handle, for rlpc_decode_options.place.
@@ -116,16 +116,16 @@ RLPC_API const char* rlpc_decoder_error_text(const rlpc_decoder* decoder);
 // struct_size: sizeof *info.
 RLPC_API rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
                                        size_t struct_size);
-// Vertex indices, three a triangle. num_values: 3 * num_triangles.
+// Copies the vertex indices, three per triangle. num_values: 3 * num_triangles.
 RLPC_API rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
                                             size_t num_values);
 // The latest metadata so far, JSON text; "" if there was none. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
 
-// The next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END after the
-// last frame, once the rest of the stream has been checked. Stream errors are sticky until
-// rlpc_decoder_seek succeeds.
+// Decodes the next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END
+// after the last frame, once the rest of the stream has been checked. Stream errors are sticky
+// until rlpc_decoder_seek succeeds.
 //
 // _positions: exact, in grid units, the same from every decoder. _floats: in the units of the
 // encoder's input.

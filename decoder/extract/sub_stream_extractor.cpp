@@ -42,7 +42,7 @@ Result<std::vector<GofSummary>> check_gofs(StreamReader& stream) {
   }
 }
 
-// 7.10: what decoding does not check of metadata.
+// 7.10: the requirements on metadata that decoding does not check.
 Result<bool> check_metadata(UnitReader& units) {
   for (std::uint64_t offset = kStreamHeaderBytes; offset < units.size();) {
     const auto unit = units.header_at(offset);
@@ -111,7 +111,7 @@ Result<Bytes> SubStreamExtractor::next() {
   return Bytes{};
 }
 
-// What replaces a unit; empty if it is dropped.
+// The bytes that replace a unit; empty if it is dropped.
 Result<Bytes> SubStreamExtractor::next_unit() {
   const auto unit = stream_->units().header_at(offset_);
   if (!unit) return unit.error();
@@ -173,7 +173,7 @@ Result<Bytes> SubStreamExtractor::new_hash() {
       write_gof_hash(position_crcs(*access_unit, stream_->context(), per_frame), per_frame));
 }
 
-// With the GOF index, if there was one, and it can have such numbers (R-IDX-02).
+// Includes the GOF index if the input had one and its offsets fit (R-IDX-02).
 Bytes SubStreamExtractor::end_of_sequence() {
   constexpr std::uint64_t kMost = 0xFFFFFFFE;
   index_.back().bytes = written_ - gof_offset_;

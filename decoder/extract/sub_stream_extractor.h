@@ -1,4 +1,5 @@
-// 8.14.1 Slices that are absent: a stream of the Main profile without some of its slices.
+// 8.14.1 Slices that are absent: extracts a sub-stream of a Main stream without some of its
+// slices.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,7 @@ class SubStreamExtractor {
 
   const SequenceHeader& header() const { return stream_->header(); }
   std::uint64_t size() const { return stream_->units().size(); }  // of the input
-  // Those of the input. Cluster GOFs have no slices, and are kept whole.
+  // The GOFs of the input. Cluster GOFs have no slices and are kept whole.
   const std::vector<GofSummary>& gofs() const { return gofs_; }
   SliceTotals totals_that_stay(const GofSummary& gof) const {
     return gof.totals(gof.groups_that_stay(cut_));
@@ -67,7 +68,7 @@ class SubStreamExtractor {
   struct OpenAccessUnit {
     UnitHeader unit;  // of its GOF
     const GofSummary* gof = nullptr;
-    SliceGroups groups;          // which are kept
+    SliceGroups groups;          // groups that are kept
     std::size_t num_slices = 0;  // so far
   };
   std::optional<OpenAccessUnit> access_unit_;

@@ -1,6 +1,6 @@
-// Fuzzes the parser of a GOF of the Baseline profile, and its reconstruction, without a CRC in
-// front. Input: first frame, 4 bytes; sizes of the payloads of sequence header and
-// connectivity, 2 bytes each; both payloads; that of the GOF.
+// Fuzzes the parser and the reconstruction of cluster GOFs, without CRCs. Input: first frame, 4
+// bytes; sizes of the payloads of sequence header and connectivity, 2 bytes each; both
+// payloads; the payload of the GOF.
 
 #include <algorithm>
 #include <cstddef>
@@ -21,7 +21,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
 namespace {
 
 constexpr std::size_t kPrefixBytes = 8;
-// One GOF of this size takes well below a second, even under the sanitizers.
+// A GOF of this size takes well under a second, even with sanitizers.
 constexpr std::uint32_t kMaxVertices = 1000;
 constexpr std::uint32_t kMaxFrames = 100;
 constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
@@ -64,8 +64,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-// Mutates the payload of the GOF, and now and then all: most changes of what stands before it
-// end in its own parsers, which have targets of their own.
+// Mutates the payload of the GOF, and occasionally the whole input: most changes before the GOF
+// are rejected by the parsers of the other units, which have their own targets.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned int seed) {
   std::minstd_rand random(seed);

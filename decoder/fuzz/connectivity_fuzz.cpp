@@ -1,4 +1,4 @@
-// Fuzzes the parser of connectivity. Input: num_vertices - 1 and num_triangles, 2 bytes each;
+// Fuzzes the connectivity parser. Input: num_vertices - 1 and num_triangles, 2 bytes each;
 // the payload.
 
 #include <cstddef>

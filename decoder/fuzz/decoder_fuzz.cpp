@@ -21,7 +21,8 @@ rlpc::Result<rlpc::Decoder> open(std::span<const std::uint8_t> stream, bool veri
   return rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
 }
 
-// A stream that was decoded whole: the first frame is the same again, and it parses.
+// For a stream that was decoded completely: seeking back gives the same first frame, and
+// parsing succeeds.
 void check_again(rlpc::Decoder& decoder, const Positions& first) {
   Positions again(first.size());
   rlpc::fuzz_check(static_cast<bool>(decoder.seek(0)));
@@ -48,7 +49,7 @@ std::string_view decode(std::span<const std::uint8_t> stream, bool verify_hashes
   return "";
 }
 
-// By the index, if there is one: what it says may be wrong.
+// Seeks with the GOF index, if there is one; its contents may be wrong.
 void decode_last(std::span<const std::uint8_t> stream) {
   auto decoder = open(stream, true);
   if (!decoder || !decoder->seek(decoder->header().num_frames - 1)) return;
@@ -56,7 +57,7 @@ void decode_last(std::span<const std::uint8_t> stream) {
   (void)decoder->next_frame(positions);
 }
 
-// Without some of the slices, if there are any.
+// Drops some of the slices, if there are any.
 void decode_cut(std::span<const std::uint8_t> stream) {
   rlpc::DecoderOptions options;
   options.limits = kLimits;
@@ -76,7 +77,7 @@ void decode_cut(std::span<const std::uint8_t> stream) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> stream(data, size);
   const std::string_view rule = decode(stream, true);
-  if (rule == "R-HSH-02") decode(stream, false);  // a mutated GOF goes on past its hash
+  if (rule == "R-HSH-02") decode(stream, false);  // continue past the hash of a mutated GOF
   decode_last(stream);
   decode_cut(stream);
   return 0;

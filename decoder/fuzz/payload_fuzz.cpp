@@ -1,5 +1,5 @@
-// Fuzzes the parsers of the small payloads. Input: which one, 1 byte; the number of vertices or
-// frames minus 1, 2 bytes; the payload.
+// Fuzzes the parsers of small payloads. Input: selects the parser, 1 byte; the number of
+// vertices or frames minus 1, 2 bytes; the payload.
 
 #include <array>
 #include <cstddef>

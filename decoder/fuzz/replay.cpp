@@ -1,8 +1,8 @@
-// A fuzz target over files and mutations of them, without libFuzzer. The memory sanitizer
-// cannot do with it: its runtime holds functions of the standard library that are not
-// instrumented, and the linker takes these for ours.
+// Runs a fuzz target on files and mutations of them, without libFuzzer. Needed for the memory
+// sanitizer: the runtime of libFuzzer contains uninstrumented functions of the standard
+// library, which would replace the instrumented ones at link time.
 //
-//   TARGET [MUTATIONS] FILE...      of each file, 0 by default; the same in each run
+//   TARGET [MUTATIONS] FILE...      mutations per file, default 0; deterministic
 
 #include <algorithm>
 #include <cstddef>
@@ -39,14 +39,14 @@ std::vector<std::uint8_t> bytes_of(const char* path) {
 }
 
 void run(const std::vector<std::uint8_t>& bytes) {
-  // A copy of its own: a sanitizer then sees where it ends.
+  // An exact-size copy, so that sanitizers detect reads past its end.
   const std::vector<std::uint8_t> input(bytes.begin(), bytes.end());
   LLVMFuzzerTestOneInput(input.data(), input.size());
 }
 
 }  // namespace
 
-// What libFuzzer gives to mutators: a changed, a new or a missing byte.
+// Replaces the mutation of libFuzzer: changes, inserts or removes a byte.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size) {
   const auto byte = static_cast<std::uint8_t>(below(256));

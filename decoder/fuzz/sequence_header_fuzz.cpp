@@ -1,5 +1,5 @@
-// Fuzzes the parser of the sequence header: what it accepts lies within the level, and is not
-// accepted without its last byte.
+// Fuzzes the sequence header parser: accepted headers are within their level, and are rejected
+// without their last byte.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Fuzzes the parser of a skinned GOF and its slices, and their reconstruction, without CRCs in
-// front. Input: first frame, 4 bytes; then pieces, each with its size in 2 bytes before it: the
-// payloads of sequence header, connectivity, GOF, and slices.
+// Fuzzes the parser and the reconstruction of skinned GOFs and their slices, without CRCs.
+// Input: first frame, 4 bytes; then pieces, each preceded by its size, 2 bytes: the payloads of
+// sequence header, connectivity, GOF and slices.
 
 #include <algorithm>
 #include <cstddef>
@@ -25,7 +25,7 @@ using Piece = std::vector<std::uint8_t>;
 
 constexpr std::size_t kMaxPieceBytes = 0xFFFF;
 constexpr std::size_t kGofPiece = 2;
-// One GOF of this size takes well below a second, even under the sanitizers.
+// A GOF of this size takes well under a second, even with sanitizers.
 constexpr std::uint32_t kMaxVertices = 1000;
 constexpr std::uint32_t kMaxFrames = 100;
 constexpr std::uint64_t kMaxMemoryBytes = 8 << 20;
@@ -98,8 +98,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-// Mutates one piece, mostly the GOF or a slice, or leaves one out, repeats or moves it: what
-// stands before the GOF has targets of its own.
+// Mutates, removes, repeats or moves one piece, usually the GOF or a slice: the units before
+// the GOF have their own targets.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned int seed) {
   std::minstd_rand random(seed);

@@ -1,5 +1,5 @@
-// Mutations of whole streams, for libFuzzer: they act on units, and write sizes and CRCs anew,
-// since hardly a mutated stream would get past R-UNT-03 else. Linked into the targets whose
+// Mutations of whole streams, for libFuzzer. They act on units and then repair sizes and CRCs,
+// as otherwise almost all mutated streams would fail R-UNT-03. Linked into the targets whose
 // input is a stream.
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Unit {
 struct Stream {
   Bytes header;
   std::vector<Unit> units;
-  Bytes rest;  // what is not a unit
+  Bytes rest;  // bytes that are not units
 };
 
 std::size_t below(Random& random, std::size_t n) { return random() % n; }
@@ -122,7 +122,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t max_size, unsigned int seed) {
   Random random(seed);
   Stream stream = split({data, size});
-  // Now and then without repair: sizes, CRCs and the header of the stream are input as well.
+  // Occasionally without repair, because sizes, CRCs and the stream header are input as well.
   if (stream.units.empty() || below(random, 16) == 0) {
     return LLVMFuzzerMutate(data, size, max_size);
   }
@@ -130,8 +130,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return store(stream, data, max_size).value_or(std::min(size, max_size));
 }
 
-// The first stream, with a payload of the second in place of one of its own of the same type,
-// or else behind it.
+// The first stream with a unit of the second, which replaces a unit of the same type or is
+// inserted behind it.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1,
                                                  const std::uint8_t* data2, std::size_t size2,
                                                  std::uint8_t* out, std::size_t max_size,

@@ -1,5 +1,5 @@
-// Fuzzes the unit reader: units follow each other, lie within the stream, and give payloads of
-// the size that they claim or the error of their CRC.
+// Fuzzes the unit reader: units are consecutive and lie within the stream, and their payloads
+// have the stated size or a CRC error.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Bytes as text, for embedding in pages.
+// Encodes bytes as base64, for embedding in pages.
 #pragma once
 
 #include <cstdint>

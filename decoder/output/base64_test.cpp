@@ -13,7 +13,7 @@ std::string encoded(const std::string& text) {
 }
 
 // RFC 4648, section 10
-TEST(Base64, IsThatOfTheStandard) {
+TEST(Base64, AgreesWithTheStandard) {
   EXPECT_EQ(encoded(""), "");
   EXPECT_EQ(encoded("f"), "Zg==");
   EXPECT_EQ(encoded("fo"), "Zm8=");

@@ -1,4 +1,4 @@
-// Files that decoded animations are written to.
+// The interface of the writers of decoded animations, and functions that open them.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class FrameSink {
   virtual std::optional<OutputError> finish() = 0;
 };
 
-// The format to write; kByName: by the name of the file.
+// The format to write; kByName: from the name of the file.
 enum class SinkFormat : std::uint8_t { kByName, kRlpd, kPc2, kMdd, kGlb, kObj, kPly };
 
 struct SinkOptions {
@@ -50,10 +50,10 @@ struct SinkOptions {
   std::shared_ptr<OutputLimit> limit{};
 };
 
-// `given`, otherwise by the form of `path`; never kByName.
+// The format to use: `given` unless kByName, otherwise from the form of `path`; never kByName.
 SinkFormat sink_format(const std::string& path, SinkFormat given);
 
-// By options.format, otherwise by the form of `path`:
+// Opens a sink for options.format or, if that is kByName, for the form of `path`:
 //   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
 //   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame

@@ -52,7 +52,7 @@ class FrameSinkTest : public testing::Test {
     text << std::ifstream(path(name), std::ios::binary).rdbuf();
     return text.str();
   }
-  // Everything below the folder, sorted.
+  // All paths below the folder, sorted.
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -148,7 +148,7 @@ TEST_F(FrameSinkTest, WritesASingleFrameAsOneObj) {
   EXPECT_NE(write(path("b.obj")).find("one OBJ file holds one frame"), std::string::npos);
 }
 
-TEST_F(FrameSinkTest, TellsTheFormatByTheFormOfThePath) {
+TEST_F(FrameSinkTest, TakesTheFormatFromTheFormOfThePath) {
   using enum SinkFormat;
   const std::vector<std::pair<std::string, SinkFormat>> named{
       {"a.rlpd", kRlpd}, {"a.PC2", kPc2}, {"a.mdd", kMdd},           {"a.glb", kGlb},
@@ -204,7 +204,7 @@ TEST_F(FrameSinkTest, KeepsExactlyTheFramesOfAPartialRlpd) {
   }
 }
 
-// All that is there is what may be there, to the byte.
+// The limit is exact to the byte.
 TEST_F(FrameSinkTest, WritesUpToALimit) {
   for (const char* name : {"a.rlpd", "a.pc2", "a.mdd", "a.glb", "f%d.obj", "f%d.ply", "out"}) {
     SinkOptions options = two_frames();
@@ -271,8 +271,8 @@ TEST_F(FrameSinkTest, ReportsAFullDisk) {
   EXPECT_TRUE(fs::exists("/dev/full"));
 }
 
-// A limit on the size of files stands for a disk that fills up half way.
-TEST_F(FrameSinkTest, LeavesNothingBehindWhenTheDiskFillsUp) {
+// A limit on file sizes simulates a disk that fills up during writing.
+TEST_F(FrameSinkTest, LeavesNothingBehindIfTheDiskIsFull) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -316,7 +316,7 @@ TEST(FloatPosition, RoundsOnce) {
   EXPECT_EQ(float_position(grid, 1, 16777219), 0x1.000004p0F);  // tie, to even
   EXPECT_EQ(float_position(grid, 0, 2147483647), 128.0F);
   EXPECT_EQ(float_position(grid, 2, -2147483647 - 1), -128.0F);
-  EXPECT_EQ(float_position({-150, {}}, 0, 1), 0.0F);       // half the least float: to even
+  EXPECT_EQ(float_position({-150, {}}, 0, 1), 0.0F);       // half the smallest float: to even
   EXPECT_EQ(float_position({-150, {}}, 0, 3), 0x1p-148F);  // 1.5 times it: to even
   EXPECT_EQ(float_position({127, {}}, 0, -1), -0x1p127F);
 }

@@ -25,7 +25,7 @@ using std::to_string;
 
 constexpr std::uint64_t kMaxFileBytes = std::numeric_limits<std::uint32_t>::max();
 
-// Differences of a frame from frame 0; none if some sum would not be exact.
+// Differences of a frame from frame 0; none if any sum would not be exact.
 std::optional<std::vector<float>> exact_moves(std::span<const float> from,
                                               std::span<const float> to) {
   std::vector<float> moves(from.size());
@@ -149,7 +149,7 @@ class GltfSink : public FrameSink {
     const std::uint64_t most_weights =
         std::uint64_t{options_.num_frames} * (targets_.size() + 1);
     if (most_weights > kMaxFileBytes) {
-      return "";  // and write_chunks() says so
+      return "";  // write_chunks() reports it
     }
     if (options_.num_frames > 1 && targets_.size() == 0) {
       // An animation without motion still has a duration.

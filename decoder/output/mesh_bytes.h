@@ -1,4 +1,4 @@
-// One frame as a mesh file, for the sinks that write such files.
+// Formats one frame as a mesh file (OBJ, PLY).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace rlpc {
 // The shortest decimal text that reads back as the same number.
 void append_number(std::string& text, float value);
 void append_number(std::string& text, std::uint64_t value);
-// "30000/1001": our readers find the frame rate in a comment of the file.
+// "30000/1001", for the comment in which rlpcenc finds the frame rate.
 std::string frame_rate_text(FrameRate frame_rate);
 
 class MeshBytes {

@@ -1,4 +1,4 @@
-// One mesh file per frame: OBJ, PLY.
+// Sinks that write one mesh file per frame: OBJ, PLY.
 #include <cassert>
 #include <filesystem>
 #include <system_error>

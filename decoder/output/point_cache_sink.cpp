@@ -1,4 +1,4 @@
-// Point cache with its mesh: X.pc2 or X.mdd, and X.obj.
+// The sink of point caches: X.pc2 or X.mdd, with the mesh X.obj.
 #include <array>
 #include <cassert>
 #include <filesystem>
@@ -87,8 +87,8 @@ class PointCacheSink : public FrameSink {
   std::uint32_t written_ = 0;
 };
 
-// The user did not name this file: only replaces one that MeshBytes wrote, to judge by its
-// beginning.
+// Whether X.obj may be replaced: since the user did not name it, only a file that MeshBytes
+// wrote, which its beginning shows.
 bool may_replace_mesh(const std::string& path) {
   constexpr std::string_view kOurs = "# frame_rate ";
   std::array<char, kOurs.size()> begin{};

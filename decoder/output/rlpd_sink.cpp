@@ -1,4 +1,4 @@
-// Annex A: the .rlpd format.
+// The sink of .rlpd files (Annex A).
 #include <cassert>
 #include <utility>
 

@@ -1,4 +1,4 @@
-// Builds an access unit from its units, one after the other. The only place that knows how each
+// Builds an access unit from its units, one by one. The only place that knows how each
 // kind of GOF is parsed; all readers of streams hand their units to it.
 #pragma once
 

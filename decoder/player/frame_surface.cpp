@@ -23,7 +23,7 @@ Vec3f cross(const Vec3f& a, const Vec3f& b) {
 }
 
 PackedNormal packed(const Vec3f& n) {
-  // Scaled by its size first: the squares of very small numbers are 0.
+  // Scaled by its size first, because the squares of very small numbers underflow.
   const float size = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
   if (!(size > 0.0F)) return {0, 0, 32767, 0};
   const Vec3f m{n[0] / size, n[1] / size, n[2] / size};

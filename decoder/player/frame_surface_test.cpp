@@ -16,7 +16,7 @@ using Edge = std::array<std::uint32_t, 2>;
 
 constexpr std::int16_t kOne = 32767;
 
-TEST(VertexNormals, OfASquareInTheFloorPointUp) {
+TEST(VertexNormals, OfAHorizontalSquarePointUp) {
   const std::vector<float> coordinates{0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
   const std::vector<Triangle> triangles{{0, 2, 1}, {0, 3, 2}};
   std::vector<PackedNormal> normals;
@@ -24,8 +24,8 @@ TEST(VertexNormals, OfASquareInTheFloorPointUp) {
   EXPECT_EQ(normals, std::vector<PackedNormal>(4, PackedNormal{0, kOne, 0, 0}));
 }
 
-TEST(VertexNormals, AreMeansByArea) {
-  // A triangle in the plane x y, and one of three times the area in the plane x z.
+TEST(VertexNormals, AreWeightedByArea) {
+  // A triangle in the xy plane, and one of three times the area in the xz plane.
   const std::vector<float> coordinates{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -3};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 1, 3}};
   std::vector<PackedNormal> normals;
@@ -79,7 +79,7 @@ SequenceHeader header_with(int position_bits, const Grid& grid) {
   return header;
 }
 
-TEST(Placement, PutsTheExtremesOnTheCube) {
+TEST(Placement, MapsTheExtremesToTheCube) {
   for (const int bits : {2, 20, 24}) {
     const Placement placement = placement_of(header_with(bits, {-150, {1, 2, 3}}));
     EXPECT_EQ(-std::ldexp(1.0, bits - 1) * placement.scale, -1.0);
@@ -92,7 +92,8 @@ TEST(Placement, OfAReferenceKeepsItsCoordinates) {
   const SequenceHeader fine = header_with(24, {-15, {63000, 7, -100}});
   const Placement own = placement_of(header);
   const Placement other = placement_in(fine, header);
-  // Of two positions at the same place: 1000 + 40 and 64 times as many finer steps.
+  // Two representations of the same position: 1000 + 40 steps, and 64 times as many finer
+  // steps.
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int32_t position = 40;
     const std::int32_t same = 64 * (position + header.grid.origin[c]) - fine.grid.origin[c];
@@ -102,7 +103,7 @@ TEST(Placement, OfAReferenceKeepsItsCoordinates) {
   }
 }
 
-TEST(CentredCoordinates, OfAMeshAreTheSameWhereverItIs) {
+TEST(CentredCoordinates, AreInvariantUnderTranslation) {
   const std::vector<std::int32_t> positions{0, 5, -7, 1, 9, 1, 6, 5, -7};
   std::vector<float> here(positions.size());
   EXPECT_EQ(centred_coordinates(positions, {0.5, {}}, here), (Vec3d{1.5, 3.5, -1.5}));
@@ -110,7 +111,7 @@ TEST(CentredCoordinates, OfAMeshAreTheSameWhereverItIs) {
   std::vector<std::int32_t> moved = positions;
   for (std::int32_t& x : moved) x += 1 << 23;
   std::vector<float> there(positions.size());
-  // Beyond 24 bits, in which the steps of the grid would be lost.
+  // Beyond 24 bits, floats would not resolve the steps of the grid.
   centred_coordinates(moved, {0.5, {1e9, 0, 0}}, there);
   EXPECT_EQ(there, here);
 }

@@ -23,7 +23,7 @@ int complain(const std::string& input, const Error& error) {
   return complain(input + ": " + describe_error(error), exit_code(error.code));
 }
 
-// For a decoder, which owns its source, to look at one that goes on to be used.
+// A view of a source, for a decoder, which would otherwise own the source.
 class Borrowed final : public ByteSource {
  public:
   explicit Borrowed(ByteSource& source) : source_(source) {}
@@ -41,8 +41,8 @@ Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
   return Decoder::open(std::make_unique<Borrowed>(source), options);
 }
 
-// Of a stream that is damaged behind its first GOF a page shows the damage; but whoever asks
-// for it should know.
+// Decodes the whole stream to report damage after the first GOF. The page is written even so,
+// and shows the damage.
 int check_whole(const std::string& input, Decoder& decoder) {
   std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
   for (;;) {

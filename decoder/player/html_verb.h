@@ -1,4 +1,4 @@
-// rlpcdec --html: a page that plays the stream.
+// Implements rlpcdec --html, which writes a page that plays the stream.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ namespace rlpc {
 struct HtmlRequest {
   std::string input;      // name of the stream; "-": it came from standard input
   std::string output;     // page to write
-  std::string player;     // page of the player; empty: where it usually is
-  std::string reference;  // of the same mesh, its vertices in the same order; empty: none
+  std::string player;     // page of the player; empty: the default location
+  std::string reference;  // stream of the same mesh with the same vertex order; empty: none
   DecoderOptions decoder;
-  std::shared_ptr<OutputLimit> limit;  // of the page; null: none
+  std::shared_ptr<OutputLimit> limit;  // on the size of the page; null: none
   bool quiet = false;
 };
 
-// Looks at the first units of the streams, writes the page, and returns the exit code: that of
-// decoding the stream whole.
+// Checks the first units of the streams and writes the page. Returns the exit code, which is
+// that of decoding the whole stream.
 int write_html(const HtmlRequest& request, ByteSource& stream);
 
 }  // namespace rlpc

@@ -1,4 +1,5 @@
-// In place of decoder/recon/async.cpp: a page has one thread to decode on, and no exceptions.
+// Replaces decoder/recon/async.cpp in the player, which has a single decoding thread and no
+// exceptions.
 #include <future>
 
 #include "decoder/recon/async.h"

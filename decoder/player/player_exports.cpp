@@ -1,5 +1,6 @@
-// What JavaScript calls (stream_decoder.js): a StreamPlayer behind a pointer. Memory that a
-// function returns stays with the player, until the next call for it.
+// The functions called from JavaScript (stream_decoder.js): a StreamPlayer behind a pointer.
+// Memory returned by a function belongs to the player and is valid until the next call of that
+// function.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -13,7 +14,7 @@
 
 #define RLPC_EXPORT(name) extern "C" [[clang::export_name(#name)]]
 
-// Copies bytes of a stream from where the page keeps them.
+// Copies bytes of a stream from the page.
 extern "C" [[clang::import_module("player"), clang::import_name("read_stream")]] void
 read_stream(std::uint32_t stream, double offset, std::uint8_t* out, std::uint32_t num_bytes);
 
@@ -41,7 +42,7 @@ std::unique_ptr<ByteSource> page_source(std::uint32_t stream, std::uint64_t num_
   return std::make_unique<PageSource>(stream, num_bytes);
 }
 
-// A player, and what was computed last for the page.
+// A player, and the last results computed for the page.
 struct Page {
   StreamPlayer player;
   std::string text;
@@ -52,7 +53,7 @@ struct Page {
   Deviation deviation;
 };
 
-// The numbers by the names of the syntax elements.
+// The header as JSON, with the names of the syntax elements.
 std::string describe(const SequenceHeader& h) {
   const auto member = [](const char* name, std::int64_t value) {
     return "\"" + std::string(name) + "\":" + std::to_string(value) + ",";
@@ -88,7 +89,7 @@ RLPC_EXPORT(player_describe) const char* player_describe(Page* page) {
   return page->text.c_str();
 }
 
-// Draws it where the positions of another stream are drawn.
+// Uses the drawing coordinates of another stream.
 RLPC_EXPORT(player_place_in) void player_place_in(Page* page, const Page* other) {
   page->player.set_placement(
       rlpc::placement_in(page->player.decoder().header(), other->player.decoder().header()));
@@ -134,12 +135,12 @@ RLPC_EXPORT(player_coordinates) const float* player_coordinates(const Page* page
   return page->player.coordinates().data();
 }
 
-// Three doubles: where its coordinates, and the box, count from.
+// Three doubles: the origin of the coordinates and of the box.
 RLPC_EXPORT(player_centre) const double* player_centre(const Page* page) {
   return page->player.centre().data();
 }
 
-// 9.7.2, of the frame in output order
+// The hash of 9.7.2 of the frame in output order.
 RLPC_EXPORT(player_frame_crc) std::uint32_t player_frame_crc(const Page* page) {
   return rlpc::crc32_of_positions(page->player.positions());
 }
@@ -160,7 +161,7 @@ RLPC_EXPORT(player_num_edges) std::uint32_t player_num_edges(Page* page) {
   return static_cast<std::uint32_t>(page->edges.size());
 }
 
-// After player_num_edges.
+// To be called after player_num_edges.
 RLPC_EXPORT(player_edges) const std::uint32_t* player_edges(const Page* page) {
   return page->edges.empty() ? nullptr : page->edges.front().data();
 }
@@ -175,7 +176,7 @@ const float* player_distances(Page* page, const Page* reference) {
   return page->distances.data();
 }
 
-// After player_distances.
+// To be called after player_distances.
 RLPC_EXPORT(player_largest_distance) float player_largest_distance(const Page* page) {
   return page->deviation.largest;
 }

@@ -17,15 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the player has room for streams.
+// The placeholder for streams in the player.
 constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
-// The player has less than one.
+// The maximum size of a player page; larger files are not players.
 constexpr std::size_t kMostPlayerBytes = std::size_t{64} << 20;
-// An element for each, as strings of browsers have limits; a multiple of 3, so that only the
-// last one is padded.
+// Bytes per element: streams are split, because browsers limit the length of strings. A
+// multiple of 3, so that only the last element has base64 padding.
 constexpr std::size_t kPartBytes = std::size_t{3} << 20;
 
-// As text of a script element, which `</` could end.
+// Escapes text for a script element, which `</` could end.
 std::string description(const std::string& name) {
   std::string json = nlohmann::json{{"name", name}}.dump(
       -1, ' ', true, nlohmann::json::error_handler_t::replace);

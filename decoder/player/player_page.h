@@ -1,4 +1,5 @@
-// Pages that play a stream in a browser: the player (scripts/player) with the stream in it.
+// Writes pages that play a stream in a browser: the player (scripts/player) with an embedded
+// stream.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +12,20 @@
 
 namespace rlpc {
 
-// More would be too much for a browser to read as text.
+// Larger pages are too much for browsers.
 inline constexpr std::uint64_t kMaxPageStreamBytes = std::uint64_t{512} << 20;
 
-// The text of the player, from `path`; if that is empty, from where it is installed or was
-// built beside this program.
+// Reads the page of the player from `path` or, if that is empty, from its installed location or
+// the build folder of this program.
 OutputResult<std::string> read_player(const std::string& path);
 
 struct PageStreams {
-  std::string name;                 // to be shown
-  ByteSource* stream = nullptr;     // not owned, as the next
-  ByteSource* reference = nullptr;  // or null; of the same mesh, to see distances from it
+  std::string name;                 // displayed
+  ByteSource* stream = nullptr;     // not owned
+  ByteSource* reference = nullptr;  // not owned; to show distances from it; null: none
 };
 
-// Writes the page. Streams are copied a part at a time.
+// Writes the page; copies the streams in parts.
 std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,
                                              const PageStreams& streams,
                                              std::shared_ptr<OutputLimit> limit = nullptr);

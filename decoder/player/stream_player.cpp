@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-// Of the 4 GiB that a page can address, room for two decoders and what is drawn.
+// A page can address 4 GiB: enough for two decoders with this limit, and the data drawn.
 constexpr std::uint64_t kMaxMemoryBytes = std::uint64_t{3} << 29;
 
 }  // namespace
@@ -29,7 +29,7 @@ Placement placement_in(const SequenceHeader& header, const SequenceHeader& other
 
 Vec3d centred_coordinates(std::span<const std::int32_t> positions, const Placement& placement,
                           std::span<float> coordinates) {
-  Vec3d middle{};  // of the grid
+  Vec3d middle{};  // centre of the grid
   Vec3d centre{};
   for (std::size_t c = 0; c < 3; ++c) {
     std::int32_t least = positions[c];

@@ -1,4 +1,4 @@
-// Frames of a stream in any order, as a player shows them.
+// Decodes the frames of a stream in any order, for display by a player.
 #pragma once
 
 #include <array>
@@ -16,46 +16,47 @@ namespace rlpc {
 
 using Vec3d = std::array<double, 3>;
 
-// Where grid positions are drawn: position * scale + offset.
+// The map from grid positions to drawing coordinates: position * scale + offset.
 struct Placement {
   double scale = 1;
   Vec3d offset{};
 };
 
-// In the cube from -1 to 1, which is what position_bits can reach.
+// Maps the range of position_bits to the cube from -1 to 1.
 Placement placement_of(const SequenceHeader& header);
-// The positions of `header` in the cube of another stream.
+// Maps the positions of `header` to the cube of another stream.
 Placement placement_in(const SequenceHeader& header, const SequenceHeader& other);
 
-// Coordinates of a frame from the centre of its box, which is returned: 24 bits, all that the
-// numbers of a graphics card have, then go to the mesh, and not to its way. As many of both.
+// Computes the drawing coordinates of a frame relative to the centre of its box, and returns
+// that centre. So the 24 bits of a float on the graphics card resolve the mesh, not its
+// distance from the origin. positions and coordinates have the same size.
 Vec3d centred_coordinates(std::span<const std::int32_t> positions, const Placement& placement,
                           std::span<float> coordinates);
 
 class StreamPlayer {
  public:
-  // source(): the stream once more; called at most twice.
+  // Opens the stream again; called at most twice.
   using OpenSource = std::unique_ptr<ByteSource> (*)(std::uint32_t stream,
                                                      std::uint64_t num_bytes);
 
   StreamPlayer(OpenSource open_source, std::uint32_t stream, std::uint64_t num_bytes);
 
-  // Each of these is false if the stream has an error, which error() tells.
+  // The functions below return false if the stream has an error, which is then in error().
   bool open();
-  // Decodes a frame below num_frames; only if it is not the next one, with a seek. A frame that
-  // does not fit its hash is decoded all the same: true, hash_differs(), and error() says it.
+  // Decodes a frame below num_frames; seeks unless it is the next one. A frame that does not
+  // match its hash is decoded nevertheless: returns true and sets hash_differs() and error().
   bool decode(std::uint32_t frame);
-  // After the last frame: checks the rest of the stream.
+  // Checks the rest of the stream; to be called after the last frame.
   bool finish();
   const Error& error() const { return error_; }
 
-  // After open().
+  // Valid after open().
   const Decoder& decoder() const { return *decoder_; }
   void set_placement(const Placement& placement) { placement_ = placement; }
 
-  // Of the frame that was decoded last.
+  // The frame that was decoded last:
   std::span<const std::int32_t> positions() const { return positions_; }
-  std::span<const float> coordinates() const { return coordinates_; }  // from the centre
+  std::span<const float> coordinates() const { return coordinates_; }  // relative to the centre
   const Vec3d& centre() const { return centre_; }
   bool hash_differs() const { return hash_differs_; }
   std::uint32_t compared_frames() const { return decoder_->compared_frames(); }
@@ -68,8 +69,8 @@ class StreamPlayer {
   std::uint32_t stream_;
   std::uint64_t num_bytes_;
   std::optional<Decoder> decoder_;
-  std::optional<Decoder> unchecked_;  // for frames that do not fit their hash
-  bool failed_ = false;               // of decoder_: it needs a seek
+  std::optional<Decoder> unchecked_;  // for frames that do not match their hash
+  bool failed_ = false;               // decoder_ has a sticky error and needs a seek
   bool hash_differs_ = false;
   Error error_;
   Placement placement_;

@@ -1,4 +1,4 @@
-// An exception that leaves a thread would end the program.
+// Exceptions must not leave the thread, which would end the program.
 #include "decoder/recon/async.h"
 
 #include <utility>

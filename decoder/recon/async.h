@@ -1,4 +1,4 @@
-// Work on other threads.
+// Runs work on other threads.
 #pragma once
 
 #include <functional>

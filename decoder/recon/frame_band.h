@@ -1,4 +1,4 @@
-// Frames of a GOF that are reconstructed together.
+// Reconstructs several frames of a GOF together, on one or more threads.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@ namespace rlpc {
 // Frames per thread and pass: factors are read from memory once for all of them.
 inline constexpr std::uint32_t kBandFrames = 4;
 
-// One band per thread; after a seek a single frame, then more and more.
+// Reconstructs one band per thread; after a seek, starts with a single frame and doubles.
 class FrameBand {
  public:
   explicit FrameBand(std::uint32_t threads)
       : most_(kBandFrames * threads), next_count_(most_) {}
 
-  // Another GOF follows: drops the frames held.
+  // Drops the frames held, because another GOF follows.
   void clear() { count_ = 0; }
-  // After a seek: the next frame may be the only one wanted.
+  // To be called after a seek: the next frame may be the only one wanted.
   void begin_small() { next_count_ = 1; }
   // Frame f of the GOF in decoded order, frame_size values; valid until the next call.
   std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,

@@ -1,4 +1,4 @@
-// A GOF of any kind, ready for reconstruction.
+// The interface for reconstructing GOFs of any kind.
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t
   }
 }
 
-// The next GOF, skipping ancillary units. Nothing is read beyond the end of the sequence.
+// Finds the next GOF, skipping ancillary units. Reads nothing beyond the end of the sequence.
 std::optional<CodedAccessUnit> Prefetch::collect(std::uint64_t offset,
                                                  std::uint32_t first_frame) {
   UnitReader& units = stream_.units();

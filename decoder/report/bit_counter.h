@@ -1,4 +1,4 @@
-// Bits per part, of a stream and of each of its GOFs.
+// Counts bits by purpose, for a stream and for each of its GOFs.
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@ namespace rlpc {
 
 inline constexpr std::size_t kNumStreamParts = 14;
 using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
-// Bits of each part, in the order of all tables.
+// Bits of each part, in the order used in all tables.
 const std::array<std::string_view, kNumStreamParts>& stream_part_names();
 
-// Adds up the bits from each element to the next.
+// A trace that attributes the bits from each element to the next.
 class BitCounter final : public Trace {
  public:
-  explicit BitCounter(bool print = false);  // every element, on standard output
+  explicit BitCounter(bool print = false);  // print: every element, on standard output
 
   void begin(const char* structure, std::uint64_t bit_pos) override;
   void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override;
-  // At the end of the stream.
+  // To be called at the end of the stream.
   void finish(std::uint64_t bit_pos);
 
   const PartSizes& bits() const { return bits_; }
   std::uint64_t num_units() const { return num_units_; }
-  // Of each GOF, with its slices and hashes; once finished.
+  // The bits of each GOF with its slices and hashes; valid after finish().
   const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
 
  private:
@@ -42,7 +42,7 @@ class BitCounter final : public Trace {
   std::size_t open_part_ = 0;
   std::uint8_t ancillary_bit_ = 0;
   std::uint8_t unit_type_ = 0;   // as in UnitType
-  bool rest_positions_ = false;  // in a slice of them
+  bool rest_positions_ = false;  // within a slice of rest positions
   std::size_t unit_part_ = 0;
   std::uint64_t last_ = 0;
   std::uint64_t num_units_ = 0;

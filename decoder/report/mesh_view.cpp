@@ -79,7 +79,7 @@ std::string MeshView::frames_html(const std::vector<float>& values, const char* 
   return data_html(id, bytes);
 }
 
-// As square roots, so that small errors get levels, too.
+// Errors are quantised as square roots, so that small errors remain distinguishable.
 std::string MeshView::errors_html(float largest) const {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(errors_.size());

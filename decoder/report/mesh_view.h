@@ -1,5 +1,5 @@
-// An interactive animation in a page, with its error in colour: positions in 16 bits, errors in
-// 8.
+// An interactive animation in a page, with the error shown in colour. Positions have 16 bits,
+// errors 8 bits.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ class MeshView {
   // The frames shown, in order. Both arguments have 3 * num_vertices values.
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // What is not shown, in words; empty: nothing.
+  // A description of omitted frames; empty: none are omitted.
   std::string note() const;
   // For a page with use_viewer(), after all frames. `diagonal`: errors are relative to it.
   std::string html(double diagonal) const;

@@ -141,7 +141,7 @@ void add_rate_section(HtmlPage& page, const StreamRates& rates) {
           gof_rate_chart(rates) + "</div>\n");
 }
 
-// The counts meant for people, for each kind of GOF that occurs.
+// The displayed counts, for each kind of GOF that occurs.
 std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs) {
   std::vector<GofFigure> figures;
   std::set<GofKind> kinds;

@@ -1,4 +1,4 @@
-// Bits per part of a stream, for a page.
+// Charts and tables of the bits of a stream by purpose, for a page.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct StreamRates {
   }
 };
 
-// Shares of all parts, and the rate of each GOF over time.
+// Charts of the parts of the stream, and of the rate of each GOF over time.
 void add_rate_section(HtmlPage& page, const StreamRates& rates);
-// A row per GOF, and the contents of its slices.
+// A table with a row per GOF, and the contents of its slices.
 void add_gof_section(HtmlPage& page, const StreamRates& rates);
 
 }  // namespace rlpc

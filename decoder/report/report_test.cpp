@@ -1,4 +1,4 @@
-// What pages are made of.
+// Tests of the building blocks of pages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string encoded(const std::string& text) {
   return base64(bytes);
 }
 
-TEST(Report, NumbersHaveTheDigitsThatCount) {
+TEST(Report, NumbersHaveSignificantDigits) {
   EXPECT_EQ(number_text(0), "0");
   EXPECT_EQ(number_text(1), "1.000");
   EXPECT_EQ(number_text(0.012345), "0.01235");
@@ -81,7 +81,7 @@ TEST(Report, LongLinesShowTheWorstOfSeveralFrames) {
   EXPECT_TRUE(has(line_chart("E", "u", {error, psnr}), "the worst of 2 each"));
 }
 
-TEST(Report, WhatIsNoFiniteNumberLeavesNoGapInAGroup) {
+TEST(Report, NonFiniteValuesLeaveNoGapInAGroup) {
   for (const double none : {kInfinity, -kInfinity, kNan}) {
     const std::vector<double> values{3, none, none, 4, none, none};
     EXPECT_EQ(shown_in_pairs(values, false), "3.0,4.0,null") << none;
@@ -100,7 +100,7 @@ TEST(Report, InfiniteValuesInterruptALine) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
-TEST(Report, ViewsLeaveOutFramesAboveTheirLimit) {
+TEST(Report, ViewsOmitFramesAboveTheirLimit) {
   const std::vector<Triangle> triangles{{0, 1, 2}};
   const FrameRate rate;
   const auto stride = [&](std::uint32_t frames, std::size_t bytes) {

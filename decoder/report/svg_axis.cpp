@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// Ticks may be off an end by what rounding adds.
+// Tolerance for ticks at the ends, because of rounding.
 bool is_within(double value, double low, double high) {
   const double slack = 1e-9 * (high - low);
   return low - slack <= value && value <= high + slack;

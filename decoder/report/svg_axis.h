@@ -1,4 +1,4 @@
-// What plots and charts have in common.
+// Axes and text, shared by plots and charts.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Values to pixels.
+// Maps values to pixels.
 class Axis {
  public:
   // 0 < low if it is logarithmic; low < high.

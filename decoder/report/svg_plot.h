@@ -31,10 +31,10 @@ struct Plot {
   std::vector<PlotSeries> series;
 };
 
-// Why a plot cannot be drawn; empty: it can.
+// The reason why a plot cannot be drawn; empty: it can.
 std::string check_plot(const Plot& plot);
 
-// Of a plot that can be drawn.
+// The plot as SVG; it must be drawable.
 std::string plot_svg(const Plot& plot);
 
 }  // namespace rlpc

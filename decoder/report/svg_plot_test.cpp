@@ -1,4 +1,4 @@
-// Axes, and plots as SVG files.
+// Tests of axes, and of plots as SVG files.
 #include "decoder/report/svg_plot.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(Plot, LongNamesHaveRoom) {
   EXPECT_GT(width(std::string(30, 'a')), width("a") + 40);
 }
 
-TEST(Plot, WhatCannotBeDrawnIsNamed) {
+TEST(Plot, ReportsWhyAPlotCannotBeDrawn) {
   Plot plot = two_points("a");
   EXPECT_EQ(check_plot(plot), "");
   plot.series[0].points.push_back({0, 5});

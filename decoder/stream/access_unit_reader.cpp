@@ -69,7 +69,7 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
   }
 }
 
-// The next unit of the access unit that `unit` belongs to, if there is one.
+// The unit that follows `unit` in the same access unit; none if `unit` is the last.
 Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader& unit,
                                                                bool has_slices) {
   using Next = std::optional<UnitHeader>;

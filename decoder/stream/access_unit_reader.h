@@ -1,4 +1,4 @@
-// Access units from the units of a stream.
+// Reads access units from a stream: collects their units and parses them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace rlpc {
 
-// The units of an access unit, of which only the GOF header has been parsed.
+// The units of an access unit, not parsed except for the GOF header.
 struct CodedAccessUnit {
   struct Unit {
     UnitHeader header;
@@ -23,14 +23,16 @@ struct CodedAccessUnit {
   GofHeader gof;
   std::vector<Unit> units;  // the GOF unit first
 
-  std::uint64_t end() const { return units.back().header.end(); }  // in the stream, bytes
+  // Bytes from the start of the stream.
+  std::uint64_t end() const { return units.back().header.end(); }
   std::uint32_t end_frame() const { return gof.first_frame + gof.num_frames; }
 };
 
 class AccessUnitReader {
  public:
-  // Units and context must outlive it. Uses limits, cut and verify_hashes of the options;
-  // without the latter, hash units are left to the caller.
+  // units and context must outlive the reader. Uses limits, cut and verify_hashes of the
+  // options. Without verify_hashes, hash units are not read, and the caller finds them as the
+  // next units.
   AccessUnitReader(UnitReader& units, const StreamContext& context,
                    const DecoderOptions& options)
       : units_(units),
@@ -39,14 +41,14 @@ class AccessUnitReader {
         cut_(options.cut),
         wants_hash_(options.verify_hashes) {}
 
-  // gof_unit: a GOF unit; first_frame: the first frame that its GOF must have.
+  // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
+  // the GOF must have.
   Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame);
-  // End of the units read last, bytes from the start of the stream.
+  // End of the last access unit read, bytes from the start of the stream.
   std::uint64_t end() const { return end_; }
 
-  // The same in two steps, the second of which may run on another thread. max_memory_bytes
-  // limits the payloads, and separately the parsed result. If either fails, read() reports the
-  // error.
+  // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
+  // payloads and, separately, the parsed result. If a step fails, read() reports the error.
   std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                          std::uint64_t max_memory_bytes);
   Result<AccessUnit> parse(const CodedAccessUnit& coded, std::uint64_t max_memory_bytes) const;

@@ -1,4 +1,4 @@
-// Where a decoder reads from.
+// The interface through which a decoder reads a stream.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class ByteSource {
   virtual std::uint64_t memory_bytes() const { return 0; }
 };
 
-// Keeps a copy of the bytes.
+// A source that holds a copy of the bytes.
 std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// The contents of a GOF in numbers: clusters and components, or bones, trajectories and slices.
+// Summarises a GOF in numbers: clusters and components, or bones, trajectories and slices.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace rlpc {
 
-// Of a GOF: its first component groups, with that of the rest positions, and its first layer
-// groups.
+// The leading component groups of a GOF, including that of the rest positions, and its leading
+// layer groups.
 struct SliceGroups {
   std::uint32_t component_groups = SliceCut::kAll;
   std::uint32_t layer_groups = SliceCut::kAll;
@@ -28,11 +28,12 @@ struct SliceGroups {
 struct SliceTotals {
   std::size_t num_slices = 0;
   std::uint32_t num_trajectories = 0;
-  std::uint32_t num_layers = 0;  // whose vertices have residuals of rest positions
+  std::uint32_t num_layers = 0;  // layers with residuals of rest positions
   std::uint64_t bytes = 0;       // of the GOF unit and of slice units
 };
 
-// A number that describes the size of a GOF. one, many: the noun; null: for programs only.
+// A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
+// JSON.
 struct GofFigure {
   const char* key;  // in JSON
   const char* one;

@@ -1,4 +1,4 @@
-// Walks a stream from access unit to access unit: parses everything, reconstructs nothing.
+// Iterates over the access units of a stream: parses everything, reconstructs nothing.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class StreamReader {
   StreamReader(const StreamReader&) = delete;
   StreamReader& operator=(const StreamReader&) = delete;
 
-  // Up to the first GOF: sequence header, connectivity, vertex order.
+  // Reads up to the first GOF: sequence header, connectivity, vertex order.
   Result<bool> open();
 
   const StreamContext& context() const { return context_; }
@@ -45,7 +45,7 @@ class StreamReader {
   Result<AccessUnit> read(const UnitHeader& gof_unit);
   // The same for an access unit read elsewhere, whose units end at `end`.
   void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
-  // Both in one call, to read all of them.
+  // Finds and reads the next access unit.
   Result<std::optional<AccessUnit>> next();
   // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);

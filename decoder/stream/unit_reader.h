@@ -1,4 +1,4 @@
-// Units (6.2): finds them, reads them, checks their CRC.
+// Finds units (6.2), reads them, and checks their CRC.
 #pragma once
 
 #include <algorithm>
@@ -40,15 +40,16 @@ class UnitReader {
 
   // 6.1: signature and version.
   Result<bool> stream_header();
-  // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
+  // Sets the maximum payload of critical units from now on: MaxUnitBytes of Annex B.
   void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
-  // Header of the unit at a byte offset; its end lies within the stream.
+  // Reads the header of the unit at a byte offset, and checks that the unit ends within the
+  // stream.
   Result<UnitHeader> header_at(std::uint64_t offset);
-  // The payload of a unit, its CRC checked.
+  // Reads the payload of a unit and checks its CRC.
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
-  // Skips a unit, its CRC checked. Allocates nothing.
+  // Skips a unit and checks its CRC. Allocates nothing.
   Result<bool> skip(const UnitHeader& unit);
-  // Up to max_bytes from the beginning of a payload; the CRC is not checked.
+  // Reads up to max_bytes from the beginning of a payload, without checking the CRC.
   Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
                                                   std::uint32_t max_bytes);
   // Reader over a payload, with positions from the start of the stream.

@@ -60,7 +60,7 @@ TEST(StreamHeader, EveryByteOfTheSignatureCounts) {
     Bytes wrong = kHeader;
     wrong[i] ^= 0x20;
     expect_error(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature", 0);
-    // Of a file that is too short as well, "no RLPC stream" is the better message.
+    // If the file is also too short, "no RLPC stream" is the better message.
     wrong.resize(i + 1);
     expect_error(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature", 0);
   }
@@ -123,7 +123,7 @@ TEST(UnitReader, TheLargestSizeDoesNotWrapAround) {
   expect_error(reader_of(bytes).header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
 }
 
-TEST(UnitReader, ALevelBoundsCriticalUnitsBeforeTheirEndIsLookedFor) {
+TEST(UnitReader, LevelLimitOfCriticalUnitsIsCheckedBeforeTheirEnd) {
   Bytes bytes = joined({kHeader, kUnit});  // 4 bytes of payload, a critical unit
   UnitReader reader = reader_of(bytes);
   reader.set_max_unit_bytes(4);
@@ -151,7 +151,7 @@ TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
     ASSERT_TRUE(unit);
     expect_error(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 152);
   }
-  // One byte less: the CRC is looked for one byte early.
+  // One byte less: the CRC is read one byte early.
   Bytes smaller = stream;
   smaller[14] = 3;
   UnitReader reader = reader_of(smaller);
@@ -160,7 +160,7 @@ TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
   expect_error(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 144);
 }
 
-TEST(UnitReader, PayloadStartGivesNoMoreThanThereIs) {
+TEST(UnitReader, PayloadStartGivesAtMostThePayload) {
   Bytes wrong = joined({kHeader, kUnit});
   wrong.back() ^= 1;  // the CRC is not looked at
   UnitReader reader = reader_of(wrong);
@@ -189,8 +189,8 @@ TEST(UnitReader, TakesNoMemoryForLargerPayloadsThanAllowed) {
   }
 }
 
-// Blocks and their ends.
-TEST(UnitReader, SkipsUnitsWhoseCrcHolds) {
+// Payload sizes around multiples of the block size.
+TEST(UnitReader, SkipsUnitsWithAValidCrc) {
   for (const std::size_t size : {0U, 1U, 4090U, 4091U, 4092U, 8187U, 10000U}) {
     SCOPED_TRACE(size);
     Bytes payload(size);
@@ -242,14 +242,14 @@ TEST(UnitReader, TracesTheCrcAfterThePayload) {
             "120 index_distance 7\n152 unit_crc 3346686594\n");
 }
 
-// A source that fails, like a file on a disk that was unplugged.
+// A source that fails, like a file on a disconnected disk.
 class FailingSource : public ByteSource {
  public:
   std::uint64_t size() const override { return 1000; }
   bool read(std::uint64_t, std::span<std::uint8_t>) override { return false; }
 };
 
-TEST(UnitReader, ASourceThatCannotBeReadIsNoBadStream) {
+TEST(UnitReader, AnUnreadableSourceIsNotABadStream) {
   UnitReader reader(std::make_unique<FailingSource>(), nullptr);
   const UnitHeader unit{5, 4, 10};
   expect_error(reader.stream_header(), Errc::kIo, "", "signature", 0);

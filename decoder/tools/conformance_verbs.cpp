@@ -78,7 +78,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_sink(const std::string& path,
   return open_rlpd_sink(path, std::move(options));
 }
 
-// How decoding ended: with an error of the stream, of the output, or none.
+// The result of decoding: an error of the stream, an error of the output, or none.
 struct Outcome {
   std::optional<Error> error;
   std::optional<OutputError> output_error;

@@ -40,7 +40,7 @@ double bpvf(const SubStreamExtractor& cutter, std::uint64_t bytes) {
          (static_cast<double>(h.num_vertices) * h.num_frames);
 }
 
-// The first layer group is kept even if it has more layers than asked for.
+// The first layer group is kept even if it has more layers than requested.
 bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
   return after.num_layers > o.cut.max_layers;
 }
@@ -110,7 +110,7 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
     }
   }
   if (!cutter.cuts_any())
-    std::printf("  nothing was dropped: no GOF has more than asked for\n");
+    std::printf("  nothing was dropped: no GOF has more than requested\n");
 }
 
 }  // namespace

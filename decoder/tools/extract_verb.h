@@ -1,4 +1,4 @@
-// rlpcinfo --extract: a stream without some of its slices.
+// Implements rlpcinfo --extract, which writes a stream without some of its slices.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// rlpcdec: .rlpc streams to animations.
+// rlpcdec: decodes .rlpc streams to animations.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -61,7 +61,7 @@ For the conformance judge (conformance/VALIDATE.md)
 Exit code: 0 decoded; 1 not a conforming stream; 2 not supported; 3 beyond the
 limits; 4 input or output failed; 64 wrong usage.)";
 
-// Groups of options.
+// Option groups of the help page.
 constexpr const char* kOutput = "Output (one of -o, --html, --verify)";
 constexpr const char* kPage = "Page";
 constexpr const char* kLess = "Less detail (Main profile)";

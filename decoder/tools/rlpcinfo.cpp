@@ -1,4 +1,4 @@
-// rlpcinfo: the contents of an .rlpc stream.
+// rlpcinfo: shows the contents of an .rlpc stream.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

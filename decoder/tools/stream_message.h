@@ -1,4 +1,4 @@
-// Stream errors as the programs report them.
+// Formats stream errors as the programs report them.
 #pragma once
 
 #include <string>
