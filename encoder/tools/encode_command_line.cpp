@@ -58,7 +58,7 @@ and reports an estimate ("about").
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";
 
-// Groups of options.
+// Option groups of the help page.
 constexpr const char* kInput = "Input";
 constexpr const char* kQuality = "Quality (at most one; default: --quality good)";
 constexpr const char* kOutput = "Output";
@@ -71,7 +71,7 @@ std::vector<std::string> quality_words() {
   return words;
 }
 
-// CLI11's own check accepts NaN.
+// The check of CLI11 itself accepts NaN.
 const CLI::Validator kAboveZero(
     [](const std::string& word) {
       double value = 0.0;
@@ -82,7 +82,7 @@ const CLI::Validator kAboveZero(
     },
     "NUMBER");
 
-// An option that takes one of a few words.
+// Adds an option that takes one of a few words.
 template <class T>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
                         const std::map<std::string, T>& words, const std::string& what) {
@@ -92,7 +92,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
       ->option_text("WORD");
 }
 
-// A flag that turns off what is on by default.
+// Adds a flag that turns off a default.
 CLI::Option* add_off_switch(CLI::App& app, const std::string& name, bool& value,
                             const std::string& what) {
   return app.add_flag_callback(
@@ -162,7 +162,7 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       app.add_flag("--keep-order", o.settings.keep_order, "Store the vertex order of INPUT")
           ->group(kOutput);
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(kOutput);
-  app.add_flag("-v,--verbose", o.verbose, "Report what the encoder chose, too")->group(kOutput);
+  app.add_flag("-v,--verbose", o.verbose, "Also report the encoder's choices")->group(kOutput);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kOutput);
 
   app.add_option("--order-map", o.order_map,
