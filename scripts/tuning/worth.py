@@ -1,5 +1,6 @@
 """What tuned constants are worth: encodings with each of them at other values."""
 
+import concurrent.futures
 import dataclasses
 import hashlib
 import json
@@ -7,10 +8,9 @@ import math
 import os
 import pathlib
 import re
-import resource
-import shutil
 import subprocess
 import tempfile
+import threading
 
 import tuned
 
@@ -87,34 +87,49 @@ def build(root, out):
 
 
 class Encoder:
-    """Runs encodings, and keeps their results in a file."""
+    """Runs encodings, as many at a time as there are processors, and keeps their results in a
+    file."""
 
     def __init__(self, program, cache):
         self.program = program
         self.cache = cache
+        self.lock = threading.Lock()
         self.key = hashlib.sha256(program.read_bytes()).hexdigest()[:16]
         self.known = json.loads(cache.read_text()) if cache.is_file() else {}
 
     def run(self, case, override=""):
         key = " ".join([self.key, override, case.name])
         if key not in self.known:
-            self.known[key] = dataclasses.astuple(self._encode(case, override))
-            self.cache.write_text(json.dumps(self.known, indent=0) + "\n")
+            result = dataclasses.astuple(self._encode(case, override))
+            with self.lock:
+                self.known[key] = result
+                self.cache.write_text(json.dumps(self.known, indent=0) + "\n")
         return Result(*self.known[key])
+
+    def run_all(self, tasks):
+        """Results of all (case, override), in their order."""
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            return list(pool.map(lambda task: self.run(*task), tasks))
 
     def _encode(self, case, override):
         environment = {**os.environ, "RLPC_TUNED": override}
         with tempfile.TemporaryDirectory(prefix="rlpc-constants-") as folder:
             command = [self.program, case.mesh, "--points", case.mesh.with_suffix(".pc2"), "--json",
                        "-o", pathlib.Path(folder, "a.rlpc"), *case.options]
-            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            done = subprocess.run(command, env=environment, capture_output=True, text=True,
-                                  check=False)
-            seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        if not done.stdout:  # a target that is missed is no failure
-            raise Failure(f"{override}: {case.name}: {done.stderr.strip()}")
-        report = json.loads(done.stdout)
-        return Result(report["bytes"], report["metrics"]["kg_error_percent"], seconds)
+            log = pathlib.Path(folder, "log")
+            with log.open("w") as stderr:
+                process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE,
+                                           stderr=stderr, text=True)
+            with process.stdout as pipe:
+                output = pipe.read()
+            # The time of this process alone: others run beside it.
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            complaint = log.read_text().strip()
+        if not output:  # a target that is missed is no failure
+            raise Failure(f"{override}: {case.name}: {complaint}")
+        report = json.loads(output)
+        return Result(report["bytes"], report["metrics"]["kg_error_percent"], usage.ru_utime)
 
 
 def slope(result, other):
@@ -137,16 +152,21 @@ def change(results, base, slopes, targets):
 def measure(encoder, cases, constants, common, say):
     """{id: {column: (bytes, seconds) as parts of the base}}; None for the same bytes. common: what
     is overridden in all encodings."""
-    base = [encoder.run(case, common) for case in cases]
-    other = [encoder.run(case.with_target(1.06 * case.target), common) for case in cases]
-    slopes = [slope(b, o) for b, o in zip(base, other)]
+    count = len(cases)
+    both = encoder.run_all([(case, common) for case in cases] +
+                           [(case.with_target(1.06 * case.target), common) for case in cases])
+    base = both[:count]
+    slopes = [slope(b, o) for b, o in zip(base, both[count:])]
     targets = [case.target for case in cases]
     table = {}
     for constant in constants:
         row = table[constant.id] = {}
-        for column, value in tuned.variants(constant).items():
-            override = ";".join(filter(None, (common, f"{constant.id}={value}")))
-            results = [encoder.run(case, override) for case in cases]
+        columns = {column: ";".join(filter(None, (common, f"{constant.id}={value}")))
+                   for column, value in tuned.variants(constant).items()}
+        found = encoder.run_all([(case, override) for override in columns.values()
+                                 for case in cases])
+        for i, column in enumerate(columns):
+            results = found[i * count:(i + 1) * count]
             same = all(r.bytes == b.bytes and r.error == b.error for r, b in zip(results, base))
             of_bytes, of_time = change(results, base, slopes, targets)
             row[column] = (None if same else of_bytes, of_time)
@@ -169,7 +189,8 @@ def markdown(constants, tables):
     for c in constants:
         row = tables.get(c.id, {})
         cells = " | ".join(_cell(row.get(column)) for column in COLUMNS)
-        lines.append(f"| `{c.id}` | {c.value} | {cells} | {row.get('with', '')} | {c.reason} |")
+        value = " ".join(c.value.split())
+        lines.append(f"| `{c.id}` | {value} | {cells} | {row.get('with', '')} | {c.reason} |")
     return "\n".join(lines) + "\n"
 
 
