@@ -2,7 +2,7 @@
 """Every constant of the encoder's search says what it is: tuned, or fixed.
 
 In the folders of scripts/tuning/tuned.py, each constant that is declared with a number has a
-comment `tuned: REASON` or `fixed: REASON` on its line, and no number with a fraction stands
+comment `tuned: REASON` or `fixed: REASON` behind or above it, and no number with a fraction stands
 anywhere else, but for those of plain formulas (halves, bits of a byte, per cent). Tuned constants
 have different names, and encoder/skinned_gof/search/README.md has a row for each, and for no other.
 """
@@ -46,8 +46,7 @@ def untagged(path, text):
         if not (_NUMBER.search(match[2]) or _FRACTION.search(match[2])):
             continue
         line = cpp_source.line_of(text, match.start())
-        yield (f"{path}:{line}: {match[1]} says neither `tuned: REASON` nor `fixed: REASON` on "
-               "its line")
+        yield (f"{path}:{line}: {match[1]} says neither `tuned: REASON` nor `fixed: REASON`")
     for match in _FRACTION.finditer(code):
         if match.group() in PLAIN or any(a <= match.start() < b for a, b in spans):
             continue

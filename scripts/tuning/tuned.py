@@ -1,8 +1,11 @@
 """The tuned constants of the encoder: where they stand, and sources in which they can be changed.
 
-A constant that was found by trial says so at its declaration, on one line:
+A constant that was found by trial says so at its declaration, behind it or on the lines above it:
 
-  constexpr double kTryFactor = 0.72;  // tuned (off: 1e9): expected cost that is worth a trial
+  constexpr int kRounds = 3;  // tuned (off: 1): rounds of the solver
+  // tuned (off: 1e9): Candidates are encoded up to this multiple of the least expected cost, as
+  // expected costs are wrong by about a tenth.
+  constexpr double kTryFactor = 1.1;
 
 `off` is the value that does without whatever it tunes. A constant that trades neither bytes nor
 time says `fixed:` instead: limits of the format, memory, tolerances of rounding.
@@ -52,10 +55,22 @@ def number(text):
         return None
 
 
+def _comment_above(text, start):
+    """The comment that ends on the line before, from the line that a tag begins."""
+    lines = []
+    for line in reversed(text[:start].rstrip("\n").split("\n")):
+        if not line.lstrip().startswith("// "):
+            return ""
+        lines.insert(0, line.lstrip()[3:])
+        if _TAG.match(lines[0]):
+            return " ".join(lines)
+    return ""
+
+
 def declarations(path, text):
     """All constants that are declared on one line."""
     for match in _DECLARATION.finditer(text):
-        tag = _TAG.match(match["comment"] or "")
+        tag = _TAG.match(match["comment"] or _comment_above(text, match.start()))
         yield Constant(path, match["name"], match["type"],
                        (match["value"] or match["braces"]).strip(),
                        tag["tag"] if tag else "", (tag["off"] or "") if tag else "",

@@ -19,7 +19,10 @@ constexpr double kUnit = 16.0;  // fixed: format
 constexpr double kPlain = 2.5;
 constexpr std::array<int, 2> kList{1, 2};  // tuned: numbers
 struct A {
-  static constexpr int kTimes = 3;  // tuned (off: 1): rounds
+  // The solver. Its rounds:
+  // tuned (off: 1): rounds, as many
+  // as pay
+  static constexpr int kTimes = 3;
 };
 double f() {
   constexpr double kLocal = 0.5;  // tuned: inside
@@ -39,6 +42,7 @@ class Declarations(unittest.TestCase):
                                 "kList": "tuned", "kTimes": "tuned", "kLocal": "tuned"})
         self.assertEqual(self.found["kTry"].id, "some_file.kTry")
         self.assertEqual(self.found["kTry"].reason, "a trial")
+        self.assertEqual(self.found["kTimes"].reason, "rounds, as many as pay")
 
     def test_variants_keep_the_type(self):
         self.assertEqual(tuned.variants(self.found["kTry"]),
