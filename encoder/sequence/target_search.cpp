@@ -19,9 +19,14 @@ constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
 // is useless. Instead, coarser steps beyond the bracket are sampled: one of them may happen to
 // meet the target.
 constexpr double kNarrow = 1.0 + kTolerance / 4.0;  // fixed: by the tolerance
-constexpr int kSamples = 8;                         // tuned (off: 0): steps tried beyond
+// tuned (off: 0): Number of coarser steps that are tried where the largest error jumps, with
+// --max-error. Each is one more encoding, and may be smaller by chance.
+constexpr int kSamples = 8;
 
-constexpr double kRateExponent = -0.5;  // tuned (off: -1): rates are this power of the step
+// tuned (off: -1): The rate is assumed to be this power of the step until two encodings show
+// the real slope. It gives the first step of a search for a rate, and how far the second is
+// from it.
+constexpr double kRateExponent = -0.5;
 
 // The usual exponent of the measured value as a power of the step: 1 for errors.
 double usual_exponent(const Target& target) {
@@ -37,11 +42,16 @@ TargetSearch::TargetSearch(const Target& target, double spread, double steps_per
       best_(target),
       power_law_(usual_exponent(target)) {
   constexpr double kWithoutTarget = 64.0;  // fixed: grid steps
-  constexpr double kRateFactor = 0.02;     // tuned: first step of a search for a rate
+  // A usual stream has a KG error of 0.1 % at 1 bpvf; from there, the rate is a power of the
+  // step.
+  constexpr double kUsualError = 0.1;  // fixed: round figure
   double first = kWithoutTarget;
-  if (target.kind == Target::kKg) first = step_of_error * spread * target.value / 100.0;
+  const double step_of_percent = step_of_error * spread / 100.0;
+  if (target.kind == Target::kKg) first = step_of_percent * target.value;
   if (target.kind == Target::kMaxError) first = target.value * steps_per_unit;
-  if (target.kind == Target::kBpvf) first = kRateFactor * spread / target.value;
+  if (target.kind == Target::kBpvf) {
+    first = step_of_percent * kUsualError * det_exp2(det_log2(target.value) / kRateExponent);
+  }
   step_ = std::clamp(first, kFinestStep, kCoarsestStep);
 }
 
