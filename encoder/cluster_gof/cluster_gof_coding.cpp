@@ -12,11 +12,15 @@
 namespace rlpc {
 namespace {
 
-constexpr double kSeedStep =
-    0.18;  // tuned (off: 1): of seeds, whose error turns whole clusters
-constexpr double kMinEnergy =
-    1.2;                           // tuned (off: 0): squared steps below which a component goes
-constexpr std::size_t kShare = 4;  // tuned: most components of a cluster, per mean
+// tuned (off: 1): Quantiser step of seed tracks relative to that of components. An error of a
+// seed turns its whole cluster, so seeds are coded finer.
+constexpr double kSeedStep = 0.18;
+// tuned (off: 0): Components of less energy than this many squared steps are not considered. It
+// only saves time, as the allocation by rate and distortion leaves such components out.
+constexpr double kMinEnergy = 1.2;
+// tuned: With a given number of components per cluster, one cluster may take up to this
+// multiple of it at the expense of others.
+constexpr std::size_t kShare = 4;
 
 }  // namespace
 

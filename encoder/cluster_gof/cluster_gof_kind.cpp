@@ -10,12 +10,14 @@
 namespace rlpc {
 namespace {
 
-// Clusters are tried only if the best encoding so far uses at least this fraction of the
-// maximum number of trajectories; below, a single PCA of all vertices is efficient enough.
-constexpr double kHighRank = 0.4;  // tuned (off: 0): below, clusters are not tried
-constexpr std::uint32_t kVerticesOfCluster = 56;  // tuned: of many small ones, as a sample
-constexpr std::uint32_t kFewestClusters = 2;      // fixed: of many
-constexpr std::uint32_t kMostClusters = 96;       // fixed: the most that are searched
+// tuned (off: 0): Clusters are tried only where trajectories number at least this fraction of
+// their maximum. Below, one set of components for all vertices is the better basis.
+constexpr double kHighRank = 0.4;
+// tuned: The cost of clusters is judged by one encoding with clusters of this many vertices,
+// before any search for their number.
+constexpr std::uint32_t kVerticesOfCluster = 56;
+constexpr std::uint32_t kFewestClusters = 2;  // fixed: of many
+constexpr std::uint32_t kMostClusters = 96;   // fixed: the most that are searched
 
 class ClusterGofCoder : public GofCoder {
  public:

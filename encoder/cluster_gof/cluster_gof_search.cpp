@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "encoder/gof/count_at.h"
 #include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
 namespace {
 
-// The numbers of clusters to compare; a denser list gains little.
-constexpr std::array<std::uint32_t, 13> kCounts{1,  2,  3,  4,  6,  8, 12,
-                                                16, 24, 32, 48, 64, 96};  // tuned: of clusters
-constexpr std::size_t kFirstCount = 5;      // tuned (off: 0): of these, where a climb begins
+// tuned (off: 0): The search for the number of clusters climbs from this entry of the series 1,
+// 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters. The fast preset takes this number.
+constexpr std::size_t kFirstCount = 5;
+constexpr std::size_t kNumCounts = 13;      // fixed: up to 96
 constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
-constexpr double kFastDivisor = 3.0;        // tuned: root of the vertices per cluster, fast
-constexpr std::uint32_t kMostFast = 32;     // tuned: clusters, fast
 
 class ClusterSearch {
  public:
@@ -35,16 +33,22 @@ class ClusterSearch {
     return error + lambda(step_) * bits;
   }
 
-  // Hill climbing from a medium number of clusters, upwards and then downwards.
-  std::uint32_t choose_count(bool world) {
+  // The last number that leaves vertices beside those of seeds.
+  std::size_t last_count() const {
     std::size_t last = 0;
-    while (last + 1 < kCounts.size() &&
-           kCounts[last + 1] * kSeedVertices < coding_.frames().num_vertices) {
+    while (last + 1 < kNumCounts &&
+           count_at(last + 1) * kSeedVertices < coding_.frames().num_vertices) {
       ++last;
     }
-    std::array<double, kCounts.size()> known{};
+    return last;
+  }
+
+  // Climbs from a middling number of clusters while the cost falls.
+  std::uint32_t choose_count(bool world) {
+    const std::size_t last = last_count();
+    std::array<double, kNumCounts> known{};
     const auto cost_at = [&](std::size_t i) {
-      if (known[i] == 0.0) known[i] = cost({kCounts[i], world});
+      if (known[i] == 0.0) known[i] = cost({count_at(i), world});
       return known[i];
     };
     std::size_t best = std::min<std::size_t>(last, world ? 0 : kFirstCount);
@@ -56,7 +60,7 @@ class ClusterSearch {
         best = i;
       }
     }
-    return kCounts[best];
+    return count_at(best);
   }
 
   ClusterChoice choose() {
@@ -65,10 +69,8 @@ class ClusterSearch {
     const bool any_frame = tools.frame_mode == FrameMode::kAuto;
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
     if (coding_.settings().preset == Preset::kFast) {
-      const auto wanted =
-          static_cast<std::uint32_t>(std::sqrt(coding_.frames().num_vertices) / kFastDivisor);
-      return {tools.clusters > 0 ? tools.clusters : std::clamp(wanted, 1U, kMostFast),
-              world_requested};
+      const std::uint32_t usual = count_at(std::min(last_count(), kFirstCount));
+      return {tools.clusters > 0 ? tools.clusters : usual, asked_world};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};

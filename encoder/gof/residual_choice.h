@@ -16,9 +16,9 @@
 
 namespace rlpc {
 
-// Without rate-distortion optimisation, a magnitude is rounded up if its fraction is at least
-// 1/2 plus this dead zone.
-inline constexpr double kDeadZone = 0.06;  // tuned (off: 0): of rounding
+// Where rates are not compared, residuals are rounded up from 1/2 and this part of a step:
+// there, rounding up saves as much error as it costs if the next magnitude takes one bit more.
+inline constexpr double kDeadZone = kLambda / 2.0;  // fixed: arithmetic
 
 // Rounds the magnitude of `wanted` (in steps) up if its fraction is at least 1 - round_up.
 inline std::int32_t rounded_residual(double wanted, double round_up) {
