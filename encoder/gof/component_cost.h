@@ -8,9 +8,22 @@
 
 namespace rlpc {
 
-// A candidate is encoded if its estimated cost exceeds the lowest cost by less than this
-// fraction.
-inline constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): of what is encoded
+// tuned (off: 0): A candidate is encoded if its expected cost is at most this fraction above
+// the least. Expected costs are wrong by about as much; a wider margin only takes time.
+inline constexpr double kTryMargin = 0.1;
+
+// tuned (off: 1): Fraction of the energy of a component that prediction is assumed to leave
+// where it is not measured: of temporal values, and of samples whose vertices are far apart.
+inline constexpr double kPredictionLeft = 0.1;
+
+// Lagrangian cost of coding a value of which prediction leaves `left`, mean square, relative to
+// the error of a quantiser, step^2 / 12; in that unit. The error is left / (1 + left): small
+// values are rounded to zero. The rate is log2(1 + left) / 2 bits, each worth 2 ln 2
+// (lagrangian.h).
+inline double expected_value_cost(double left) {
+  constexpr double kLn2 = 0.6931471805599453;  // fixed: ln 2
+  return left / (1.0 + left) + kLn2 * det_log2(1.0 + left);
+}
 
 // Expected Lagrangian cost of coding the component, or of dropping it if that is cheaper.
 //
@@ -20,13 +33,11 @@ inline constexpr double kTryMargin = 0.1;  // tuned (off: 1e9): of what is encod
 //   spatial_residual  mean square of the prediction residual of a spatial factor
 //   step              quantiser step, grid steps
 inline double expected_component_cost(double energy, double vertices, double values,
-                                      double spatial_residual, double step) {
-  constexpr double kTemporalLeft =
-      0.25;  // tuned (off: 1): energy that temporal prediction leaves
-  const double error = step * step / 12.0;  // mean squared error of a coded value
-  const double bits = 0.5 * vertices * det_log2(1.0 + spatial_residual / error) +
-                      0.5 * values * det_log2(1.0 + kTemporalLeft * energy / (values * error));
-  return std::min(energy, error * (vertices + values) + lambda(step) * bits);
+                                      double spatial_left, double step) {
+  const double error = step * step / 12.0;  // of a coded value
+  const double cost = vertices * expected_value_cost(spatial_left / error) +
+                      values * expected_value_cost(kPredictionLeft * energy / (values * error));
+  return std::min(energy, error * cost);
 }
 
 }  // namespace rlpc

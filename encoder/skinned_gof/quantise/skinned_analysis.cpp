@@ -8,6 +8,7 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/gof_coder.h"
+#include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
@@ -16,8 +17,12 @@ namespace rlpc {
 namespace {
 
 constexpr double kPointScale = 16.0;  // fixed: 1 << kPointFractionBits
-// Steps of the layers before the finest, in sixteenths: 0.9^n, not below 0.4.
-constexpr std::array<int, 10> kLayerSteps{16, 14, 13, 12, 10, 9, 9, 8, 7, 6};  // tuned: steps
+// tuned (off: 1): Quantiser step of a layer relative to that of the next finer layer. Vertices
+// of coarse layers predict those of finer ones, so that their errors spread.
+constexpr double kFinerLayer = 0.9;
+// tuned (off: 1): Smallest quantiser step of a layer relative to that of the finest layer.
+// Coarser layers have so few vertices that their errors hardly count.
+constexpr double kFinestLayer = 0.4;
 
 std::uint32_t step_idx(double step) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
@@ -26,9 +31,10 @@ std::uint32_t step_idx(double step) {
 
 std::vector<std::uint8_t> layer_steps(std::size_t num_layers, bool finer) {
   std::vector<std::uint8_t> steps(num_layers, kMaxLayerStep);
-  for (std::size_t i = 0; i < num_layers && finer; ++i) {
-    steps[i] = static_cast<std::uint8_t>(
-        kLayerSteps[std::min(num_layers - 1 - i, kLayerSteps.size() - 1)]);
+  double step = kMaxLayerStep;
+  for (std::size_t i = num_layers; i-- > 0 && finer; step *= kFinerLayer) {
+    steps[i] =
+        static_cast<std::uint8_t>(round_to_int(std::max(step, kFinestLayer * kMaxLayerStep)));
   }
   return steps;
 }
@@ -107,16 +113,50 @@ class SkinnedAnalyser {
       gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
     }
     code_rest();
-    // The analysis must also be valid for finer steps tried later.
-    const double least = least_energy(step_ / kAnalysisServes, frames_.num_vertices);
+    // A component of less energy than the error of quantising its factors is not worth a
+    // trajectory. Steps that are tried later may be finer.
+    const double finest = step_ / kAnalysisServes;
+    const double least = finest * finest / 12.0 * frames_.num_vertices;
     found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
+    find_spatial_left();
     return std::move(found_);
   }
 
  private:
-  // The sum of the squared weights of a bone, and that of the squared weights times the squared
-  // distances from its pivot.
-  std::pair<double, double> mass_and_moment(std::size_t b) const {
+  // Differences of a vertex and the mean of those that predict it, squared, averaged over the
+  // vertex and its ring: residuals are coded by what these are nearby.
+  void find_spatial_left() {
+    const std::size_t width = found_.pc.temporal.size();
+    const std::uint32_t n = mesh_.num_vertices();
+    const std::uint32_t places = std::min(n, kProbeVertices);
+    found_.spatial_left.assign(places * width, float{});
+    std::vector<float> difference(width);
+    for (std::uint32_t i = 0; i < places; ++i) {
+      const auto v = static_cast<std::uint32_t>(std::uint64_t{i} * n / places);
+      const std::span<float> mean = std::span(found_.spatial_left).subspan(i * width, width);
+      const std::span<const std::uint32_t> ring = mesh_.ring(v);
+      add_differences(v, difference, mean);
+      for (const std::uint32_t u : ring) add_differences(u, difference, mean);
+      for (float& x : mean) x /= static_cast<float>(ring.size() + 1);
+    }
+  }
+
+  void add_differences(std::uint32_t v, std::span<float> difference,
+                       std::span<float> sum) const {
+    const std::size_t width = difference.size();
+    const float* of_v = found_.pc.spatial.data() + v * width;
+    std::copy(of_v, of_v + width, difference.begin());
+    const std::span<const std::uint32_t> ring = mesh_.ring(v);
+    const float count = static_cast<float>(ring.size());
+    for (const std::uint32_t u : ring) {
+      const float* of_u = found_.pc.spatial.data() + u * width;
+      for (std::size_t l = 0; l < width; ++l) difference[l] -= of_u[l] / count;
+    }
+    for (std::size_t l = 0; l < width; ++l) sum[l] += difference[l] * difference[l];
+  }
+
+  // Squared weights of a bone, and their mean squared distance from the pivot.
+  std::pair<double, double> reach(std::size_t b) const {
     double mass = 0.0;
     double moment = 0.0;
     for (std::size_t v = 0; v < rig_.rest.size(); ++v) {
@@ -288,13 +328,6 @@ class SkinnedAnalyser {
 };
 
 }  // namespace
-
-double least_energy(double step, std::uint32_t num_vertices) {
-  // Coding a trajectory adds an error of at most step^2 / 12 per vertex. Trajectories are local
-  // and most of their residuals are 0, so that error is less.
-  constexpr double kOfVertex = 0.6;  // tuned (off: 0): of that error, what a factor is worth
-  return kOfVertex * step * step / 12.0 * num_vertices;
-}
 
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,

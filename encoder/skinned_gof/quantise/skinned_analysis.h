@@ -36,9 +36,15 @@ struct SkinnedSettings {
   std::uint32_t layer_groups = 0;      // 0: chosen by size
   std::size_t max_trajectories = 1024;
 
-  static constexpr int kWeightBits = 6;   // tuned: of an influence
-  static constexpr int kDampingLog2 = 8;  // tuned (off: 0): of geometry weights
-  static constexpr int kOuterRing = 3;    // tuned (off: 0): weight and scale of the outer ring
+  // tuned: Bits of a quantised influence of a bone. Finer weights cost bits at every vertex;
+  // coarser ones leave errors where bones meet.
+  static constexpr int kWeightBits = 6;
+  // tuned (off: 0): Damping of the geometry weights (8.11), as a power of two. It keeps weights
+  // moderate where a vertex lies nearly in line with its neighbours.
+  static constexpr int kDampingLog2 = 8;
+  // tuned (off: 0): Weight and scale of the outer ring in the geometry weights (8.11). The
+  // outer ring adds curvature to the prediction.
+  static constexpr int kOuterRing = 3;
 };
 
 struct SkinnedAnalysis {
@@ -46,6 +52,9 @@ struct SkinnedAnalysis {
   std::vector<BoneMotion> bones;                  // as decoded
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
+  // What prediction leaves of spatial factors near each of some vertices, mean square:
+  // [vertex of the sample][component].
+  std::vector<float> spatial_left;
 };
 
 // Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
@@ -53,9 +62,5 @@ struct SkinnedAnalysis {
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step);
-
-// The energy, in squared grid units, below which the spatial values of a trajectory alone cost
-// more than it saves.
-double least_energy(double step, std::uint32_t num_vertices);
 
 }  // namespace rlpc

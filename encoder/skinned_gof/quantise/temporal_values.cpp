@@ -8,6 +8,7 @@
 
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "encoder/gof/component_cost.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
@@ -15,10 +16,11 @@
 namespace rlpc {
 namespace {
 
-// The residual of bone motion is concentrated in a few places, where spatial prediction is
-// poor.
-constexpr double kTemporalErrorOfBones = 2.0;  // tuned (off: 1): of temporal values, with bones
-// The coarsest product of steps, in eighths of an octave, with a legal scale_idx.
+// tuned (off: 1): Squared error of a temporal value relative to that of a spatial one, with
+// bones. The residual of bone motion is confined to few vertices, so that its temporal values
+// may be coarser.
+constexpr double kTemporalErrorOfBones = 2.0;
+// Products of steps, in eighths of an octave, have a scale_idx up to this one.
 constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
 // Wanted values up to this limit fit their width, however they are rounded.
 constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
@@ -74,7 +76,7 @@ class TemporalCoder {
                          .nearest = settings_.rounding == Rounding::kNearest},
                         after, trajectory);
     const double saved = analysis_.pc.energy[l] * (1.0 - cost.error * unit * unit);
-    if (saved < least_worth(cost.bits)) return false;
+    if (saved < least_worth(cost.bits, l)) return false;
     state_ = std::move(after);
     values.eighths.push_back(eighths);
     values.indices.push_back(recon_trajectory(trajectory));
@@ -97,11 +99,18 @@ class TemporalCoder {
                       least_eighths, kMostEighths);
   }
 
-  // The energy that a trajectory must save to be worth coding: the cost of its temporal values,
-  // and the cost and error of its spatial factors.
-  double least_worth(double bits) const {
-    return lambda(step_) * bits +
-           least_energy(step_, static_cast<std::uint32_t>(num_vertices_));
+  // The energy that a trajectory must save: what its temporal values cost, and its spatial
+  // factors cost and leave.
+  double least_worth(double bits, std::size_t l) const {
+    const double error = step_ * step_ / 12.0;
+    const std::size_t width = analysis_.pc.temporal.size();
+    const std::size_t places = analysis_.spatial_left.size() / width;
+    double cost = 0.0;  // of a factor, on average
+    for (std::size_t i = 0; i < places; ++i) {
+      const double left = analysis_.spatial_left[i * width + l] / error;
+      cost += expected_value_cost(left) / static_cast<double>(places);
+    }
+    return lambda(step_) * bits + error * cost * static_cast<double>(num_vertices_);
   }
 
   bool has_bones() const { return analysis_.gof.bones.size() > 1; }

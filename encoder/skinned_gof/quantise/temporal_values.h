@@ -11,10 +11,9 @@
 
 namespace rlpc {
 
-// Squared error of a temporal value relative to that of a spatial value, in a GOF without
-// bones.
-inline constexpr double kTemporalError =
-    0.8;  // tuned (off: 1): of temporal values, without bones
+// tuned (off: 1): Squared error of a temporal value relative to that of a spatial one, without
+// bones. Each temporal value affects all vertices and has few contexts to share its cost with.
+inline constexpr double kTemporalError = 0.8;
 
 struct TemporalValues {
   std::vector<Trajectory> trajectories;  // predictors, weights and residuals
