@@ -15,14 +15,9 @@ namespace rlpc {
 // Writes the positions [num_vertices][3] of frame f of a GOF exactly as a decoder outputs them.
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
 
-// An analysis is reused for steps that differ from its own by at most this factor.
-inline constexpr double kAnalysisServes = 1.44;  // tuned (off: 1): steps of an analysis
-inline bool analysis_serves(double made_for, double step) {
-  return step <= kAnalysisServes * made_for && made_for <= kAnalysisServes * step;
-}
-// When the step leaves that range, the kind of GOF, bones and tools are chosen again, at most
-// this often.
-inline constexpr int kMostChoices = 3;  // tuned (off: 1): for one GOF
+// tuned (off: 1): An analysis made for one step is used for all steps within this factor. A
+// narrower range means more analyses, and more jumps of the error.
+inline constexpr double kAnalysisServes = 1.44;
 
 // One encoding of a GOF.
 struct EncodedGof {

@@ -12,13 +12,6 @@ GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Pre
   coders_.front() = kinds_.front()->make_coder(frames_);
 }
 
-bool GofKindSearch::must_compare(double step) const {
-  if (kinds_.size() == 1) return false;
-  if (compared_.count == 0) return true;
-  if (compared_.is_settled || compared_.count == kMostChoices) return false;
-  return !analysis_serves(compared_.step, step);
-}
-
 void GofKindSearch::analyse(double analysis_step) { coders_[chosen_]->analyse(analysis_step); }
 
 std::optional<double> GofKindSearch::expected_error(double step) const {
@@ -26,32 +19,24 @@ std::optional<double> GofKindSearch::expected_error(double step) const {
 }
 
 bool GofKindSearch::needs_frames(double step, double analysis_step) const {
-  return must_compare(analysis_step) || coders_[chosen_]->needs_frames(step, analysis_step);
+  return must_compare() || coders_[chosen_]->needs_frames(step, analysis_step);
 }
 
 EncodedGof GofKindSearch::encode(double step, double analysis_step) {
-  return must_compare(analysis_step) ? compare(step, analysis_step)
-                                     : coders_[chosen_]->encode(step, analysis_step);
+  return must_compare() ? compare(step, analysis_step)
+                        : coders_[chosen_]->encode(step, analysis_step);
 }
 
-bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, double step) {
-  if (preset_ == Preset::kSlow) {
-    compared_.is_settled = false;
-    return true;
-  }
+bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, double step) const {
+  if (preset_ == Preset::kSlow) return true;
   const auto expected = kind.estimate_cost(frames_, best, step);
-  const bool close =
-      expected && *expected < (1.0 + kTryMargin) * lagrangian_cost(best, frames_, step);
-  if (!expected || close) compared_.is_settled = false;
-  return close;
+  return expected && *expected < (1.0 + kTryMargin) * lagrangian_cost(best, frames_, step);
 }
 
 EncodedGof GofKindSearch::compare(double step, double analysis_step) {
-  compared_ = {analysis_step, compared_.count + 1, true};
-  chosen_ = 0;
+  is_compared_ = true;
   EncodedGof best = coders_.front()->encode(step, analysis_step);
   for (std::size_t k = 1; k < kinds_.size(); ++k) {
-    coders_[k].reset();
     if (!may_win(*kinds_[k], best, step)) continue;
     auto coder = kinds_[k]->make_coder(frames_);
     EncodedGof other = coder->encode(step, analysis_step);

@@ -11,8 +11,9 @@
 
 namespace rlpc {
 
-// Encodes the GOF with the first kind and with each other kind that may cost less. Compares the
-// kinds again when the step moves far from that of the last comparison.
+// Encodes the GOF by the first kind, and by each further one that may cost less. The choice
+// stands for further steps: comparing again where these move far gains 0.1 % for a fifth more
+// time.
 class GofKindSearch : public GofCoder {
  public:
   // kinds: at least one, the most likely first. Keeps references to kinds and frames.
@@ -25,14 +26,8 @@ class GofKindSearch : public GofCoder {
   void release_analysis() override;
 
  private:
-  struct Comparison {
-    double step = 0.0;        // step of the last comparison
-    int count = 0;            // comparisons so far
-    bool is_settled = false;  // the margin was so large that other steps will not change it
-  };
-
-  bool must_compare(double step) const;
-  bool may_win(const GofEncoder& kind, const EncodedGof& best, double step);
+  bool must_compare() const { return kinds_.size() > 1 && !is_compared_; }
+  bool may_win(const GofEncoder& kind, const EncodedGof& best, double step) const;
   EncodedGof compare(double step, double analysis_step);
 
   const GofKinds& kinds_;
@@ -40,7 +35,7 @@ class GofKindSearch : public GofCoder {
   Preset preset_;
   std::vector<std::unique_ptr<GofCoder>> coders_;  // [kind]; null: not chosen so far
   std::size_t chosen_ = 0;
-  Comparison compared_;
+  bool is_compared_ = false;
 };
 
 }  // namespace rlpc

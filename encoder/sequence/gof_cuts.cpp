@@ -9,6 +9,7 @@
 
 #include "encoder/gof/component_cost.h"
 #include "encoder/gof/lagrangian.h"
+#include "encoder/gof/sample_size.h"
 #include "encoder/math/principal_components.h"
 
 namespace rlpc {
@@ -17,10 +18,10 @@ namespace {
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;  // fixed: memory
 constexpr std::uint32_t kLeastVertices = 8;                         // fixed: that tell anything
 constexpr std::uint32_t kMostFrames = kMaxSampleValues / (3 * kLeastVertices);  // fixed: memory
-constexpr std::uint32_t kSampleVertices = 160;  // tuned: of which costs are estimated
-constexpr std::uint32_t kSampleFrames = 16;     // tuned: of a GOF, likewise
-constexpr double kLeastGain =
-    0.03;  // tuned (off: 1): expected of GOFs that are not of equal length
+// tuned (off: 1): GOFs of unequal length are used only if their expected cost is lower by this
+// fraction. The estimate leaves out bones, which gain from long GOFs, so that small differences
+// mean nothing.
+constexpr double kLeastGain = 0.03;
 
 // Estimates the cost of GOFs from a sample of the vertices.
 class GofCosts {
@@ -29,7 +30,7 @@ class GofCosts {
       : num_vertices_(num_vertices), step_(step) {
     const auto most =
         static_cast<std::uint32_t>(kMaxSampleValues / (3 * std::uint64_t{num_frames}));
-    const std::uint32_t count = std::min({num_vertices, kSampleVertices, most});
+    const std::uint32_t count = std::min({num_vertices, kProbeVertices, most});
     for (std::uint32_t i = 0; i < count; ++i) {
       vertices_.push_back(static_cast<std::uint32_t>(std::uint64_t{i} * num_vertices / count));
     }
@@ -62,7 +63,7 @@ class GofCosts {
   // Displacements of the vertices from their mean positions in a sample of frames. The sample
   // includes the first and the last frame, which reveal a cut that is slightly misplaced.
   TrajectoryMatrix displacements(const GofSpan& span) const {
-    const std::uint32_t count = std::min(span.count, kSampleFrames);
+    const std::uint32_t count = std::min(span.count, kSampleFrames / kQuickPart);
     TrajectoryMatrix matrix;
     matrix.num_values = vertices_.size();
     matrix.num_frames = 3 * std::size_t{count};
@@ -87,9 +88,9 @@ class GofCosts {
   }
 
   double expected(const GofSpan& span) const {
-    constexpr double kSpatialLeft =
-        0.1;                            // tuned (off: 1): energy that spatial prediction leaves
-    constexpr double kRestBits = 15.0;  // tuned (off: 0): of a rest position
+    // tuned (off: 0): Bits of a rest position, which each GOF codes anew: about five for each
+    // coordinate. Without this cost, GOFs would be cut far too often.
+    constexpr double kRestBits = 15.0;
     const TrajectoryMatrix matrix = displacements(span);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
@@ -99,7 +100,7 @@ class GofCosts {
     for (const double sampled : principal_components(matrix, 0, 0.0).energy) {
       const double energy = scale * sampled;
       cost += expected_component_cost(energy, vertices, values,
-                                      kSpatialLeft * energy / vertices, step_);
+                                      kPredictionLeft * energy / vertices, step_);
     }
     return cost;
   }
@@ -180,8 +181,10 @@ std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest)
 
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
                                                 double step) {
-  constexpr std::uint32_t kUnitsOfLongest =
-      8;  // tuned (off: 1): places of cuts, before refinement
+  // tuned (off: 1): GOFs are first cut at multiples of the longest length divided by this
+  // number; the cuts are then refined to single frames. Finer units cost time in proportion to
+  // the square.
+  constexpr std::uint32_t kUnitsOfLongest = 8;
   const std::uint32_t num_frames = source.num_frames();
   std::vector<GofSpan> equal = equal_gofs(num_frames, longest);
   const std::uint32_t unit = longest / kUnitsOfLongest;

@@ -78,10 +78,13 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread) {
   const double steps_per_unit = exact_exp2(-header.grid.log2_step);
-  constexpr double kStepOfError = 9.0;  // tuned: first step per error of a coordinate
-  // Without rate-distortion optimisation, analysing for a finer step costs no bytes: finer rest
-  // positions pay for themselves.
-  constexpr double kFinerFast = 1.25;  // tuned (off: 1): an analysis is made for a finer step
+  // tuned: The first step of a search, per error of a coordinate. It decides how close the
+  // first encoding is to the target, and with it how many encodings follow.
+  constexpr double kStepOfError = 9.0;
+  // tuned (off: 1): With the fast preset, an analysis is made for a step that is finer by this
+  // factor. Its rest positions then cost more, and leave less for trajectories whose residuals
+  // are not chosen by rate.
+  constexpr double kFinerFast = 1.25;
   const bool fast = header.profile_idc == kProfileMain && settings.preset == Preset::kFast;
   const double finer = fast ? kFinerFast : 1.0;
   const AnalysisRange range{.finest = finer / kAnalysisServes,

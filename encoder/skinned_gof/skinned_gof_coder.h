@@ -24,23 +24,15 @@ class SkinnedGofCoder : public GofCoder {
   void release_analysis() override { analysis_.release(); }
 
  private:
-  // The chosen bones and tools, and the step that they were chosen for.
-  struct Choice {
-    SkinnedCandidate candidate;
-    double step = 0.0;
-    int count = 0;  // choices so far
-  };
-
-  // Whether bones and tools must be chosen (again) for a step.
-  bool must_choose(double analysis_step) const;
   void choose(double step);
   const SkinnedAnalysis& analysis_for(double step);
   bool is_valid_for(double step) const;
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
-  Choice choice_;
-  StepCache<SkinnedAnalysis> analysis_;  // of choice_.candidate
+  // Bones and tools, chosen for the first step.
+  std::optional<SkinnedCandidate> choice_;
+  StepCache<SkinnedAnalysis> analysis_;  // of the choice
 };
 
 }  // namespace rlpc

@@ -168,7 +168,7 @@ TEST(SkinnedGofCoder, EstimatesTheErrorWithOneBone) {
   }
   EXPECT_GT(least, 0.6);
   EXPECT_LT(most, 1.6);
-  EXPECT_LT(most, 1.1 * least);
+  EXPECT_LT(most, 1.2 * least);
 }
 
 TEST(SkinnedGofCoder, HasNoEstimateWithSeveralBones) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
+#include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/principal_components.h"
 
@@ -57,8 +58,7 @@ double expected_cost(const BoneSample& sample, std::vector<double> residuals,
 }
 
 std::vector<double> unsteadiness(const GofFrames& frames) {
-  constexpr std::uint32_t kVertices = 40;  // tuned: that tell how unsteady motion is
-  const std::uint32_t stride = (frames.num_vertices + kVertices - 1) / kVertices;
+  const std::uint32_t stride = (frames.num_vertices + kProbeVertices - 1) / kProbeVertices;
   std::vector<double> result;
   for (std::uint32_t f = 1; f < frames.num_frames; ++f) {
     for (std::uint32_t v = 0; v < frames.num_vertices; v += stride) {
@@ -76,20 +76,19 @@ std::vector<double> unsteadiness(const GofFrames& frames) {
   return result;
 }
 
-// The steps of a bone become finer with the number of vertices that follow it. The constants
-// were measured.
+// The more vertices follow a bone, the finer its steps are. Each of the six values of a pose
+// takes half a bit per doubling of the square of what prediction leaves, relative to the error
+// of its quantiser, step^2 / 12.
 double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
                           std::size_t num_bones, double step) {
-  constexpr double kPivotAndFirstPose = 60.0;  // tuned (off: 0): bits of a bone
-  constexpr double kBits = 2.6;                // tuned (off: 0): bits of a pose, per doubling
-  constexpr double kFineness = 10.0;           // tuned: steps of a bone are this much finer
-  if (unsteady.empty()) return kPivotAndFirstPose;
+  constexpr double kValuesPerPose = 6.0;  // fixed: of a rotation and an origin
+  if (unsteady.empty()) return 0.0;
   const double followers = frames.num_vertices / static_cast<double>(num_bones);
-  const double scale = kFineness * std::sqrt(followers) / step;
+  const double scale = std::sqrt(12.0 * followers) / step;
   double sum = 0.0;
   for (const double d : unsteady) sum += det_log2(1.0 + scale * d);
   const double mean = sum / static_cast<double>(unsteady.size());
-  return kPivotAndFirstPose + kBits * mean * (frames.num_frames - 1);
+  return 0.5 * kValuesPerPose * mean * (frames.num_frames - 1);
 }
 
 }  // namespace rlpc

@@ -30,7 +30,7 @@ TEST(Unsteadiness, IsTheDistanceFromLinearExtrapolation) {
 
 TEST(Unsteadiness, IsMeasuredAtAFewVertices) {
   const auto still = [](std::uint32_t) { return 1.0; };
-  EXPECT_EQ(unsteadiness(moving(1000, 3, still)), std::vector<double>(2 * 40, 0.0));
+  EXPECT_EQ(unsteadiness(moving(1000, 3, still)), std::vector<double>(2 * 143, 0.0));
   EXPECT_EQ(unsteadiness(moving(1, 3, still)).size(), 2U);
   EXPECT_TRUE(unsteadiness(moving(5, 1, still)).empty());
 }
@@ -49,13 +49,11 @@ TEST(ExpectedBoneBits, GrowWithUnsteadinessFollowersAndFinerSteps) {
       << "half the distance, half the step";
 }
 
-TEST(ExpectedBoneBits, AreFewForABoneAtRest) {
+TEST(ExpectedBoneBits, ABoneAtRestCostsNothing) {
   const GofFrames frames = moving(100, 200, [](std::uint32_t) { return 7.0; });
   const GofFrames one = moving(100, 1, [](std::uint32_t) { return 7.0; });
-  const double bits = expected_bone_bits(unsteadiness(frames), frames, 5, 1.0);
-  EXPECT_GT(bits, 0.0);
-  EXPECT_LT(bits, 200.0);
-  EXPECT_EQ(expected_bone_bits(unsteadiness(one), one, 5, 1.0), bits);
+  EXPECT_EQ(expected_bone_bits(unsteadiness(frames), frames, 5, 1.0), 0.0);
+  EXPECT_EQ(expected_bone_bits(unsteadiness(one), one, 5, 1.0), 0.0);
 }
 
 }  // namespace

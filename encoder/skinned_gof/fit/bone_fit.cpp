@@ -59,7 +59,9 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
 
 // A vertex, then its neighbours, then the neighbours of these if the first ring is small.
 std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
-  constexpr std::size_t kSmall = 6;     // tuned (off: 1): vertices of a patch of one ring
+  // tuned (off: 1): Patches of fewer vertices than this are extended by a second ring. The
+  // motion of too small a patch is not determined well enough to seed a bone.
+  constexpr std::size_t kSmall = 6;
   constexpr std::size_t kLargest = 24;  // fixed: memory, where all triangles share a vertex
   std::vector<std::uint32_t> patch{vertex};
   const auto add = [&](std::uint32_t v) {
@@ -213,7 +215,6 @@ double BoneFit::translation_error() const {
 void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
                            Rig& rig) const {
   constexpr std::uint32_t kTogether = 256;  // fixed: memory
-  constexpr int kRounds = 3;                // tuned (off: 1): of weights and rest positions
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * lambda(options_.step) * part;
   std::vector<Vec3d> positions;
@@ -247,8 +248,6 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
   constexpr std::uint32_t kTogether = 64;  // fixed: memory
-  constexpr int kSweeps = 3;               // tuned (off: 0): over the bones of a frame
-  constexpr int kSteps = 3;                // tuned (off: 0): of all bones of a frame at once
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   std::vector<Motion> now(n);
@@ -265,8 +264,8 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
       while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
       const std::vector<Motion> wanted = targets.of_frame(f - first);
       for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-      for (int i = 0; i < kSweeps; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kSteps; ++i) solve_poses(moments, wanted, now);
+      for (int i = 0; i < kRounds; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < kRounds; ++i) solve_poses(moments, wanted, now);
       for (std::size_t b = 0; b < n; ++b) {
         result[b][f] = now[b];
         result[b][f].col(3) += centre_[f];

@@ -10,6 +10,7 @@
 
 #include "common/mesh/mesh.h"
 #include "encoder/gof/gof_frames.h"
+#include "encoder/gof/sample_size.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 #include "encoder/skinned_gof/fit/bone_solver.h"
 #include "encoder/skinned_gof/fit/rig.h"
@@ -23,9 +24,9 @@ struct BoneFitOptions {
   std::uint32_t sample_vertices = kSampleVertices;
   int exchanges = kExchanges;  // maximum attempts to exchange bones per call of settle()
 
-  static constexpr std::uint32_t kSampleFrames = 64;  // tuned: at most so many are looked at
-  static constexpr std::uint32_t kSampleVertices = 3000;  // tuned: of so many vertices
-  static constexpr int kExchanges = 6;                    // tuned (off: 0): of bones
+  // tuned (off: 0): Rounds in which the least useful bones are exchanged for new ones, once all
+  // bones are found. They lead out of local minima, and take most of the time of a fit.
+  static constexpr int kExchanges = 6;
 };
 
 // Finds bones, weights, rest positions, hierarchy and pivots, for a growing number of bones.

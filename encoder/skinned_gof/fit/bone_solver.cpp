@@ -8,11 +8,6 @@
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
 namespace rlpc {
-namespace {
-
-constexpr int kRounds = 6;  // tuned (off: 1): of improvement, after bones have come in
-
-}  // namespace
 
 BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
     : sample_(sample),
@@ -44,14 +39,16 @@ bool BoneSolver::grow(std::size_t num_bones) {
   while (motions_.size() < num_bones) {
     const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
     const std::size_t added = add_bones(count, sums);
-    if (added > 0) improve(kRounds, sums);
+    if (added > 0) improve(2 * kRounds, sums);
     if (added < count) break;
   }
   return motions_.size() > before;
 }
 
 void BoneSolver::exchange_bones(int times) {
-  constexpr std::size_t kExchangedPart = 8;  // tuned: one bone in so many is exchanged
+  // tuned: Each exchange replaces one bone in this many. Replacing more at once is less often
+  // an improvement.
+  constexpr std::size_t kExchangedPart = 8;
   std::size_t count = 1 + motions_.size() / kExchangedPart;
   SkinSums sums(sample_.positions, motions_);
   for (int i = 0; i < times && count > 0; ++i) {
@@ -106,9 +103,12 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
 // their error.
 std::vector<std::size_t> BoneSolver::poorly_explained_patches(
     std::span<const double> error) const {
-  constexpr std::size_t kTried = 12;  // tuned (off: 1): patches, for each new bone
-  constexpr double kRigid =
-      1e-3;  // tuned (off: 1e9): part of the error that a rigid one leaves
+  // tuned (off: 1): Patches of vertices whose motion is tried for each new bone. The best patch
+  // is seldom the one with the largest error; each one tried takes time.
+  constexpr std::size_t kTried = 12;
+  // tuned (off: 1e9): A patch is preferred as the seed of a bone if a rigid motion leaves at
+  // most about this fraction of its error. Patches that deform make poor bones.
+  constexpr double kRigid = 1e-3;
   std::vector<double> score(sample_.patches.size());
   for (std::size_t i = 0; i < score.size(); ++i) {
     const auto& patch = sample_.patches[i];
@@ -137,8 +137,7 @@ std::vector<std::size_t> BoneSolver::poorly_explained_patches(
 // about as closely as the patch itself.
 std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     std::span<const std::size_t> patches) const {
-  constexpr int kFits = 3;        // tuned (off: 1): of the motion of a patch
-  constexpr double kClose = 4.0;  // tuned: errors of a patch, of vertices that follow it
+  constexpr double kClose = 2.0 * 2.0;  // fixed: up to twice as far off as the patch itself
   std::vector<PatchMotion> result;
   if (patches.empty()) return result;
   std::vector<std::vector<std::uint32_t>> cores;
@@ -149,7 +148,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   }
   std::optional<SkinSums> sums;
   bool changed = true;
-  for (int i = 0; i < kFits && changed; ++i) {
+  for (int i = 0; i < kRounds && changed; ++i) {
     for (std::size_t t = 0; t < cores.size(); ++t) motions[t] = motion_of(cores[t]);
     if (sums) {
       sums->set_motions(motions);
@@ -234,9 +233,8 @@ void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
 }
 
 void BoneSolver::improve(int rounds, SkinSums& sums) {
-  constexpr int kKeepCandidates = 3;  // tuned (off: 1): rounds with the same candidates
   for (int i = 0; i < rounds; ++i) {
-    fit_all_weights(i % kKeepCandidates == 0, sums);
+    fit_all_weights(i % kRounds == 0, sums);
     improve_motions();
     sums.set_motions(motions_);
   }
@@ -244,14 +242,12 @@ void BoneSolver::improve(int rounds, SkinSums& sums) {
 }
 
 void BoneSolver::settle() {
-  constexpr int kSettlingRounds = 10;  // tuned (off: 1): of improvement, with rest positions
-  refines_rest_ = true;
+  rests_move_ = true;
   SkinSums sums(sample_.positions, motions_);
-  improve(kSettlingRounds, sums);
+  improve(3 * kRounds, sums);
 }
 
 void BoneSolver::improve_motions() {
-  constexpr int kSweeps = 2;  // tuned (off: 1): over the bones of a frame
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
@@ -263,7 +259,9 @@ void BoneSolver::improve_motions() {
   for (std::size_t f = 0; f < sample_.num_frames; ++f) {
     const std::vector<Motion> wanted = targets.of_frame(f);
     for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
-    for (int i = 0; i < kSweeps; ++i) refine_poses(moments, wanted, frame);
+    // Twice: bones that share vertices follow each other.
+    refine_poses(moments, wanted, frame);
+    refine_poses(moments, wanted, frame);
     for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
   }
 }
@@ -339,7 +337,7 @@ bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
         sums);
   }
   add_bones(before.motions_.size() - motions_.size(), sums);
-  improve(kRounds, sums);
+  improve(2 * kRounds, sums);
   if (error() < before.error()) return true;
   take(before);
   sums.set_motions(motions_);
@@ -363,7 +361,7 @@ void BoneSolver::remove_worthless_bones(double worth) {
     if (!sums) sums.emplace(sample_.positions, motions_);
     remove_bone(static_cast<std::size_t>(least - loss.begin()), *sums);
   }
-  if (sums) improve(kRounds, *sums);
+  if (sums) improve(2 * kRounds, *sums);
 }
 
 }  // namespace rlpc

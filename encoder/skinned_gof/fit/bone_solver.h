@@ -32,11 +32,15 @@ struct BoneSample {
   }
 };
 
-// Bones are added one at a time. Each new bone takes the motion of a patch that is nearly rigid
-// but poorly explained by the existing bones. Weights and motions are then improved
-// alternately, and the least useful bones are exchanged for new ones. Until all bones are
-// found, the rest positions are those of the first frame, in which rigid parts have their true
-// shape.
+// tuned (off: 1): Rounds of each minimisation that holds one set of unknowns while it solves
+// for the other: weights, rest positions, poses. Growth runs two series of such rounds,
+// settling three.
+inline constexpr int kRounds = 3;
+
+// Bones come in one at a time: each takes the motion of a patch that is rigid but ill explained
+// by the bones before it. Then weights and motions are improved in turn, and the bones that are
+// missed least are exchanged for new ones. Rest positions stay those of the first frame, in
+// which rigid parts are rigid, until all bones are there.
 class BoneSolver {
  public:
   // Starts with one bone. Keeps a reference to the sample.

@@ -6,28 +6,24 @@
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
+#include "encoder/gof/count_at.h"
 
 namespace rlpc {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// With more than two influences during the fit, bones overlap, and bones and weights become
-// irregular.
-constexpr std::uint32_t kSearchInfluences =
-    2;  // tuned (off: 1): bones of a vertex, of a search
+// tuned (off: 1): Bones that a vertex may follow while bones are looked for. With more, bones
+// overlap, and neither their motion nor the weights are smooth.
+constexpr std::uint32_t kSearchInfluences = 2;
 
-// Bones are tried if their expected cost is below this fraction of the expected cost without
-// bones. The actual cost without bones would be the wrong reference: what lowers it, such as
-// vertices at rest, lowers the actual cost with bones too.
-constexpr double kPromise = 0.9;  // tuned (off: 1e9): expected with bones, to that without
-
-// The numbers of bones to compare.
-constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};  // tuned: bones
-constexpr std::array<std::uint32_t, 9> kManyBones{5,  10, 15, 20, 24,
-                                                  28, 36, 48, 64};  // tuned: slow
-
-// Estimates use a sample with this many times fewer frames and vertices than the fit.
-constexpr std::uint32_t kQuickPart = 4;  // tuned (off: 1): of a sample
+// tuned: Numbers of bones that are compared. Costs change little between neighbours of this
+// list, and every number takes time.
+constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
+constexpr std::array<std::uint32_t, 8> kManyBones = [] {  // fixed: slow tries all of a series
+  std::array<std::uint32_t, 8> counts{};
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = count_at(i + 4);  // 6 to 64
+  return counts;
+}();
 
 // A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
@@ -74,8 +70,8 @@ BoneFit BoneSearch::quick_fit(std::size_t influences) const {
           context_.triangles,
           {.max_influences = influences,
            .step = trials_.step(),
-           .sample_frames = BoneFitOptions::kSampleFrames / kQuickPart,
-           .sample_vertices = BoneFitOptions::kSampleVertices / kQuickPart}};
+           .sample_frames = kSampleFrames / kQuickPart,
+           .sample_vertices = kSampleVertices / kQuickPart}};
 }
 
 bool BoneSearch::grow(BoneFit& fit, std::uint32_t count) const {
@@ -127,16 +123,19 @@ BoneSearch::Estimate BoneSearch::estimate(std::size_t influences) const {
   return best;
 }
 
-// If bones gain little with two influences per vertex, they gain even less with one.
+// Bones are worth a trial if they are expected to save more than estimates are wrong by. What
+// does not with two influences does so less with one.
 BoneSearch::Estimates BoneSearch::estimates() const {
   Estimates result;
   result.of_influences.resize(search_influences_);
   for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
-    Estimate next = estimate(influences);
-    if (next.cost >= std::min(kPromise * next.translation, (1.0 + kTryMargin) * result.least))
+    Estimate of = estimate(influences);
+    if (of.cost >=
+        std::min((1.0 - kTryMargin) * of.translation, (1.0 + kTryMargin) * result.least)) {
       break;
-    result.least = std::min(result.least, next.cost);
-    result.of_influences[influences - 1] = std::move(next);
+    }
+    result.least = std::min(result.least, of.cost);
+    result.of_influences[influences - 1] = std::move(of);
   }
   return result;
 }
@@ -162,23 +161,7 @@ SkinnedTrial BoneSearch::search() const {
   return std::move(*best);
 }
 
-SkinnedTrial BoneSearch::search_near(const BoneCounts& counts, bool finer) const {
-  const auto at = std::find(kFewBones.begin(), kFewBones.end(), counts.bones);
-  const auto first = finer || at == kFewBones.begin() ? at : at - 1;
-  const auto end = finer ? std::min(at + 2, kFewBones.end()) : at + 1;
-  BestTrial best;
-  if (!finer && first == kFewBones.begin()) best = try_one_bone();
-  BoneFit full = fit(counts.influences);
-  if (grow(full, *first)) {
-    best = try_counts(std::move(best), full, counts.influences, std::span(first, end),
-                      counts.bones);
-  }
-  return best ? std::move(*best) : try_one_bone();
-}
-
-// Tries numbers of bones from about half the estimated best number upwards. Gives up if the
-// full fit corrects the estimate so far that bones are not expected to win. without: cost
-// without bones.
+// About as many bones as are likely the best, unless the sample was too small to tell.
 BestTrial BoneSearch::try_estimated(BestTrial best, std::uint32_t influences,
                                     const Estimate& estimate, double without) const {
   BoneFit full = fit(influences);

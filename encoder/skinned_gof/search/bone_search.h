@@ -27,10 +27,6 @@ class BoneSearch {
   Rig guess_one_bone() const;
   // The cheapest trial over all numbers of bones.
   SkinnedTrial search() const;
-  // The cheapest trial with a number of bones close to `counts`, the best for another step: the
-  // same number, and the next larger one if the new step is finer, else the next smaller one.
-  // If the latter is the smallest, a single bone as well.
-  SkinnedTrial search_near(const BoneCounts& counts, bool finer) const;
 
  private:
   // Expected costs of different numbers of bones, from a small sample.
