@@ -189,8 +189,9 @@ def markdown(constants, tables):
     for c in constants:
         row = tables.get(c.id, {})
         cells = " | ".join(_cell(row.get(column)) for column in COLUMNS)
+        label = row["with"] if len(row) > 1 else ""  # else nothing was measured
         value = " ".join(c.value.split())
-        lines.append(f"| `{c.id}` | {value} | {cells} | {row.get('with', '')} | {c.reason} |")
+        lines.append(f"| `{c.id}` | {value} | {cells} | {label} | {c.reason} |")
     return "\n".join(lines) + "\n"
 
 
