@@ -26,7 +26,7 @@ const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
 }
 
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
-bool SkinnedGofCoder::follows(double step) const {
+bool SkinnedGofCoder::is_valid_for(double step) const {
   // tuned (off: 0): A stored analysis serves other steps only if it codes at least this many
   // trajectories. With fewer, the error comes from bones and rest positions, and a new analysis
   // must follow the step.
@@ -35,7 +35,7 @@ bool SkinnedGofCoder::follows(double step) const {
 }
 
 bool SkinnedGofCoder::needs_frames(double step, double analysis_step) const {
-  return !choice_ || !analysis_.has(analysis_step) || !follows(step);
+  return !choice_ || !analysis_.has(analysis_step) || !is_valid_for(step);
 }
 
 void SkinnedGofCoder::analyse(double analysis_step) {
@@ -51,7 +51,7 @@ std::optional<double> SkinnedGofCoder::expected_error(double step) const {
 
 EncodedGof SkinnedGofCoder::encode(double step, double analysis_step) {
   analyse(analysis_step);
-  if (!follows(step)) analysis_for(step);
+  if (!is_valid_for(step)) analysis_for(step);
   return encode_skinned_gof(context_, *analysis_.last(), choice_->settings, step);
 }
 

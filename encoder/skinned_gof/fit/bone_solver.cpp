@@ -242,7 +242,7 @@ void BoneSolver::improve(int rounds, SkinSums& sums) {
 }
 
 void BoneSolver::settle() {
-  rests_move_ = true;
+  refines_rest_ = true;
   SkinSums sums(sample_.positions, motions_);
   improve(3 * kRounds, sums);
 }

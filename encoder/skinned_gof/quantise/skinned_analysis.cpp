@@ -155,8 +155,9 @@ class SkinnedAnalyser {
     for (std::size_t l = 0; l < width; ++l) sum[l] += difference[l] * difference[l];
   }
 
-  // Squared weights of a bone, and their mean squared distance from the pivot.
-  std::pair<double, double> reach(std::size_t b) const {
+  // The sum of the squared weights of a bone, and that of the squared weights times the squared
+  // distances from its pivot.
+  std::pair<double, double> mass_and_moment(std::size_t b) const {
     double mass = 0.0;
     double moment = 0.0;
     for (std::size_t v = 0; v < rig_.rest.size(); ++v) {
