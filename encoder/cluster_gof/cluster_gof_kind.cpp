@@ -13,11 +13,6 @@ namespace {
 // tuned (off: 0): Clusters are tried only where trajectories number at least this fraction of
 // their maximum. Below, one set of components for all vertices is the better basis.
 constexpr double kHighRank = 0.4;
-// tuned: The cost of clusters is judged by one encoding with clusters of this many vertices,
-// before any search for their number.
-constexpr std::uint32_t kVerticesOfCluster = 56;
-constexpr std::uint32_t kFewestClusters = 2;  // fixed: of many
-constexpr std::uint32_t kMostClusters = 96;   // fixed: the most that are searched
 
 class ClusterGofCoder : public GofCoder {
  public:
@@ -53,8 +48,7 @@ class ClusterGofKind : public GofEncoder {
     const std::uint32_t most = std::min(frames.num_vertices, 3 * frames.num_frames);
     if (best.components < kHighRank * most) return std::nullopt;
     const ClusterGofCoding coding(mesh_, settings_, frames);
-    const std::uint32_t count =
-        std::clamp(frames.num_vertices / kVerticesOfCluster, kFewestClusters, kMostClusters);
+    const std::uint32_t count = usual_clusters(frames.num_vertices);
     MotionClusters motion = coding.motion();
     return lagrangian_cost(coding.encode(step, {count, false}, motion), frames, step);
   }

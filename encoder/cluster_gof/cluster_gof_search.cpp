@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 // tuned (off: 0): The search for the number of clusters climbs from this entry of the series 1,
-// 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters. The fast preset takes this number.
+// 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters.
 constexpr std::size_t kFirstCount = 5;
 constexpr std::size_t kNumCounts = 13;      // fixed: up to 96
 constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
@@ -69,8 +69,8 @@ class ClusterSearch {
     const bool any_frame = tools.frame_mode == FrameMode::kAuto;
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
     if (coding_.settings().preset == Preset::kFast) {
-      const std::uint32_t usual = count_at(std::min(last_count(), kFirstCount));
-      return {tools.clusters > 0 ? tools.clusters : usual, world_requested};
+      const std::uint32_t usual = usual_clusters(coding_.frames().num_vertices);
+      return {tools.clusters > 0 ? tools.clusters : usual, asked_world};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
@@ -90,6 +90,15 @@ class ClusterSearch {
 
 FoundClusters search_clusters(const ClusterGofCoding& coding, double step) {
   return ClusterSearch(coding, step).run();
+}
+
+std::uint32_t usual_clusters(std::uint32_t num_vertices) {
+  // tuned: The number of clusters has this many vertices to each, where it is not searched:
+  // with the fast preset, and in the estimate that decides whether clusters are tried at all.
+  constexpr std::uint32_t kVerticesOfCluster = 56;
+  constexpr std::uint32_t kFewestClusters = 2;  // fixed: of several
+  return std::clamp(num_vertices / kVerticesOfCluster, kFewestClusters,
+                    count_at(kNumCounts - 1));
 }
 
 }  // namespace rlpc

@@ -16,4 +16,7 @@ struct FoundClusters {
 // allow.
 FoundClusters search_clusters(const ClusterGofCoding& coding, double step);
 
+// A number of clusters that suits many GOFs, for where none is searched.
+std::uint32_t usual_clusters(std::uint32_t num_vertices);
+
 }  // namespace rlpc
