@@ -70,7 +70,7 @@ class ClusterSearch {
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
     if (coding_.settings().preset == Preset::kFast) {
       const std::uint32_t usual = usual_clusters(coding_.frames().num_vertices);
-      return {tools.clusters > 0 ? tools.clusters : usual, asked_world};
+      return {tools.clusters > 0 ? tools.clusters : usual, world_requested};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
