@@ -14,7 +14,7 @@
 
 #include "conformance/roundtrip/small_animation.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/sequence/grid_choice.h"
+#include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {
 namespace {

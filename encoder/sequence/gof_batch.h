@@ -10,8 +10,8 @@
 
 #include "encoder/gof/gof_coder.h"
 #include "encoder/metrics/metrics.h"
-#include "encoder/sequence/gof_cuts.h"
-#include "encoder/sequence/level_choice.h"
+#include "encoder/sequence/choices/gof_cuts.h"
+#include "encoder/sequence/choices/level_choice.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
 

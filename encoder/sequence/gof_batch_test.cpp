@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/sequence/grid_choice.h"
+#include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {
 namespace {

@@ -9,7 +9,7 @@
 #include "encoder/cluster_gof/cluster_gof_kind.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
-#include "encoder/sequence/gof_kinds.h"
+#include "encoder/sequence/choices/gof_kinds.h"
 
 namespace rlpc {
 

@@ -14,7 +14,7 @@
 #include "encoder/gof/sequence_mesh.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/rlpc_encoder.h"
-#include "encoder/sequence/gof_cuts.h"
+#include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/write/write_connectivity.h"
 
 namespace rlpc {

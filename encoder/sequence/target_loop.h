@@ -6,7 +6,7 @@
 
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/gof_batch.h"
-#include "encoder/sequence/target_search.h"
+#include "encoder/sequence/target/target_search.h"
 
 namespace rlpc {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/tools/command_line.h"
-#include "encoder/sequence/quality.h"
+#include "encoder/sequence/target/quality.h"
 
 namespace rlpc {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/tools/command_line.h"
 #include "encoder/input/input_format.h"
 #include "encoder/sequence/check_settings.h"
-#include "encoder/sequence/quality.h"
+#include "encoder/sequence/target/quality.h"
 #include "encoder/tools/encode_command_line.h"
 
 namespace rlpc {

@@ -6,7 +6,7 @@
 #include "encoder/metrics/metrics.h"
 #include "encoder/metrics/surface_metrics.h"
 #include "encoder/rlpc_encoder.h"
-#include "encoder/sequence/quality.h"
+#include "encoder/sequence/target/quality.h"
 
 namespace rlpc {
 

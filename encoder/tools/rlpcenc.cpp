@@ -27,7 +27,7 @@
 #include "encoder/input/input_format.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/dry_run.h"
-#include "encoder/sequence/quality.h"
+#include "encoder/sequence/target/quality.h"
 #include "encoder/tools/encode_options.h"
 #include "encoder/tools/report_json.h"
 

@@ -72,7 +72,10 @@ ROOMS = {
     "encoder/skinned_gof/quantise": _ENCODER | {"encoder/skinned_gof/fit"},
     "encoder/skinned_gof/search": _ENCODER | {"encoder/skinned_gof/fit",
                                               "encoder/skinned_gof/quantise"},
+    "encoder/sequence/choices": _ENCODER | _of_kinds("encoder/{}") | {"encoder/input"},
+    "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
     "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
+        "encoder/sequence/choices", "encoder/sequence/target",
         "common/io", "encoder/input", "encoder/input/formats", "encoder/metrics"},
     "encoder/c_api": {"common/c_api", "encoder"},
     # Readers of mesh files know nothing of coding.
@@ -86,7 +89,7 @@ ROOMS = {
     "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
                            "encoder/input/gltf", "encoder/input/gltf/document"},
     "encoder/tools": {"common/io", "common/tools", "encoder", "encoder/input", "encoder/metrics",
-                      "encoder/sequence"},
+                      "encoder/sequence", "encoder/sequence/target"},
 }
 # Files that a room must not include although their folder is open to it: vertex layers are made
 # with the connectivity (8.9), not while a GOF is parsed.

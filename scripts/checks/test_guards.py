@@ -83,7 +83,7 @@ class Layers(RealTree):
 
     def test_sides_never_include_each_other(self):
         self.include("decoder/decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
-        self.include("encoder/sequence/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
+        self.include("encoder/sequence/choices/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
         self.include("common/mesh/topology.cpp", '#include "decoder/slice_cut.h"',
                      "must not include")
@@ -264,7 +264,7 @@ class Constants(RealTree):
                 self.plant(line, "kMagic says neither")
 
     def test_every_folder_of_the_search_is_checked(self):
-        for name in ("encoder/gof/component_cost.h", "encoder/sequence/target_search.cpp",
+        for name in ("encoder/gof/component_cost.h", "encoder/sequence/target/target_search.cpp",
                      "encoder/cluster_gof/cluster_gof_search.cpp",
                      "encoder/skinned_gof/skinned_gof_coder.cpp",
                      "encoder/skinned_gof/fit/bone_solver.cpp",

@@ -1,4 +1,4 @@
-#include "encoder/sequence/level_choice.h"
+#include "encoder/sequence/choices/level_choice.h"
 
 #include <gtest/gtest.h>
 

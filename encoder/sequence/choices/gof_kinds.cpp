@@ -1,4 +1,4 @@
-#include "encoder/sequence/gof_kinds.h"
+#include "encoder/sequence/choices/gof_kinds.h"
 
 #include <array>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "encoder/sequence/gof_cuts.h"
+#include "encoder/sequence/choices/gof_cuts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "encoder/sequence/target_search.h"
+#include "encoder/sequence/target/target_search.h"
 
 #include <gtest/gtest.h>
 

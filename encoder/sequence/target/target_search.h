@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "encoder/rlpc_encoder.h"
-#include "encoder/sequence/step_search.h"
+#include "encoder/sequence/target/step_search.h"
 
 namespace rlpc {
 

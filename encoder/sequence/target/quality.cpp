@@ -1,4 +1,4 @@
-#include "encoder/sequence/quality.h"
+#include "encoder/sequence/target/quality.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "encoder/sequence/grid_choice.h"
+#include "encoder/sequence/choices/grid_choice.h"
 
 #include <gtest/gtest.h>
 
