@@ -290,7 +290,7 @@ class Figures(ToolsTest):
         stream, sizes = self.path("a.rlpc"), []
         for options, part in (((), "clusters"), (("--prediction", "layers"), "bones")):
             self.ok("rlpcenc", INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2", "-o", stream,
-                    "--kg", 0.1, *options)
+                    "--kg", 0.05, *options)
             self.ok("rlpcdec", stream, "--verify")
             self.assertIn(f"num_{part}", self.ok("rlpcinfo", stream, "--json").json()["gofs"][0])
             sizes.append(stream.stat().st_size)
