@@ -39,8 +39,9 @@ enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
 // Search effort. Does not affect the syntax or the requirements on decoders.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 
-// Profile of the stream; Main requires decoders of version 1.1.
-enum class Profile : std::uint8_t { kBaseline, kMain };
+// Profile of the stream; Main requires decoders of version 1.1, High of version 1.2, which is not
+// released: its streams may change.
+enum class Profile : std::uint8_t { kBaseline, kMain, kHigh };
 
 // Parameters of the Baseline profile.
 struct BaselineTools {
@@ -56,7 +57,7 @@ struct BaselineTools {
   SeedMode seed_mode = SeedMode::kAuto;
 };
 
-// Parameters of the Main profile. Each tool can be disabled, for comparison.
+// Parameters of the Main and High profiles. Each tool can be disabled, for comparison.
 struct MainTools {
   std::uint32_t bones = 0;               // maximum per GOF, up to 1024; 0: chosen
   std::optional<Prediction> prediction;  // of spatial factors; none: chosen
@@ -65,6 +66,8 @@ struct MainTools {
   bool outer_ring = true;                // outer rings in Prediction::kLayers
   bool layer_steps = true;               // finer quantiser steps in coarser layers
   bool temporal_weights = true;  // transmitted weights besides the four fixed predictors
+  // High profile: trajectories whose factors adapt the weights of prediction; none: all.
+  std::optional<std::uint32_t> adaptive_factors;
   bool cobra_steps = false;      // temporal steps of Vasa and Skala 2009, (18), (19)
   // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools
   // above; if any member of this structure differs from its default, all GOFs are skinned.
@@ -103,7 +106,7 @@ struct EncoderSettings {
   // chosen by rate and distortion.
   std::uint32_t components = 0;
   BaselineTools baseline;        // must be left at its defaults unless profile is kBaseline
-  MainTools main;                // must be left at its defaults unless profile is kMain
+  MainTools main;                // must be left at its defaults if profile is kBaseline
   std::uint32_t gof_frames = 0;  // maximum frames per GOF; 0: 128; kWholeSequence: one GOF
   bool keep_order = false;       // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;

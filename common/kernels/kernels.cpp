@@ -49,7 +49,8 @@ void positions(const std::int64_t* places, const std::int64_t* displacements,
   }
 }
 
-constexpr Kernels kPlain{sum_products, add_weighted, weighted_places, positions};
+constexpr Kernels kPlain{sum_products, add_weighted,   weighted_places,
+                         positions,    predict_offset, adapt};
 
 }  // namespace
 
@@ -60,7 +61,8 @@ std::span<const Kernels> kernels() {
   return std::span(kLoops).first(kCount);
 #elif defined(RLPC_HAVE_WASM_KERNELS)
   static constexpr std::array<Kernels, 2> kLoops{
-      kPlain, {sum_products_wasm, add_weighted, weighted_places, positions}};
+      kPlain,
+      {sum_products_wasm, add_weighted, weighted_places, positions, predict_offset, adapt}};
   return kLoops;
 #else
   static constexpr std::array<Kernels, 1> kLoops{kPlain};

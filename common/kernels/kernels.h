@@ -1,6 +1,7 @@
-// The inner loops of reconstruction (8.5.3 and 8.14.3), over the vertices of a tile. Plain
-// loops are the definition; twins for AVX2 and WebAssembly SIMD do the same faster. All
-// arithmetic is exact, so that both give the same integers.
+// The inner loops of reconstruction: over the vertices of a tile (8.5.3 and 8.14.3), and over
+// the neighbours of a vertex (8.15). Plain loops are the definition; twins for AVX2 and
+// WebAssembly SIMD do the same faster. All arithmetic is exact, so that both give the same
+// integers.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <span>
 
 #include "common/components/component_limits.h"
+#include "common/kernels/weight_filter.h"
 
 namespace rlpc {
 
@@ -53,6 +55,9 @@ struct Kernels {
   // and sums of products, [kTileValues] each.
   void (*positions)(const std::int64_t* places, const std::int64_t* displacements,
                     const PositionWidths& widths, std::int32_t* positions);
+  // 8.15.2 and 8.15.3: predict_offset() and adapt() of weight_filter.h.
+  std::int64_t (*predict_offset)(const WeightFilter& filter, const std::int32_t* offsets);
+  void (*adapt)(WeightFilter& filter, const std::int32_t* offsets, std::int64_t error);
 };
 
 // The kernels that this machine supports: the plain ones first, the fastest last.

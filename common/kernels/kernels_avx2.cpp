@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "common/fixed_point.h"
+#include "common/kernels/weight_filter_avx2.h"
 
 #define RLPC_AVX2 [[gnu::target("avx2")]]
 
@@ -141,7 +142,8 @@ RLPC_AVX2 void positions(const std::int64_t* places, const std::int64_t* displac
 
 }  // namespace
 
-const Kernels kKernelsAvx2{sum_products, add_weighted, weighted_places, positions};
+const Kernels kKernelsAvx2{sum_products, add_weighted,        weighted_places,
+                           positions,    predict_offset_avx2, adapt_avx2};
 
 }  // namespace rlpc
 

@@ -11,6 +11,9 @@ namespace rlpc {
 // Each minor version adds a profile of the same number.
 inline constexpr std::uint32_t kProfileBaseline = 0;
 inline constexpr std::uint32_t kProfileMain = 1;
+inline constexpr std::uint32_t kProfileHigh = 2;
+// Table of B.1, by profile_idc.
+inline constexpr std::array<const char*, 3> kProfileNames{"Baseline", "Main", "High"};
 
 inline constexpr int kMinPositionBits = 2;
 inline constexpr int kMaxPositionBits = 24;
@@ -56,6 +59,7 @@ struct SequenceHeader {
   int position_bits = 20;
 
   const Level& level() const { return kLevels[level_idc - 1]; }
+  bool has_skinned_gofs() const { return profile_idc >= kProfileMain; }
   bool operator==(const SequenceHeader&) const = default;
 };
 

@@ -13,7 +13,7 @@ inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
                                                         'C',  0x0D, 0x0A, 0x1A};
 
 inline constexpr std::uint32_t kVersionMajor = 1;
-inline constexpr std::uint32_t kVersionMinor = 1;  // the newest supported
+inline constexpr std::uint32_t kVersionMinor = 2;  // the newest supported
 
 inline constexpr std::size_t kStreamHeaderBytes = 10;  // signature and version
 inline constexpr std::size_t kUnitHeaderBytes = 5;     // ancillary_flag, unit_type, unit_size

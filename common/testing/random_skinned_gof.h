@@ -104,6 +104,7 @@ class RandomSkinnedGof {
     gof.rest_step = static_cast<std::uint32_t>(between(1, static_cast<int>(kMaxRestStep)));
     gof.prediction = static_cast<Prediction>(below(4));
     gof.bones.resize(1 + below(sizes.max_bones));
+    if (coin()) header.profile_idc = kProfileHigh;
   }
 
   void make_layers_of_gof(const CodedMesh& mesh) {
@@ -113,6 +114,7 @@ class RandomSkinnedGof {
     gof.weights.damping_log2 = between(0, 15);
     gof.weights.outer_weight = between(0, 15);
     gof.weights.outer_scale = between(0, 15);
+    if (header.profile_idc >= kProfileHigh) gof.weights.num_adaptive_factors = below(12);
     gof.layer_group_size.clear();
     for (std::uint32_t left = mesh.num_layers(); left > 0;
          left -= gof.layer_group_size.back()) {

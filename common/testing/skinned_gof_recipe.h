@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,6 +39,7 @@ struct SkinnedGofRecipe {
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
   std::uint32_t outer_scale = 0;
+  std::optional<std::uint32_t> num_adaptive_factors;  // of the High profile
   std::uint32_t num_layer_groups_minus1 = 0;
   std::vector<std::uint32_t> layer_group_layers_minus1;
   std::vector<std::uint32_t> layer_step_minus1;
@@ -59,6 +61,7 @@ struct SkinnedGofRecipe {
       w.u(4, damping_log2);
       w.u(4, outer_weight);
       w.u(4, outer_scale);
+      if (num_adaptive_factors) w.ue(*num_adaptive_factors);
       w.ue(num_layer_groups_minus1);
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);

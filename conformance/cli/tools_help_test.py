@@ -63,8 +63,8 @@ class Help(ToolsTest):
 
     def test_the_profile_of_an_option(self):
         groups = self.page("rlpcenc", "--help-all").split("\n\n")
-        for heading, options in (("Both profiles", ("--profile", "--components")),
-                                 ("Main profile only", ("--bones", "--layer-groups")),
+        for heading, options in (("All profiles", ("--profile", "--components")),
+                                 ("Main and High profiles only", ("--bones", "--layer-groups")),
                                  ("Baseline profile only", ("--clusters", "--seeds"))):
             group = [text for text in groups if text.startswith(heading)]
             self.assertEqual(len(group), 1, heading)

@@ -102,7 +102,7 @@ double CaseMaker::target_value() {
 void CaseMaker::read_options() {
   rlpc_encode_options& o = case_.options;
   rlpc_encode_options_init(&o, sizeof o);
-  o.profile = choice(2);
+  o.profile = choice(3);
   o.preset = choice(3);
   o.target = choice(3, RLPC_TARGET_KG);
   o.target_value = target_value();
@@ -125,7 +125,7 @@ void CaseMaker::read_options() {
 EncoderSettings CaseMaker::read_settings() {
   const rlpc_encode_options& o = case_.options;
   EncoderSettings s;
-  s.profile = o.profile == RLPC_BASELINE ? Profile::kBaseline : Profile::kMain;
+  s.profile = static_cast<Profile>(o.profile % 3);
   s.preset = static_cast<Preset>(o.preset % 3);
   s.target = {static_cast<Target::Kind>(o.target % 4), o.target_value};
   s.gof_frames = o.gof_frames;
@@ -166,7 +166,7 @@ EncoderSettings CaseMaker::read_settings() {
   m.layer_groups = number(6);
   // The tools of the other profile are refused, so most cases do not set them.
   if (s.profile == Profile::kBaseline || (switches & 192) == 192) s.baseline = b;
-  if (s.profile == Profile::kMain || (switches & 192) == 192) s.main = m;
+  if (s.profile != Profile::kBaseline || (switches & 192) == 192) s.main = m;
   return s;
 }
 
@@ -325,7 +325,7 @@ void CaseMaker::keep_to_source() {
 }  // namespace
 
 bool EncoderCase::has_known_options() const {
-  return options.profile <= RLPC_MAIN && options.preset <= RLPC_SLOW &&
+  return options.profile <= RLPC_HIGH && options.preset <= RLPC_SLOW &&
          options.target >= RLPC_TARGET_KG && options.target <= RLPC_TARGET_MAX_ERROR &&
          options.hash_mode <= RLPC_HASH_FRAME;
 }

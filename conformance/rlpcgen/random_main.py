@@ -1,4 +1,4 @@
-"""Random legal streams of the Main profile: skinned GOFs with slices, and cluster GOFs."""
+"""Random legal streams of the Main and High profiles: skinned GOFs with slices, and cluster GOFs."""
 
 import random_streams
 
@@ -151,9 +151,31 @@ class MainSequence(random_streams.Sequence):
 
 def builder_of(profile):
     """The class that builds random streams of a profile, by the name that sidecars have for it."""
-    return {"baseline": random_streams.RandomBuilder, "main": MainBuilder}[profile]
+    return {"baseline": random_streams.RandomBuilder, "main": MainBuilder,
+            "high": HighBuilder}[profile]
 
 
 class MainBuilder(random_streams.RandomBuilder):
     def __init__(self, program):
         super().__init__(program, MainPlan, MainSource, MainSequence)
+
+
+class HighSource(MainSource):
+    """Values of the elements that the Main profile does not have, too."""
+
+    def _profile_idc(self, ns, indices, arguments):
+        return 2
+
+    def _num_adaptive_factors(self, ns, indices, arguments):
+        return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
+
+
+class HighSequence(MainSequence):
+    """The units of a random stream of the High profile."""
+
+    version_minor = 2
+
+
+class HighBuilder(random_streams.RandomBuilder):
+    def __init__(self, program):
+        super().__init__(program, MainPlan, HighSource, HighSequence)

@@ -48,9 +48,10 @@ def _header_value(recipe, name):
 
 
 def _profile(recipe):
-    """The profile: also Baseline if version 1.0 has the profile_idc of a later profile."""
+    """The profile: Baseline unless the version is the one that introduced profile_idc."""
     minor = [e.text for e in recipe.stream if e.name == "version_minor"][-1:]
-    return "main" if minor == ["1"] and _header_value(recipe, "profile_idc") == 1 else "baseline"
+    found = _header_value(recipe, "profile_idc")
+    return {1: "main", 2: "high"}.get(found, "baseline") if minor == [str(found)] else "baseline"
 
 
 def _expect(recipe, found, place):

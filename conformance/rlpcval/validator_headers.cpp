@@ -143,10 +143,16 @@ bool check_clusters(ElementReader& r, const SequenceHeader& header) {
 }
 
 // 6.11 layers_of_gof( ). False if it is not known where it ends.
-bool check_layers(ElementReader& r, std::uint32_t num_layers, std::uint32_t& layer_groups) {
+bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
+                  std::uint32_t& layer_groups) {
   (void)r.u(4, "damping_log2");
   (void)r.u(4, "outer_weight");
   (void)r.u(4, "outer_scale");
+  if (header.profile_idc >= kProfileHigh) {
+    const std::uint32_t most = header.level().max_components;
+    (void)r.require(r.ue("num_adaptive_factors") <= most, "R-BON-06",
+                    level_allows(header.level_idc, most, " trajectories of a GOF"));
+  }
   const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;
   if (num_layers == 0) return false;
   const std::string has = "the mesh has " + std::to_string(num_layers) + " layers";
@@ -180,7 +186,8 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
   good &= good_groups;
   SliceCounts slices;
   const auto prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
-  if (prediction == Prediction::kLayers && !check_layers(r, num_layers, slices.layer_groups)) {
+  if (prediction == Prediction::kLayers &&
+      !check_layers(r, header, num_layers, slices.layer_groups)) {
     return false;
   }
   if (good_groups && r.readable()) {
@@ -198,7 +205,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::uint32_t num_layers) {
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
-  const bool has_bones = header.profile_idc == kProfileMain && r.u(1, "bones_flag") != 0;
+  const bool has_bones = header.has_skinned_gofs() && r.u(1, "bones_flag") != 0;
   if (r.readable()) gof.kind = has_bones ? GofKind::kSkinned : GofKind::kClusters;
   gof.section_readable =
       has_bones ? check_bones(r, header, num_layers, gof) : check_clusters(r, header);

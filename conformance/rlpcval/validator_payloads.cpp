@@ -32,7 +32,7 @@ std::string hex(std::uint32_t value) {
 
 // Keeps what the rest of the stream is read with, up to the caller's limits.
 std::uint64_t memory_of(const SequenceHeader& h) {
-  const std::uint64_t of_vertex = h.profile_idc == kProfileMain ? 400 : 100;
+  const std::uint64_t of_vertex = h.has_skinned_gofs() ? 400 : 100;
   return std::uint64_t{h.num_vertices} * of_vertex + std::uint64_t{h.num_triangles} * 120;
 }
 

@@ -79,6 +79,9 @@ bool StreamUnits::stream_header() {
   }
   if (bytes[9] > kVersionMinor) {
     findings_.error({Errc::kUnsupported, "R-STR-03", "version_minor", 72}, version);
+  } else if (bytes[9] == 2 && size() == bytes.size()) {
+    findings_.error({Errc::kUnsupported, "R-STR-03", "version_minor", 72},
+                    "a stream of version 1.2 does not end after its version");
   }
   return true;
 }

@@ -26,7 +26,7 @@ using Payload = std::vector<std::uint8_t>;
 
 SkinnedGofPayloads payloads_of(const RandomSkinnedGof& from) {
   const CodedMesh mesh = from.coded_mesh();
-  return write_skinned_gof(from.gof, mesh, from.header.position_bits);
+  return write_skinned_gof(from.gof, mesh, from.header);
 }
 
 // A decoder's side of one stream.

@@ -192,7 +192,7 @@ class SlicedAnimation {
   // GOF unit, slices, and the hash of each frame.
   void append_gof(StreamBytes& bytes, const SkinnedGof& gof) const {
     const CodedMesh mesh(gof.prediction, topology_, layers_);
-    const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_.position_bits);
+    const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_);
     append(bytes, UnitType::kGof, payloads.gof);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));

@@ -197,8 +197,8 @@ class Text(FolderTest):
 
     def test_every_element_of_the_contract_is_there(self):
         answer = specdec.describe(ROOT / "spec")
-        self.assertEqual(answer["spec"], ["1.0", "1.1"])
-        self.assertEqual(answer["profiles"], ["baseline", "main"])
+        self.assertEqual(answer["spec"], ["1.0", "1.1", "1.2"])
+        self.assertEqual(answer["profiles"], ["baseline", "main", "high"])
         self.assertEqual(answer["levels"], [1, 2, 3, 4])
 
 

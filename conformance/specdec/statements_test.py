@@ -139,7 +139,8 @@ class Statements(unittest.TestCase):
     def test_which_rule_a_version_breaks(self):
         data = next(MAIN.glob("BON/*.rlpc")).read_bytes()
         header = units_of(data)[0][1]
-        for minor, profile, rule, read in ((2, 0, "R-STR-03", False), (2, 3, "R-STR-03", False),
+        for minor, profile, rule, read in ((3, 0, "R-STR-03", False), (3, 4, "R-STR-03", False),
+                                           (2, 1, "R-STR-03", True), (2, 3, "R-HDR-01", True),
                                            (1, 0, "R-STR-03", True), (1, 2, "R-HDR-01", True),
                                            (0, 1, "R-HDR-01", True)):
             units = [(1, bytes([profile]) + header[1:])] + units_of(data)[1:]

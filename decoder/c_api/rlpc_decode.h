@@ -62,7 +62,7 @@ typedef struct rlpc_decode_options {
 
 typedef struct rlpc_stream_info {
   size_t struct_size;  // as passed to rlpc_decoder_info
-  uint32_t profile;    // 0: Baseline, 1: Main
+  uint32_t profile;    // 0: Baseline, 1: Main, 2: High
   uint32_t level;
   uint32_t num_vertices;
   uint32_t num_triangles;

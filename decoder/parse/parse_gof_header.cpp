@@ -18,7 +18,7 @@ GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
       (gof.num_frames > level.max_gof_frames || num_values > level.max_gof_values)) {
     r.fail(Errc::kInvalid, "R-LVL-04", "num_gof_frames_minus1", at);
   }
-  if (header.profile_idc == kProfileMain && r.flag("bones_flag")) gof.kind = GofKind::kSkinned;
+  if (header.has_skinned_gofs() && r.flag("bones_flag")) gof.kind = GofKind::kSkinned;
   return gof;
 }
 

@@ -84,6 +84,10 @@ void SkinnedGofParser::layers(BitReader& r) {
   gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
   gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
   gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
+  if (header_.profile_idc >= kProfileHigh) {
+    gof_.weights.num_adaptive_factors =
+        r.ue("num_adaptive_factors", {0, header_.level().max_components}, "R-BON-06");
+  }
   const std::int64_t num_layers = mesh_->num_layers();
   const std::uint32_t num_groups =
       r.ue("num_layer_groups_minus1", {0, num_layers - 1}, "R-BON-03") + 1;

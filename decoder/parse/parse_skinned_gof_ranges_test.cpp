@@ -19,11 +19,13 @@ const std::vector<Triangle> kGrid{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 1, 5},
                                   {3, 5, 6}, {3, 6, 7}, {3, 7, 4}, {7, 6, 8}};
 
 struct Gof {
-  SkinnedGofUnits units{main_header(9, 1), kGrid};
+  SkinnedGofUnits units;
   Result<bool> parsed;
   SkinnedGof gof;
 
-  explicit Gof(const SkinnedGofRecipe& recipe) : parsed(units.gof(recipe.payload())) {
+  explicit Gof(const SkinnedGofRecipe& recipe)
+      : units(recipe.num_adaptive_factors ? high_header(9, 1) : main_header(9, 1), kGrid),
+        parsed(units.gof(recipe.payload())) {
     if (parsed) gof = units.parser().finish();
   }
 };
@@ -50,6 +52,11 @@ TEST(ParseSkinnedGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
       {"R-BON-01", "rest_step_minus1", 65535, [](auto& r, auto v) { r.rest_step_minus1 = v; }},
       {"R-BON-02", "num_component_groups", 255,
        [](auto& r, auto v) { r.num_component_groups = v; }},
+      {"R-BON-06", "num_adaptive_factors", 512,
+       [](auto& r, auto v) {
+         r = layered();
+         r.num_adaptive_factors = v;
+       }},
       {"R-BON-03", "num_layer_groups_minus1", 2,
        [](auto& r, auto v) {
          r = layered();
@@ -126,6 +133,18 @@ TEST(ParseSkinnedGofRanges, ElementsWithoutBoundsTakeAllValues) {
     EXPECT_EQ(parsed.gof.layer_group_size.size(), 1U);
     EXPECT_EQ(parsed.gof.layer_group_size[0], idc == 3 ? 3U : 1U);
   }
+}
+
+// 6.11: only in the High profile, and only with layers.
+TEST(ParseSkinnedGofRanges, AdaptiveFactorsAreThoseOfTheHighProfile) {
+  SkinnedGofRecipe recipe = layered();
+  EXPECT_EQ(Gof(recipe).gof.weights.num_adaptive_factors, 0U);
+  recipe.num_adaptive_factors = 7;
+  EXPECT_EQ(Gof(recipe).gof.weights.num_adaptive_factors, 7U);
+  recipe.prediction_idc = 2;
+  const Gof parsed(recipe);
+  ASSERT_TRUE(parsed.parsed);
+  EXPECT_EQ(parsed.gof.weights.num_adaptive_factors, 0U);
 }
 
 TEST(ParseSkinnedGofRanges, BonesTakeAllPivotsFlagsAndOrders) {

@@ -29,6 +29,11 @@ inline SequenceHeader main_header(std::uint32_t num_vertices, std::uint32_t num_
   header.position_bits = 12;
   return header;
 }
+inline SequenceHeader high_header(std::uint32_t num_vertices, std::uint32_t num_frames) {
+  SequenceHeader header = main_header(num_vertices, num_frames);
+  header.profile_idc = kProfileHigh;
+  return header;
+}
 
 class SkinnedGofUnits {
  public:

@@ -1,7 +1,7 @@
 // What the page says in words and numbers.
 import { State, kStateNames } from "./frame_states.js";
 
-const kProfiles = { 0: "Baseline", 1: "Main" };
+const kProfiles = { 0: "Baseline", 1: "Main", 2: "High" };
 const kSizes = [[1, "B"], [1e3, "kB"], [1e6, "MB"], [1e9, "GB"], [1e12, "TB"]];
 
 export function grouped(number) {

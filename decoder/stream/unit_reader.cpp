@@ -39,7 +39,9 @@ Result<bool> UnitReader::stream_header() {
   }
   if (bytes[8] != kVersionMajor)
     return Error{Errc::kUnsupported, "R-STR-02", "version_major", 64};
-  if (bytes[9] > kVersionMinor) return unsupported_minor_version();
+  // Version 1.1 called a stream unsupported that ends after the number of version 1.2.
+  const bool ends_here = bytes[9] == 2 && source_->size() == bytes.size();
+  if (bytes[9] > kVersionMinor || ends_here) return unsupported_minor_version();
   version_minor_ = bytes[9];
   return true;
 }

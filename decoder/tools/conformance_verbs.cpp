@@ -144,7 +144,7 @@ int describe() {
                        {"name", "rlpcdec"},
                        {"version", RLPC_VERSION},
                        {"spec", versions},
-                       {"profiles", Json::array({"baseline", "main"})},
+                       {"profiles", Json::array({"baseline", "main", "high"})},
                        {"levels", levels},
                        {"outputs", Json::array({"rlpd", "f32"})}};
   std::cout << answer.dump() << "\n";

@@ -146,7 +146,7 @@ int extract(const ExtractOptions& o) {
   }
   auto cutter = SubStreamExtractor::open(std::move(*source), o.cut, o.limits);
   if (!cutter) return complain(o, cutter.error());
-  if (cutter->header().profile_idc != kProfileMain) {
+  if (!cutter->header().has_skinned_gofs()) {
     return complain(name_of_input(o.input) + ": " + SliceCut::kNoSlices, kExitUnsupported);
   }
   auto file = OutputFile::create(o.output);

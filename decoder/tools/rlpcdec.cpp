@@ -50,7 +50,7 @@ is needed: rlpd or glb; of a single frame also obj or ply.
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
 
-Fewer components or layers are faster to decode (Main profile). The result is
+Fewer components or layers are faster to decode (not Baseline). The result is
 that of decoding after rlpcinfo --extract components=K,layers=L. Cluster GOFs
 have no slices: they are decoded whole.
 
@@ -64,7 +64,7 @@ limits; 4 input or output failed; 64 wrong usage.)";
 // Option groups of the help page.
 constexpr const char* kOutput = "Output (one of -o, --html, --verify)";
 constexpr const char* kPage = "Page";
-constexpr const char* kLess = "Less detail (Main profile)";
+constexpr const char* kLess = "Less detail (Main and High profiles)";
 constexpr const char* kLimits = "Limits and threads";
 constexpr const char* kReport = "Report";
 
@@ -173,7 +173,7 @@ int decode(const Options& o) {
   auto decoder = rlpc::Decoder::open(std::move(*source), o.decoder);
   if (!decoder) return complain(o, decoder.error());
   const rlpc::SequenceHeader& header = decoder->header();
-  if (o.decoder.cut.cuts() && header.profile_idc != rlpc::kProfileMain) {
+  if (o.decoder.cut.cuts() && !header.has_skinned_gofs()) {
     return complain(rlpc::name_of_input(o.input) + ": " + rlpc::SliceCut::kNoSlices,
                     rlpc::kExitUnsupported);
   }

@@ -31,7 +31,7 @@ constexpr const char* kExamples = R"(Examples
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
 constexpr const char* kDetails =
-    R"(--extract writes the stream without the slices of finer detail (Main profile),
+    R"(--extract writes the stream without the slices of finer detail (not Baseline),
 without re-encoding. Of each skinned GOF it keeps the component groups with up
 to K trajectories (0: only bones and rest shape), and the layer groups with up
 to L vertex layers, the coarsest (always at least the first). Cluster GOFs have

@@ -197,7 +197,7 @@ void print_table(const StreamInfo& s, bool with_gofs) {
   const SequenceHeader& h = s.header;
   const double total = 8.0 * static_cast<double>(s.bytes);
   std::printf("%s: %s profile, level %u\n", printable(name_of_input(s.input)).c_str(),
-              h.profile_idc == kProfileMain ? "Main" : "Baseline", h.level_idc);
+              kProfileNames.at(h.profile_idc), h.level_idc);
   std::printf("  %s, %s, %s at %u/%u per second, %s\n",
               counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
               counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
@@ -224,9 +224,8 @@ void print_table(const StreamInfo& s, bool with_gofs) {
 std::string page_text(const StreamInfo& s) {
   const SequenceHeader& h = s.header;
   HtmlPage page(std::filesystem::path(s.input).filename().string());
-  const bool main = h.profile_idc == kProfileMain;
-  page.add_fact("profile",
-                (main ? "Main, level " : "Baseline, level ") + std::to_string(h.level_idc));
+  page.add_fact("profile", std::string(kProfileNames.at(h.profile_idc)) + ", level " +
+                               std::to_string(h.level_idc));
   page.add_fact("mesh", grouped_text(h.num_vertices) + " vertices, " +
                             grouped_text(h.num_triangles) + " triangles");
   page.add_fact("frames",

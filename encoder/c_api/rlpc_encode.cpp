@@ -57,6 +57,9 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
     case RLPC_MAIN:
       settings.profile = Profile::kMain;
       break;
+    case RLPC_HIGH:
+      settings.profile = Profile::kHigh;
+      break;
     default:
       return std::nullopt;
   }

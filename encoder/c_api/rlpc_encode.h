@@ -51,7 +51,8 @@ typedef struct rlpc_frame_format {
   float box_max[3];
 } rlpc_frame_format;
 
-typedef enum rlpc_profile { RLPC_BASELINE = 0, RLPC_MAIN = 1 } rlpc_profile;
+// RLPC_HIGH is version 1.2, which is not released: its streams may change.
+typedef enum rlpc_profile { RLPC_BASELINE = 0, RLPC_MAIN = 1, RLPC_HIGH = 2 } rlpc_profile;
 
 typedef enum rlpc_preset { RLPC_FAST = 0, RLPC_MEDIUM = 1, RLPC_SLOW = 2 } rlpc_preset;
 

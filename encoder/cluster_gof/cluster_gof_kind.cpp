@@ -67,13 +67,13 @@ std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
   const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&
                           settings.target.kind != Target::kMaxError;
-  if (settings.profile == Profile::kMain && !suits_main) return nullptr;
+  if (settings.profile != Profile::kBaseline && !suits_main) return nullptr;
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 
 std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
                                              const EncoderSettings& settings) {
-  if (settings.profile != Profile::kMain || settings.main != MainTools{}) return nullptr;
+  if (settings.profile == Profile::kBaseline || settings.main != MainTools{}) return nullptr;
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 

@@ -32,7 +32,8 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
-               temporal_weights, cobra_steps, clusters, component_groups, layer_groups] = tools;
+               temporal_weights, adaptive_factors, cobra_steps, clusters, component_groups,
+               layer_groups] = tools;
   const MainTools defaults;
   return {{"--bones", bones != defaults.bones},
           {"--prediction", prediction != defaults.prediction},
@@ -41,6 +42,7 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"--no-outer-ring", outer_ring != defaults.outer_ring},
           {"--no-layer-steps", layer_steps != defaults.layer_steps},
           {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
+          {"--adaptive-factors", adaptive_factors != defaults.adaptive_factors},
           {"--basis-steps", cobra_steps != defaults.cobra_steps},
           {"--no-clusters", clusters != defaults.clusters},
           {"--component-groups", component_groups != defaults.component_groups},
@@ -118,7 +120,7 @@ std::optional<InputError> check_counts(const EncoderSettings& s) {
 }  // namespace
 
 std::optional<InputError> check_settings(const EncoderSettings& s) {
-  const bool main = s.profile == Profile::kMain;
+  const bool main = s.profile != Profile::kBaseline;
   if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
                         : check_unused(parameters(s.main), "main")) {
     return error;

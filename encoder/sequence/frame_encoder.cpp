@@ -130,7 +130,7 @@ class FrameEncoder::Impl {
 std::optional<InputError> FrameEncoder::Impl::prepare() {
   if (auto error = check_settings(settings_)) return error;
   SequenceHeader header;
-  header.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
+  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
   header.num_vertices = format_.num_vertices;
   header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
   header.num_frames = format_.num_frames;

@@ -55,7 +55,7 @@ class SequenceEncoder {
 
 std::optional<InputError> SequenceEncoder::prepare() {
   SequenceHeader header;
-  header.profile_idc = settings_.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
+  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
   header.num_vertices = source_.num_vertices();
   header.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header.num_frames = source_.num_frames();
@@ -88,7 +88,7 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
                       " frames (specification, Annex B), not " +
                       std::to_string(header.num_frames) + "; split it"};
   }
-  if (header.profile_idc != kProfileMain || settings_.preset == Preset::kFast) {
+  if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast) {
     spans_ = equal_gofs(header.num_frames, longest);
     return std::nullopt;
   }

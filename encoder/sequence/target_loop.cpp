@@ -85,7 +85,7 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
   // factor. Its rest positions then cost more, and leave less for trajectories whose residuals
   // are not chosen by rate.
   constexpr double kFinerFast = 1.25;
-  const bool fast = header.profile_idc == kProfileMain && settings.preset == Preset::kFast;
+  const bool fast = header.has_skinned_gofs() && settings.preset == Preset::kFast;
   const double finer = fast ? kFinerFast : 1.0;
   const AnalysisRange range{.finest = finer / kAnalysisServes,
                             .made_for = finer,

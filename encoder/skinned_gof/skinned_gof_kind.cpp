@@ -30,7 +30,7 @@ class SkinnedGofKind : public GofEncoder {
 
 std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
-  if (settings.profile != Profile::kMain) return nullptr;
+  if (settings.profile == Profile::kBaseline) return nullptr;
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }
 

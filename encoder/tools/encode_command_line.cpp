@@ -188,10 +188,12 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
 }
 
 void add_method_options(CLI::App& app, EncodeCommandLine& line) {
-  const std::string method = "Both profiles";
+  const std::string method = "All profiles";
   add_choice<Profile>(app, "--profile", line.options.settings.profile,
-                      {{"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
-                      "Profile of the stream: main (default), baseline")
+                      {{"high", Profile::kHigh},
+                       {"main", Profile::kMain},
+                       {"baseline", Profile::kBaseline}},
+                      "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
       ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
@@ -237,7 +239,7 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
 }
 
 void add_main_options(CLI::App& app, EncodeCommandLine& line) {
-  const std::string tools = "Main profile only; any of these disables cluster GOFs";
+  const std::string tools = "Main and High profiles only; any of these disables cluster GOFs";
   MainTools& t = line.options.settings.main;
   const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t most,
                               const char* what) {
@@ -274,6 +276,11 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(tools);
   add_off_switch(app, "--no-clusters", t.clusters,
                  "Bones in all GOFs, even where clusters cost less")
+      ->group(tools);
+  app.add_option("--adaptive-factors", t.adaptive_factors,
+                 "Trajectories that adapt prediction weights, High profile (default: all)")
+      ->check(CLI::Range(std::uint32_t{0}, kLevels.back().max_components))
+      ->option_text("N")
       ->group(tools);
   add_number("--component-groups", t.component_groups, 255,
              "Cut points among trajectories, at most one each (default: by size)");

@@ -51,7 +51,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
   if (!o.verbose) return;
-  const char* const bones = o.settings.profile != Profile::kMain ? ""
+  const char* const bones = o.settings.profile == Profile::kBaseline ? ""
                             : r.clusters == 1                    ? "bone or "
                                                                  : "bones or ";
   std::printf("  %u GOF%s, %u %scluster%s, %u component%s, %u trial%s\n", r.num_gofs,

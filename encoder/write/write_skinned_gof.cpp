@@ -172,9 +172,9 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
 }
 
 // 6.5 gof( ) and 6.11 bones_of_gof( )
-std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position_bits) {
+std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, const SequenceHeader& header) {
   BitWriter w;
-  write_gof_header(w, gof, kProfileMain);
+  write_gof_header(w, gof, header.profile_idc);
   w.ue(static_cast<std::uint32_t>(gof.bones.size()) - 1);
   w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
   w.u(3, static_cast<std::uint32_t>(gof.weight_bits));
@@ -185,6 +185,7 @@ std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position
     w.u(4, static_cast<std::uint32_t>(gof.weights.damping_log2));
     w.u(4, static_cast<std::uint32_t>(gof.weights.outer_weight));
     w.u(4, static_cast<std::uint32_t>(gof.weights.outer_scale));
+    if (header.profile_idc >= kProfileHigh) w.ue(gof.weights.num_adaptive_factors);
     w.ue(static_cast<std::uint32_t>(gof.layer_group_size.size()) - 1);
     for (std::size_t j = 0; j + 1 < gof.layer_group_size.size(); ++j) {
       w.ue(gof.layer_group_size[j] - 1);
@@ -192,16 +193,16 @@ std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, int position
     for (const std::uint8_t step : gof.layer_step) w.u(4, step - 1U);
   }
   w.byte_alignment();
-  w.append(write_bone_section(gof, position_bits));
+  w.append(write_bone_section(gof, header.position_bits));
   return w.take();
 }
 
 }  // namespace
 
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
-                                     int position_bits) {
+                                     const SequenceHeader& header) {
   SkinnedGofPayloads payloads;
-  payloads.gof = write_bones_of_gof(gof, position_bits);
+  payloads.gof = write_bones_of_gof(gof, header);
   SliceWriter writer(gof, mesh);
   for (std::uint32_t group = 0; group < gof.slice_layers.size(); ++group) {
     for (std::uint32_t layers = 0; layers < gof.slice_layers[group]; ++layers) {

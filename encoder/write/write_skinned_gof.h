@@ -6,6 +6,7 @@
 
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/sequence_header.h"
 
 namespace rlpc {
 
@@ -16,6 +17,6 @@ struct SkinnedGofPayloads {
 };
 // Writes the slices that gof.slice_layers lists. All values must be legal, which is asserted.
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
-                                     int position_bits);
+                                     const SequenceHeader& header);
 
 }  // namespace rlpc

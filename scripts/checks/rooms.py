@@ -31,7 +31,7 @@ ROOMS = {
     "common/syntax": _GOFS,
     **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components"}),
     "common/kernels": {"common", "common/components"},
-    "common/mesh_prediction": {"common", "common/mesh", "common/kernels"},
+    "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
     "common/c_api": {"common"},
     "common/testing": _GOFS,

@@ -17,7 +17,8 @@ constexpr int kTemporalWeightFractionBits = 6;
 // 8.10.2 Spatial values
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
-                                       const ValuePrediction& prediction) {
+                                       const ValuePrediction& prediction,
+                                       AdaptiveWeights* weights) {
   const FactorGroup factors = factor_group(gof, group);
   const std::size_t n = factors.size();
   const std::vector<std::int32_t>& residuals = gof.vertex_residual[group];
@@ -27,9 +28,24 @@ std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& 
   }
   std::vector<std::int32_t> values(residuals.size());
   std::vector<std::int64_t> predicted(n);
+  std::optional<VertexAdaptation> adaptation;
+  if (weights != nullptr) {
+    weights->start(factors.first - kRestFactors, n);
+    adaptation.emplace(*weights);
+  }
   for (const std::uint32_t v : mesh.order()) {
-    prediction.predict(v, values, predicted);
     const int layer_step = gof.layer_step[mesh.layer_of(v)];
+    if (adaptation && adaptation->start(v, values)) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::int64_t of_weights = adaptation->predict();
+        values[v * n + k] = clip_signed(
+            bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
+        adaptation->add(of_weights, values[v * n + k]);
+      }
+      adaptation->finish();
+      continue;
+    }
+    prediction.predict(v, values, predicted);
     for (std::size_t k = 0; k < n; ++k) {
       const std::int32_t residual = residuals[v * n + k];
       const std::int64_t difference = group == 0 ? rest_difference(gof, residual, layer_step)
@@ -159,18 +175,23 @@ void SkinnedRecon::add_influences(std::span<const Influences> influences,
 
 void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
                                std::span<const std::int32_t> rest) {
+  std::array<std::vector<std::int32_t>, 3> plane;
   std::optional<GeometryWeights> weights;
+  std::optional<AdaptiveWeights> adaptive;
   if (gof.prediction == Prediction::kLayers && !gof.trajectories.empty()) {
-    std::array<std::vector<std::int32_t>, 3> plane;
     for (std::size_t i = 0; i < rest.size(); ++i) plane[i % 3].push_back(rest[i]);
-    weights.emplace(mesh, gof.weights,
-                    std::array<std::span<const std::int32_t>, 3>{plane[0], plane[1], plane[2]});
+    const std::array<std::span<const std::int32_t>, 3> planes{plane[0], plane[1], plane[2]};
+    weights.emplace(mesh, gof.weights, planes);
+    if (gof.weights.num_adaptive_factors > 0) {
+      adaptive.emplace(mesh, *weights, gof.weights, planes);
+    }
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
   std::vector<std::int32_t> temporal(3 * std::size_t{num_frames_});
   for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
     const FactorGroup factors = factor_group(gof, group);
-    const auto values = recon_values(mesh, gof, group, widths_.position_bits, prediction);
+    const auto values = recon_values(mesh, gof, group, widths_.position_bits, prediction,
+                                     adaptive ? &*adaptive : nullptr);
     for (std::size_t k = 0; k < factors.size(); ++k) {
       const Trajectory& trajectory = gof.trajectories[factors.first + k - kRestFactors];
       const std::vector<Vec3i> series = recon_trajectory(trajectory);

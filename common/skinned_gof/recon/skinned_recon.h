@@ -11,6 +11,7 @@
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/mesh_prediction/adaptive_weights.h"
 #include "common/mesh_prediction/value_prediction.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -28,10 +29,11 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
 }
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
-// of layers whose slices are absent.
+// of layers whose slices are absent. weights: null if no factor is adaptive.
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
-                                       const ValuePrediction& prediction);
+                                       const ValuePrediction& prediction,
+                                       AdaptiveWeights* weights = nullptr);
 
 // 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
 // absent; [num_vertices].

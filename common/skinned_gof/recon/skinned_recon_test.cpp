@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/testing/filter_of_text_test.h"
 #include "common/testing/random_skinned_gof.h"
 
 namespace rlpc {
@@ -26,6 +27,7 @@ class TextRecon {
         bones_(recon_bones(gof_.bones, gof_.num_frames)) {
     for (std::size_t l = 0; l < kRestFactors + gof_.trajectories.size(); ++l) {
       if (l == kRestFactors && gof_.prediction == Prediction::kLayers) make_weights();
+      if (gof_.weights.num_adaptive_factors > 0) start_factor(l);
       factors.push_back(reconstruct(l));
     }
   }
@@ -60,6 +62,55 @@ class TextRecon {
                      std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
 
+  FilterOfText::List neighbour_offsets(std::uint32_t v, const Plane& values,
+                                       std::int64_t& mean) const {
+    const auto ring = mesh_.ring(v);
+    std::int64_t sum = 0;
+    for (const std::uint32_t u : ring) sum += values[u];
+    mean = div_round(sum, static_cast<std::int64_t>(ring.size()));
+    FilterOfText::List offsets;
+    for (const std::uint32_t u : ring) offsets.push_back(values[u] - mean);
+    for (const std::uint32_t u : mesh_.outer_ring(v)) offsets.push_back(values[u] - mean);
+    return offsets;
+  }
+
+  // 8.15.1 StartFactor( l )
+  void start_factor(std::size_t l) {
+    for (std::uint32_t v = 0; v < mesh_.num_vertices(); ++v) {
+      if (l == kRestFactors) {
+        filters_.emplace_back();
+        filters_[v].ring = mesh_.ring(v).size();
+        for (const std::int64_t w : (*weights_)[v]) {
+          filters_[v].weight.push_back(
+              clip3(-FilterOfText::kMaxWeight, FilterOfText::kMaxWeight, w * 4));
+        }
+        filters_[v].start_spread(12);
+        if (gof_.weights.damping_log2 > 0 && filters_[v].ring > 1) adapt_to_rest(v);
+      } else if (std::find(gof_.group_end.begin() + 1, gof_.group_end.end(), l) !=
+                 gof_.group_end.end()) {
+        filters_[v].start_spread(9);
+      }
+    }
+  }
+
+  void adapt_to_rest(std::uint32_t v) {
+    std::array<FilterOfText::List, 3> offsets;
+    Vec3l gap{};
+    std::int64_t largest = 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::int64_t mean = 0;
+      offsets[c] = neighbour_offsets(v, factors[c], mean);
+      gap[c] = factors[c][v] - mean;
+      largest = std::max({largest, std::abs(gap[c]), FilterOfText::most_of(offsets[c])});
+    }
+    const int shift = floor_log2(static_cast<std::uint64_t>(largest)) - 9;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::int64_t& x : offsets[c]) x = shift_by(x, shift);
+      filters_[v].adapt(offsets[c],
+                        shift_by(gap[c], shift) - filters_[v].predict_offset(offsets[c]));
+    }
+  }
+
   std::int64_t residual_of(std::size_t l, std::uint32_t v) const {
     std::size_t group = 0;
     while (gof_.group_end[group] <= l) ++group;
@@ -67,14 +118,24 @@ class TextRecon {
     return gof_.vertex_residual[group][v * (gof_.group_end[group] - first) + l - first];
   }
 
-  Plane reconstruct(std::size_t l) const {
+  Plane reconstruct(std::size_t l) {
     Plane values(mesh_.num_vertices());
     const int bits =
         l < 3 ? from_.header.position_bits + 5 : gof_.trajectories[l - 3].spatial_bits;
     for (const std::uint32_t v : mesh_.order()) {
       std::int64_t difference = residual_of(l, v) * gof_.layer_step[mesh_.layer_of(v)];
       if (l < 3) difference = round2(difference * gof_.rest_step, 4);
-      values[v] = clip_signed(bits, predicted(l, v, values) + difference);
+      if (l > 2 && gof_.weights.num_adaptive_factors > 0 && mesh_.ring(v).size() > 1) {
+        std::int64_t mean = 0;
+        const FilterOfText::List offsets = neighbour_offsets(v, values, mean);
+        const std::int64_t prediction = mean + filters_[v].predict_offset(offsets);
+        values[v] = clip_signed(bits, prediction + difference);
+        if (l - 3 < gof_.weights.num_adaptive_factors) {
+          filters_[v].adapt(offsets, values[v] - prediction);
+        }
+      } else {
+        values[v] = clip_signed(bits, predicted(l, v, values) + difference);
+      }
     }
     return values;
   }
@@ -113,6 +174,7 @@ class TextRecon {
   CodedMesh mesh_;
   std::vector<BoneMotion> bones_;
   std::optional<GeometryWeights> weights_;
+  std::vector<FilterOfText> filters_;  // of each vertex
 };
 
 // Some of them lack slices of all kinds.

@@ -28,6 +28,7 @@ struct SkinnedSettings {
   int damping_log2 = kDampingLog2;
   int outer_weight = kOuterRing;
   int outer_scale = kOuterRing;
+  std::uint32_t num_adaptive_factors = 0;  // maximum (8.15)
   bool layer_steps = true;       // finer steps in coarser layers
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;

@@ -1,6 +1,8 @@
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "common/cluster_gof/cluster_gof.h"
@@ -64,19 +66,37 @@ int set_scales(const std::vector<std::int32_t>& largest, TemporalValues& tempora
   return 0;
 }
 
-// Adds trajectories to a GOF and returns their residuals, [num_vertices][trajectory]. Coarsens
-// the steps if values do not fit their widths.
-std::vector<std::int32_t> code_trajectories(const CodedMesh& mesh,
-                                            const SkinnedAnalysis& analysis,
-                                            const SkinnedSettings& settings, double step,
-                                            SkinnedGof& gof) {
+// Residuals of trajectories, [num_vertices][trajectory], and their slices.
+struct CodedTrajectories {
+  std::vector<std::int32_t> residual;
+  SliceCuts cuts;
+};
+
+// Adds trajectories to a GOF. Coarsens the steps if values do not fit their widths.
+CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                                    const SkinnedSettings& settings, double step,
+                                    SkinnedGof& gof) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
   TemporalLimits limits{kLevels.back().max_components};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
-    if (temporal.size() == 0) return {};
-    SpatialValues spatial =
-        code_spatial_values(mesh, gof, analysis, temporal, settings.rounding, step);
+    if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, {}, 0)};
+    const std::size_t count = temporal.size();
+    const auto code = [&](std::span<const std::size_t> group_end) {
+      return code_spatial_values(mesh, gof, analysis, temporal, group_end, settings.rounding,
+                                 step);
+    };
+    gof.weights.num_adaptive_factors = 0;
+    if (gof.prediction == Prediction::kLayers) {
+      gof.weights.num_adaptive_factors =
+          std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
+    }
+    SpatialValues spatial = code(std::array{count});
+    SliceCuts cuts = choose_slice_cuts(settings, spatial.residual, count);
+    // Where groups begin, adaptive weights start afresh.
+    if (gof.weights.num_adaptive_factors > 0 && cuts.group_end.size() > 1) {
+      spatial = code(cuts.group_end);
+    }
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
@@ -84,7 +104,7 @@ std::vector<std::int32_t> code_trajectories(const CodedMesh& mesh,
     const int lacking = set_scales(spatial.largest, temporal, gof.fraction_bits);
     if (lacking == 0) {
       gof.trajectories = std::move(temporal.trajectories);
-      return std::move(spatial.residual);
+      return {std::move(spatial.residual), std::move(cuts)};
     }
     limits.least_eighths =
         *std::min_element(temporal.eighths.begin(), temporal.eighths.end()) + lacking;
@@ -116,9 +136,8 @@ SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analys
                             const SkinnedSettings& settings, double step) {
   SkinnedGof gof = analysis.gof;
   gof.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
-  const std::vector<std::int32_t> residual =
-      code_trajectories(mesh, analysis, settings, step, gof);
-  cut_slices(mesh, settings, residual, gof);
+  const CodedTrajectories coded = code_trajectories(mesh, analysis, settings, step, gof);
+  cut_slices(mesh, settings, coded.cuts, coded.residual, gof);
   return gof;
 }
 

@@ -49,9 +49,8 @@ void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t req
 // The trajectories up to the end of each group are about three times as many as those before
 // it. A group is smaller if it would not leave enough trajectories for the requested number of
 // groups.
-void cut_components(std::size_t num_vertices, std::size_t num_groups, std::size_t requested,
-                    std::span<const std::int32_t> residual, SkinnedGof& gof) {
-  const std::size_t count = gof.trajectories.size();
+std::vector<std::size_t> component_group_ends(std::size_t num_groups, std::size_t requested,
+                                              std::size_t count) {
   requested = std::min(requested, count);
   std::vector<std::size_t> ends{count};
   while (ends.size() < num_groups && ends.back() > 1) {
@@ -59,33 +58,46 @@ void cut_components(std::size_t num_vertices, std::size_t num_groups, std::size_
     ends.push_back(std::max(ends.back() / 3 + 1, least));
   }
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::reverse(ends.begin(), ends.end());
+  return ends;
+}
+
+void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
+                    std::span<const std::int32_t> residual, SkinnedGof& gof) {
+  const std::size_t count = gof.trajectories.size();
   std::size_t first = 0;
-  for (std::size_t i = ends.size(); i-- > 0;) {
-    const std::size_t size = ends[i] - first;
+  for (const std::size_t end : ends) {
+    const std::size_t size = end - first;
     std::vector<std::int32_t> of_group(num_vertices * size);
     for (std::size_t v = 0; v < num_vertices; ++v) {
       std::copy_n(&residual[v * count + first], size, &of_group[v * size]);
     }
     gof.vertex_residual.push_back(std::move(of_group));
-    gof.group_end.push_back(kRestFactors + ends[i]);
-    first = ends[i];
+    gof.group_end.push_back(kRestFactors + end);
+    first = end;
   }
   gof.num_component_groups = static_cast<std::uint32_t>(ends.size());
 }
 
 }  // namespace
 
-void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings,
-                std::span<const std::int32_t> residual, SkinnedGof& gof) {
+SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
+                            std::span<const std::int32_t> residual, std::size_t count) {
   std::size_t num_groups = settings.component_groups;
-  std::size_t num_layer_groups = settings.layer_groups;
+  SliceCuts cuts;
+  cuts.num_layer_groups = settings.layer_groups;
   const double slices = estimated_bytes(residual) / kBytesOfSlice;
   if (num_groups == 0) num_groups = slices < 4 ? 1 : slices < 12 ? 2 : slices < 24 ? 3 : 4;
-  if (num_layer_groups == 0) num_layer_groups = slices < 6 ? 1 : slices < 16 ? 2 : 3;
-  cut_layers(mesh, num_layer_groups, settings.layer_groups, gof);
-  if (!gof.trajectories.empty()) {
-    cut_components(mesh.num_vertices(), num_groups, settings.component_groups, residual, gof);
-  }
+  if (cuts.num_layer_groups == 0) cuts.num_layer_groups = slices < 6 ? 1 : slices < 16 ? 2 : 3;
+  if (count > 0)
+    cuts.group_end = component_group_ends(num_groups, settings.component_groups, count);
+  return cuts;
+}
+
+void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
+                std::span<const std::int32_t> residual, SkinnedGof& gof) {
+  cut_layers(mesh, cuts.num_layer_groups, settings.layer_groups, gof);
+  cut_components(mesh.num_vertices(), cuts.group_end, residual, gof);
   gof.slice_layers.assign(gof.group_end.size(),
                           static_cast<std::uint32_t>(gof.layer_group_size.size()));
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -10,12 +11,25 @@
 
 namespace rlpc {
 
-// Divides layers and trajectories into groups: as many as the settings request, otherwise as
-// many as the overhead of slices allows.
+// Where trajectories and layers are divided into groups.
+struct SliceCuts {
+  // Ends of the component groups, in trajectories; the last is their number. Empty: there are
+  // none.
+  std::vector<std::size_t> group_end;
+  std::size_t num_layer_groups = 1;  // maximum
+};
+
+// As many groups as the settings request, otherwise as many as the overhead of slices allows.
+//
+//   residual  [num_vertices][count]: those of the trajectories
+SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
+                            std::span<const std::int32_t> residual, std::size_t count);
+
+// Divides layers and trajectories into groups.
 //
 //   residual  [num_vertices][trajectory of the GOF]
 //   gof       its trajectories are set; layer groups, component groups and slices are added
-void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings,
+void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
                 std::span<const std::int32_t> residual, SkinnedGof& gof);
 
 }  // namespace rlpc

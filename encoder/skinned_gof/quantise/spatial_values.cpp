@@ -98,7 +98,8 @@ class ResidualRounding {
 
 SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                   const SkinnedAnalysis& analysis,
-                                  const TemporalValues& temporal, Rounding rounding,
+                                  const TemporalValues& temporal,
+                                  std::span<const std::size_t> group_end, Rounding rounding,
                                   double step) {
   constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
   const std::size_t count = temporal.size();
@@ -109,6 +110,15 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
+  std::optional<AdaptiveWeights> adaptive;
+  std::optional<VertexAdaptation> adaptation;
+  if (gof.weights.num_adaptive_factors > 0) {
+    const auto& rest = analysis.rest;
+    adaptive.emplace(mesh, *weights, gof.weights,
+                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
+    adaptive->start(0, count, group_end);
+    adaptation.emplace(*adaptive);
+  }
   const SpatialFactors all_factors(analysis.pc, temporal);
   ResidualRounding residuals(mesh, count, rounding);
   SpatialValues result;
@@ -122,7 +132,8 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
   const std::span<const std::uint32_t> order = mesh.order();
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t v = order[i];
-    prediction.predict(v, values, predicted);
+    const bool adapts = adaptation && adaptation->start(v, values);
+    if (!adapts) prediction.predict(v, values, predicted);
     const std::size_t place = i % kTogether;
     if (place == 0) {
       factors = all_factors.of(order.subspan(i, std::min(kTogether, order.size() - i)));
@@ -132,11 +143,13 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
     for (std::size_t l = 0; l < count; ++l) {
       const double wanted = factors[place * count + l] * per_step;
       most = std::max(most, std::abs(wanted));
+      if (adapts) predicted[l] = adaptation->predict();
       const std::int32_t residual =
           residuals.next((wanted - static_cast<double>(predicted[l])) / layer_step);
       result.residual[v * count + l] = residual;
       const std::int32_t value =
           clip_signed(kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));
+      if (adapts) adaptation->add(predicted[l], value);
       values[v * count + l] = value;
       result.largest[l] = std::max(result.largest[l], value < 0 ? ~value : value);
     }

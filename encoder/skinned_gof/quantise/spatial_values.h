@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
@@ -19,11 +20,13 @@ struct SpatialValues {
 // Spatial values that fit best, in the least-squares sense, with the decoded temporal values.
 // There must be at least one trajectory.
 //
-//   gof   that of the analysis, with its geometry weights set
-//   step  quantiser step, grid units
+//   gof        that of the analysis, with its weight settings
+//   group_end  ends of the component groups, in trajectories
+//   step       quantiser step, grid units
 SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                   const SkinnedAnalysis& analysis,
-                                  const TemporalValues& temporal, Rounding rounding,
+                                  const TemporalValues& temporal,
+                                  std::span<const std::size_t> group_end, Rounding rounding,
                                   double step);
 
 }  // namespace rlpc

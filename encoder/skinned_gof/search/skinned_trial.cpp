@@ -20,6 +20,9 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   if (!tools.outer_ring) usual.outer_weight = 0;
   if (!tools.outer_ring) usual.outer_scale = 0;
   usual.layer_steps = tools.layer_steps;
+  if (settings.profile == Profile::kHigh) {
+    usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
+  }
   if (settings.preset == Preset::kFast) usual.rounding = Rounding::kDeadZone;
   if (settings.target.kind == Target::kMaxError) usual.rounding = Rounding::kNearest;
   usual.temporal_weights = tools.temporal_weights;
@@ -77,7 +80,7 @@ EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalys
   const int position_bits = context.header.position_bits;
   const SkinnedGof gof = code_skinned_gof(mesh, analysis, settings, step);
   EncodedGof encoded;
-  SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, position_bits);
+  SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, context.header);
   encoded.units.push_back({UnitType::kGof, std::move(payloads.gof)});
   for (auto& slice : payloads.slices) {
     encoded.units.push_back({UnitType::kSlice, std::move(slice)});

@@ -1,0 +1,90 @@
+// 8.15 Adaptive weights of one vertex, written as the pseudo-code is, with the widths that the
+// text states; for tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "common/int_math.h"
+
+namespace rlpc {
+
+struct FilterOfText {
+  using List = std::vector<std::int64_t>;
+
+  static constexpr std::int64_t kMaxWeight = (1 << 19) - 1;
+  static constexpr std::int64_t kMaxSpread = (1 << 22) - 1;
+
+  std::size_t ring = 0;
+  List weight;
+  std::vector<List> spread;
+
+  // shift: 12, or 9 at later component groups.
+  void start_spread(int shift) {
+    spread.assign(weight.size(), List(weight.size(), 0));
+    for (std::size_t i = 0; i < weight.size(); ++i) spread[i][i] = random_walk(i) << shift;
+  }
+
+  static std::int64_t most_of(const List& list) {
+    std::int64_t most = 1;
+    for (const std::int64_t x : list) most = std::max(most, std::abs(x));
+    return most;
+  }
+  std::int64_t random_walk(std::size_t i) const { return i < ring ? 256 : 64; }
+
+  std::int64_t predict_offset(const List& offsets) const {
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < offsets.size(); ++i) sum += weight[i] * offsets[i];
+    return round2(sum, 16);
+  }
+
+  void adapt(const List& offsets, std::int64_t error) {
+    const std::size_t n = offsets.size();
+    const int shift = std::max(floor_log2(static_cast<std::uint64_t>(most_of(offsets))) - 9, 0);
+    error = clip3(-1024, 1024, round2(error, shift));
+    List shifted(n);
+    for (std::size_t i = 0; i < n; ++i) shifted[i] = round2(offsets[i], shift);
+    List gain(n);
+    std::int64_t scale = 1 << 21;
+    for (std::size_t i = 0; i < n; ++i) {
+      std::int64_t sum = 0;
+      for (std::size_t j = 0; j < n; ++j) sum += spread[i][j] * shifted[j];
+      ASSERT_LT(std::abs(sum), std::int64_t{1} << 37);
+      gain[i] = round2(sum, 7);
+      scale += gain[i] * shifted[i];
+    }
+    ASSERT_LT(most_of(gain), std::int64_t{1} << 30);
+    ASSERT_LT(std::abs(scale), std::int64_t{1} << 45);
+    scale = std::max<std::int64_t>(scale, 1 << 21);
+    const int narrow = std::max(floor_log2(static_cast<std::uint64_t>(most_of(gain))) - 13, 0);
+    const int exponent = floor_log2(static_cast<std::uint64_t>(scale)) - 14;
+    const std::int64_t inverse = (1 << 29) / (scale >> exponent);
+    ASSERT_LE(inverse, 1 << 15);
+    List change(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      gain[i] = round2(gain[i], narrow);
+      change[i] = round2(gain[i] * inverse, 15);
+    }
+    ASSERT_LE(most_of(gain), 1 << 14);
+    ASSERT_LE(most_of(change), 1 << 14);
+    const int weighting = std::clamp(exponent - narrow - 2, 0, 31);
+    const int spreading = std::clamp(8 + exponent - 2 * narrow, 1, 31);
+    for (std::size_t i = 0; i < n; ++i) {
+      weight[i] =
+          clip3(-kMaxWeight, kMaxWeight, weight[i] + round2(change[i] * error, weighting));
+      for (std::size_t j = 0; j <= i; ++j) {
+        const std::int64_t product = change[i] * gain[j] + change[j] * gain[i];
+        spread[i][j] = spread[j][i] =
+            clip3(-kMaxSpread, kMaxSpread, spread[i][j] - round2(product, spreading));
+      }
+      spread[i][i] = clip3(1, kMaxSpread, spread[i][i] + random_walk(i));
+    }
+  }
+};
+
+}  // namespace rlpc
