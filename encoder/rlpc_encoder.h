@@ -39,8 +39,8 @@ enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
 // Search effort. Does not affect the syntax or the requirements on decoders.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 
-// Profile of the stream; Main requires decoders of version 1.1, High of version 1.2, which is not
-// released: its streams may change.
+// Profile of the stream; Main requires decoders of version 1.1, High of version 1.2, which is
+// not released: its streams may change.
 enum class Profile : std::uint8_t { kBaseline, kMain, kHigh };
 
 // Parameters of the Baseline profile.
@@ -68,7 +68,7 @@ struct MainTools {
   bool temporal_weights = true;  // transmitted weights besides the four fixed predictors
   // High profile: trajectories whose factors adapt the weights of prediction; none: all.
   std::optional<std::uint32_t> adaptive_factors;
-  bool cobra_steps = false;      // temporal steps of Vasa and Skala 2009, (18), (19)
+  bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009, (18), (19)
   // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools
   // above; if any member of this structure differs from its default, all GOFs are skinned.
   bool clusters = true;

@@ -81,8 +81,7 @@ Result<bool> StreamReader::check_limits() const {
   if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
   // Connectivity, topology, in the Main profile layers, and frames, as this decoder holds
   // them.
-  const std::uint64_t of_vertex =
-      (header.has_skinned_gofs() ? 400 : 100) + 12 * kFramesHeld;
+  const std::uint64_t of_vertex = (header.has_skinned_gofs() ? 400 : 100) + 12 * kFramesHeld;
   const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
                               std::uint64_t{header.num_triangles} * 120;
   if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", fixed);

@@ -189,11 +189,10 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
 
 void add_method_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string method = "All profiles";
-  add_choice<Profile>(app, "--profile", line.options.settings.profile,
-                      {{"high", Profile::kHigh},
-                       {"main", Profile::kMain},
-                       {"baseline", Profile::kBaseline}},
-                      "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
+  add_choice<Profile>(
+      app, "--profile", line.options.settings.profile,
+      {{"high", Profile::kHigh}, {"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
+      "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
       ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "

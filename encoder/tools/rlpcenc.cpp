@@ -52,8 +52,8 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
   if (!o.verbose) return;
   const char* const bones = o.settings.profile == Profile::kBaseline ? ""
-                            : r.clusters == 1                    ? "bone or "
-                                                                 : "bones or ";
+                            : r.clusters == 1                        ? "bone or "
+                                                                     : "bones or ";
   std::printf("  %u GOF%s, %u %scluster%s, %u component%s, %u trial%s\n", r.num_gofs,
               s(r.num_gofs), r.clusters, bones, s(r.clusters), r.components, s(r.components),
               r.trials, s(r.trials));

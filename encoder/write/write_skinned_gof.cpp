@@ -172,7 +172,8 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
 }
 
 // 6.5 gof( ) and 6.11 bones_of_gof( )
-std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof, const SequenceHeader& header) {
+std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof,
+                                             const SequenceHeader& header) {
   BitWriter w;
   write_gof_header(w, gof, header.profile_idc);
   w.ue(static_cast<std::uint32_t>(gof.bones.size()) - 1);

@@ -29,7 +29,7 @@ struct SkinnedSettings {
   int outer_weight = kOuterRing;
   int outer_scale = kOuterRing;
   std::uint32_t num_adaptive_factors = 0;  // maximum (8.15)
-  bool layer_steps = true;       // finer steps in coarser layers
+  bool layer_steps = true;                 // finer steps in coarser layers
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
