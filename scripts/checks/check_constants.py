@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Every constant of the encoder's search says what it is: tuned, or fixed.
 
-In the folders of scripts/tuning/tuned.py, each constant that is declared with a number has a
-comment `tuned: REASON` or `fixed: REASON` behind or above it, and no number with a fraction stands
-anywhere else, but for those of plain formulas (halves, bits of a byte, per cent). Tuned constants
-have different names, and encoder/skinned_gof/search/README.md has a row for each, and for no other.
+In the sources of the search (scripts/tuning/tuned.py), each constant that is declared with a
+number has a comment `tuned: REASON` or `fixed: REASON` behind or above it, and no number with a
+fraction stands anywhere else, but for those of plain formulas (halves, bits of a byte, per cent).
+Tuned constants have different names, and encoder/skinned_gof/search/README.md has a row for each,
+and for no other.
 """
 
 import argparse
@@ -69,7 +70,7 @@ def check(root):
     constants = tuned.tuned(root)
     complaints = []
     for path, text in tuned.sources(root):
-        if path.startswith(tuple(folder + "/" for folder in tuned.FOLDERS)):
+        if tuned.is_of_search(path):
             complaints += untagged(path, text)
     names = [c.id for c in constants]
     complaints += [f"{name}: two tuned constants of this name"

@@ -14,8 +14,9 @@ time says `fixed:` instead: limits of the format, memory, tolerances of rounding
 import dataclasses
 import re
 
-# Folders of the search. What is found by trial elsewhere is marked likewise.
-FOLDERS = ("encoder/gof", "encoder/sequence", "encoder/cluster_gof", "encoder/skinned_gof")
+# Sources of the search: those of each kind of GOF (encoder/*_gof) among them. What is found by
+# trial elsewhere is marked likewise.
+_SEARCH = re.compile(r"encoder/(?:gof|sequence|\w+_gof)/")
 
 _DECLARATION = re.compile(
     r"^(?P<indent>[ ]*)(?P<storage>(?:(?:static|inline)[ ]+)*)constexpr[ ]+"
@@ -23,6 +24,10 @@ _DECLARATION = re.compile(
     r"(?:=[ ]*(?P<value>[^;]+)|(?P<braces>\{[^;]*\}));"
     r"(?:[ ]*//[ ](?P<comment>.*))?$", re.MULTILINE)
 _TAG = re.compile(r"(?P<tag>tuned|fixed)(?: \(off: (?P<off>[^()]+)\))?: (?P<reason>\S.*)")
+
+
+def is_of_search(path):
+    return bool(_SEARCH.match(path))
 
 
 @dataclasses.dataclass(frozen=True)
