@@ -13,10 +13,8 @@ Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue()
              the clause of the parsing process describe bins, not elements.
 """
 
-import argparse
 import collections
 import dataclasses
-import pathlib
 import re
 import sys
 
@@ -225,12 +223,5 @@ def check(root):
     return complaints, summary
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("clauses", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("clauses", __doc__, check))

@@ -8,8 +8,6 @@ Tuned constants have different names, and encoder/skinned_gof/search/README.md h
 and for no other.
 """
 
-import argparse
-import pathlib
 import re
 import sys
 
@@ -81,11 +79,5 @@ def check(root):
     return complaints, f"{len(constants)} constants are tuned"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("constants", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("constants", __doc__, check))

@@ -5,8 +5,6 @@ Tests may use it. Division and shifts of signed numbers are not checked: text al
 distinguish them from those of unsigned numbers, which are exact.
 """
 
-import argparse
-import pathlib
 import re
 import sys
 
@@ -43,11 +41,5 @@ def check(root):
     return complaints, f"{len(paths)} files use integers only"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("float", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("float", __doc__, check))

@@ -4,8 +4,6 @@
 The headers without such a source are compiled by themselves (checks.headers).
 """
 
-import argparse
-import pathlib
 import re
 import sys
 
@@ -30,11 +28,5 @@ def check(root):
     return complaints, f"{pairs} sources include the header of their name first"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("headers_first", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("headers_first", __doc__, check))

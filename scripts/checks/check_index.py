@@ -8,7 +8,6 @@ that assign to it, to an element of it, or append to it, and with those that rea
   --write    brings the tables up to date
 """
 
-import argparse
 import ast
 import collections
 import pathlib
@@ -124,16 +123,9 @@ def check(root):
     return complaints, f"{ANNEX} lists the names of the pseudo-code"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    parser.add_argument("--write", action="store_true", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.write:
-        (options.root / ANNEX).write_text(updated(options.root)[0], encoding="utf-8")
-    return cpp_source.report("index", *check(options.root))
+def write(root):
+    (root / ANNEX).write_text(updated(root)[0], encoding="utf-8")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("index", __doc__, check, write))

@@ -7,9 +7,7 @@ coding. Eigen stays in the encoder; common and decoder neither throw nor catch; 
 interpreter and the judge are plain Python.
 """
 
-import argparse
 import ast
-import pathlib
 import re
 import sys
 
@@ -206,11 +204,5 @@ def check(root):
     return complaints, f"{len(paths)} files in {len(rooms.ROOMS)} rooms include only what they may"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("layers", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("layers", __doc__, check))

@@ -5,8 +5,6 @@ A name is checked if it begins with one of the project's folders. It may be a gl
 for a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
 """
 
-import argparse
-import pathlib
 import re
 import sys
 
@@ -56,11 +54,5 @@ def check(root):
     return complaints, f"{len(found)} pages name only existing files"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    return cpp_source.report("pages", *check(parser.parse_args().root))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("pages", __doc__, check))

@@ -15,9 +15,7 @@ and sidecars name no other rules.
   --write    brings spec/rules.json up to date
 """
 
-import argparse
 import json
-import pathlib
 import re
 import sys
 
@@ -152,17 +150,9 @@ def check(root):
                         f"rlpcval; rules without a stream that breaks them: {without}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    parser.add_argument("--write", action="store_true", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.write:
-        (options.root / "spec" / "rules.json").write_text(text_of(rules(options.root)[0]),
-                                                         encoding="utf-8")
-    return cpp_source.report("rules", *check(options.root))
+def write(root):
+    (root / "spec" / "rules.json").write_text(text_of(rules(root)[0]), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("rules", __doc__, check, write))

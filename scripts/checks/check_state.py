@@ -9,7 +9,6 @@ clauses of their functions and the column of elements.
   --write    brings these up to date
 """
 
-import argparse
 import ast
 import pathlib
 import re
@@ -123,16 +122,9 @@ def check(root):
             f"{ANNEX} lists {len(listed)} variables, and the syntax elements that outlive a function")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--root", type=pathlib.Path, default=cpp_source.repository_root())
-    parser.add_argument("--write", action="store_true", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.write:
-        (options.root / ANNEX).write_text(updated(options.root)[0], encoding="utf-8")
-    return cpp_source.report("state", *check(options.root))
+def write(root):
+    (root / ANNEX).write_text(updated(root)[0], encoding="utf-8")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cpp_source.run("state", __doc__, check, write))

@@ -1,5 +1,7 @@
-"""C++ source text, split into code, comments and literals just well enough for the checks."""
+"""What the checks share: C++ source text, split into code, comments and literals just well enough
+for them; their reports and command lines."""
 
+import argparse
 import pathlib
 import re
 
@@ -73,3 +75,17 @@ def report(name, complaints, summary):
         print(complaint)
     print(f"{name}: {len(complaints)} complaint(s)" if complaints else f"{name}: {summary}")
     return 1 if complaints else 0
+
+
+def run(name, doc, check, write=None):
+    """The command line of a check: check(root) gives complaints and a summary; write(root) brings
+    up to date what is checked, where scripts do that. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=doc,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=pathlib.Path, default=repository_root())
+    if write:
+        parser.add_argument("--write", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if write and options.write:
+        write(options.root)
+    return report(name, *check(options.root))
