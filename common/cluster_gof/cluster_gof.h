@@ -27,12 +27,16 @@ struct Component {
   SpatialPredictor spatial_predictor = SpatialPredictor::kNone;
   std::vector<std::int32_t> temporal_residual;  // [num_gof_frames]
   std::vector<std::int32_t> spatial_residual;   // [3][coded vertices of the cluster]
+
+  bool operator==(const Component&) const = default;
 };
 
 struct Cluster {
   bool lcf_flag = false;
   std::array<std::uint32_t, 3> seed_vertex{};  // only with lcf_flag: three distinct vertices
   std::vector<Component> components;
+
+  bool operator==(const Cluster&) const = default;
 };
 
 // Residuals of the track of one seed vertex, in steps. Tracks are in the order of clause 6.5.2:
@@ -41,6 +45,8 @@ struct SeedTrack {
   std::uint32_t vertex = 0;
   std::uint32_t anchor = 0;     // track of seed 0 of the cluster; for seed 0, this track
   std::vector<Vec3i> residual;  // [num_gof_frames]
+
+  bool operator==(const SeedTrack&) const = default;
 };
 
 struct ClusterGof : GofHeader {
@@ -52,6 +58,8 @@ struct ClusterGof : GofHeader {
   std::vector<SeedTrack> seed_tracks;
   std::vector<std::uint16_t>
       cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
+
+  bool operator==(const ClusterGof&) const = default;
 };
 
 // Value of cluster_of_vertex for seed vertices, which are reconstructed from their tracks.

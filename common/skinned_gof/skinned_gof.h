@@ -2,6 +2,7 @@
 // from the analysis to the writer.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,8 @@ struct Bone {
   std::uint32_t origin_step_idx = 0;
   int origin_order = 0;  // 0 to kMaxPredictorOrder
   TrackResiduals origin_residual;
+
+  bool operator==(const Bone&) const = default;
 };
 
 struct Influence {
@@ -57,6 +60,9 @@ struct Influences {
 
   const Influence* begin() const { return list.data(); }
   const Influence* end() const { return list.data() + size; }
+  bool operator==(const Influences& other) const {
+    return std::equal(begin(), end(), other.begin(), other.end());
+  }
 };
 
 struct Trajectory {
@@ -66,6 +72,8 @@ struct Trajectory {
   int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
   std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
   TrackResiduals residual;
+
+  bool operator==(const Trajectory&) const = default;
 };
 
 // Values of absent slices are zero; reconstruction then predicts the influences (8.14.1).
@@ -89,6 +97,8 @@ struct SkinnedGof : GofHeader {
   std::vector<Influences> influences;  // [num_vertices]
   // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
   std::vector<std::vector<std::int32_t>> vertex_residual;
+
+  bool operator==(const SkinnedGof&) const = default;
 };
 
 // Width of rest positions, including 4 fractional bits.

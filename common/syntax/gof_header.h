@@ -22,6 +22,8 @@ struct GofHeader {
   GofKind kind = GofKind::kClusters;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;
+
+  bool operator==(const GofHeader&) const = default;
 };
 
 }  // namespace rlpc
