@@ -6,7 +6,6 @@
 #include <numbers>
 
 namespace rlpc {
-
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -60,14 +59,13 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> tri
   return edges;
 }
 
-double SurfaceAccumulator::Pair::difference() const {
+double StedAccumulator::Pair::difference() const {
   return std::abs(original - decoded) / original;
 }
 
-SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
-                                       std::span<const Triangle> triangles)
+StedAccumulator::StedAccumulator(std::uint32_t num_vertices,
+                                 std::span<const Triangle> triangles)
     : num_vertices_(num_vertices),
-      triangles_(triangles.begin(), triangles.end()),
       edges_(edges_of(triangles)),
       temporal_edges_(num_vertices),
       lengths_(edges_.size()),
@@ -77,27 +75,26 @@ SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
   assert(num_vertices > 0);
 }
 
-void SurfaceAccumulator::add_frame(std::span<const float> original,
-                                   std::span<const float> decoded) {
+StedAccumulator::Parts StedAccumulator::add_frame(std::span<const float> original,
+                                                  std::span<const float> decoded) {
   assert(original.size() == 3 * std::size_t{num_vertices_} &&
          decoded.size() == original.size());
-  if (frames_.empty()) {
+  Parts parts;
+  if (previous_original_.empty()) {
     frame_distance_ = kDt * diagonal(original);
   } else {
-    frames_.back().sted_temporal = temporal_part(original, decoded);
+    parts.previous_temporal = temporal_part(original, decoded);
   }
-  FrameSurface frame;
-  frame.sted_spatial = spatial_part(original, decoded);
-  add_normals(original, decoded, frame);
-  frames_.push_back(frame);
+  parts.spatial = spatial_part(original, decoded);
   previous_original_.assign(original.begin(), original.end());
   previous_decoded_.assign(decoded.begin(), decoded.end());
+  return parts;
 }
 
 // Computes the mean first, then the squares: the result is exactly 0 if all edges change by the
 // same ratio.
-double SurfaceAccumulator::spatial_part(std::span<const float> original,
-                                        std::span<const float> decoded) {
+double StedAccumulator::spatial_part(std::span<const float> original,
+                                     std::span<const float> decoded) {
   std::fill(weight_.begin(), weight_.end(), 0.0);
   std::fill(mean_.begin(), mean_.end(), 0.0);
   std::fill(variance_.begin(), variance_.end(), 0.0);
@@ -128,8 +125,8 @@ double SurfaceAccumulator::spatial_part(std::span<const float> original,
   return sum / num_vertices_;
 }
 
-double SurfaceAccumulator::temporal_part(std::span<const float> original,
-                                         std::span<const float> decoded) {
+double StedAccumulator::temporal_part(std::span<const float> original,
+                                      std::span<const float> decoded) {
   double sum = 0;
   for (std::uint32_t v = 0; v < num_vertices_; ++v) {
     const Vector step = minus(point(original, v), point(previous_original_, v));
@@ -147,6 +144,20 @@ double SurfaceAccumulator::temporal_part(std::span<const float> original,
            std::sqrt(before.original * next.original) / weight;
   }
   return sum / num_vertices_;
+}
+
+SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
+                                       std::span<const Triangle> triangles)
+    : triangles_(triangles.begin(), triangles.end()), sted_(num_vertices, triangles) {}
+
+void SurfaceAccumulator::add_frame(std::span<const float> original,
+                                   std::span<const float> decoded) {
+  const StedAccumulator::Parts sted = sted_.add_frame(original, decoded);
+  if (!frames_.empty()) frames_.back().sted_temporal = sted.previous_temporal;
+  FrameSurface frame;
+  frame.sted_spatial = sted.spatial;
+  add_normals(original, decoded, frame);
+  frames_.push_back(frame);
 }
 
 void SurfaceAccumulator::add_normals(std::span<const float> original,
@@ -188,7 +199,7 @@ SurfaceMetrics SurfaceAccumulator::result() const {
   }
   m.sted_spatial /= static_cast<double>(frames_.size());
   if (frames_.size() > 2) m.sted_temporal /= static_cast<double>(frames_.size() - 2);
-  const double temporal = kTemporalWeight * m.sted_temporal;
+  const double temporal = StedAccumulator::kTemporalWeight * m.sted_temporal;
   m.sted = std::sqrt(m.sted_spatial * m.sted_spatial + temporal * temporal);
   if (area_sum_ > 0) m.mean_normal_angle = angle_sum_ / area_sum_;
   return m;

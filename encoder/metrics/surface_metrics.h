@@ -48,12 +48,47 @@ struct SurfaceMetrics {
   std::vector<FrameSurface> frames;
 };
 
-// Time and memory per frame are linear in the size of the mesh; three frames are kept.
-class SurfaceAccumulator {
+// The parts of STED, frame by frame. Time and memory per frame are linear in the size of the
+// mesh; three frames are kept.
+class StedAccumulator {
  public:
   static constexpr double kDt = 0.01;
   static constexpr double kTemporalWeight = 1.0;
 
+  StedAccumulator(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+
+  struct Parts {
+    double spatial = 0;
+    double previous_temporal =
+        0;  // of the previous frame, whose two virtual edges are now known
+  };
+  Parts add_frame(std::span<const float> original, std::span<const float> decoded);
+
+ private:
+  struct Pair {
+    double original = 0;
+    double decoded = 0;
+    double difference() const;  // ed
+  };
+
+  double spatial_part(std::span<const float> original, std::span<const float> decoded);
+  double temporal_part(std::span<const float> original, std::span<const float> decoded);
+
+  std::uint32_t num_vertices_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;  // without duplicates
+  double frame_distance_ = 0;                        // dt d
+  std::vector<float> previous_original_;
+  std::vector<float> previous_decoded_;
+  std::vector<Pair> temporal_edges_;  // [num_vertices], to the previous frame
+  // Work space of spatial_part():
+  std::vector<Pair> lengths_;   // [num_edges]
+  std::vector<double> weight_;  // [num_vertices], here and below
+  std::vector<double> mean_;
+  std::vector<double> variance_;
+};
+
+class SurfaceAccumulator {
+ public:
   SurfaceAccumulator(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
   // Adds the next frame; both have 3 * num_vertices finite values in the vertex order of the
@@ -64,33 +99,14 @@ class SurfaceAccumulator {
   SurfaceMetrics result() const;
 
  private:
-  struct Pair {
-    double original = 0;
-    double decoded = 0;
-    double difference() const;  // ed
-  };
-
-  double spatial_part(std::span<const float> original, std::span<const float> decoded);
-  // The temporal part of the previous frame, whose two virtual edges are now known.
-  double temporal_part(std::span<const float> original, std::span<const float> decoded);
   void add_normals(std::span<const float> original, std::span<const float> decoded,
                    FrameSurface& frame);
 
-  std::uint32_t num_vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<std::array<std::uint32_t, 2>> edges_;  // without duplicates
+  StedAccumulator sted_;
   std::vector<FrameSurface> frames_;
   double angle_sum_ = 0;  // degrees times area
   double area_sum_ = 0;
-  double frame_distance_ = 0;  // dt d
-  std::vector<float> previous_original_;
-  std::vector<float> previous_decoded_;
-  std::vector<Pair> temporal_edges_;  // [num_vertices], to the previous frame
-  // Work space of spatial_part():
-  std::vector<Pair> lengths_;   // [num_edges]
-  std::vector<double> weight_;  // [num_vertices], here and below
-  std::vector<double> mean_;
-  std::vector<double> variance_;
 };
 
 // The edges of triangles without duplicates, in ascending order, the lower vertex first. Equal
