@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/io/interrupts.h"
+#include "common/io/numbered_name.h"
 #include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
@@ -14,38 +15,6 @@ namespace rlpc {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Numbered file names, from a pattern such as "frame_%04d.obj".
-struct NumberedName {
-  std::string prefix;
-  std::string suffix;
-  std::size_t width = 0;
-
-  std::string with(std::uint64_t number) const {
-    std::string digits = std::to_string(number);
-    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
-    return prefix + digits + suffix;
-  }
-};
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::optional<NumberedName> parse_pattern(const std::string& name) {
-  const std::size_t percent = name.find('%');
-  if (percent == name.npos) return std::nullopt;
-  NumberedName result;
-  std::size_t pos = percent + 1;
-  const bool zeros = pos < name.size() && name[pos] == '0';
-  while (pos < name.size() && is_digit(name[pos]) && result.width < 100) {
-    result.width = 10 * result.width + static_cast<std::size_t>(name[pos++] - '0');
-  }
-  if (pos == name.size() || name[pos] != 'd' || result.width > 19) return std::nullopt;
-  if (!zeros && result.width > 0) return std::nullopt;  // would pad with blanks
-  result.prefix = name.substr(0, percent);
-  result.suffix = name.substr(pos + 1);
-  if (result.suffix.find('%') != name.npos) return std::nullopt;
-  return result;
-}
 
 class MeshSink : public FrameSink {
  public:

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/numbered_name.h"
 #include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
@@ -55,48 +56,6 @@ InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Pred
   }
   if (paths.empty()) return InputError{if_none};
   return paths;
-}
-
-// A file name with one "%d", "%4d" or "%04d" in it.
-struct NumberedName {
-  std::string prefix;
-  std::string suffix;
-  std::size_t width = 0;
-
-  std::string with(std::uint64_t number) const {
-    std::string digits = std::to_string(number);
-    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
-    return prefix + digits + suffix;
-  }
-
-  // The number for which with() gives this name.
-  std::optional<std::uint64_t> number_of(const std::string& name) const {
-    if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
-    std::uint64_t number = 0;
-    const char* const first = name.data() + prefix.size();
-    const char* const last = name.data() + name.size() - suffix.size();
-    const auto [end, ec] = std::from_chars(first, last, number);
-    if (ec != std::errc() || end != last || with(number) != name) return std::nullopt;
-    return number;
-  }
-};
-
-std::optional<NumberedName> parse_pattern(const std::string& name) {
-  NumberedName result;
-  const std::size_t percent = name.find('%');
-  if (percent == name.npos) return std::nullopt;
-  std::size_t pos = percent + 1;
-  const bool zeros = pos < name.size() && name[pos] == '0';
-  while (pos < name.size() && is_digit(name[pos]) && result.width < 100) {
-    result.width = 10 * result.width + static_cast<std::size_t>(name[pos++] - '0');
-  }
-  if (pos == name.size() || name[pos] != 'd' || result.width > 19) return std::nullopt;
-  if (!zeros && result.width > 0)
-    return std::nullopt;  // pads with blanks, which is never meant
-  result.prefix = name.substr(0, percent);
-  result.suffix = name.substr(pos + 1);
-  if (result.suffix.find('%') != name.npos) return std::nullopt;
-  return result;
 }
 
 // A file name, split at its last number.
