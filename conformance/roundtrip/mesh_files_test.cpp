@@ -1,9 +1,7 @@
 // The encoder reads back what the decoder writes.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "common/io/float_position.h"
+#include "common/testing/scratch_folder_test.h"
 #include "decoder/output/frame_sink.h"
 #include "encoder/input/frame_source.h"
 
@@ -33,38 +32,20 @@ std::vector<std::int32_t> test_positions(std::size_t count) {
   return positions;
 }
 
-TEST(GridValue, IsTheSameOnBothSides) {
-  const std::vector<std::int32_t> positions = test_positions(1000);
-  for (std::int32_t log2_step = -150; log2_step <= 127; ++log2_step) {
-    for (const std::int32_t origin : {0, 1, -12345, kMin, kMax}) {
-      const Grid grid{log2_step, {origin, origin, origin}};
-      for (std::size_t i = 0; i < positions.size(); ++i) {
-        ASSERT_EQ(std::bit_cast<std::uint32_t>(float_position(grid, i % 3, positions[i])),
-                  std::bit_cast<std::uint32_t>(float_position(grid, i % 3, positions[i])))
-            << positions[i] << " + " << origin << ", step 2^" << log2_step;
-      }
-    }
-  }
-}
-
-class MeshFiles : public testing::Test {
+class MeshFiles : public ScratchFolderTest {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("mesh_files_" + std::to_string(getpid()) +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
+    ScratchFolderTest::SetUp();
     options_.num_vertices = 100;
     options_.num_frames = 12;
     options_.frame_rate = {24000, 1001};
     options_.triangles = {{0, 1, 2}, {99, 98, 97}, {5, 6, 7}};
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   // Writes the frames, 300 numbers each; reads them back in some order.
   void expect_same_floats(const std::string& name, std::span<const std::int32_t> all) {
-    const std::string path = (folder_ / name).string();
-    auto sink = open_frame_sink(path, options_);
+    const std::string file = path(name);
+    auto sink = open_frame_sink(file, options_);
     ASSERT_TRUE(sink) << sink.error().message;
     for (std::size_t f = 0; f < 12; ++f) {
       const auto error = (*sink)->write_frame(all.subspan(300 * f, 300));
@@ -73,9 +54,9 @@ class MeshFiles : public testing::Test {
     const auto error = (*sink)->finish();
     ASSERT_FALSE(error) << error->message;
 
-    const bool cache = path.ends_with(".pc2") || path.ends_with(".mdd");
-    InputOptions input{cache ? (folder_ / "x.obj").string() : path, cache ? path : "", {}};
-    input.weld = !path.ends_with(".glb");
+    const bool cache = file.ends_with(".pc2") || file.ends_with(".mdd");
+    InputOptions input{cache ? path("x.obj") : file, cache ? file : "", {}};
+    input.weld = !file.ends_with(".glb");
     const auto source = open_frame_source(input);
     ASSERT_TRUE(source) << source.error().message;
     ASSERT_EQ((*source)->num_frames(), 12U);
@@ -86,12 +67,11 @@ class MeshFiles : public testing::Test {
       ASSERT_FALSE((*source)->read_frame(f, xyz));
       for (std::size_t i = 0; i < 300; ++i) {
         ASSERT_EQ(xyz[i], float_position(options_.grid, i % 3, all[300 * f + i]))
-            << path << ", frame " << f << ", number " << i;
+            << file << ", frame " << f << ", number " << i;
       }
     }
   }
 
-  std::filesystem::path folder_;
   SinkOptions options_;
 };
 
@@ -139,7 +119,7 @@ TEST_F(MeshFiles, SparseTargetsMakeASmallerFile) {
 
 TEST_F(MeshFiles, RefusesPositionsThatNoFloatHolds) {
   options_.grid = {120, {kMax, 0, 0}};
-  auto sink = open_frame_sink((folder_ / "x.glb").string(), options_);
+  auto sink = open_frame_sink(path("x.glb"), options_);
   ASSERT_TRUE(sink);
   const auto error = (*sink)->write_frame(std::vector<std::int32_t>(300, kMax));
   ASSERT_TRUE(error);

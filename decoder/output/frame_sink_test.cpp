@@ -9,13 +9,12 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/io/float_position.h"
+#include "common/testing/scratch_folder_test.h"
 
 namespace rlpc {
 namespace {
@@ -35,23 +34,8 @@ const std::vector<std::int32_t> kFirst{-100, 0, 100, -99, 0, 100, -100, 1, 100};
 const std::vector<std::int32_t> kSecond{-100, 0,           102, -99, 2147483647,
                                         100,  -2147483647, 1,   100};
 
-class FrameSinkTest : public testing::Test {
+class FrameSinkTest : public ScratchFolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("frame_sink_" + std::to_string(getpid()) + "_" +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string content(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(path(name), std::ios::binary).rdbuf();
-    return text.str();
-  }
   // All paths below the folder, sorted.
   std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -60,9 +44,6 @@ class FrameSinkTest : public testing::Test {
     }
     std::sort(names.begin(), names.end());
     return names;
-  }
-  void put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
   }
   // Writes both frames; returns the first error.
   static std::string write(const std::string& to, const SinkOptions& options = two_frames()) {
@@ -74,8 +55,6 @@ class FrameSinkTest : public testing::Test {
     if (const auto error = (*sink)->finish()) return error->message;
     return "";
   }
-
-  fs::path folder_;
 };
 
 using Names = std::vector<std::string>;

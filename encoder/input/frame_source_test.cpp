@@ -1,16 +1,15 @@
 #include "encoder/input/frame_source.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "common/testing/scratch_folder_test.h"
 #include "encoder/input/formats/mesh_sequence.h"
 
 namespace rlpc {
@@ -72,22 +71,8 @@ std::string rlpd(std::uint32_t vertices, std::uint32_t frames, std::int32_t log2
   return bytes;
 }
 
-class FrameSourceTest : public testing::Test {
+class FrameSourceTest : public ScratchFolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("frame_source_" + std::to_string(getpid()) + "_" +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
   // The error of opening, otherwise that of the first bad frame, otherwise "".
   static std::string error_of(const InputOptions& options) {
     const auto source = open_frame_source(options);
@@ -102,8 +87,6 @@ class FrameSourceTest : public testing::Test {
     EXPECT_NE(error_of(options).find(part), std::string::npos) << part << "\n"
                                                                << error_of(options);
   }
-
-  fs::path folder_;
 };
 
 TEST_F(FrameSourceTest, ReadsAPointCacheInAnyOrder) {
