@@ -5,8 +5,9 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
-#include <random>
 #include <vector>
+
+#include "encoder/skinned_gof/fit/random_points_test.h"
 
 namespace rlpc {
 namespace {
@@ -18,28 +19,6 @@ Motion identity_motion() {
   m.leftCols<3>().setIdentity();
   return m;
 }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : random_(seed) {}
-  double value() { return static_cast<double>(random_()) / 2147483648.0 - 1.0; }  // -1 to 1
-  Vec3d point() {
-    const double x = value();
-    const double y = value();
-    return {x, y, value()};
-  }
-  // A motion within about `size`, in radians and units, of the identity.
-  Motion motion(double size) {
-    Motion m;
-    const Vec3d turn = 0.5 * size * point();
-    m.leftCols<3>() = rotation_matrix(normalised({1.0, turn(0), turn(1), turn(2)}));
-    m.col(3) = size * point();
-    return m;
-  }
-
- private:
-  std::mt19937 random_;
-};
 
 // A skinned mesh in one frame, and the sums under test.
 struct Skin {
@@ -87,7 +66,7 @@ struct Skin {
 };
 
 // A beam along x that bends between consecutive bones.
-Skin beam(std::size_t num_bones, Random& random) {
+Skin beam(std::size_t num_bones, RandomPoints& random) {
   Skin skin;
   for (int v = 0; v < 60; ++v) {
     const double place = v / 60.0 * static_cast<double>(num_bones);
@@ -179,7 +158,7 @@ TEST(RefinePoses, MovesBonesToTheirVertices) {
 
 // For random targets and at any distance from the solution.
 TEST(RefinePoses, NeverRaisesTheError) {
-  Random random(1);
+  RandomPoints random(1);
   for (int i = 0; i < 30; ++i) {
     Skin skin = beam(4, random);
     for (const Vec3d& p : skin.rest) skin.wanted.push_back(p + 3.0 * random.point());
@@ -241,7 +220,7 @@ std::vector<Motion> step_by_differences(const Skin& skin, const std::vector<Moti
 
 // The two agree up to damping.
 TEST(SolvePoses, IsAGaussNewtonStep) {
-  Random random(2);
+  RandomPoints random(2);
   for (int i = 0; i < 20; ++i) {
     Skin skin = beam(3, random);
     for (const Vec3d& p : skin.rest) skin.wanted.push_back(p + 0.1 * random.point());
@@ -257,7 +236,7 @@ TEST(SolvePoses, IsAGaussNewtonStep) {
 
 // Vertices follow several bones; the start is as close as callers guarantee.
 TEST(SolvePoses, FindsTheMotionsOfBlendedBones) {
-  Random random(3);
+  RandomPoints random(3);
   for (const std::size_t num_bones : {1U, 2U, 5U}) {
     Skin skin = beam(num_bones, random);
     std::vector<Motion> truth;
@@ -300,7 +279,7 @@ TEST(SolvePoses, TranslatesASingleBone) {
 // Ambiguous cases: rotation about the line of all vertices, or two bones with the same
 // vertices.
 TEST(SolvePoses, LowersTheErrorOfDegenerateBones) {
-  Random random(4);
+  RandomPoints random(4);
   Skin line;
   Skin point;
   Skin twins;

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <random>
 #include <vector>
+
+#include "encoder/skinned_gof/fit/random_points_test.h"
 
 namespace rlpc {
 namespace {
@@ -18,20 +19,6 @@ constexpr double kAlways = std::numeric_limits<double>::infinity();
 constexpr double kNever = -1.0;
 
 using Motions = std::vector<std::vector<Motion>>;  // [bone][frame]
-
-class Random {
- public:
-  explicit Random(unsigned seed) : random_(seed) {}
-  double value() { return static_cast<double>(random_()) / 2147483648.0 - 1.0; }  // -1 to 1
-  Vec3d point() {
-    const double x = value();
-    const double y = value();
-    return {x, y, value()};
-  }
-
- private:
-  std::mt19937 random_;
-};
 
 Eigen::Matrix3d turn_by(const Vec3d& v) {
   return rotation_matrix(normalised({1.0, 0.5 * v(0), 0.5 * v(1), 0.5 * v(2)}));
@@ -60,7 +47,7 @@ struct Chain {
 
   Chain(std::vector<std::size_t> order, double swing, double gap, bool hinge = false)
       : bone_of_link(std::move(order)), rest(links()), motions(links()) {
-    Random random(7);
+    RandomPoints random(7);
     for (std::size_t l = 0; l < links(); ++l) {
       for (std::size_t v = 0; v < 9 - l; ++v) {  // the first link is the heaviest
         rest[bone_of_link[l]].push_back(joint(l) + Vec3d(5, 0, 0) + 4.0 * random.point());
@@ -245,7 +232,7 @@ TEST(BoneTree, PinsBonesWithTheLeastDamage) {
   }
   const double damage = chain.damage(1, motions[1]);
   EXPECT_GT(damage, 0.1);
-  Random random(3);
+  RandomPoints random(3);
   for (int i = 0; i < 200; ++i) {
     std::vector<Motion> other = motions[1];
     for (Motion& m : other) {

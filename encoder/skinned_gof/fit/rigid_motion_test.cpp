@@ -6,37 +6,15 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <cstddef>
-#include <random>
 #include <utility>
 #include <vector>
+
+#include "encoder/skinned_gof/fit/random_points_test.h"
 
 namespace rlpc {
 namespace {
 
 const double kHalf = std::sqrt(0.5);
-
-class Random {
- public:
-  explicit Random(unsigned seed) : random_(seed) {}
-  double value() { return static_cast<double>(random_()) / 2147483648.0 - 1.0; }  // -1 to 1
-  Vec3d point() {
-    const double x = value();
-    const double y = value();
-    return {x, y, value()};
-  }
-  Eigen::Matrix3d matrix() {
-    Eigen::Matrix3d m;
-    for (Eigen::Index i = 0; i < 3; ++i) m.col(i) = point();
-    return m;
-  }
-  Eigen::Matrix3d rotation() {
-    const Vec3d p = point();
-    return rotation_matrix(normalised({value(), p(0), p(1), p(2)}));
-  }
-
- private:
-  std::mt19937 random_;
-};
 
 Eigen::Matrix3d turn_about(const Vec3d& axis, double angle) {
   const Vec3d v = std::sin(0.5 * angle) * axis.normalized();
@@ -121,7 +99,7 @@ TEST(NearestRotation, HasTheSmallestAngleForCollinearPoints) {
 
 // No rotation gives a larger trace: neither Kabsch's nor thousands of random ones.
 TEST(NearestRotation, MaximisesTheTrace) {
-  Random random(1);
+  RandomPoints random(1);
   std::vector<Eigen::Matrix3d> rotations;
   for (int i = 0; i < 3000; ++i) rotations.push_back(random.rotation());
   int reflections = 0;
@@ -143,7 +121,7 @@ TEST(NearestRotation, MaximisesTheTrace) {
 }
 
 TEST(ClosestRotation, IsTheNearestRotationFromAnyStart) {
-  Random random(2);
+  RandomPoints random(2);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d start = random.rotation();
     constexpr double kAngles[] = {0.05, 0.1, 0.5, 1.0, 3.0};
@@ -158,7 +136,7 @@ TEST(ClosestRotation, IsTheNearestRotationFromAnyStart) {
 }
 
 TEST(ClosestRotation, IsARotationIfItIsAmbiguous) {
-  Random random(3);
+  RandomPoints random(3);
   for (int i = 0; i < 50; ++i) {
     const Vec3d from = random.point();
     const Vec3d to = random.point();
@@ -197,7 +175,7 @@ TEST(MotionFit, IsTheIdentityWithoutPairsAndATranslationWithOne) {
 
 // Includes points far from the origin, where sums of products are large.
 TEST(MotionFit, FindsTheMotionOfPoints) {
-  Random random(4);
+  RandomPoints random(4);
   for (const double far : {0.0, 1e6}) {
     Motion motion;
     motion.leftCols<3>() = random.rotation();
@@ -216,7 +194,7 @@ TEST(MotionFit, FindsTheMotionOfPoints) {
 
 // With pairs that no rigid motion explains, and with mirrored ones, no motion nearby is better.
 TEST(MotionFit, HasTheLeastSquaredError) {
-  Random random(5);
+  RandomPoints random(5);
   for (int i = 0; i < 20; ++i) {
     std::vector<std::pair<Vec3d, Vec3d>> pairs;
     for (int k = 0; k < 6; ++k) {
