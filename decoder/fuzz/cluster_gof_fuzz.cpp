@@ -10,6 +10,7 @@
 
 #include "common/cluster_gof/recon/cluster_recon.h"
 #include "common/testing/fuzz_input.h"
+#include "decoder/fuzz/recon_fuzz.h"
 #include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
@@ -33,13 +34,7 @@ void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topolo
   const auto gof = rlpc::parse_clusters(r, header, topology, gof_header, kMaxMemoryBytes);
   if (!gof) return;
   const rlpc::ClusterRecon recon(header, topology, *gof);
-  rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
-  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
-  const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);
-  for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
-    recon.frame(f, positions);
-    for (const std::int32_t p : positions) rlpc::fuzz_check(p >= -bound && p < bound);
-  }
+  rlpc::fuzz_check_frames(recon, header, first_frame);
 }
 
 }  // namespace

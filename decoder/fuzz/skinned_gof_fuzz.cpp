@@ -11,6 +11,7 @@
 
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/testing/fuzz_input.h"
+#include "decoder/fuzz/recon_fuzz.h"
 #include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/parse_skinned_gof.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
@@ -66,13 +67,7 @@ void decode_gof(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& mes
   const rlpc::CodedMesh& mesh = meshes[gof.prediction];
   check_influences(gof, rlpc::complete_influences(mesh, gof));
   const rlpc::SkinnedRecon recon(mesh, gof, header.position_bits);
-  rlpc::fuzz_check(recon.num_frames() <= header.num_frames - first_frame);
-  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
-  const std::int32_t bound = std::int32_t{1} << (header.position_bits - 1);
-  for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
-    recon.frame(f, positions);
-    for (const std::int32_t p : positions) rlpc::fuzz_check(p >= -bound && p < bound);
-  }
+  rlpc::fuzz_check_frames(recon, header, first_frame);
 }
 
 }  // namespace
