@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
-#include "encoder/gof/count_at.h"
 
 namespace rlpc {
 namespace {
@@ -19,11 +18,8 @@ constexpr std::uint32_t kSearchInfluences = 2;
 // tuned: Numbers of bones that are compared. Costs change little between neighbours of this
 // list, and every number takes time.
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
-constexpr std::array<std::uint32_t, 8> kManyBones = [] {  // fixed: slow tries all of a series
-  std::array<std::uint32_t, 8> counts{};
-  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = count_at(i + 4);  // 6 to 64
-  return counts;
-}();
+// fixed: those of kFewBones, so that slow finds what medium finds, and numbers around them.
+constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
 
 // A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
