@@ -70,7 +70,7 @@ class GltfInput(ToolsTest):
 
     def test_what_is_merged_and_dropped_is_reported(self):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
-        for words in ("dropped 2 primitives of points or lines", "dropped 8 degenerate triangles",
+        for words in ("dropped 2 point or line primitives", "dropped 8 degenerate triangles",
                       "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
                       "dropped: skeleton, names of nodes and animations"):
             self.assertIn(f"{TULIP}: {words}", result.err)

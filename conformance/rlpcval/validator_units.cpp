@@ -31,7 +31,7 @@ std::string hex(std::uint32_t value) {
 
 std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes>& bytes) {
   if (std::equal(kSignature.begin() + 1, kSignature.begin() + 5, bytes.begin() + 1)) {
-    return "the name is right, the bytes around it are not: a transfer as text changed them";
+    return "the name is right, but not the bytes around it: a text-mode transfer changed them";
   }
   return "the file begins with another signature";
 }

@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples
   rlpcinfo walk.rlpc              contents, and bits per part
-  rlpcinfo walk.rlpc --gofs       also of each GOF and slice
+  rlpcinfo walk.rlpc --gofs       the same for each GOF and slice
   rlpcinfo walk.rlpc --html walk.html
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
@@ -105,14 +105,14 @@ int inform(const Options& o) {
 CLI::Option* add_options(CLI::App& app, Options& o) {
   const std::string report = "Report";
   const std::string cut = "Smaller stream";
-  app.add_option("STREAM", o.input, "Stream to look at; - for standard input")->required();
+  app.add_option("STREAM", o.input, "Stream to inspect; - for standard input")->required();
   auto* json = app.add_flag("--json", o.json, "JSON on standard output")->group(report);
-  auto* gofs =
-      app.add_flag("--gofs", o.gofs, "Contents of each GOF and slice, too")->group(report);
-  auto* html = app.add_option("--html", o.html, "Write a page with charts, too")
+  auto* gofs = app.add_flag("--gofs", o.gofs, "Also list each GOF and slice")->group(report);
+  auto* html = app.add_option("--html", o.html, "Also write a page with charts")
                    ->option_text("FILE")
                    ->group(report);
-  auto* trace = app.add_flag("--trace", o.trace, "Every syntax element instead")->group(report);
+  auto* trace =
+      app.add_flag("--trace", o.trace, "List every syntax element instead")->group(report);
   app.add_option("--max-memory", o.max_memory_bytes,
                  "Refuse streams that need more to decode, for example 500MB")
       ->transform(CLI::AsSizeValue(false))

@@ -42,8 +42,7 @@ TEST_F(GltfPrimitiveTest, DropsPointsAndLinesWithANote) {
   }
   const auto source = open(builder);
   EXPECT_EQ(source->num_vertices(), 3U);
-  EXPECT_EQ(source->notes(),
-            (std::vector<std::string>{"dropped 4 primitives of points or lines"}));
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped 4 point or line primitives"}));
 }
 
 // Two targets: the first moves vertex 1 along y, the second moves all vertices along z.

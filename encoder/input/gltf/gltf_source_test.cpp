@@ -200,9 +200,8 @@ TEST_F(GltfSourceTest, IgnoresAnimationByExtensionsWithANote) {
                         {"extensions", {{"KHR_animation_pointer", {{"pointer", "/x"}}}}}}}});
   const auto source = open(builder);
   EXPECT_EQ(source->num_frames(), 61U);
-  EXPECT_EQ(source->notes(),
-            (std::vector<std::string>{"dropped: names of animations",
-                                      "dropped 1 animation channel of extensions"}));
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped: names of animations",
+                                                       "dropped 1 extension channel"}));
 }
 
 TEST_F(GltfSourceTest, NotesOtherOmissions) {
@@ -215,7 +214,7 @@ TEST_F(GltfSourceTest, NotesOtherOmissions) {
   EXPECT_EQ(source->notes()[0],
             "EXT_mesh_gpu_instancing is ignored: the animation may show more or less");
   EXPECT_EQ(source->notes()[1], "dropped: names of animations");
-  EXPECT_TRUE(source->notes()[2].starts_with("reads the first of 2 animations ("));
+  EXPECT_TRUE(source->notes()[2].starts_with("reading the first of 2 animations ("));
   EXPECT_NE(source->notes()[2].find("\"Run\""), std::string::npos);
   EXPECT_EQ(open(builder, "all")->notes().size(), 2U);
 }

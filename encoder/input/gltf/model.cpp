@@ -34,20 +34,20 @@ class ModelReader {
       model_.notes.push_back("dropped: " + list);
     }
     if (animation.empty() && document_.animations.size() > 1) {
-      model_.notes.push_back("reads the first of " + to_string(document_.animations.size()) +
+      model_.notes.push_back("reading the first of " + to_string(document_.animations.size()) +
                              " animations (" + gltf_animation_names(document_) +
                              "); --animation chooses another");
     }
     for (const std::uint32_t chosen : choose_animations(document_, animation, errors_)) {
       if (errors_) return {};
       model_.clips.push_back(read_gltf_clip(document_, chosen, values_, errors_));
-      note(document_.animations[chosen].num_unknown, "animation channel", "of extensions");
+      note(document_.animations[chosen].num_unknown, "extension channel");
     }
     read_skins();
     if (errors_) return {};
     for (const std::uint32_t node : model_.scene.with_mesh) add_mesh(node);
     if (model_.instances.empty()) errors_.add("scenes", "expected a mesh with triangles there");
-    note(num_without_triangles_, "primitive", "of points or lines");
+    note(num_without_triangles_, "point or line primitive");
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
     model_.files = buffers_.files();
@@ -55,10 +55,10 @@ class ModelReader {
   }
 
  private:
-  void note(std::uint64_t count, const std::string& what, const std::string& kind) {
+  void note(std::uint64_t count, const std::string& what) {
     if (count == 0) return;
     model_.notes.push_back("dropped " + to_string(count) + " " + what +
-                           (count == 1 ? " " : "s ") + kind);
+                           (count == 1 ? "" : "s"));
   }
 
   void read_skins() {
