@@ -22,11 +22,12 @@ class Decoder::Impl {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
       : stream_(std::move(source), options),
+        models_(stream_.context()),
         threads_(std::clamp(options.threads, 1U, kMaxThreads)),
         band_(threads_) {
     // A trace follows the order of the stream.
     if (threads_ > 1 && options.trace == nullptr) {
-      prefetch_.emplace(stream_, options.limits.max_memory_bytes / threads_);
+      prefetch_.emplace(stream_, models_, options.limits.max_memory_bytes / threads_);
     }
   }
 
@@ -59,6 +60,7 @@ class Decoder::Impl {
                        std::span<std::int32_t> positions) const;
 
   StreamReader stream_;
+  ModelRecons models_;
   std::uint32_t threads_;
   std::optional<PreparedGof> gof_;
   HashCheck hash_check_;
@@ -72,6 +74,7 @@ class Decoder::Impl {
 Result<bool> Decoder::Impl::load_gof() {
   gof_.reset();
   band_.clear();
+  if (prefetch_) prefetch_->hand_over_models();
   const auto unit = stream_.find_gof();
   if (!unit) return unit.error();
   if (!*unit) return false;
@@ -99,7 +102,7 @@ Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   }
   auto access_unit = stream_.read(unit);
   if (!access_unit) return access_unit.error();
-  return prepare(std::move(*access_unit), stream_.context());
+  return prepare(std::move(*access_unit), stream_.context(), models_);
 }
 
 // 8.6.1 Output order

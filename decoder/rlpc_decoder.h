@@ -13,10 +13,11 @@
 //   }
 //
 // Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory is
-// bounded by one GOF plus four frames; every size in a stream is checked against its level and
-// DecodeLimits before anything is allocated. A Decoder is used by one thread at a time;
-// different Decoders are independent. Errors are sticky until seek() succeeds, for example to a
-// frame past the damage.
+// bounded by one GOF, the skinned models that it could use (at most eight, which count towards
+// the limits of a GOF) and one that is being replaced, plus four frames; every size in a stream
+// is checked against its level and DecodeLimits before anything is allocated. A Decoder is used
+// by one thread at a time; different Decoders are independent. Errors are sticky until seek()
+// succeeds, for example to a frame past the damage.
 #pragma once
 
 #include <cstdint>
@@ -54,8 +55,9 @@ struct DecoderOptions {
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
   // With more than one, GOFs are prefetched and frames reconstructed in parallel; positions and
-  // errors are the same. Each further thread may take memory for a GOF, up to max_memory_bytes
-  // / threads, and for four frames. Clamped to 1 to kMaxThreads.
+  // errors are the same. Each further thread may take memory for a GOF and the skinned models
+  // before it, up to max_memory_bytes / threads, and for four frames. Clamped to 1 to
+  // kMaxThreads.
   std::uint32_t threads = 1;
   // Decodes as if slices outside the cut were absent, which saves their time: only their CRC
   // and indices are checked. The hashes of GOFs that lose slices no longer match, and are not

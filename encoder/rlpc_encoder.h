@@ -105,10 +105,11 @@ struct EncoderSettings {
   // Baseline: average per cluster (L of the paper). Main: maximum per GOF. Up to 1024; 0:
   // chosen by rate and distortion.
   std::uint32_t components = 0;
-  BaselineTools baseline;        // must be left at its defaults unless profile is kBaseline
-  MainTools main;                // must be left at its defaults if profile is kBaseline
-  std::uint32_t gof_frames = 0;  // maximum frames per GOF; 0: 128; kWholeSequence: one GOF
-  bool keep_order = false;       // restore the vertex order of the input
+  BaselineTools baseline;  // must be left at its defaults unless profile is kBaseline
+  MainTools main;          // must be left at its defaults if profile is kBaseline
+  // Maximum frames per GOF; 0: 128, or 256 in the High profile; kWholeSequence: one GOF.
+  std::uint32_t gof_frames = 0;
+  bool keep_order = false;  // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
   std::string metadata;  // JSON text, not validated, up to 1 MiB; empty: no metadata unit
   // Encodings that may need more memory fail before they start. The estimate is for animations

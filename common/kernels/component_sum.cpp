@@ -1,7 +1,6 @@
 #include "common/kernels/component_sum.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <utility>
 
@@ -10,88 +9,153 @@ namespace {
 
 constexpr int kNarrowBits = 16;
 constexpr int kLowLimbBits = 13;
-constexpr std::int64_t kMaxGroupSum = (std::int64_t{1} << 31) - 1;
+constexpr std::int64_t kMaxSegmentSum = (std::int64_t{1} << 31) - 1;
 constexpr std::size_t kMaxRows = 24;  // of the sums that are found at a time
+
+// The limbs of a factor, the lowest first.
+std::vector<FactorLimb> limbs_of(int bits) {
+  if (bits <= kNarrowBits) return {{0, bits - 1, false}};
+  return {{0, kLowLimbBits - 1, true}, {kLowLimbBits, bits - 1 - kLowLimbBits, false}};
+}
 
 }  // namespace
 
-std::int32_t ComponentSum::Limb::of(std::int32_t value) const {
+std::int32_t FactorLimb::of(std::int32_t value) const {
   if (shift == 0 && !is_low) return value;
   const auto high = static_cast<std::int32_t>(round2(value, kLowLimbBits));
   return is_low ? value - high * (1 << kLowLimbBits) : high;
 }
 
-std::vector<ComponentSum::Limb> ComponentSum::limbs_of(int bits) {
-  if (bits <= kNarrowBits) return {{0, bits - 1, false}};
-  return {{0, kLowLimbBits - 1, true}, {kLowLimbBits, bits - 1 - kLowLimbBits, false}};
-}
-
-ComponentSum::Group& ComponentSum::group_for(int shift, std::int64_t bound) {
-  for (Group& group : groups_) {
-    if (group.shift == shift && group.bound + bound <= kMaxGroupSum) return group;
-  }
-  Group group;
-  group.shift = shift;
-  group.spatial.resize(num_tiles());
-  groups_.push_back(std::move(group));
-  return groups_.back();
-}
-
-void ComponentSum::add(std::span<const std::int32_t> temporal, int temporal_bits,
-                       std::span<const std::int32_t> spatial, int spatial_bits,
-                       std::size_t stride) {
-  assert(temporal.size() == num_rows_ && spatial.size() + stride > num_values_ * stride);
+void SpatialFactors::add(std::span<const std::int32_t> spatial, int spatial_bits,
+                         std::size_t stride) {
+  assert(spatial.size() + stride > num_values_ * stride);
   const int factor_bits = spatial_factor_bits(spatial_bits);
   const std::int32_t scale = 1 << (factor_bits - spatial_bits);
-  for (const Limb& t : limbs_of(temporal_bits)) {
-    for (const Limb& s : limbs_of(factor_bits)) {
-      const std::int64_t bound = std::int64_t{1} << (t.size_log2 + s.size_log2);
-      Group& group = group_for(t.shift + s.shift, bound);
-      const std::size_t side = group.size % 2;
-      if (side == 0) {
-        group.temporal.resize(group.temporal.size() + 2 * num_rows_);
-        for (auto& tile : group.spatial) tile.resize(tile.size() + 2 * kTileValues);
+  for (const FactorLimb& limb : limbs_of(factor_bits)) {
+    Limbs& limbs = limbs_[limb.shift == 0 ? 0 : 1];
+    const std::size_t side = limbs.places.size() % 2;
+    limbs.places.push_back({num_components_, limb.size_log2});
+    limbs.tiles.resize(num_tiles());
+    if (side == 0) {
+      for (auto& tile : limbs.tiles) tile.resize(tile.size() + 2 * kTileValues);
+    }
+    for (std::size_t i = 0; i < num_values_; ++i) {
+      auto& tile = limbs.tiles[i / kTileValues];
+      tile[tile.size() - 2 * kTileValues + 2 * (i % kTileValues) + side] =
+          static_cast<std::int16_t>(limb.of(spatial[i * stride] * scale));
+    }
+  }
+  ++num_components_;
+}
+
+// Makes the segments of the products of one list of spatial limbs and one limb of the temporal
+// factors, the low or only one (0), or the high one (1).
+class ComponentSum::SegmentMaker {
+ public:
+  SegmentMaker(ComponentSum& sum, std::span<const TemporalFactor> temporal, std::size_t list,
+               std::size_t limb)
+      : sum_(sum), temporal_(temporal), list_(list), limb_(limb) {}
+
+  void run() {
+    const auto& places = sum_.spatial_->limbs_[list_].places;
+    for (std::size_t pair = 0; 2 * pair < places.size(); ++pair) {
+      std::array<std::int64_t, 2> bounds{};
+      for (std::size_t side = 0; side < 2 && 2 * pair + side < places.size(); ++side) {
+        bounds[side] = bound_of(places[2 * pair + side]);
       }
-      group.bound += bound;
-      ++group.size;
-      std::int16_t* const of_rows =
-          group.temporal.data() + group.temporal.size() - 2 * num_rows_ + side;
-      for (std::size_t r = 0; r < num_rows_; ++r) {
-        of_rows[2 * r] = static_cast<std::int16_t>(t.of(temporal[r]));
-      }
-      for (std::size_t i = 0; i < num_values_; ++i) {
-        auto& tile = group.spatial[i / kTileValues];
-        tile[tile.size() - 2 * kTileValues + 2 * (i % kTileValues) + side] =
-            static_cast<std::int16_t>(s.of(spatial[i * stride] * scale));
+      if (bounds[0] + bounds[1] <= kMaxSegmentSum) {
+        add(pair, bounds);
+      } else {
+        add(pair, {bounds[0], 0});
+        add(pair, {0, bounds[1]});
       }
     }
   }
+
+ private:
+  // Of the products of a component; 0 if there are none.
+  std::int64_t bound_of(const SpatialFactors::Limbs::Place& place) const {
+    if (place.component >= temporal_.size()) return 0;
+    const int bits = temporal_[place.component].bits;
+    if (bits == 0) return 0;
+    const std::vector<FactorLimb> limbs = limbs_of(bits);
+    if (limb_ >= limbs.size()) return 0;
+    return std::int64_t{1} << (limbs[limb_].size_log2 + place.size_log2);
+  }
+
+  // Adds a pair, of which the sides with a bound of 0 count as zeros.
+  void add(std::size_t pair, const std::array<std::int64_t, 2>& bounds) {
+    const std::int64_t bound = bounds[0] + bounds[1];
+    if (bound == 0) return;
+    if (!is_open_ || bound_ + bound > kMaxSegmentSum ||
+        sum_.segments_.back().first_pair + sum_.segments_.back().num_pairs != pair) {
+      const int shift = kLowLimbBits * static_cast<int>(list_ + limb_);
+      sum_.segments_.push_back({list_, shift, pair, 0, {}});
+      bound_ = 0;
+      is_open_ = true;
+    }
+    bound_ += bound;
+    Segment& segment = sum_.segments_.back();
+    const std::size_t first = segment.temporal.size();
+    segment.temporal.resize(first + 2 * sum_.num_rows_);
+    ++segment.num_pairs;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (bounds[side] == 0) continue;
+      const auto& place = sum_.spatial_->limbs_[list_].places[2 * pair + side];
+      const TemporalFactor& factor = temporal_[place.component];
+      const FactorLimb limb = limbs_of(factor.bits)[limb_];
+      for (std::size_t r = 0; r < sum_.num_rows_; ++r) {
+        segment.temporal[first + 2 * r + side] =
+            static_cast<std::int16_t>(limb.of(factor.values[r]));
+      }
+    }
+  }
+
+  ComponentSum& sum_;
+  std::span<const TemporalFactor> temporal_;
+  std::size_t list_;
+  std::size_t limb_;
+  bool is_open_ = false;
+  std::int64_t bound_ = 0;
+};
+
+ComponentSum::ComponentSum(std::shared_ptr<const SpatialFactors> spatial,
+                           std::span<const TemporalFactor> temporal, std::size_t num_rows,
+                           const Kernels& loops)
+    : spatial_(std::move(spatial)), num_rows_(num_rows), loops_(loops) {
+  assert(temporal.size() <= spatial_->num_components());
+  for (std::size_t list = 0; list < 2; ++list) {
+    for (std::size_t limb = 0; limb < 2; ++limb)
+      SegmentMaker(*this, temporal, list, limb).run();
+  }
 }
 
-void ComponentSum::sum_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
+void ComponentSum::add_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
                             std::span<std::int64_t> sums) const {
-  assert(tile < num_tiles() && first_row + num_rows <= num_rows_);
+  assert(tile < spatial_->num_tiles() && first_row + num_rows <= num_rows_);
   assert(sums.size() == num_rows * kTileValues);
-  std::fill(sums.begin(), sums.end(), 0);
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): sum_products() fills what is read.
-  std::array<std::int32_t, kMaxRows * kTileValues> of_group;
+  std::array<std::int32_t, kMaxRows * kTileValues> of_segment;
   for (std::size_t r = 0; r < num_rows; r += kMaxRows) {
     const std::size_t rows = std::min(kMaxRows, num_rows - r);
     std::int64_t* const out = &sums[r * kTileValues];
-    for (const Group& group : groups_) {
-      const FactorPairs factors{group.temporal.data(), num_rows_, group.spatial[tile].data(),
-                                (group.size + 1) / 2};
-      loops_.sum_products(factors, first_row + r, rows, of_group.data());
-      loops_.add_weighted(of_group.data(), 1 << group.shift, rows * kTileValues, out);
+    for (const Segment& segment : segments_) {
+      const std::vector<std::int16_t>& of_tile = spatial_->limbs_[segment.list].tiles[tile];
+      const FactorPairs factors{segment.temporal.data(), num_rows_,
+                                &of_tile[2 * kTileValues * segment.first_pair],
+                                segment.num_pairs};
+      loops_.sum_products(factors, first_row + r, rows, of_segment.data());
+      loops_.add_weighted(of_segment.data(), 1 << segment.shift, rows * kTileValues, out);
     }
   }
 }
 
 void ComponentSum::sum(std::size_t row, std::span<std::int64_t> sums) const {
-  assert(sums.size() == num_values_ && row < num_rows_);
+  assert(sums.size() == spatial_->num_values() && row < num_rows_);
   std::array<std::int64_t, kTileValues> of_tile{};
-  for (std::size_t tile = 0; tile < num_tiles(); ++tile) {
-    sum_tile(tile, row, 1, of_tile);
+  for (std::size_t tile = 0; tile < spatial_->num_tiles(); ++tile) {
+    of_tile.fill(0);
+    add_tile(tile, row, 1, of_tile);
     const auto rest = sums.subspan(tile * kTileValues);
     std::copy_n(of_tile.begin(), std::min(rest.size(), kTileValues), rest.begin());
   }

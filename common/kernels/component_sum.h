@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,53 +34,87 @@ constexpr int spatial_factor_bits(int spatial_bits) {
   return spatial_bits > kSpatialNormBits ? spatial_bits : kSpatialNormBits;
 }
 
-// Factors of all components, laid out for summation. Factors of more than 16 bits are split
-// into two limbs of at most 14 bits, so that all products are of 16 x 16 bits.
+// A limb of at most 16 bits of a factor: floor(value / 2^shift), or the remainder of that.
+struct FactorLimb {
+  int shift;
+  int size_log2;  // |limb| <= 2^size_log2
+  bool is_low;
+
+  std::int32_t of(std::int32_t value) const;
+};
+
+// The spatial factors of components, laid out for summation; any number of sums can share them.
+// Factors of more than 16 bits are split into two limbs of at most 14 bits, so that all
+// products are of 16 x 16 bits.
+class SpatialFactors {
+ public:
+  // num_values: of each component.
+  explicit SpatialFactors(std::size_t num_values) : num_values_(num_values) {}
+
+  // Adds the factor of the next component. spatial: before normalisation, within spatial_bits
+  // (at most 24); value i is spatial[i * stride].
+  void add(std::span<const std::int32_t> spatial, int spatial_bits, std::size_t stride = 1);
+
+  std::size_t num_values() const { return num_values_; }
+  std::size_t num_components() const { return num_components_; }
+  std::size_t num_tiles() const { return (num_values_ + kTileValues - 1) / kTileValues; }
+
+ private:
+  friend class ComponentSum;
+
+  // Limbs of equal shift; two at a time make a pair.
+  struct Limbs {
+    struct Place {
+      std::size_t component;
+      int size_log2;
+    };
+    std::vector<Place> places;
+    std::vector<std::vector<std::int16_t>> tiles;  // [tile][pairs][kTileValues][2]
+  };
+
+  std::size_t num_values_;
+  std::size_t num_components_ = 0;
+  std::array<Limbs, 2> limbs_;  // by FactorLimb::shift: 0, and that of high limbs
+};
+
+// The temporal factor of a component, [num_rows], scaled, within `bits` (at most 26). No bits:
+// the component does not occur.
+struct TemporalFactor {
+  std::vector<std::int32_t> values;
+  int bits = 0;
+};
+
 class ComponentSum {
  public:
-  // num_values: spatial values per component. num_rows: temporal values per component, one per
-  // frame or per coordinate of a frame.
-  ComponentSum(std::size_t num_values, std::size_t num_rows,
-               const Kernels& loops = kernels().back())
-      : num_values_(num_values), num_rows_(num_rows), loops_(loops) {}
-
-  // Adds a component. temporal [num_rows]: scaled, within temporal_bits (at most 26). spatial:
-  // before normalisation, within spatial_bits (at most 24); value i is spatial[i * stride].
-  void add(std::span<const std::int32_t> temporal, int temporal_bits,
-           std::span<const std::int32_t> spatial, int spatial_bits, std::size_t stride = 1);
+  // num_rows: temporal values per component, one per frame or per coordinate of a frame.
+  // temporal: of the first components of `spatial`; the others do not occur. Read during the
+  // call.
+  ComponentSum(std::shared_ptr<const SpatialFactors> spatial,
+               std::span<const TemporalFactor> temporal, std::size_t num_rows,
+               const Kernels& loops = kernels().back());
 
   // 8.5.3: sums[i] = sum over the components of temporal(row) * spatial(i); at most 2^58.
   void sum(std::size_t row, std::span<std::int64_t> sums) const;
-  // The same for several rows and the values of a tile, kTileValues * tile and after;
-  // sums [num_rows][kTileValues], zero where there are fewer values.
-  void sum_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
+  // Adds the same, for several rows and the values of a tile, kTileValues * tile and after, to
+  // sums [num_rows][kTileValues]; nothing is added where there are fewer values.
+  void add_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
                 std::span<std::int64_t> sums) const;
 
  private:
-  // Components whose products have a sum within 31 bits, scaled by 2^shift.
-  struct Group {
-    int shift = 0;
-    std::int64_t bound = 0;
-    std::size_t size = 0;
-    std::vector<std::int16_t> temporal;              // [pairs][num_rows][2]
-    std::vector<std::vector<std::int16_t>> spatial;  // [tiles][pairs][kTileValues][2]
-  };
-  // One 16-bit limb of a factor: floor(value / 2^shift), or the remainder.
-  struct Limb {
+  // Consecutive pairs whose products have a sum within 31 bits, scaled by 2^shift.
+  struct Segment {
+    std::size_t list;  // of SpatialFactors::limbs_
     int shift;
-    int size_log2;  // |limb| <= 2^size_log2
-    bool is_low;
-    std::int32_t of(std::int32_t value) const;
+    std::size_t first_pair;
+    std::size_t num_pairs;
+    std::vector<std::int16_t> temporal;  // [pairs][num_rows][2]
   };
+  class SegmentMaker;
 
-  static std::vector<Limb> limbs_of(int bits);
-  Group& group_for(int shift, std::int64_t bound);
-  std::size_t num_tiles() const { return (num_values_ + kTileValues - 1) / kTileValues; }
-
-  std::size_t num_values_;
+  std::shared_ptr<const SpatialFactors> spatial_;
   std::size_t num_rows_;
   Kernels loops_;
-  std::vector<Group> groups_;
+  std::vector<Segment> segments_;
 };
 
 }  // namespace rlpc

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -32,13 +33,21 @@ std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t nu
   return sums;
 }
 
+ComponentSum sum_of(const std::vector<Factor>& factors, std::size_t num_values,
+                    std::size_t num_frames, const Kernels& loops = kernels().back()) {
+  const auto spatial = std::make_shared<SpatialFactors>(num_values);
+  std::vector<TemporalFactor> temporal;
+  for (const Factor& f : factors) {
+    spatial->add(f.spatial, f.spatial_bits);
+    temporal.push_back({f.temporal, f.temporal_bits});
+  }
+  return {spatial, temporal, num_frames, loops};
+}
+
 void expect_sums_of_the_plain_twin(const std::vector<Factor>& factors, std::size_t num_values,
                                    std::size_t num_frames) {
   for (const Kernels& loops : kernels()) {
-    ComponentSum set(num_values, num_frames, loops);
-    for (const Factor& f : factors) {
-      set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
-    }
+    const ComponentSum set = sum_of(factors, num_values, num_frames, loops);
     std::vector<std::int64_t> sums(num_values, 12345);
     for (std::size_t frame = 0; frame < num_frames; ++frame) {
       set.sum(frame, sums);
@@ -104,12 +113,9 @@ TEST(ComponentSum, SumsRowsOfATileLikeSingleRows) {
   constexpr std::size_t kRows = 30;
   const std::vector<Factor> factors =
       random_factors(random, {1, 24, 1, 26}, 20, kTileValues + 5, kRows);
-  ComponentSum set(kTileValues + 5, kRows);
-  for (const Factor& f : factors) {
-    set.add(f.temporal, f.temporal_bits, f.spatial, f.spatial_bits);
-  }
-  std::vector<std::int64_t> sums((kRows - 1) * kTileValues, 12345);
-  set.sum_tile(1, 1, kRows - 1, sums);
+  const ComponentSum set = sum_of(factors, kTileValues + 5, kRows);
+  std::vector<std::int64_t> sums((kRows - 1) * kTileValues);
+  set.add_tile(1, 1, kRows - 1, sums);
   std::vector<std::int64_t> of_row(kTileValues + 5);
   for (std::size_t r = 0; r + 1 < kRows; ++r) {
     set.sum(r + 1, of_row);
@@ -121,11 +127,39 @@ TEST(ComponentSum, SumsRowsOfATileLikeSingleRows) {
 }
 
 TEST(ComponentSum, ReadsSpatialValuesWithAStride) {
-  ComponentSum set(2, 1);
-  set.add(std::vector<std::int32_t>{3}, 3, std::vector<std::int32_t>{5, 99, -7}, 13, 2);
+  const auto spatial = std::make_shared<SpatialFactors>(2);
+  spatial->add(std::vector<std::int32_t>{5, 99, -7}, 13, 2);
+  const ComponentSum set(spatial, std::vector<TemporalFactor>{{{3}, 3}}, 1);
   std::vector<std::int64_t> sums(2);
   set.sum(0, sums);
   EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
+}
+
+// Factors that do not occur, and those after the last temporal factor, add nothing.
+TEST(ComponentSum, LeavesOutComponentsThatDoNotOccur) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::vector<Factor> factors = random_factors(random, {1, 24, 1, 26}, 30, 7, 3);
+    const auto spatial = std::make_shared<SpatialFactors>(7);
+    std::vector<TemporalFactor> temporal;
+    std::vector<Factor> left;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      spatial->add(factors[k].spatial, factors[k].spatial_bits);
+      if (k > 20) continue;
+      const bool occurs = random() % 2 == 0;
+      temporal.push_back(occurs ? TemporalFactor{factors[k].temporal, factors[k].temporal_bits}
+                                : TemporalFactor{});
+      if (occurs) left.push_back(factors[k]);
+    }
+    const ComponentSum set(spatial, temporal, 3);
+    std::vector<std::int64_t> sums(7);
+    for (std::size_t f = 0; f < 3; ++f) {
+      set.sum(f, sums);
+      const std::vector<Int128> plain = plain_sum(left, 7, f);
+      for (std::size_t i = 0; i < 7; ++i) ASSERT_TRUE(plain[i] == sums[i]);
+    }
+  }
 }
 
 TEST(ComponentSum, IsZeroWithoutComponents) { expect_sums_of_the_plain_twin({}, 9, 2); }
@@ -165,10 +199,8 @@ TEST(ComponentSum, GroupsOfNarrowComponentsNeverOverflow) {
 TEST(ComponentSum, SumOfTheLargestComponentsIsTwoToThe58) {
   const std::int32_t s = 1 << 23;
   const std::int32_t t = 1 << 25;
-  ComponentSum set(3, 1);
-  for (int i = 0; i < 1024; ++i) {
-    set.add(std::vector<std::int32_t>{-t}, 26, std::vector<std::int32_t>{-s, 0, s - 1}, 24);
-  }
+  const ComponentSum set =
+      sum_of(std::vector<Factor>(1024, {{-t}, {-s, 0, s - 1}, 26, 24}), 3, 1);
   std::vector<std::int64_t> sums(3);
   set.sum(0, sums);
   EXPECT_EQ(sums[0], std::int64_t{1} << 58);

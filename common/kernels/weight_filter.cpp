@@ -54,7 +54,8 @@ void adapt(WeightFilter& filter, const std::int32_t* offsets, std::int64_t error
   std::uint32_t largest = 1;
   for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, magnitude(offsets[i]));
   const int shift = std::max(floor_log2(largest) - kOffsetLog2, 0);
-  const std::int64_t e = std::clamp<std::int64_t>(round2(error, shift), -kMaxError, kMaxError);
+  const std::int64_t e =
+      std::clamp<std::int64_t>(round2(error, shift), -kMaxFilterError, kMaxFilterError);
   std::array<std::int64_t, kMaxFilterSize> offset{};
   for (std::size_t i = 0; i < n; ++i) offset[i] = round2(offsets[i], shift);
 

@@ -86,7 +86,7 @@ RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
   for (std::size_t k = 0; k < kVectors; ++k) offset[k] = load(offsets + kFilterVector * k);
   const int shift = std::max(floor_log2(bits_of(offset)) - kOffsetLog2, 0);
   const auto e = static_cast<std::int32_t>(
-      std::clamp<std::int64_t>(round2(error, shift), -kMaxError, kMaxError));
+      std::clamp<std::int64_t>(round2(error, shift), -kMaxFilterError, kMaxFilterError));
   alignas(32) std::array<std::int32_t, kStride> numbers;
   // Sums of 64 bits; AVX2 lacks their arithmetic shift, so that they are made positive. Only
   // the lower halves of gains are used, where the bias, a multiple of 2^32, is gone.

@@ -1,11 +1,12 @@
-// 6.11 and 6.12: a skinned GOF with its slices. Passed from the parser to reconstruction, and
-// from the analysis to the writer.
+// 6.11 to 6.13: skinned GOFs and skinned models with their slices. Passed from the parser to
+// reconstruction, and from the analysis to the writer.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/components/component_limits.h"
@@ -18,6 +19,7 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
 inline constexpr std::uint32_t kMaxComponentGroups = 255;
+inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
 inline constexpr int kMaxWeightBits = 7;
 inline constexpr std::uint32_t kMaxStepIdx = 239;
 inline constexpr int kMaxLayerStep = 16;  // sixteenths of the step of a factor
@@ -72,14 +74,15 @@ struct Trajectory {
   int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
   std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
   TrackResiduals residual;
+  bool trajectory_flag = true;  // false: does not occur in the GOF, which has no other element
 
   bool operator==(const Trajectory&) const = default;
 };
 
-// Values of absent slices are zero; reconstruction then predicts the influences (8.14.1).
-struct SkinnedGof : GofHeader {
-  SkinnedGof() { kind = GofKind::kSkinned; }
-
+// 6.13: what has vertices in a skinned GOF. In a skinned model, bones and trajectories are
+// without motion. Values of absent slices are zero; reconstruction then predicts the influences
+// (8.14.1).
+struct SkinnedModel {
   int fraction_bits = 0;
   int weight_bits = 0;
   std::uint32_t rest_step = 1;  // 1/16 grid units
@@ -97,6 +100,22 @@ struct SkinnedGof : GofHeader {
   std::vector<Influences> influences;  // [num_vertices]
   // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
   std::vector<std::vector<std::int32_t>> vertex_residual;
+  bool is_cut = false;  // slices were dropped on request (SliceCut)
+
+  bool operator==(const SkinnedModel&) const = default;
+};
+
+struct SkinnedGof : GofHeader, SkinnedModel {
+  SkinnedGof() { kind = GofKind::kSkinned; }
+
+  // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
+  // vertices is then there. The settings, bones and leading trajectories of the GOF are those
+  // of the model, with their motion; slice_layers counts the component groups of both; and
+  // group_end and vertex_residual are those of the local component groups, with [0] as the end
+  // of the last group of the model.
+  std::shared_ptr<const SkinnedModel> model;
+  std::uint32_t model_idx = 0;
+  std::uint32_t num_local_groups = 0;
 
   bool operator==(const SkinnedGof&) const = default;
 };
@@ -104,14 +123,19 @@ struct SkinnedGof : GofHeader {
 // Width of rest positions, including 4 fractional bits.
 constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
-// Factors [first, end) of the spatial factors of a GOF, as declared.
+// Factors [first, end) of the spatial factors of a GOF or skinned model, as declared.
 struct FactorGroup {
   std::size_t first = 0;
   std::size_t end = kRestFactors;
   std::size_t size() const { return end - first; }
 };
-inline FactorGroup factor_group(const SkinnedGof& gof, std::size_t group) {
-  return {group == 0 ? 0 : gof.group_end[group - 1], gof.group_end[group]};
+inline FactorGroup factor_group(const SkinnedModel& model, std::size_t group) {
+  return {group == 0 ? 0 : model.group_end[group - 1], model.group_end[group]};
+}
+
+// 8.16.1: what FactorsOfModels( ) counts for a skinned model.
+inline std::uint64_t num_factors(const SkinnedModel& model) {
+  return (kRestFactors + model.trajectories.size()) * model.influences.size();
 }
 
 }  // namespace rlpc

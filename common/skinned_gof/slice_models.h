@@ -31,6 +31,7 @@ struct BoneModels {
 
 // 9.8.1: models of the slices of a GOF, except those of spatial residuals.
 struct SliceModels {
+  BitModel trajectory_flag;
   std::array<BitModel, kMaxTemporalPredictor> temporal_predictor;
   std::array<BitModel, kMaxExtraBones> extra_bone_flag;
   ResidualModels header;

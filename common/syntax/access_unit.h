@@ -15,7 +15,7 @@
 
 namespace rlpc {
 
-// A GOF of any kind; the alternatives are in the order of GofKind.
+// A GOF of any kind.
 using AnyGof = std::variant<ClusterGof, SkinnedGof>;
 
 // 6.12 slice_unit( )

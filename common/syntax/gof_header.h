@@ -5,18 +5,20 @@
 
 namespace rlpc {
 
+// 7.5: gof_kind
 enum class GofKind : std::uint8_t {
   kClusters,  // 6.5: clusters in local coordinate frames
   kSkinned,   // 6.11: bones, and trajectories for the residual
+  kTracks,    // 6.13.1: the same, with the vertices of a skinned model
 };
 
-// The main elements of a kind, for messages: "clusters", "bones".
+// The adjective of a kind, for messages: "a cluster GOF".
 constexpr const char* kind_name(GofKind kind) {
-  return kind == GofKind::kSkinned ? "skinned" : "cluster";
+  return kind == GofKind::kClusters ? "cluster" : "skinned";
 }
 
 // 6.12: whether slice units may follow the GOF unit.
-constexpr bool has_slices(GofKind kind) { return kind == GofKind::kSkinned; }
+constexpr bool has_slices(GofKind kind) { return kind != GofKind::kClusters; }
 
 struct GofHeader {
   GofKind kind = GofKind::kClusters;

@@ -27,6 +27,7 @@ enum class UnitType : std::uint8_t {
   kGof = 0x04,
   kEndOfSequence = 0x05,
   kSlice = 0x06,
+  kModel = 0x07,
   kGofIndex = 0x81,
   kGofHash = 0x82,
   kMetadata = 0x83,

@@ -1,7 +1,10 @@
 #include "common/syntax/write_units.h"
 
+#include <algorithm>
+
 #include "common/bitstream/bit_writer.h"
 #include "common/bitstream/crc32.h"
+#include "common/syntax/sequence_header.h"
 
 namespace rlpc {
 
@@ -36,14 +39,35 @@ Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame
   return w.take();
 }
 
+bool GofIndexEntries::fits() const {
+  constexpr std::uint64_t kMost = 0xFFFFFFFE;
+  std::uint64_t previous = 0;
+  for (const ModelIndexEntry& model : models) {
+    if (model.offset - previous > kMost) return false;
+    previous = model.offset;
+  }
+  return first_gof_offset <= kMost &&
+         std::all_of(gofs.begin(), gofs.end(),
+                     [](const GofEntry& gof) { return gof.bytes <= kMost; });
+}
+
 // 6.9 gof_index( )
-Bytes write_gof_index(std::uint64_t first_gof_offset, std::span<const GofEntry> gofs) {
+Bytes write_gof_index(const GofIndexEntries& index, std::uint32_t profile_idc) {
   BitWriter w;
-  w.ue(static_cast<std::uint32_t>(gofs.size() - 1));
-  w.ue(static_cast<std::uint32_t>(first_gof_offset));
-  for (const GofEntry& gof : gofs) {
+  w.ue(static_cast<std::uint32_t>(index.gofs.size() - 1));
+  w.ue(static_cast<std::uint32_t>(index.first_gof_offset));
+  for (const GofEntry& gof : index.gofs) {
     w.ue(gof.num_frames - 1);
     w.ue(static_cast<std::uint32_t>(gof.bytes));
+  }
+  if (profile_idc >= kProfileHigh) {
+    w.ue(static_cast<std::uint32_t>(index.models.size()));
+    std::uint64_t previous = 0;
+    for (const ModelIndexEntry& model : index.models) {
+      w.u(3, model.model_idx);
+      w.ue(static_cast<std::uint32_t>(model.offset - previous));
+      previous = model.offset;
+    }
   }
   w.byte_alignment();
   return w.take();

@@ -22,7 +22,20 @@ struct GofEntry {
   std::uint32_t num_frames;
   std::uint64_t bytes;  // from its GOF unit to the next
 };
-Bytes write_gof_index(std::uint64_t first_gof_offset, std::span<const GofEntry> gofs);
+// Of a skinned model unit.
+struct ModelIndexEntry {
+  std::uint32_t model_idx;
+  std::uint64_t offset;  // bytes from the start of the stream, ascending
+};
+struct GofIndexEntries {
+  std::uint64_t first_gof_offset = 0;
+  std::vector<GofEntry> gofs;
+  std::vector<ModelIndexEntry> models;
+
+  // R-IDX-02: whether all distances can be written.
+  bool fits() const;
+};
+Bytes write_gof_index(const GofIndexEntries& index, std::uint32_t profile_idc);
 Bytes write_end_of_sequence(std::uint32_t index_distance);
 
 }  // namespace rlpc

@@ -28,7 +28,8 @@ struct BoneRecipe {
   std::uint32_t origin_order = 0;
 };
 
-// 6.5 and 6.11, of a GOF that begins with frame 0.
+// 6.5 and 6.11, of a GOF that begins with frame 0; 6.13, of a skinned model; and 6.13.1, of a
+// GOF that uses it.
 struct SkinnedGofRecipe {
   std::uint32_t num_gof_frames_minus1 = 0;
   std::uint32_t fraction_bits = 0;
@@ -50,7 +51,35 @@ struct SkinnedGofRecipe {
     BitWriter w;
     w.ue(0);
     w.ue(num_gof_frames_minus1);
-    w.flag(true);
+    w.u(num_adaptive_factors ? 2 : 1, 1);  // gof_kind or, in the Main profile, bones_flag
+    rig_header(w);
+    w.byte_alignment();
+    w.append(bone_section(true, true));
+    return w.take();
+  }
+  std::vector<std::uint8_t> model_payload(std::uint32_t model_idx) const {
+    BitWriter w;
+    w.u(3, model_idx);
+    rig_header(w);
+    w.byte_alignment();
+    w.append(bone_section(true, false));
+    return w.take();
+  }
+  std::vector<std::uint8_t> tracks_payload(std::uint32_t gof_kind, std::uint32_t model_idx,
+                                           std::uint32_t num_local_groups) const {
+    BitWriter w;
+    w.ue(0);
+    w.ue(num_gof_frames_minus1);
+    w.u(2, gof_kind);
+    w.u(3, model_idx);
+    w.ue(num_local_groups);
+    w.byte_alignment();
+    w.append(bone_section(false, true));
+    return w.take();
+  }
+
+ private:
+  void rig_header(BitWriter& w) const {
     w.ue(static_cast<std::uint32_t>(bones.size()) - 1);
     w.u(5, fraction_bits);
     w.u(3, weight_bits);
@@ -66,27 +95,24 @@ struct SkinnedGofRecipe {
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
     }
-    w.byte_alignment();
-    w.append(bone_section());
-    return w.take();
   }
-
- private:
-  std::vector<std::uint8_t> bone_section() const {
+  std::vector<std::uint8_t> bone_section(bool has_vertices, bool has_tracks) const {
     SectionRecipe r;
     BoneModels models;
     for (std::size_t b = 0; b < bones.size(); ++b) {
       const BoneRecipe& bone = bones[b];
-      if (b > 0) r.section.bypass(ceil_log2(b + 1), bone.bone_parent_plus1);
-      for (const std::uint32_t x : bone.bone_pivot) r.section.bypass(position_bits + 5, x);
-      r.section.bin(models.rotation_flag, bone.rotation_flag);
-      r.section.bin(models.origin_flag, bone.origin_flag);
-      if (bone.rotation_flag) {
+      if (has_vertices) {
+        if (b > 0) r.section.bypass(ceil_log2(b + 1), bone.bone_parent_plus1);
+        for (const std::uint32_t x : bone.bone_pivot) r.section.bypass(position_bits + 5, x);
+        r.section.bin(models.rotation_flag, bone.rotation_flag);
+        r.section.bin(models.origin_flag, bone.origin_flag);
+      }
+      if (has_tracks && bone.rotation_flag) {
         r.section.bypass(8, bone.rotation_step_idx);
         r.truncated_unary(models.rotation_order, bone.rotation_order_minus1);
         track(r, models.rotation);
       }
-      if (bone.origin_flag) {
+      if (has_tracks && bone.origin_flag) {
         r.section.bypass(8, bone.origin_step_idx);
         r.truncated_unary(models.origin_order, bone.origin_order);
         track(r, models.origin);
@@ -101,7 +127,7 @@ struct SkinnedGofRecipe {
   }
 };
 
-// 6.12: the first slice of component group 0 or 1.
+// 6.12: the first slice of component group 0 or 1, or of a group with tracks only.
 class SliceRecipe : public SectionRecipe {
  public:
   SliceRecipe(std::uint32_t component_group_idx, std::uint32_t layer_group_idx)
@@ -120,6 +146,20 @@ class SliceRecipe : public SectionRecipe {
     field(HeaderField::kTemporalBits, temporal_bits_delta);
     truncated_unary(models.temporal_predictor, temporal_predictor);
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
+    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
+  }
+  // 6.12.1, of a skinned model.
+  void spatial_header(std::int32_t spatial_bits_delta) {
+    field(HeaderField::kSpatialBits, spatial_bits_delta);
+  }
+  // 6.13.2
+  void trajectory_flag(bool value) { section.bin(models.trajectory_flag, value); }
+  void track(std::int32_t scale_idx_delta, std::int32_t temporal_bits_delta,
+             std::uint32_t num_frames) {
+    trajectory_flag(true);
+    field(HeaderField::kScaleIdx, scale_idx_delta);
+    field(HeaderField::kTemporalBits, temporal_bits_delta);
+    truncated_unary(models.temporal_predictor, 0);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
   }
   // Of the first vertex: bones, and weights minus 1, of this many bits each.

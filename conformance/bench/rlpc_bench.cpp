@@ -216,15 +216,17 @@ void bench_sums(benchmark::State& state, const rlpc::Kernels& loops, int tempora
   constexpr std::size_t kVertices = 4096;
   constexpr std::size_t kRows = 48;
   constexpr std::size_t kComponents = 100;
-  rlpc::ComponentSum factors(kVertices, kRows, loops);
-  const std::vector<std::int32_t> temporal(kRows, (1 << (temporal_bits - 1)) - 1);
-  const std::vector<std::int32_t> spatial(kVertices, -77);
-  for (std::size_t k = 0; k < kComponents; ++k)
-    factors.add(temporal, temporal_bits, spatial, 8);
+  const auto spatial = std::make_shared<rlpc::SpatialFactors>(kVertices);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    spatial->add(std::vector<std::int32_t>(kVertices, -77), 8);
+  }
+  const std::vector<std::int32_t> values(kRows, (1 << (temporal_bits - 1)) - 1);
+  const std::vector<rlpc::TemporalFactor> temporal(kComponents, {values, temporal_bits});
+  const rlpc::ComponentSum factors(spatial, temporal, kRows, loops);
   std::vector<std::int64_t> sums(kRows * rlpc::kTileValues);
   for (auto _ : state) {
     for (std::size_t tile = 0; tile < kVertices / rlpc::kTileValues; ++tile) {
-      factors.sum_tile(tile, 0, kRows, sums);
+      factors.add_tile(tile, 0, kRows, sums);
       benchmark::DoNotOptimize(sums.data());
     }
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cuts of streams of the Main profile: rlpcinfo --extract, and rlpcdec with the same limits.
+"""Cuts of streams with slices: rlpcinfo --extract, and rlpcdec with the same limits.
 
     tools_cut_test.py --bin BUILD/bin [unittest arguments, such as Cutting]
 """
@@ -12,8 +12,7 @@ from tools_testing import ROOT, ToolsTest, limited, main, run
 
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
-import random_main  # noqa: E402
-import random_streams  # noqa: E402
+import random_high  # noqa: E402
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
 
@@ -31,31 +30,46 @@ def units_of(stream):
     return units
 
 
-def expected_slices(gof, components, layers):
-    """The slices of a GOF (rlpcinfo --json) that a cut keeps, counted without the tools."""
-    if "num_bones" not in gof:
-        return []
-    groups, sizes = {0}, gof["layer_group_size"]
-    total = 0
-    for s in gof["slices"]:
+def expected_groups(slices, components, first=1, total=0):
+    """The component groups from `first` on that a cut keeps, and the trajectories up to them."""
+    groups = set()
+    for s in slices:
+        if s["component_group_idx"] < first:
+            continue
         total += s["num_trajectories"]
-        if total <= components:
-            groups.add(s["component_group_idx"])
+        if total > components:
+            break
+        groups.add(s["component_group_idx"])
+    return groups, total
+
+
+def expected_slices(gof, components, layers, models):
+    """The slices of a GOF or skinned model (rlpcinfo --json) that a cut keeps, counted without
+    the tools."""
+    if "slices" not in gof:
+        return []
+    sizes = gof["layer_group_size"]
+    if "model" in gof:
+        model = models[gof["model"]]
+        groups, total = expected_groups(model["slices"], components)
+        if len(groups) == model["num_component_groups"]:
+            groups |= expected_groups(gof["slices"], components, len(groups) + 1, total)[0]
+    else:
+        groups, _ = expected_groups(gof["slices"], components)
     num = max([1] + [n for n in range(1, len(sizes) + 1) if sum(sizes[:n]) <= layers])
     return [s for s in gof["slices"]
-            if s["component_group_idx"] in groups and s["layer_group_idx"] < num]
+            if s["component_group_idx"] in groups | {0} and s["layer_group_idx"] < num]
 
 
 class CutTest(ToolsTest):
-    builder = None
+    builders = {}
 
-    def random_stream(self, seed):
-        if not CutTest.builder:
-            CutTest.builder = random_streams.RandomBuilder(
-                spec_program.Program(specdec.SPEC), random_main.MainPlan, random_main.MainSource,
-                random_main.MainSequence)
+    def random_stream(self, seed, profile="main"):
+        if profile not in CutTest.builders:
+            CutTest.builders[profile] = random_high.builder_of(profile)(
+                spec_program.Program(specdec.SPEC))
         path = self.path("in.rlpc")
-        path.write_bytes(CutTest.builder.build(seed)[0])
+        path.write_bytes(CutTest.builders[profile].build(seed)[0])
         return path
 
     def skinned_gofs(self, path):
@@ -79,13 +93,16 @@ class Cutting(CutTest):
     SEEDS = 40
     SPECDEC_SEEDS = 12  # seeds whose cut streams specdec decodes as well
 
-    def check(self, seed, components, layers):
+    def check(self, seed, components, layers, profile="main"):
         """Cuts a random stream; returns whether slices were dropped."""
-        path, cut = self.random_stream(seed), self.path("cut.rlpc")
+        path, cut = self.random_stream(seed, profile), self.path("cut.rlpc")
         report = self.extract(path, f"components={components},layers={layers}", "--json").json()
-        entries = self.ok("rlpcinfo", path, "--json").json()["gofs"]
-        stay = [expected_slices(gof, components, layers) for gof in entries]
-        for gof, slices, entry in zip(report["gofs"], stay, entries, strict=True):
+        info = self.ok("rlpcinfo", path, "--json").json()
+        models = info.get("models", [])
+        entries = models + info["gofs"]
+        stay = [expected_slices(gof, components, layers, models) for gof in entries]
+        for gof, slices, entry in zip(report["models"] + report["gofs"], stay, entries,
+                                      strict=True):
             self.assertEqual(gof["after"]["num_slices"], len(slices))
             self.assertEqual(gof["before"]["num_slices"], len(entry.get("slices", [])))
             self.assertEqual(gof["after"]["num_trajectories"],
@@ -117,12 +134,18 @@ class Cutting(CutTest):
                          f"seed {seed}")
         return report["cut"]
 
-    def test_random_streams(self):
+    def test_random_streams_of_the_main_profile(self):
+        self.check_all("main")
+
+    def test_random_streams_of_the_high_profile(self):
+        self.check_all("high")
+
+    def check_all(self, profile):
         cuts = 0
         for seed in range(self.SEEDS):
             numbers = random.Random(seed)
             cut = self.check(seed, numbers.choice([0, 0, 1, 2, 3, 5, 1000]),
-                             numbers.choice([1, 2, 9]))
+                             numbers.choice([1, 2, 9]), profile)
             cuts += cut
             if cut and seed < self.SPECDEC_SEEDS:
                 subprocess.run([sys.executable, ROOT / "conformance/specdec/specdec.py", "decode",

@@ -2,7 +2,7 @@
 
 A measurement is a dictionary for JSON:
     specification   digest of all goal ids; measurements of another specification do not compare
-    verdict         of decoding in order: code, rule, frames; rule of what is run after that
+    verdict         of decoding in order: code, rule, frames
     goals           for each function that was entered, a number in hexadecimal: bit n stands for
                     goal n of the function, in the order of its sites and their outcomes
     elements        for each syntax element its least and its greatest value
@@ -52,11 +52,10 @@ def measure(goals, data):
     """The measurement of a stream; raises what the specification's program itself raises."""
     target = goals.target
     decoder = specdec.Decoder(target, data, lambda output: None)
-    verdict = {"code": specdec.DONE}
+    verdict = {"code": specdec.DONE, "rule": None}
     try:
         decoder.call(target.entries[0])
-        for name in target.entries[1:]:
-            verdict["rule"] = _rule(decoder, name)
+        _run_others(decoder, target)
     except specdec.Verdict as error:
         verdict = {"code": error.code, "rule": error.rule}
         decoder.place()
@@ -64,12 +63,21 @@ def measure(goals, data):
     return {"specification": goals.digest, "verdict": verdict, **_seen(goals, decoder.variables)}
 
 
-def _rule(decoder, name):
+def _run_others(decoder, target):
+    """What is run after decoding in order; lists count only if nothing has broken a rule."""
+    good = [_keeps_rules(decoder, name) for name in target.entries[1:]]
+    if all(good):
+        for name, items in target.for_each.items():
+            for item in decoder.variables.get(items, []):
+                _keeps_rules(decoder, name, item)
+
+
+def _keeps_rules(decoder, name, *arguments):
     try:
-        decoder.call(name)
-    except specdec.Verdict as error:
-        return error.rule
-    return None
+        decoder.variables[name](*arguments)
+    except specdec.Verdict:
+        return False
+    return True
 
 
 def _seen(goals, namespace):

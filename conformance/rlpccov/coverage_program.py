@@ -67,6 +67,8 @@ class Instrumented:
                                 for n in spec_program._stored_names(c)} - stored
         self.models = coverage_models.Models(self)
         self.signs = coverage_signs.Signs(self.program)
+        self.for_each = {name: entry["list"]
+                         for name, entry in settings.get("for_each", {}).items()}
         self.entries, self.reachable = self._reachable()
         self._code = self.program.code(transform=self._transform)
         coverage_elements.apply_settings(self)
@@ -79,13 +81,14 @@ class Instrumented:
         """(functions to run, all that they call), without those that only constants need.
 
         Functions to run are stream( ), and after it those without parameters that nothing calls.
+        Those of for_each run last, with each element of a list.
         """
         functions = self.program.functions
         called = {n for f, _ in functions.values() for n in self._calls(f)}
         called |= {n for c in self.program.constants for n in self._calls(c)}
         entries = [DECODING] + [n for n, (f, _) in functions.items()
                                 if n not in called | {DECODING} and not f.args.args]
-        reachable, waiting = set(), list(entries)
+        reachable, waiting = set(), entries + list(self.for_each)
         while waiting:
             name = waiting.pop()
             if name not in reachable:

@@ -229,6 +229,19 @@ class Counting(FolderTest):
             self.goals(("6 Syntax", "def stream():\n    Next = 0"),
                        settings={"values": {"6/stream/none": {"least": 1}}})
 
+    def test_functions_that_run_for_each_element_of_a_list(self):
+        settings = {"for_each": {"Visit": {"list": "Found", "reason": ""}}}
+        goals = self.goals(("6 Syntax", "def stream():\n    Next = 0\n    Found = []\n"
+                                        "    for i in range(2):\n        h_value = u(8)\n"
+                                        "        Found.append(h_value)\n\ndef Visit(x):\n"
+                                        "    require(x < 9, \"R-AAA-01\")\n    Seen = x"),
+                           settings=settings)
+        visited = "require/R-AAA-01 x < 9/"
+        for data, expected in ((b"\x01\x02", {visited + "true"}),
+                               (b"\x01\x20", {visited + "true", visited + "false"}),
+                               (b"\x20\x21", {visited + "false"}), (b"\x01", set())):
+            self.assertEqual(self.reached(goals, data, "6/Visit"), expected)
+
     def test_merging_takes_the_extremes(self):
         goals = self.goals(("6 Syntax", "def stream():\n    Next = 0\n    g_value = u(8)\n"
                                         "    Sum = g_value - 9"))
@@ -325,7 +338,7 @@ class Streams(FolderTest):
 
     def test_settings_have_reasons(self):
         settings = self.target.settings
-        for kind in ("elements", "loops", "values"):
+        for kind in ("for_each", "elements", "loops", "values"):
             for name, entry in settings[kind].items():
                 self.assertTrue(entry.get("reason"), name)
 

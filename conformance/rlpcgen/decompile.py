@@ -12,15 +12,16 @@ import specdec  # found through stream_writer
 # Elements whose default is not 0, so that a recipe must give a 0.
 _NOT_ZERO = set(recipe_source.DEFAULTS) | {
     "first_frame", "num_gof_frames_minus1", "num_index_gofs_minus1", "first_gof_offset",
-    "index_gof_frames_minus1", "index_gof_bytes", "index_distance", "component_group_idx",
-    "layer_group_idx", "bone_pivot", "extra_bone"}
+    "index_gof_frames_minus1", "index_gof_bytes", "num_index_models", "index_model_idx",
+    "index_model_distance", "index_distance", "component_group_idx", "layer_group_idx",
+    "bone_pivot", "extra_bone"}
 _GATE_FLAGS = {"boundary_flag": "B", "close_flag": "C", "new_vertex_flag": "A",
                "glue_previous_flag": "P", "glue_next_flag": "N"}
 _INFERRED = ("ancillary_flag", "unit_type", "unit_size", "unit_crc", "position_crc", "version_major",
              "version_minor")
-_COMPONENT = ("scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor",
-              "spatial_predictor", "temporal_residual", "spatial_residual", "temporal_weight",
-              "trajectory_residual")
+_COMPONENT = ("trajectory_flag", "scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta",
+              "temporal_predictor", "spatial_predictor", "temporal_residual", "spatial_residual",
+              "temporal_weight", "trajectory_residual")
 
 
 class _Recorder:
@@ -142,9 +143,11 @@ def _grouped(elements):
 def _unit_lines(elements):
     """The lines for the elements of a unit, with those of each component in a group."""
     common, components = [], []
+    before = None
     for name, value in elements:
-        if name == "scale_idx_delta":
+        if recipe_source.starts_component(name, before):
             components.append([])
+        before = name
         if name in _COMPONENT and components:
             components[-1].append((name, value))
         elif name not in _INFERRED:

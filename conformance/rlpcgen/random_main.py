@@ -1,4 +1,4 @@
-"""Random legal streams of the Main and High profiles: skinned GOFs with slices, and cluster GOFs."""
+"""Random legal streams of the Main profile: skinned GOFs with slices, and cluster GOFs."""
 
 import random_streams
 
@@ -107,7 +107,7 @@ class MainSource(random_streams.RandomSource):
         return self.numbers.between(0, 2 * self.plan.components)
 
     def _temporal_predictor(self, ns, indices, arguments):
-        return self.numbers.between(0, 7 if ns["bones_flag"] else 4)
+        return self.numbers.between(0, 7 if ns["gof_kind"] > 0 else 4)
 
     def _temporal_weight(self, ns, indices, arguments):
         return self.near(0, 511)
@@ -135,47 +135,28 @@ class MainSequence(random_streams.Sequence):
 
     def _gof(self):
         self._unit("GOF")
+        if self._writer.ns["gof_kind"] > 0:
+            self._slices()
+
+    def _slices(self):
         ns = self._writer.ns
-        if not ns["bones_flag"]:
-            return
-        most = ns["num_layer_groups_minus1"] + 1
-        for group in range(ns["num_component_groups"] + 1):
+        self._groups(range(ns["num_component_groups"] + 1), ns["num_layer_groups_minus1"] + 1)
+
+    def _groups(self, groups, most):
+        """The slices of component groups; most: of layer groups that they can have."""
+        for group in groups:
             if self._n.chance(self._plan.cut_percent):
                 most = self._n.between(0, most)
             for layers in range(most):
-                self._writer.source.slice = group, layers
-                self._unit("SLICE")
+                self._slice(group, layers)
             if most == 0:
                 break
 
-
-def builder_of(profile):
-    """The class that builds random streams of a profile, by the name that sidecars have for it."""
-    return {"baseline": random_streams.RandomBuilder, "main": MainBuilder,
-            "high": HighBuilder}[profile]
+    def _slice(self, group, layers):
+        self._writer.source.slice = group, layers
+        self._unit("SLICE")
 
 
 class MainBuilder(random_streams.RandomBuilder):
     def __init__(self, program):
         super().__init__(program, MainPlan, MainSource, MainSequence)
-
-
-class HighSource(MainSource):
-    """Values of the elements that the Main profile does not have, too."""
-
-    def _profile_idc(self, ns, indices, arguments):
-        return 2
-
-    def _num_adaptive_factors(self, ns, indices, arguments):
-        return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
-
-
-class HighSequence(MainSequence):
-    """The units of a random stream of the High profile."""
-
-    version_minor = 2
-
-
-class HighBuilder(random_streams.RandomBuilder):
-    def __init__(self, program):
-        super().__init__(program, MainPlan, HighSource, HighSequence)

@@ -10,8 +10,8 @@ SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
 # Values of elements that the recipe does not give; 0 for all others.
 DEFAULTS = {"profile_idc": 0, "level_idc": 1, "frame_rate_numerator_minus1": 29,
-            "position_bits": 16, "urgent_degree": 5, "bones_flag": 1,
-            "layer_step_minus1": 15, "temporal_weight": 256}
+            "position_bits": 16, "urgent_degree": 5, "bones_flag": 1, "gof_kind": 1,
+            "layer_step_minus1": 15, "temporal_weight": 256, "trajectory_flag": 1}
 
 # Names of a recipe for absolute values: pseudo name -> (element, variable it differs from).
 _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
@@ -22,8 +22,16 @@ _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
 _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "deflated", "payload",
                             "payload_cut", "payload_append", "payload_replaced", "section_end",
                             "alignment", "stop"}
+# The elements with which a component begins, unless that one comes directly before.
+_FIRST_OF_COMPONENT = {"trajectory_flag": None, "scale_idx_delta": "trajectory_flag",
+                       "spatial_bits_delta": "scale_idx_delta"}
 _NEXT_SEED = 1000003  # from one repetition of a unit to the next
 _STREAM = ("version_major", "version_minor", "signature", "cut", "keep", "append", "flip")
+
+
+def starts_component(name, before):
+    """Whether an element starts a component or trajectory; before: the element before it."""
+    return name in _FIRST_OF_COMPONENT and before != _FIRST_OF_COMPONENT[name]
 
 
 def hexadecimal(entry):
@@ -122,7 +130,7 @@ class RecipeSource:
         if name in ("ancillary_flag", "unit_type", "unit_size"):
             return {"ancillary_flag": self.unit_code >> 7, "unit_type": self.unit_code & 127,
                     "unit_size": 0}[name]
-        if name == "scale_idx_delta":
+        if starts_component(name, self.used[-1][0] if self.used else None):
             self._component = 0 if self._component is None else self._component + 1
         found = self._given(name, indices)
         if found is None:
@@ -205,6 +213,8 @@ def inferred(writer, name, indices):
 def _next_group(ns):
     """The component group of the next slice, if none is left out: all layer groups of one first."""
     group = ns["LastGroup"]
+    if ns["HasVertices"] == 0 and group <= ns["num_component_groups"]:
+        return group + 1  # its only slice has been written, or it is 0
     return group + (ns["SliceLayers"][group] > ns["num_layer_groups_minus1"])
 
 
@@ -359,6 +369,10 @@ def _infer_positions(writer, codes, offsets, code):
         writer.inferred["first_gof_offset"] = gofs[0] if gofs else 0
         writer.inferred["index_gof_bytes"] = [b - a for a, b in zip(gofs, gofs[1:] + [here])]
         writer.inferred["index_gof_frames_minus1"] = list(writer.gof_frames)
+        models = [at for c, at in offsets if c == codes["MODEL"]]
+        writer.inferred["num_index_models"] = len(models)
+        writer.inferred["index_model_idx"] = list(writer.model_indices)
+        writer.inferred["index_model_distance"] = [b - a for a, b in zip([0] + models, models)]
     elif code == codes["END_OF_SEQUENCE"]:
         indexed = offsets and offsets[-1][0] == codes["GOF_INDEX"]
         writer.inferred["index_distance"] = here - offsets[-1][1] if indexed else 0

@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import decompile  # noqa: E402
 import expectation  # noqa: E402
 import mesh_gates  # noqa: E402
-import random_main  # noqa: E402
+import random_high  # noqa: E402
 import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
 import spec_program  # noqa: E402
@@ -214,7 +214,7 @@ class RandomTest(unittest.TestCase):
     """Random streams of a profile are legal, and the same for the same seed."""
 
     def decode_to_the_same(self, profile):
-        builder = random_main.builder_of(profile)(PROGRAM)
+        builder = random_high.builder_of(profile)(PROGRAM)
         with tempfile.TemporaryDirectory() as name:
             stream, output = pathlib.Path(name, "in.rlpc"), pathlib.Path(name, "out.rlpd")
             for seed in self.SEEDS:
@@ -227,7 +227,7 @@ class RandomTest(unittest.TestCase):
 
     def digest(self, profile):
         # STRESS.json has digests by seed, so seeds give the same streams for ever.
-        builder = random_main.builder_of(profile)(PROGRAM)
+        builder = random_high.builder_of(profile)(PROGRAM)
         digest = hashlib.sha256(b"".join(builder.build(seed)[0] for seed in range(20)))
         return digest.hexdigest()[:16]
 
@@ -258,6 +258,16 @@ class RandomMain(RandomTest):
 
     def test_the_generator_has_not_changed(self):
         self.assertEqual(self.digest("main"), "41e433765803a06c")
+
+
+class RandomHigh(RandomTest):
+    SEEDS = range(10_000, 10_020)
+
+    def test_both_decoders_decode_them_to_the_same(self):
+        self.decode_to_the_same("high")
+
+    def test_the_generator_has_not_changed(self):
+        self.assertEqual(self.digest("high"), "1613e9804555bf18")
 
 
 class StressTier(unittest.TestCase):
@@ -318,7 +328,7 @@ class Decompiling(unittest.TestCase):
         return text
 
     def test_random_streams(self):
-        builder = random_main.builder_of("baseline")(PROGRAM)
+        builder = random_high.builder_of("baseline")(PROGRAM)
         for seed in range(20_000, 20_015):
             self.back(builder.build(seed)[0])
 
@@ -328,11 +338,13 @@ class Decompiling(unittest.TestCase):
                         data[:9] + b"\x07" + data[10:]):
             self.back(changed)
 
-    def test_random_streams_of_the_main_profile(self):
-        builder = random_main.builder_of("main")(PROGRAM)
-        for seed in range(20_000, 20_008):
-            text = self.back(builder.build(seed)[0])
-            self.assertNotRegex(text, "unit (GOF|SLICE)\n(  section_end = highest\n)?  payload")
+    def test_random_streams_with_slices(self):
+        for profile in ("main", "high"):
+            builder = random_high.builder_of(profile)(PROGRAM)
+            for seed in range(20_000, 20_008):
+                text = self.back(builder.build(seed)[0])
+                self.assertNotRegex(
+                    text, "unit (GOF|MODEL|SLICE)\n(  section_end = highest\n)?  payload")
 
     def test_elements_not_bytes(self):
         text = self.back(build(TETRAHEDRON))

@@ -151,8 +151,11 @@ class StreamWriter:
         self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
                        HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
                        NumGofFrames=0)
+        self.ns["StartModels"]()
         self.inferred = {}  # element -> value, or list of values, that fits what is written
         self.gof_frames = []  # num_gof_frames_minus1 of each GOF
+        self.model_indices = []  # model_idx of each skinned model
+        self._model_pending = False  # a skinned model that is not decoded yet
         self.frame_hashes = []
         self.running_hash = 0
 
@@ -298,6 +301,8 @@ class StreamWriter:
         requirement may be one that cannot be written to its end; it ends there.
         """
         ns = self.ns
+        if code in (ns["GOF"], ns["MODEL"]):
+            self._finish_model()
         self.source.unit_code = code
         start = len(self.data)
         ns["unit_header"]()
@@ -314,12 +319,12 @@ class StreamWriter:
             del self.data[start + 5:]
             self.put_bytes(changed)
         self._close_unit(start)
+        if code == ns["MODEL"] and self._can_run(code):
+            self._start_model()
 
     def _run_payload(self, code):
-        if code < 128 and not self.ns["IsKnownType"](code):
-            return  # a critical unit that the version does not know, such as a slice in 1.0
-        if code == self.ns["SLICE"] and "SliceLayers" not in self.ns:
-            return  # before the first GOF
+        if not self._can_run(code):
+            return
         try:
             self.ns["unit_payload"]()
         except _Stop:
@@ -327,6 +332,16 @@ class StreamWriter:
         except (IndexError, KeyError, NameError, TypeError, ValueError) as error:
             if not self.broken:
                 raise WriteError(f"unit of code {code}: {error!r}") from error
+
+    def _can_run(self, code):
+        """Whether the unit is one that the version knows, and that can be read here."""
+        if code < 128 and not self.ns["IsKnownType"](code):
+            return False  # such as a slice in 1.0
+        if code == self.ns["SLICE"]:
+            return "SliceLayers" in self.ns  # after a GOF or skinned model
+        if code == self.ns["MODEL"]:
+            return "EarlierNeighbours" in self.ns  # after the connectivity
+        return True
 
     def _read_payload(self, payload):
         """Writes bytes as they are, and parses them, as later units depend on their contents."""
@@ -345,6 +360,21 @@ class StreamWriter:
         self.data[start + 1:start + 5] = claimed.to_bytes(4, "big")
         crc = self.source.override("unit_crc", zlib.crc32(self.data[start:]))
         self.put_bytes(crc.to_bytes(4, "big"))
+
+    def _start_model(self):
+        self.model_indices.append(self.ns["model_idx"])
+        self._model_pending = True
+
+    def _finish_model(self):
+        """Before the next GOF or skinned model: GOFs can use this one."""
+        if not self._model_pending:
+            return
+        self._model_pending = False
+        try:
+            self.ns["DecodeModel"]()
+        except (IndexError, KeyError, NameError, TypeError, ValueError):
+            if not self.broken:
+                raise
 
     def decode_gof(self):
         """After a GOF unit: its frames count as parsed, and their hashes become known."""

@@ -17,7 +17,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import expectation
-import random_main
+import random_high
 import recipe as recipes
 import recipe_source
 import spec_program
@@ -40,7 +40,7 @@ class _Worker:
         self._folder = pathlib.Path(folder)
         self._program = spec_program.Program(spec)
         self._profile = PROFILES[self._folder.name]
-        self._random = random_main.builder_of(self._profile)(self._program)
+        self._random = random_high.builder_of(self._profile)(self._program)
         self._version = suite_streams.Version(folder, spec)
         self._bin = bin_folder and pathlib.Path(bin_folder).resolve()
 

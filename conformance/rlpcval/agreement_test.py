@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""rlpcval and rlpcdec agree on random legal streams of the Main profile, and on damaged copies.
+"""rlpcval and rlpcdec agree on random legal streams with slices, and on damaged copies.
 
     agreement_test.py --bin BUILD/bin [unittest arguments, such as Agreement]
 """
@@ -14,19 +14,19 @@ from tools_testing import ROOT, ToolsTest, main, run  # noqa: E402
 
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
-import random_main  # noqa: E402
-import random_streams  # noqa: E402
+import random_high  # noqa: E402
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
 from specdec_testing import stream_of, units_of  # noqa: E402
 
 SLICE = 6
+MODEL = 7
 
 
 def damaged(stream, numbers):
     """The stream with one fault, of a kind drawn from `numbers`."""
     units = units_of(stream)
-    slices = [u for u, (code, _) in enumerate(units) if code == SLICE]
+    slices = [u for u, (code, _) in enumerate(units) if code in (SLICE, MODEL)]
     kind = numbers.choice(["flip", "flip", "flip", "payload", "cut", "short", "drop", "drop",
                            "swap", "move"])
     if kind == "cut":
@@ -56,7 +56,7 @@ def damaged(stream, numbers):
 
 
 class Agreement(ToolsTest):
-    SEEDS = 25
+    SEEDS = 25  # of each profile
     FAULTS = 6  # damaged copies per stream
 
     def verdict_of_decoder(self, path):
@@ -68,10 +68,8 @@ class Agreement(ToolsTest):
         verdict = json.loads(verdict)
         return verdict["rule"], verdict["bit"]
 
-    def test_first_rule_and_its_place(self):
-        builder = random_streams.RandomBuilder(
-            spec_program.Program(specdec.SPEC), random_main.MainPlan, random_main.MainSource,
-            random_main.MainSequence)
+    def check(self, profile, num_rules):
+        builder = random_high.builder_of(profile)(spec_program.Program(specdec.SPEC))
         paths = []
         for seed in range(self.SEEDS):
             good, numbers = builder.build(seed)[0], random.Random(seed)
@@ -87,7 +85,13 @@ class Agreement(ToolsTest):
             self.assertEqual(first, [verdict] if verdict else [], path.name)
             if path.stem.endswith("-0"):
                 self.assertEqual(stream["verdict"], "conforming", path.name)
-        self.assertGreater(len(rules), 10)
+        self.assertGreater(len(rules), num_rules)
+
+    def test_first_rule_and_its_place_of_main_streams(self):
+        self.check("main", 10)
+
+    def test_first_rule_and_its_place_of_high_streams(self):
+        self.check("high", 10)
 
 
 if __name__ == "__main__":

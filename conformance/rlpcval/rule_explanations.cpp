@@ -143,6 +143,9 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The temporal factor needs more than 26 bits after scaling, or the difference was taken "
      "from another component.",
      "Use fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
+    {"R-GOF-13", "7.5", "The kind of a GOF is not known to this version.",
+     "The stream is of a later version, or reading is out of step.",
+     "Write gof_kind 0 (clusters), 1 (bones) or 2 (tracks), or validate with a later version."},
     {"R-HDR-01", "7.3", "The profile is not known to this version.",
      "The stream is of a later version, or reserved values were used.",
      "Write profile_idc 0 (Baseline) with version 1.0, 1 (Main) with version 1.1, or validate "
@@ -195,6 +198,14 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "index_distance is 0, the index is not directly before the end_of_sequence unit, or there "
      "are several.",
      "Write one index directly before the end, and its size into index_distance."},
+    {"R-IDX-05", "7.9", "The GOF index lists more skinned models than the sequence has frames.",
+     "Skinned models were counted once for each GOF that uses them, or reading is out of step.",
+     "List each skinned model unit once; models that no frame needs can be omitted."},
+    {"R-IDX-06", "7.9", "The skinned models of the GOF index are not those of the stream.",
+     "The distances were counted from GOF units, or units were inserted or removed after the "
+     "index was made.",
+     "Count from the start of a skinned model unit to the start of the next; rebuild the index "
+     "when units change."},
     {"R-LVL-01", "7.3", "The mesh has more vertices than its level allows.",
      "level_idc was not chosen by the number of vertices.", "Raise level_idc (Table B-1)."},
     {"R-LVL-02", "7.3", "The mesh has more triangles than its level allows.",
@@ -207,15 +218,21 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "A GOF has more frames, or more vertices times frames, than its level allows.",
      "The whole animation was written as one GOF.",
      "Use shorter GOFs, or raise level_idc (Table B-1)."},
-    {"R-LVL-05", "7.5.5", "A GOF has more factors than its level allows.",
+    {"R-LVL-05", "7.5.5",
+     "A GOF, with all skinned models, has more factors than its level allows.",
      "Many components, bones or trajectories over many vertices and frames.",
-     "Use fewer of them or shorter GOFs, or raise level_idc (Table B-1)."},
+     "Use fewer of them, shorter GOFs or fewer skinned models at a time, or raise level_idc "
+     "(Table B-1)."},
     {"R-LVL-06", "7.5", "A GOF has more clusters, or bones, than its level allows.",
      "Their number was chosen without regard to the level.",
      "Use fewer of them, or raise level_idc; no level has more than 1024."},
     {"R-LVL-07", "7.2", "A critical unit is larger than its level allows.",
      "The size of the unit was never compared with the level; or unit_size is damaged.",
      "Use shorter GOFs, or raise level_idc (Table B-1)."},
+    {"R-LVL-09", "7.11",
+     "There are more adaptive trajectories times vertices than the level allows.",
+     "num_adaptive_factors was chosen without regard to the size of the mesh.",
+     "Let fewer of the trajectories adapt the weights, or raise level_idc (Table B-1)."},
     {"R-MET-01", "7.10", "The metadata is larger than 1 MiB.",
      "More than a description was put into the metadata.",
      "Keep metadata below 1048576 bytes; large data belongs outside the stream."},
@@ -228,6 +245,12 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Text in another encoding, a byte order mark, a terminating zero byte, a trailing comma, "
      "or single quotes.",
      "Let a JSON library write the text, in UTF-8 without a byte order mark."},
+    {"R-MOD-01", "7.13.1", "A GOF uses a skinned model that is not there.",
+     "The unit of the model was lost, or the stream was joined after it; or the GOF has "
+     "another "
+     "model_idx than the model.",
+     "Write each skinned model before the first GOF that uses it. When streams are cut or "
+     "joined, keep the models that the remaining GOFs use."},
     {"R-RNG-01", "9.3.2",
      "A section of the range coder is longer or shorter than its bins need.",
      "The range encoder was flushed with too many or too few bytes, or encoder and decoder "
@@ -321,9 +344,12 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
      "Write the lowest level whose limits hold, so that more decoders accept the stream."},
     {"W-MET-01", "7.10", "Several metadata units: only the last one counts.",
      "A tool added metadata without removing the old ones.", "Keep one metadata unit."},
+    {"W-MOD-01", "7.13", "No GOF uses a skinned model.",
+     "The model was replaced too early, or all its GOFs were removed or coded without it.",
+     "Write a skinned model only if a GOF uses it."},
     {"W-SLI-01", "7.12.1", "A trajectory is zero in all frames.",
      "All its residuals became zero by quantisation.",
-     "Omit trajectories that quantise to zero."},
+     "Omit trajectories that quantise to zero; in a GOF of tracks, write trajectory_flag 0."},
     {"W-UNT-01", "7.2", "An ancillary unit of a type that this version does not know.",
      "A private unit, a unit of a later version, or a damaged type.",
      "Decoders skip it; make sure that nothing depends on it."},

@@ -21,8 +21,12 @@ void StreamValidator::run() {
     unsupported_ = report_.count(Severity::kUnsupported) > 0;
     if (!is_foreign()) walk();
     end_slices();
+    end_models();
     findings_.in_unit(std::nullopt);
-    for (const GofIndexCheck& index : index_.checks) compare_index(index);
+    for (const GofIndexCheck& index : index_.checks) {
+      compare_index(index);
+      compare_models(index);
+    }
     warn_of_stream();
   } else {
     report_.complete = false;
@@ -78,6 +82,8 @@ void StreamValidator::lose_units() {
   next_frame_.reset();
   previous_.reset();
   gof_ = {};
+  model_ = {};
+  doubt_models();
   report_.complete = false;
 }
 
@@ -91,19 +97,22 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
     case UnitType::kSequenceHeader:
       return !seen(UnitType::kSequenceHeader);
     case UnitType::kConnectivity:
-      return !seen(UnitType::kConnectivity) && !seen(UnitType::kGof);
+      return !seen(UnitType::kConnectivity) && !seen(UnitType::kGof) && !seen(UnitType::kModel);
     case UnitType::kVertexOrder:
       return seen(UnitType::kConnectivity) && !seen(UnitType::kVertexOrder) &&
-             !seen(UnitType::kGof);
+             !seen(UnitType::kGof) && !seen(UnitType::kModel);
     case UnitType::kGof:
       return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
+    case UnitType::kModel:
+      return units_.version_minor() > 1 &&
+             (seen(UnitType::kConnectivity) || seen(UnitType::kGof));
     case UnitType::kSlice: {
       const bool behind_slice = !previous_ || previous_->type() == UnitType::kSlice;
       return units_.version_minor() > 0 &&
-             ((gof_.unit && gof_.may_have_slices) || behind_slice);
+             ((gof_.unit && gof_.may_have_slices) || model_.unit || behind_slice);
     }
-    case UnitType::kEndOfSequence:
-      return seen(UnitType::kGof);
+    case UnitType::kEndOfSequence:  // without a GOF, R-END-01
+      return seen(UnitType::kGof) || seen(UnitType::kModel);
     default:
       return false;
   }
@@ -113,10 +122,7 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
 bool StreamValidator::check_place(const UnitHeader& unit) {
   if (may_stand_here(unit)) return true;
   const std::uint64_t at = unit.offset * 8;
-  const UnitType last =
-      units_.version_minor() > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
-  const bool known =
-      unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader && unit.type() <= last);
+  const bool known = units_.known_type(unit.type());
   if (known) {
     findings_.error({Errc::kInvalid, "R-UNT-05", "unit_type", at});
   } else {
@@ -130,7 +136,9 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   ++report_.units;
   ++seen_[unit.type_byte];
   previous_ = unit;
-  if (unit.type() != UnitType::kGof && unit.type() != UnitType::kSlice) gof_.unit.reset();
+  const bool is_slice = unit.type() == UnitType::kSlice;
+  if (!is_slice && unit.type() != UnitType::kGof) gof_.unit.reset();
+  if (!is_slice && unit.type() != UnitType::kModel) model_.unit.reset();
   const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
   if (unit.ancillary() && !known_ancillary) {
     findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,

@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator.h"
-#include "conformance/roundtrip/sliced_animation.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/roundtrip/model_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -35,8 +34,9 @@ std::optional<Error> decode_error(const StreamBytes& bytes) {
 
 // 4.6: rules that decoding in order does not check, as it does nothing within a GOF index unit.
 bool checked_by_decoding(const Finding& finding) {
-  constexpr std::array<std::string_view, 7> kUnchecked{
-      "R-END-03", "R-HSH-03", "R-IDX-01", "R-IDX-02", "R-IDX-03", "R-IDX-04", "R-MET-03"};
+  constexpr std::array<std::string_view, 9> kUnchecked{"R-END-03", "R-HSH-03", "R-IDX-01",
+                                                       "R-IDX-02", "R-IDX-03", "R-IDX-04",
+                                                       "R-IDX-05", "R-IDX-06", "R-MET-03"};
   const bool in_index =
       finding.unit && finding.unit->type_byte == static_cast<std::uint8_t>(UnitType::kGofIndex);
   const bool of_payload = std::string_view(finding.id).substr(0, 5) == "R-BIT";
@@ -169,7 +169,7 @@ TEST_P(Damage, UnitsInOtherPlaces) {
 // All known types, and some unknown ones.
 TEST_P(Damage, OtherTypes) {
   for (const UnitPlace& unit : units_of(stream_)) {
-    for (const int type : {0, 1, 2, 3, 4, 5, 6, 127, 128, 129, 130, 131, 132, 255}) {
+    for (const int type : {0, 1, 2, 3, 4, 5, 6, 7, 8, 127, 128, 129, 130, 131, 132, 255}) {
       SCOPED_TRACE(testing::Message() << "unit at " << unit.offset << ", type " << type);
       StreamBytes damaged = stream_;
       damaged[unit.offset] = static_cast<std::uint8_t>(type);
@@ -200,12 +200,13 @@ StreamBytes tangled_stream() {
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  constexpr std::array<const char*, 5> kNames{"Rich", "Indexed", "Tangled", "Sliced", "Mixed"};
+  constexpr std::array<const char*, 6> kNames{"Rich",   "Indexed", "Tangled",
+                                              "Sliced", "Mixed",   "Models"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Damage,
                          testing::Values(rich_stream, indexed_stream, tangled_stream,
-                                         sliced_stream, mixed_stream),
+                                         sliced_stream, mixed_stream, indexed_model_stream),
                          stream_name);
 
 }  // namespace

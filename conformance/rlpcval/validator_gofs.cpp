@@ -18,11 +18,6 @@ bool is_zero(const Component& component) {
   return all_zero(component.temporal_residual) || all_zero(component.spatial_residual);
 }
 
-bool is_still(const Trajectory& trajectory) {
-  return std::all_of(trajectory.residual.begin(), trajectory.residual.end(),
-                     [](const Vec3i& residual) { return residual == Vec3i{}; });
-}
-
 template <class T>
 void raise(T& most, std::uint64_t value) {
   most = std::max(most, static_cast<T>(value));
@@ -30,15 +25,24 @@ void raise(T& most, std::uint64_t value) {
 
 class GofWarnings {
  public:
-  GofWarnings(const StreamContext& context, std::uint64_t bit_pos, FindingList& findings,
-              Level& needed)
-      : context_(context), at_(bit_pos), findings_(findings), needed_(needed) {}
+  GofWarnings(const StreamContext& context, const ModelSlots& models, std::uint64_t bit_pos,
+              FindingList& findings, Level& needed)
+      : context_(context),
+        models_(models),
+        at_(bit_pos),
+        findings_(findings),
+        needed_(needed) {}
 
   void add(const ClusterGof& gof);
   void add(const SkinnedGof& gof);
+  void add(const SkinnedModel& model);
 
  private:
+  std::uint64_t num_vertices() const { return context_.header.num_vertices; }
+  void add_rig(const SkinnedModel& rig);
+
   const StreamContext& context_;
+  const ModelSlots& models_;
   std::uint64_t at_;
   FindingList& findings_;
   Level& needed_;
@@ -78,31 +82,52 @@ void GofWarnings::add(const ClusterGof& gof) {
   }
 }
 
-void GofWarnings::add(const SkinnedGof& gof) {
-  std::vector<bool> in_use(gof.bones.size(), false);
-  const CodedMesh& mesh = (*context_.meshes)[gof.prediction];
-  for (const Influences& influences : complete_influences(mesh, gof)) {
+// What has vertices in a GOF of bones or skinned model.
+void GofWarnings::add_rig(const SkinnedModel& rig) {
+  std::vector<bool> in_use(rig.bones.size(), false);
+  const CodedMesh& mesh = (*context_.meshes)[rig.prediction];
+  for (const Influences& influences : complete_influences(mesh, rig)) {
     for (const Influence& influence : influences) in_use[influence.bone] = true;
   }
   // Parents come before their children.
-  for (std::size_t b = gof.bones.size(); b-- > 0;) {
-    const std::int32_t parent = gof.bones[b].parent;
+  for (std::size_t b = rig.bones.size(); b-- > 0;) {
+    const std::int32_t parent = rig.bones[b].parent;
     if (in_use[b] && parent >= 0) in_use[static_cast<std::size_t>(parent)] = true;
   }
-  const std::size_t num_vertices = gof.influences.size();
-  raise(needed_.max_clusters, gof.bones.size());
-  raise(needed_.max_components, gof.trajectories.size());
-  raise(needed_.max_gof_values, num_vertices * gof.num_frames);
-  raise(needed_.max_gof_factors,
-        6 * gof.bones.size() * gof.num_frames + 3 * num_vertices +
-            gof.trajectories.size() * (num_vertices + 3 * std::size_t{gof.num_frames}));
+  const std::uint64_t adaptive = rig.weights.num_adaptive_factors;
+  raise(needed_.max_clusters, rig.bones.size());
+  raise(needed_.max_components, std::max<std::uint64_t>(rig.trajectories.size(), adaptive));
+  raise(needed_.max_adaptive_values, adaptive * num_vertices());
   const auto idle = std::count(in_use.begin(), in_use.end(), false);
   if (idle > 0) {
     findings_.warning(
         "W-BON-01", "bone", at_,
-        std::to_string(idle) + " of " + std::to_string(gof.bones.size()) + " bones");
+        std::to_string(idle) + " of " + std::to_string(rig.bones.size()) + " bones");
   }
-  const auto zero = std::count_if(gof.trajectories.begin(), gof.trajectories.end(), is_still);
+}
+
+void GofWarnings::add(const SkinnedModel& model) {
+  add_rig(model);
+  raise(needed_.max_gof_factors, models_.num_factors(kMaxModels));
+}
+
+void GofWarnings::add(const SkinnedGof& gof) {
+  std::uint64_t with_vertices = gof.trajectories.size();
+  std::uint64_t factors = 3 * num_vertices();
+  if (gof.model) {
+    with_vertices -= std::min(gof.trajectories.size(), gof.model->trajectories.size());
+    factors = models_.num_factors(kMaxModels);
+    raise(needed_.max_components, gof.trajectories.size());
+  } else {
+    add_rig(gof);
+  }
+  factors += 6 * gof.bones.size() * gof.num_frames + with_vertices * num_vertices() +
+             3 * gof.trajectories.size() * gof.num_frames;
+  raise(needed_.max_gof_values, num_vertices() * gof.num_frames);
+  raise(needed_.max_gof_factors, factors);
+  const auto zero =
+      std::count_if(gof.trajectories.begin(), gof.trajectories.end(),
+                    [](const Trajectory& t) { return t.trajectory_flag && is_still(t); });
   if (zero > 0) {
     findings_.warning("W-SLI-01", "trajectory", at_,
                       std::to_string(zero) + " trajectories of the GOF");
@@ -111,11 +136,23 @@ void GofWarnings::add(const SkinnedGof& gof) {
 
 }  // namespace
 
+bool is_still(const Trajectory& trajectory) {
+  return std::all_of(trajectory.residual.begin(), trajectory.residual.end(),
+                     [](const Vec3i& residual) { return residual == Vec3i{}; });
+}
+
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
-                 std::uint64_t bit_pos, FindingList& findings, Level& needed) {
+                 const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                 Level& needed) {
   raise(needed.max_gof_frames, access_unit.header().num_frames);
-  GofWarnings warnings(context, bit_pos, findings, needed);
+  GofWarnings warnings(context, models, bit_pos, findings, needed);
   std::visit([&](const auto& gof) { warnings.add(gof); }, access_unit.gof);
+}
+
+void warn_of_model(const SkinnedModel& model, const StreamContext& context,
+                   const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                   Level& needed) {
+  GofWarnings(context, models, bit_pos, findings, needed).add(model);
 }
 
 }  // namespace rlpc

@@ -1,16 +1,27 @@
-// Warnings about a GOF: what is legal, but surely not intended; and the level that it needs.
+// Warnings about a GOF or skinned model: what is legal, but surely not intended; and the level
+// that it needs.
 #pragma once
 
 #include <cstdint>
 
+#include "common/skinned_gof/model_slots.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "conformance/rlpcval/validator_findings.h"
 
 namespace rlpc {
 
-// bit_pos: of the payload of the GOF unit. needed: raised to what the GOF needs.
+// Whether a trajectory is zero in all frames of a GOF.
+bool is_still(const Trajectory& trajectory);
+
+// models: those alive. bit_pos: of the payload of the GOF unit. needed: raised to what the GOF
+// needs.
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
-                 std::uint64_t bit_pos, FindingList& findings, Level& needed);
+                 const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                 Level& needed);
+// models: those alive, with this one.
+void warn_of_model(const SkinnedModel& model, const StreamContext& context,
+                   const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                   Level& needed);
 
 }  // namespace rlpc

@@ -142,16 +142,24 @@ bool check_clusters(ElementReader& r, const SequenceHeader& header) {
   return check_alignment(r) && good;
 }
 
-// 6.11 layers_of_gof( ). False if it is not known where it ends.
+// 6.11 layers_of_rig( ). False if it is not known where it ends.
 bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   std::uint32_t& layer_groups) {
   (void)r.u(4, "damping_log2");
   (void)r.u(4, "outer_weight");
   (void)r.u(4, "outer_scale");
   if (header.profile_idc >= kProfileHigh) {
-    const std::uint32_t most = header.level().max_components;
-    (void)r.require(r.ue("num_adaptive_factors") <= most, "R-BON-06",
-                    level_allows(header.level_idc, most, " trajectories of a GOF"));
+    const Level& level = header.level();
+    const std::int64_t adaptive = r.ue("num_adaptive_factors");
+    // In the order of the decoding process: R-LVL-09 is skipped if R-BON-06 failed.
+    if (r.require(
+            adaptive <= level.max_components, "R-BON-06",
+            level_allows(header.level_idc, level.max_components, " trajectories of a GOF"))) {
+      const auto values = static_cast<std::uint64_t>(adaptive) * header.num_vertices;
+      (void)r.require(values <= level.max_adaptive_values, "R-LVL-09",
+                      level_allows(header.level_idc, level.max_adaptive_values,
+                                   " adaptive trajectories times vertices"));
+    }
   }
   const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;
   if (num_layers == 0) return false;
@@ -169,9 +177,9 @@ bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   return r.readable();
 }
 
-// 6.11 bones_of_gof( )
-bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
-                 GofHeaderCheck& gof) {
+// 6.11 rig_header( ). False if the section after it cannot be read.
+bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
+               std::optional<SliceCounts>& counts) {
   const Level& level = header.level();
   const std::int64_t bones = r.ue("num_bones_minus1") + 1;
   bool good = r.require(bones <= level.max_clusters, "R-LVL-06",
@@ -192,9 +200,45 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
   }
   if (good_groups && r.readable()) {
     slices.component_groups = static_cast<std::uint32_t>(groups);
-    gof.slices = slices;
+    counts = slices;
   }
   return check_alignment(r) && good;
+}
+
+// 6.13.1 tracks_of_gof( )
+bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& gof) {
+  const auto model_idx = static_cast<std::size_t>(r.u(3, "model_idx"));
+  const KeptModel& kept = models[model_idx];
+  if (!r.supported(
+          kept.model || kept.lost, "R-MOD-01",
+          "the stream has no skinned model " + std::to_string(model_idx) + " up to here")) {
+    return false;
+  }
+  const std::int64_t groups = r.ue("num_local_groups");
+  if (!kept.model || !r.readable()) return false;
+  gof.model_suspect = kept.suspect;
+  const std::uint32_t of_model = kept.model->num_component_groups;
+  const bool good = r.require(groups <= kMaxComponentGroups - of_model, "R-BON-02",
+                              "the skinned model has " + std::to_string(of_model) + " of " +
+                                  at_most(kMaxComponentGroups));
+  if (good) {
+    gof.slices = SliceCounts{of_model + static_cast<std::uint32_t>(groups),
+                             static_cast<std::uint32_t>(kept.model->layer_group_size.size())};
+  }
+  return check_alignment(r) && good;
+}
+
+// Nothing if it could not be read, or is of a later version.
+std::optional<GofKind> check_kind(ElementReader& r, const SequenceHeader& header) {
+  std::int64_t kind = 0;
+  if (header.profile_idc == kProfileMain) kind = r.u(1, "bones_flag");
+  if (header.profile_idc >= kProfileHigh) {
+    constexpr auto kLast = static_cast<std::int64_t>(GofKind::kTracks);
+    kind = r.u(2, "gof_kind");
+    if (!r.supported(kind <= kLast, "R-GOF-13", at_most(kLast))) return std::nullopt;
+  }
+  if (!r.readable()) return std::nullopt;
+  return static_cast<GofKind>(kind);
 }
 
 }  // namespace
@@ -202,15 +246,34 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
 // 6.5 gof( )
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers) {
+                                std::uint32_t num_layers, const KeptModels& models) {
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
-  const bool has_bones = header.has_skinned_gofs() && r.u(1, "bones_flag") != 0;
-  if (r.readable()) gof.kind = has_bones ? GofKind::kSkinned : GofKind::kClusters;
-  gof.section_readable =
-      has_bones ? check_bones(r, header, num_layers, gof) : check_clusters(r, header);
+  gof.kind = check_kind(r, header);
+  if (!gof.kind) return gof;
+  switch (*gof.kind) {
+    case GofKind::kClusters:
+      gof.section_readable = check_clusters(r, header);
+      break;
+    case GofKind::kSkinned:
+      gof.section_readable = check_rig(r, header, num_layers, gof.slices);
+      break;
+    case GofKind::kTracks:
+      gof.section_readable = check_tracks(r, models, gof);
+  }
   gof.section_readable &= good;
   return gof;
+}
+
+// 6.13 model( )
+ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& header,
+                                    std::uint32_t num_layers) {
+  ModelHeaderCheck model;
+  const std::int64_t model_idx = r.u(3, "model_idx");
+  if (!r.readable()) return model;
+  model.model_idx = static_cast<std::uint32_t>(model_idx);
+  model.section_readable = check_rig(r, header, num_layers, model.slices);
+  return model;
 }
 
 // 6.12 slice_unit( )
@@ -225,9 +288,35 @@ bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
   return good && r.readable();
 }
 
+namespace {
+
+// 6.9 index_of_models( ). False if the index is not readable to its end.
+bool check_index_of_models(ElementReader& r, std::uint32_t num_frames,
+                           std::uint64_t max_memory_bytes, GofIndexCheck& index) {
+  const std::int64_t num_models = r.ue("num_index_models");
+  bool good = r.require(num_models <= num_frames, "R-IDX-05",
+                        "the sequence has " + std::to_string(num_frames) + " frames");
+  std::uint64_t offset = 0;
+  for (std::int64_t m = 0; m < num_models && r.readable(); ++m) {
+    if (index.models.size() * sizeof(ModelLocation) > max_memory_bytes) {
+      index.too_large = true;
+      return false;
+    }
+    const auto model_idx = static_cast<std::uint32_t>(r.u(3, "index_model_idx"));
+    const std::int64_t distance = r.ue("index_model_distance");
+    good &= r.require(distance <= kMaxCode, "R-IDX-02", at_most(kMaxCode));
+    offset += static_cast<std::uint64_t>(distance);
+    index.models.push_back({offset, model_idx});
+  }
+  return good && r.readable();
+}
+
+}  // namespace
+
 // 6.9 gof_index( )
-GofIndexCheck check_gof_index(ElementReader& r, std::uint32_t num_frames,
+GofIndexCheck check_gof_index(ElementReader& r, const SequenceHeader& header,
                               std::uint64_t max_memory_bytes) {
+  const std::uint32_t num_frames = header.num_frames;
   GofIndexCheck index;
   const std::string sum = "the sequence has " + std::to_string(num_frames) + " frames";
   const std::int64_t num_gofs = r.ue("num_index_gofs_minus1") + 1;
@@ -258,6 +347,10 @@ GofIndexCheck check_gof_index(ElementReader& r, std::uint32_t num_frames,
   if (good)
     good = r.require(g == num_gofs && next.first_frame == num_frames, "R-IDX-01", lists + sum);
   if (g < num_gofs) return index;
+  if (header.profile_idc >= kProfileHigh) {
+    good &= check_index_of_models(r, num_frames, max_memory_bytes, index);
+    if (index.too_large) return index;
+  }
   r.byte_alignment();
   r.expect_end();
   index.end = next.offset;

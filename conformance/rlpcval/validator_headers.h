@@ -1,4 +1,5 @@
-// 6.3, 6.5, 6.8 and 6.9 as the validator reads them: all values out of range are reported.
+// 6.3, 6.5, 6.9 and 6.11 to 6.13 as the validator reads them: all values out of range are
+// reported.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "common/syntax/gof_header.h"
 #include "common/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
+#include "conformance/rlpcval/validator_models.h"
 #include "decoder/parse/sequence/parse_gof_index.h"
 
 namespace rlpc {
@@ -33,13 +35,24 @@ struct GofHeaderCheck {
   std::optional<GofKind> kind;        // if it could be read, or inferred
   bool section_readable = false;      // only first_frame may be wrong
   std::optional<SliceCounts> slices;  // of a skinned GOF, if known
+  bool model_suspect = false;         // its skinned model may be wrong
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
-// of the mesh, for skinned GOFs; 0 if not known.
+// of the mesh, for skinned GOFs; 0 if not known. models: those kept.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers);
+                                std::uint32_t num_layers, const KeptModels& models);
+
+struct ModelHeaderCheck {
+  std::optional<std::uint32_t> model_idx;  // if it could be read
+  bool section_readable = false;
+  std::optional<SliceCounts> slices;  // if known
+};
+
+// 6.13 model( ), up to its section. num_layers: as above.
+ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& header,
+                                    std::uint32_t num_layers);
 
 // 6.12 slice_unit( ), its indices. True if they are legal.
 bool check_slice_header(ElementReader& r, const SliceCounts& slices);
@@ -48,13 +61,14 @@ struct GofIndexCheck {
   FindingUnit unit;
   bool suspect = false;
   std::vector<GofLocation> gofs;
+  std::vector<ModelLocation> models;
   std::uint64_t end = 0;  // where the bytes of the last GOF end
   bool readable = false;
   bool too_large = false;  // for max_memory_bytes
 };
 
 // 6.9 gof_index( )
-GofIndexCheck check_gof_index(ElementReader& r, std::uint32_t num_frames,
+GofIndexCheck check_gof_index(ElementReader& r, const SequenceHeader& header,
                               std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

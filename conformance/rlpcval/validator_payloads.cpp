@@ -1,4 +1,4 @@
-// Contents of units: 6.3 to 6.12, and the hash check of 8.6.2.
+// Contents of units: 6.3 to 6.13, and the hash check of 8.6.2.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -43,7 +43,9 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
   const bool read = !unit.ancillary() || (unit.type_byte >= 0x81 && unit.type_byte <= 0x83);
   if (!read) return;
   if (unit.type() == UnitType::kGof) begin_gof(unit);
+  if (unit.type() == UnitType::kModel) begin_model(unit);
   const auto payload = units_.payload(unit);
+  if (!payload && unit.type() == UnitType::kModel) doubt_models();
   if (!payload) return;
   findings_.suspect(!sound);
   switch (unit.type()) {
@@ -57,6 +59,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
       return gof(unit, *payload);
     case UnitType::kSlice:
       return slice(unit, *payload);
+    case UnitType::kModel:
+      return model(unit, *payload);
     case UnitType::kEndOfSequence:
       return end_of_sequence(unit, *payload);
     case UnitType::kGofIndex:
@@ -128,6 +132,7 @@ void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payloa
   lead_.context.header = h;
   lead_.context.set_connectivity(*triangles);
   lead_.has_connectivity = true;
+  recons_.emplace(lead_.context);
 }
 
 // 6.6 vertex_order( )
@@ -159,8 +164,9 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
   const std::uint32_t num_layers =
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
-  const GofHeaderCheck header = check_gof_header(
-      r, lead_.header->header, surplus ? std::nullopt : gof_.expected_first_frame, num_layers);
+  const GofHeaderCheck header =
+      check_gof_header(r, lead_.header->header,
+                       surplus ? std::nullopt : gof_.expected_first_frame, num_layers, models_);
   gof_.may_have_slices = damaged || !header.kind || has_slices(*header.kind);
   gof_.slice_counts = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
@@ -171,12 +177,12 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
     next_frame_ = header.first_frame + header.num_frames;
   }
   if (surplus) next_frame_ = gof_.expected_first_frame;
-  gof_.suspect = damaged || lead_.connectivity_suspect;
+  gof_.suspect = damaged || lead_.connectivity_suspect || header.model_suspect;
   findings_.suspect(gof_.suspect);
   gof_body(unit, payload, header);
 }
 
-// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( )
+// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( )
 void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
                                const GofHeaderCheck& header) {
   const bool on_grid = header.kind == GofKind::kClusters || lead_.header->positions;
@@ -187,7 +193,8 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
   gof_.parser =
       std::make_unique<AccessUnitParser>(lead_.context, options_.limits.max_memory_bytes);
   BitReader r = bits_of(unit, payload);
-  if (const auto read = gof_.parser->gof(r, header.first_frame, unit.end() - unit.offset);
+  if (const auto read =
+          gof_.parser->gof(r, header.first_frame, slots_of(models_), unit.end() - unit.offset);
       !read) {
     findings_.error(read.error());
     report_.complete = false;
@@ -200,17 +207,24 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
 // 6.12 slice_unit( )
 void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
-  if (!gof_.unit || !gof_.slice_counts) {
+  if (model_.unit) return slice_of(model_, unit, payload);
+  slice_of(gof_, unit, payload);
+}
+
+template <class Parser>
+void StreamValidator::slice_of(Current<Parser>& current, const UnitHeader& unit,
+                               const Payload& payload) {
+  if (!current.unit || !current.slice_counts) {
     report_.complete = false;
     return;
   }
-  gof_.suspect = gof_.suspect || findings_.suspect();
-  findings_.suspect(gof_.suspect);
+  current.suspect = current.suspect || findings_.suspect();
+  findings_.suspect(current.suspect);
   ElementReader header(payload, unit.payload_offset() * 8, findings_);
-  bool read = check_slice_header(header, *gof_.slice_counts);
-  if (read && gof_.parser) {
+  bool read = check_slice_header(header, *current.slice_counts);
+  if (read && current.parser) {
     BitReader r = bits_of(unit, payload);
-    const auto result = gof_.parser->slice(r, unit.offset * 8, unit.end() - unit.offset);
+    const auto result = current.parser->slice(r, unit.offset * 8, unit.end() - unit.offset);
     if (!result) findings_.error(result.error());
     read = static_cast<bool>(result);
   }
@@ -218,12 +232,17 @@ void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (read) return;
   // The contents of later slices depend on it.
   report_.complete = false;
-  gof_.suspect = true;
-  gof_.parser.reset();
+  current.suspect = true;
+  current.parser.reset();
+}
+
+void StreamValidator::end_slices() {
+  end_gof();
+  end_model();
 }
 
 // 8.14.1: slices at the end of a GOF can be absent.
-void StreamValidator::end_slices() {
+void StreamValidator::end_gof() {
   if (!gof_.parser) return;
   gof_.access_unit = gof_.parser->finish();
   gof_.parser.reset();
@@ -231,8 +250,11 @@ void StreamValidator::end_slices() {
   report_.frames += gof_.access_unit->header().num_frames;
   findings_.in_unit(gof_.place);
   needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, gof_.unit->size);
-  warn_of_gof(*gof_.access_unit, lead_.context, gof_.unit->payload_offset() * 8, findings_,
-              needed_);
+  warn_of_gof(*gof_.access_unit, lead_.context, slots_of(models_),
+              gof_.unit->payload_offset() * 8, findings_, needed_);
+  if (const auto* skinned = std::get_if<SkinnedGof>(&gof_.access_unit->gof)) {
+    use_model(*skinned);
+  }
 }
 
 // 6.7 gof_hash( )
@@ -263,7 +285,7 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
 
 // 8.6.2 Hash check
 void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash) {
-  const auto recon = make_recon(*gof_.access_unit, lead_.context);
+  const auto recon = make_recon(*gof_.access_unit, lead_.context, *recons_);
   const bool per_frame = hash.per_frame_flag;
   std::vector<std::int32_t> positions(3 * std::size_t{lead_.header->header.num_vertices});
   std::uint32_t crc = 0;
@@ -300,7 +322,7 @@ void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) 
   if (!can_read()) return;
   ElementReader r(payload, unit.payload_offset() * 8, findings_, Checked::kNotByDecoding);
   index_.checks.push_back(
-      check_gof_index(r, lead_.header->header.num_frames, options_.limits.max_memory_bytes));
+      check_gof_index(r, lead_.header->header, options_.limits.max_memory_bytes));
   index_.checks.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
   index_.checks.back().suspect = findings_.suspect();
   if (index_.checks.back().too_large) {

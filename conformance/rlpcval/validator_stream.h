@@ -14,9 +14,12 @@
 #include "conformance/rlpcval/validator.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
+#include "conformance/rlpcval/validator_models.h"
 #include "conformance/rlpcval/validator_units.h"
 #include "decoder/parse/access_unit_parser.h"
+#include "decoder/parse/model_parser.h"
 #include "decoder/parse/parse_gof_hash.h"
+#include "decoder/recon/model_recons.h"
 
 namespace rlpc {
 
@@ -51,8 +54,10 @@ class StreamValidator {
   void gof(const UnitHeader& unit, const Payload& payload);
   void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
-  // No further slice can follow: the access unit is complete except for its hash.
+  // No further slice can follow: the skinned model is complete, or the access unit except for
+  // its hash.
   void end_slices();
+  void end_gof();
   void gof_hash(const UnitHeader& unit, const Payload& payload);
   void compare_hashes(const UnitHeader& unit, const GofHash& hash);
   void gof_index(const UnitHeader& unit, const Payload& payload);
@@ -61,8 +66,21 @@ class StreamValidator {
   // Whether units that need the sequence header can be read; reports it if not.
   bool can_read();
 
+  // validator_models.cpp: skinned models.
+  void begin_model(const UnitHeader& unit);
+  void model(const UnitHeader& unit, const Payload& payload);
+  void end_model();
+  // Those of a GOF that has been read are in use.
+  void use_model(const SkinnedGof& gof);
+  // Units were lost: models may have been replaced.
+  void doubt_models();
+  // Warns of what no GOF used, of a model that is replaced or at the end of the stream.
+  void release(const KeptModel& kept);
+  void end_models();
+
   // validator_summary.cpp: findings that need the whole stream.
   void compare_index(const GofIndexCheck& index);
+  void compare_models(const GofIndexCheck& index);
   void warn_of_stream();
   void warn_of_level();
 
@@ -91,19 +109,35 @@ class StreamValidator {
   };
   LeadingUnits lead_;
 
-  // The GOF whose units were read last.
-  struct CurrentGof {
+  // A GOF or skinned model. Parser: of its units, if those so far could be read.
+  template <class Parser>
+  struct Current {
     std::optional<UnitHeader> unit;  // if it, or a slice of it, is directly before
     FindingUnit place;
+    bool suspect = false;
+    std::optional<SliceCounts> slice_counts;
+    std::unique_ptr<Parser> parser;
+  };
+  template <class Parser>
+  void slice_of(Current<Parser>& current, const UnitHeader& unit, const Payload& payload);
+
+  // The GOF whose units were read last.
+  struct CurrentGof : Current<AccessUnitParser> {
     std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
     std::uint32_t num_frames = 0;                       // 0: not known
-    bool suspect = false;
-    bool may_have_slices = false;  // it is a skinned GOF, or unknown
-    std::optional<SliceCounts> slice_counts;
-    std::unique_ptr<AccessUnitParser> parser;  // if its units so far could be read
-    std::optional<AccessUnit> access_unit;     // if all could be read
+    bool may_have_slices = false;                       // it is a skinned GOF, or unknown
+    std::optional<AccessUnit> access_unit;              // if all units could be read
   };
   CurrentGof gof_;
+
+  // The skinned model whose units were read last, and those that are kept.
+  struct CurrentModel : Current<ModelParser> {
+    std::optional<std::uint32_t> model_idx;  // if it could be read
+    std::uint64_t bit_pos = 0;               // of its payload
+  };
+  CurrentModel model_;
+  KeptModels models_;
+  std::optional<ModelRecons> recons_;
   std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
   bool frames_suspect_ = false;
   Level needed_{};  // the maximum over all GOFs
@@ -111,6 +145,8 @@ class StreamValidator {
   struct Index {
     std::vector<GofLocation> gofs;  // all GOF units; first_frame only if known
     std::size_t known_first_frames = 0;
+    std::vector<ModelLocation> models;  // all skinned model units
+    bool model_indices_known = true;
     std::vector<GofIndexCheck> checks;
     std::uint64_t units_found = 0;  // those that index_distance leads to
   };

@@ -53,6 +53,36 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
   }
 }
 
+// 7.9: the list has all skinned model units.
+void StreamValidator::compare_models(const GofIndexCheck& index) {
+  if (!index.readable || gap_) return;
+  findings_.in_unit(index.unit);
+  findings_.suspect(index.suspect || !index_.model_indices_known);
+  const std::uint64_t at = (index.unit.offset + kUnitHeaderBytes) * 8;
+  const std::size_t common = std::min(index.models.size(), index_.models.size());
+  for (std::size_t m = 0; m < common; ++m) {
+    const ModelLocation& listed = index.models[m];
+    const ModelLocation& found = index_.models[m];
+    const std::string which = "skinned model unit " + std::to_string(m);
+    if (listed.offset != found.offset) {
+      return findings_.unchecked("R-IDX-06", "index_model_distance", at,
+                                 which + " is listed at byte " + std::to_string(listed.offset) +
+                                     ", it is at byte " + std::to_string(found.offset));
+    }
+    if (index_.model_indices_known && listed.model_idx != found.model_idx) {
+      return findings_.unchecked("R-IDX-06", "index_model_idx", at,
+                                 which + " is listed with index " +
+                                     std::to_string(listed.model_idx) + ", its model_idx is " +
+                                     std::to_string(found.model_idx));
+    }
+  }
+  if (index.models.size() != index_.models.size()) {
+    findings_.unchecked("R-IDX-06", "num_index_models", at,
+                        std::to_string(index.models.size()) + " skinned models are listed, " +
+                            "there are " + std::to_string(index_.models.size()) + " units");
+  }
+}
+
 void StreamValidator::warn_of_level() {
   if (findings_.failures() > 0 || !report_.complete) return;
   const SequenceHeader& h = lead_.header->header;
@@ -64,7 +94,8 @@ void StreamValidator::warn_of_level() {
         needed_.max_components <= level.max_components &&
         needed_.max_gof_values <= level.max_gof_values &&
         needed_.max_gof_factors <= level.max_gof_factors &&
-        needed_.max_unit_bytes <= level.max_unit_bytes) {
+        needed_.max_unit_bytes <= level.max_unit_bytes &&
+        needed_.max_adaptive_values <= level.max_adaptive_values) {
       findings_.warning("W-LVL-01", "level_idc", lead_.header_bit_pos + 8,
                         "level_idc is " + std::to_string(h.level_idc) + ", level " +
                             std::to_string(level_idc) + " would do");

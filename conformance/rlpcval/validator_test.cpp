@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/bitstream/bit_writer.h"
-#include "conformance/roundtrip/sliced_animation.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/rlpcval/validator_testing.h"
+#include "conformance/roundtrip/model_animation.h"
 #include "encoder/write/write_cluster_gof.h"
 #include "encoder/write/write_connectivity.h"
 #include "encoder/write/write_stream.h"
@@ -20,42 +20,9 @@
 namespace rlpc {
 namespace {
 
-using Ids = std::vector<std::string>;
-
-ValidationReport validate(const StreamBytes& bytes, const ValidationOptions& options = {}) {
-  const auto source = memory_source(bytes);
-  return validate(*source, options);
-}
-Ids ids(const ValidationReport& report) {
-  Ids list;
-  for (const Finding& f : report.findings) list.emplace_back(f.id);
-  return list;
-}
-Ids ids(const StreamBytes& bytes) { return ids(validate(bytes)); }
-
-std::vector<UnitPlace> units_of_type(const StreamBytes& bytes, UnitType type) {
-  std::vector<UnitPlace> units = units_of(bytes);
-  std::erase_if(units, [&](const UnitPlace& u) { return u.type != type; });
-  return units;
-}
-StreamBytes with_payload_of(const StreamBytes& bytes, UnitType type, const Bytes& payload) {
-  return with_payload(bytes, units_of_type(bytes, type).at(0), payload);
-}
-void erase(StreamBytes& bytes, const UnitPlace& unit) {
-  bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(unit.offset),
-              bytes.begin() + static_cast<std::ptrdiff_t>(unit.end()));
-}
-void insert(StreamBytes& bytes, std::size_t offset, const Bytes& unit) {
-  bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(offset), unit.begin(), unit.end());
-}
-Bytes unit_bytes(const StreamBytes& bytes, const UnitPlace& unit) {
-  return {bytes.begin() + static_cast<std::ptrdiff_t>(unit.offset),
-          bytes.begin() + static_cast<std::ptrdiff_t>(unit.end())};
-}
-
 TEST(Validator, FindsNothingInGoodStreams) {
-  for (const StreamBytes& stream :
-       {rich_stream(), indexed_stream(), sliced_stream(), mixed_stream()}) {
+  for (const StreamBytes& stream : {rich_stream(), indexed_stream(), sliced_stream(),
+                                    mixed_stream(), model_stream(), indexed_model_stream()}) {
     const ValidationReport report = validate(stream);
     EXPECT_EQ(ids(report), Ids{});
     EXPECT_TRUE(report.complete);
@@ -369,7 +336,7 @@ TEST(Validator, ComparesTheIndexWithTheGofs) {
   }
   // The size of the index changes, and with it index_distance.
   const auto with_index = [&](std::uint64_t first, const std::vector<GofEntry>& list) {
-    const Bytes payload = write_gof_index(first, list);
+    const Bytes payload = write_gof_index({first, list, {}}, kProfileBaseline);
     const auto size = static_cast<std::uint32_t>(payload.size() + 9);
     return with_payload_of(with_payload(good, index, payload), UnitType::kEndOfSequence,
                            write_end_of_sequence(size));

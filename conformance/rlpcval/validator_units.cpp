@@ -40,9 +40,15 @@ std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes
 
 // Table 7-1. Any ancillary type may occur in a stream.
 bool StreamUnits::possible_type(std::uint8_t type_byte) const {
-  const UnitType last = version_minor_ > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
-  return (type_byte & kAncillaryFlag) != 0 ||
-         (type_byte >= 1 && type_byte <= static_cast<std::uint8_t>(last));
+  return known_type(UnitType{type_byte});
+}
+
+bool StreamUnits::known_type(UnitType type) const {
+  constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
+                                          UnitType::kModel};
+  const auto code = static_cast<std::uint8_t>(type);
+  return (code & kAncillaryFlag) != 0 ||
+         (code >= 1 && type <= kLast[std::min(version_minor_, 2U)]);
 }
 
 bool StreamUnits::read(std::uint64_t offset, std::span<std::uint8_t> out, const char* element) {

@@ -28,6 +28,9 @@ class StreamUnits {
   // None if it cannot be read, or needs more memory than allowed.
   std::optional<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
 
+  // 6.2 IsKnownType( type ), or an ancillary unit.
+  bool known_type(UnitType type) const;
+
   // Whether a chain of units runs from `offset` to an end_of_sequence unit at the very end.
   bool begins_chain(std::uint64_t offset);
   // The first offset from `offset` on where such a chain begins with a unit whose CRC matches.

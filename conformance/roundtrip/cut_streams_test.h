@@ -58,7 +58,8 @@ inline StreamBytes ordered_stream() {
     }
   }
   const std::vector<GofEntry> entries{{2, gofs[1] - gofs[0]}, {2, out.size() - gofs[1]}};
-  const std::size_t index = append(UnitType::kGofIndex, write_gof_index(gofs[0], entries));
+  const std::size_t index =
+      append(UnitType::kGofIndex, write_gof_index({gofs[0], entries, {}}, kProfileMain));
   append(UnitType::kEndOfSequence, write_end_of_sequence(static_cast<std::uint32_t>(index)));
   require_conforming(out);
   return out;

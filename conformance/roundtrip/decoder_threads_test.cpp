@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/roundtrip/sliced_animation.h"
+#include "conformance/roundtrip/model_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -198,8 +198,9 @@ TEST_P(Threads, CountTheSameGofs) {
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  constexpr std::array<const char*, 5> kNames{"Baseline", "BaselineFrameHashes", "Main",
-                                              "MainFrameHashes", "Mixed"};
+  constexpr std::array<const char*, 8> kNames{
+      "Baseline", "BaselineFrameHashes", "Main",   "MainFrameHashes",
+      "Mixed",    "EncodedModels",       "Models", "IndexedModels"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Threads,
@@ -207,7 +208,9 @@ INSTANTIATE_TEST_SUITE_P(Streams, Threads,
                                          encoded_stream<Profile::kBaseline, HashMode::kFrame>,
                                          encoded_stream<Profile::kMain, HashMode::kGof>,
                                          encoded_stream<Profile::kMain, HashMode::kFrame>,
-                                         mixed_stream),
+                                         mixed_stream,
+                                         encoded_stream<Profile::kHigh, HashMode::kGof>,
+                                         model_stream, indexed_model_stream),
                          stream_name);
 
 }  // namespace

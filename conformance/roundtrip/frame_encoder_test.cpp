@@ -109,7 +109,7 @@ EncoderSettings settings_of(Profile profile, Target target, std::uint32_t gof_fr
 
 class EachProfile : public testing::TestWithParam<Profile> {};
 INSTANTIATE_TEST_SUITE_P(FrameEncoder, EachProfile,
-                         testing::Values(Profile::kBaseline, Profile::kMain));
+                         testing::Values(Profile::kBaseline, Profile::kMain, Profile::kHigh));
 
 TEST_P(EachProfile, EveryGofMeetsTheKgError) {
   MemoryFrames source = bending_tube(20, 60);

@@ -7,18 +7,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "conformance/roundtrip/sliced_animation.h"
+#include "conformance/roundtrip/model_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
 namespace {
 
-std::vector<GofSummary> entries_of(const StreamBytes& stream) {
+StreamSummary summary_of(const StreamBytes& stream) {
   StreamReader reader(memory_source(stream), {});
   EXPECT_TRUE(reader.open());
-  const auto gofs = summarise_all(reader);
-  EXPECT_TRUE(gofs);
-  return gofs ? *gofs : std::vector<GofSummary>();
+  const auto summary = summarise_all(reader);
+  EXPECT_TRUE(summary);
+  return summary ? *summary : StreamSummary();
+}
+std::vector<GofSummary> entries_of(const StreamBytes& stream) {
+  return summary_of(stream).gofs;
 }
 
 TEST(GofSummaries, ReportsGofsAndTheirSlices) {
@@ -46,18 +49,29 @@ TEST(GofSummaries, ReportsGofsAndTheirSlices) {
 }
 
 TEST(GofSummaries, CountsTheBytesOfUnits) {
-  for (const StreamBytes& stream : {sliced_stream(), mixed_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), mixed_stream(), model_stream()}) {
     std::vector<std::size_t> listed;
+    std::vector<std::size_t> listed_of_models;
+    for (const auto& model : summary_of(stream).models) {
+      listed_of_models.push_back(model->bytes);
+      for (const SliceEntry& slice : model->slices) listed_of_models.push_back(slice.bytes);
+    }
     for (const GofSummary& gof : entries_of(stream)) {
       listed.push_back(gof.bytes);
       for (const SliceEntry& slice : gof.slices) listed.push_back(slice.bytes);
     }
     std::vector<std::size_t> found;
+    std::vector<std::size_t> found_of_models;
+    bool of_model = false;
     for (const UnitPlace& unit : units_of(stream)) {
+      if (unit.type != UnitType::kSlice) of_model = unit.type == UnitType::kModel;
       const bool of_gof = unit.type == UnitType::kGof || unit.type == UnitType::kSlice;
-      if (of_gof) found.push_back(unit.end() - unit.offset);
+      if (of_model || of_gof) {
+        (of_model ? found_of_models : found).push_back(unit.end() - unit.offset);
+      }
     }
     EXPECT_EQ(listed, found);
+    EXPECT_EQ(listed_of_models, found_of_models);
   }
 }
 
@@ -103,6 +117,50 @@ TEST(GofSummaries, ReportsBothKindsInOneStream) {
     EXPECT_EQ(gofs[g].figure("num_trajectories"), has_bones ? 3U : 0U);
     EXPECT_EQ(gofs[g].slices.size(), has_bones ? 6U : 0U);
   }
+}
+
+// Three models, the first of 2 groups of 1 and 2 trajectories; its first GOF adds 2 groups.
+TEST(GofSummaries, ReportsModelsAndTheirGofs) {
+  const StreamSummary stream = summary_of(model_stream());
+  ASSERT_EQ(stream.models.size(), 3U);
+  EXPECT_EQ(stream.models[0]->model_idx, 0U);
+  EXPECT_EQ(stream.models[1]->model_idx, 5U);
+  EXPECT_EQ(stream.models[2]->model_idx, 0U);
+  EXPECT_EQ(stream.models[0]->num_gofs, 3U);
+  EXPECT_EQ(stream.models[1]->num_gofs, 1U);
+  EXPECT_EQ(stream.models[2]->num_gofs, 2U);
+  EXPECT_EQ(stream.models[0]->figure("num_trajectories"), 3U);
+  EXPECT_EQ(stream.models[1]->figure("num_trajectories"), 1U);
+  std::vector<int> used;
+  std::vector<std::uint32_t> trajectories;
+  for (const GofSummary& gof : stream.gofs) {
+    used.push_back(gof.model ? static_cast<int>(gof.model->number) : -1);
+    trajectories.push_back(gof.figure("num_trajectories"));
+    EXPECT_EQ(gof.model != nullptr, gof.kind == GofKind::kTracks);
+  }
+  EXPECT_EQ(used, (std::vector<int>{0, 1, 0, -1, 0, -1, 2, 2}));
+  EXPECT_EQ(trajectories, (std::vector<std::uint32_t>{6, 1, 3, 0, 1, 3, 0, 4}));
+}
+
+// A model and its GOFs are cut alike; local groups stay only if the model stays whole.
+TEST(GofSummaries, CutModelsAndGofsAlike) {
+  const StreamSummary stream = summary_of(model_stream());
+  const ModelSummary& model = *stream.models[0];
+  const GofSummary& gof = stream.gofs[0];
+  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, 5U, 6U}) {
+    const SliceCut cut{components, SliceCut::kAll};
+    const std::uint32_t kept = components < 1 ? 0 : components < 3 ? 1 : 3;
+    const std::uint32_t all = components < 4 ? kept : components < 6 ? 4 : 6;
+    EXPECT_EQ(model.totals(model.groups_that_stay(cut)).num_trajectories, kept);
+    EXPECT_EQ(gof.totals(gof.groups_that_stay(cut)).num_trajectories, all);
+    EXPECT_EQ(model.is_cut_by(cut), kept < 3);
+    EXPECT_EQ(gof.is_cut_by(cut), all < 6);
+  }
+  // The third GOF has no slice of layers of its own.
+  const SliceCut coarse{SliceCut::kAll, 1};
+  EXPECT_EQ(stream.gofs[2].totals(stream.gofs[2].groups_that_stay(coarse)).num_slices, 2U);
+  EXPECT_TRUE(stream.gofs[2].is_cut_by(coarse));
+  EXPECT_EQ(stream.gofs[2].totals({}).num_layers, model.figure("num_layers"));
 }
 
 }  // namespace

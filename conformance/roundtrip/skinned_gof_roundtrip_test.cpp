@@ -93,7 +93,7 @@ void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
 void expect_round_trip(const RandomSkinnedGof& from) {
   const SkinnedGofPayloads payloads = payloads_of(from);
   Reading reading(from);
-  const auto error = reading.all(payloads.gof, payloads.slices);
+  const auto error = reading.all(payloads.first, payloads.slices);
   ASSERT_FALSE(error) << text_of(error);
   SkinnedGof parsed = reading.finish();
   parsed.influences = complete_influences(reading.mesh_of(parsed), parsed);
@@ -197,7 +197,7 @@ TEST(SkinnedGofParser, ProperPrefixesFailOrDecode) {
                                        .max_components = 2});
     const SkinnedGofPayloads payloads = payloads_of(from);
     for (std::size_t i = 0; i <= payloads.slices.size(); ++i) {
-      const Payload& whole = i == 0 ? payloads.gof : payloads.slices[i - 1];
+      const Payload& whole = i == 0 ? payloads.first : payloads.slices[i - 1];
       const std::vector<Payload> before(
           payloads.slices.begin(),
           payloads.slices.begin() +
@@ -205,7 +205,7 @@ TEST(SkinnedGofParser, ProperPrefixesFailOrDecode) {
       for (std::size_t n = 0; n < whole.size(); ++n) {
         Reading reading(from);
         if (i > 0) {
-          ASSERT_FALSE(reading.all(payloads.gof, before));
+          ASSERT_FALSE(reading.all(payloads.first, before));
         }
         const Payload prefix = prefix_of(whole, n);
         if (i == 0 ? reading.gof(prefix) : reading.slice(prefix)) {
@@ -227,9 +227,9 @@ TEST(SkinnedGofParser, ABytePastTheEndFails) {
     const RandomSkinnedGof from(seed, {});
     SkinnedGofPayloads payloads = payloads_of(from);
     Reading reading(from);
-    ASSERT_FALSE(reading.gof(payloads.gof));
-    payloads.gof.push_back(0);
-    ASSERT_TRUE(Reading(from).gof(payloads.gof)) << seed;
+    ASSERT_FALSE(reading.gof(payloads.first));
+    payloads.first.push_back(0);
+    ASSERT_TRUE(Reading(from).gof(payloads.first)) << seed;
     if (payloads.slices.empty()) continue;
     payloads.slices[0].push_back(0);
     ASSERT_TRUE(reading.slice(payloads.slices[0])) << seed;
@@ -248,7 +248,7 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
     std::mt19937 random(seed);
     std::vector<std::uint32_t> kept(from.gof.slice_layers.size(), 0);
     Reading reading(from);
-    ASSERT_FALSE(reading.gof(payloads.gof));
+    ASSERT_FALSE(reading.gof(payloads.first));
     bool is_legal = true;
     std::size_t next = 0;
     for (std::uint32_t group = 0; group < kept.size() && is_legal; ++group) {
@@ -302,7 +302,7 @@ TEST(SkinnedGofParser, RefusesSlicesInAnotherOrder) {
     for (std::size_t i = 0; i + 1 < payloads.slices.size(); ++i) {
       std::vector<Payload> slices = payloads.slices;
       std::swap(slices[i], slices[i + 1]);
-      const auto error = Reading(from).all(payloads.gof, slices);
+      const auto error = Reading(from).all(payloads.first, slices);
       ASSERT_TRUE(error) << seed << " " << i;
       EXPECT_EQ(std::string(error->rule), "R-SLI-02");
       ++swapped;
@@ -321,10 +321,10 @@ TEST(SkinnedGofParser, SurvivesDamage) {
     SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
     const std::size_t which = random() % (payloads.slices.size() + 1);
-    Payload& payload = which == 0 ? payloads.gof : payloads.slices[which - 1];
+    Payload& payload = which == 0 ? payloads.first : payloads.slices[which - 1];
     payload[random() % payload.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
     Reading reading(from);
-    if (reading.all(payloads.gof, payloads.slices)) {
+    if (reading.all(payloads.first, payloads.slices)) {
       ++refused;
       continue;
     }
@@ -339,7 +339,7 @@ TEST(SkinnedGofParser, SurvivesDamage) {
 TEST(SkinnedGofParser, StopsAtTheCallersMemory) {
   const RandomSkinnedGof from(1, {});
   const SkinnedGofPayloads payloads = payloads_of(from);
-  const auto error = Reading(from, 100).gof(payloads.gof);
+  const auto error = Reading(from, 100).gof(payloads.first);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code, Errc::kLimitExceeded);
 }

@@ -11,6 +11,7 @@
 #include "common/cluster_gof/recon/cluster_recon.h"
 #include "common/mesh/topology.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/syntax/access_unit.h"
 #include "conformance/roundtrip/small_animation.h"
 #include "encoder/write/write_cluster_gof.h"
 #include "encoder/write/write_connectivity.h"
@@ -58,22 +59,26 @@ class SlicedAnimation {
     return stream_of(gofs);
   }
 
- private:
-  using AnyGof = std::variant<ClusterGof, SkinnedGof>;
+ protected:
   static constexpr std::uint32_t kRings = 4;
   static constexpr std::uint32_t kVertices = 5 * kRings;
   static constexpr std::uint32_t kGofFrames = 2;
   static constexpr std::uint32_t kGroups = 2;
 
   StreamBytes stream_of(const std::vector<AnyGof>& gofs) {
-    header_.num_frames = static_cast<std::uint32_t>(gofs.size()) * kGofFrames;
-    StreamBytes bytes = write_stream_header(kProfileMain);
-    append(bytes, UnitType::kSequenceHeader, write_sequence_header(header_));
-    append(bytes, UnitType::kConnectivity, code_.payload);
+    StreamBytes bytes = lead(static_cast<std::uint32_t>(gofs.size()));
     for (const AnyGof& any : gofs) {
       std::visit([&](const auto& gof) { append_gof(bytes, gof); }, any);
     }
     append(bytes, UnitType::kEndOfSequence, write_end_of_sequence(0));
+    return bytes;
+  }
+  // The units before the first GOF.
+  StreamBytes lead(std::uint32_t num_gofs) {
+    header_.num_frames = num_gofs * kGofFrames;
+    StreamBytes bytes = write_stream_header(header_.profile_idc);
+    append(bytes, UnitType::kSequenceHeader, write_sequence_header(header_));
+    append(bytes, UnitType::kConnectivity, code_.payload);
     return bytes;
   }
   static std::vector<Triangle> tube() { return bending_tube(kRings, 1).triangles(); }
@@ -193,7 +198,7 @@ class SlicedAnimation {
   void append_gof(StreamBytes& bytes, const SkinnedGof& gof) const {
     const CodedMesh mesh(gof.prediction, topology_, layers_);
     const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_);
-    append(bytes, UnitType::kGof, payloads.gof);
+    append(bytes, UnitType::kGof, payloads.first);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
   }

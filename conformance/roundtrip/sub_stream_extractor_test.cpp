@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "conformance/roundtrip/cut_streams_test.h"
+#include "conformance/roundtrip/model_animation.h"
 
 namespace rlpc {
 namespace {
@@ -26,7 +27,7 @@ DecoderOptions cut_options(const SliceCut& cut) {
 
 std::vector<SliceCut> some_cuts() {
   std::vector<SliceCut> cuts;
-  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, kAll}) {
+  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, 5U, 6U, kAll}) {
     for (const std::uint32_t layers : {0U, 1U, 2U, 100U, kAll}) {
       cuts.push_back({components, layers});
     }
@@ -40,7 +41,7 @@ Places places_of(const StreamBytes& stream) {
   const auto cutter = SubStreamExtractor::open(memory_source(stream), {});
   EXPECT_TRUE(cutter);
   Places places;
-  for (const GofSummary& gof : cutter->gofs()) {
+  for (const GofSummary& gof : cutter->summary().gofs) {
     places.emplace_back();
     for (const SliceEntry& s : gof.slices) {
       places.back().emplace_back(s.component_group_idx, s.layer_group_idx);
@@ -87,7 +88,8 @@ TEST(SubStreamExtractor, KeepsClusterGofsWhole) {
 }
 
 TEST(SubStreamExtractor, WritesConformingStreamsThatDecodeAsIfCut) {
-  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream(),
+                                    model_stream(), indexed_model_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       SCOPED_TRACE(testing::Message() << cut.max_components << ", " << cut.max_layers);
       const StreamBytes out = cut_stream(stream, cut);
@@ -138,8 +140,8 @@ TEST(SubStreamExtractor, KeepsTheKindOfHashes) {
 
 TEST(SubStreamExtractor, CopiesAStreamThatHasNoMore) {
   for (const StreamBytes& stream :
-       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream()}) {
-    EXPECT_EQ(cut_stream(stream, {3, 100}), stream);
+       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream(), model_stream()}) {
+    EXPECT_EQ(cut_stream(stream, {6, 100}), stream);
   }
 }
 
@@ -158,7 +160,8 @@ TEST(SubStreamExtractor, RefusesDamagedStreams) {
 }
 
 TEST(CutDecoding, SeeksToTheFramesOfDecodingInOrder) {
-  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream(),
+                                    model_stream(), indexed_model_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       const StreamBytes out = cut_stream(stream, cut);
       const std::vector<Frame> expected = decode_all(out);

@@ -134,7 +134,7 @@ class UnitShuffler {
         write_unit(UnitType::kGofHash, write_gof_hash(std::vector{1U, 2U}, true)),
         write_unit(UnitType::kGofHash, write_gof_hash(std::vector{1U}, false)),
         write_unit(UnitType::kGofHash, {}),
-        write_unit(UnitType::kGofIndex, write_gof_index(70, std::vector<GofEntry>{{2, 9}})),
+        write_unit(UnitType::kGofIndex, write_gof_index({70, {{2, 9}}, {}}, kProfileMain)),
         write_unit(UnitType::kGofIndex, {7}),
         metadata_unit("{\"a\": 1}"),
         metadata_unit("{\"a\": 1"),
@@ -196,7 +196,7 @@ TEST(SubStreamUnits, AnyOrderOfUnitsFailsOrConforms) {
 TEST(SubStreamUnits, AStrayHashStaysNoHash) {
   const StreamBytes stream = sliced_stream();
   const Bytes index =
-      write_unit(UnitType::kGofIndex, write_gof_index(70, std::vector<GofEntry>{{4, 9}}));
+      write_unit(UnitType::kGofIndex, write_gof_index({70, {{4, 9}}, {}}, kProfileMain));
   StreamBytes stray(stream.begin(), stream.begin() + kStreamHeaderBytes);
   for (const UnitPlace& unit : units_of(stream)) {
     if (unit.type == UnitType::kGofHash) stray.insert(stray.end(), index.begin(), index.end());

@@ -24,6 +24,7 @@ from specdec_testing import (CRC_BYTES, PROGRAM, ROOT, UNIT_HEADER_BYTES, stream
 
 END_OF_SEQUENCE, SLICE, GOF_INDEX, GOF_HASH = 5, 6, 129, 130
 MAIN = ROOT / "streams" / "v1.1" / "accept"
+HIGH = ROOT / "streams" / "v1.2" / "accept"
 
 
 class Poison:
@@ -184,18 +185,16 @@ class Statements(unittest.TestCase):
             self.assertEqual(bins, [])
 
 
-class Aborted(unittest.TestCase):
-    """Another GOF after an error in one (8.8)."""
+class Access(unittest.TestCase):
+    """Random access (8.8) to the GOFs of a stream."""
 
-    STREAM = MAIN / "MIX" / "MIX-0202a.rlpc"
-
-    def setUp(self):
-        self.data = self.STREAM.read_bytes()
+    def open(self, path):
+        self.data = path.read_bytes()
         v = self.decoder()
-        v["LocateGofs"]()
-        self.offsets, self.frames = v["IndexOffset"], v["IndexFrame"]
-        self.expected = [self.random_access(self.decoder(), g) for g in range(len(self.offsets))]
-        self.assertGreater(len(self.expected), 1)
+        self.assertEqual(v["LocateGofs"](), 1)
+        self.index = {name: v[name] for name in ("IndexOffset", "IndexFrame", "ModelIndexOffset",
+                                                 "ModelIndexIdx")}
+        self.gofs = range(len(v["IndexOffset"]))
 
     def decoder(self):
         """The variables of a decoder that has run leading_units( )."""
@@ -209,14 +208,68 @@ class Aborted(unittest.TestCase):
         return v
 
     def random_access(self, v, gof):
-        v.update(BitPosition=8 * self.offsets[gof], NumParsedFrames=self.frames[gof],
-                 NumOutputFrames=0)
         self.output.seek(0)
         self.output.truncate()
+        v.update(self.index)
+        v["DecodeModels"](v["IndexOffset"][gof])
+        v.update(BitPosition=8 * v["IndexOffset"][gof], NumParsedFrames=v["IndexFrame"][gof],
+                 NumOutputFrames=0)
         v["unit_header"]()
         v["CheckUnitType"](v["UnitCode"] == v["GOF"])
         v["access_unit"]()
         return self.output.getvalue()
+
+
+class RandomAccess(Access):
+    """It gives the frames of decoding in order, or finds what is wrong with the index."""
+
+    def test_frames_are_those_of_decoding_in_order(self):
+        for path in (MAIN / "MIX" / "MIX-0202a.rlpc", HIGH / "MDL" / "MDL-0012a.rlpc"):
+            self.open(path)
+            whole = io.BytesIO()
+            specdec.Decoder(PROGRAM, self.data, whole.write).call("stream")
+            frames = [self.random_access(self.decoder(), g) for g in self.gofs]
+            self.assertGreater(len(frames), 1)
+            self.assertTrue(all(frames))
+            self.assertTrue(whole.getvalue().endswith(b"".join(frames)), path)
+
+    def test_which_skinned_models_are_decoded(self):
+        self.open(HIGH / "MDL" / "MDL-0012a.rlpc")
+        v = self.decoder()
+        v.update(self.index)
+        offsets, found = self.index["ModelIndexOffset"], []
+        model = v["model"]
+        v["model"] = lambda: (found.append(v["UnitStart"]), model())
+        for gof in self.gofs:
+            found.clear()
+            end = self.index["IndexOffset"][gof]
+            v["DecodeModels"](end)
+            latest = {self.index["ModelIndexIdx"][m]: o for m, o in enumerate(offsets) if o < end}
+            self.assertEqual(found, sorted(latest.values()))
+            self.assertEqual([m for m, kept in enumerate(v["Models"]) if kept], sorted(latest))
+        self.assertGreater(len(offsets), len(found))  # one is replaced
+
+    def test_wrong_lists_of_skinned_models(self):
+        for number, rule in ((1, "R-MOD-01"), (2, "R-IDX-05"), (3, "R-IDX-06"), (4, "R-UNT-05"),
+                             (5, "R-IDX-02")):
+            path = HIGH.parent / "either" / "MDL" / f"MDL-0012x{number}.rlpc"
+            with self.assertRaises(specdec.Verdict) as ended:
+                self.open(path)
+                for gof in self.gofs:
+                    self.random_access(self.decoder(), gof)
+            self.assertEqual(ended.exception.rule, rule, path)
+
+
+class Aborted(Access):
+    """Another GOF after an error in one (8.8)."""
+
+    STREAM = MAIN / "MIX" / "MIX-0202a.rlpc"
+    FUNCTIONS = ("EndSection", "CheckOverrun", "gof_hash", "UpdateTrackContext")
+
+    def setUp(self):
+        self.open(self.STREAM)
+        self.expected = [self.random_access(self.decoder(), g) for g in self.gofs]
+        self.assertGreater(len(self.expected), 1)
 
     def abort(self, v, gof, function):
         """Decodes a GOF, or the index, to the first call of this function; whether there is one."""
@@ -241,11 +294,9 @@ class Aborted(unittest.TestCase):
         stated = re.search(r"once ReadEnd has been set to 8 · len\( StreamBytes \), and "
                            r"(\w+), (\w+) and (\w+) to 0", prose("08-decoding.md"))
         fresh = {"ReadEnd": 8 * len(self.data), **dict.fromkeys(stated.groups(), 0)}
-        gofs = range(len(self.offsets))
-        for function, aborted in (("EndSection", gofs), ("CheckOverrun", gofs), ("gof_hash", gofs),
-                                  ("UpdateTrackContext", gofs), ("gof_index", (None,))):
+        for function, aborted in [(f, self.gofs) for f in self.FUNCTIONS] + [("gof_index", [None])]:
             aborts = 0
-            for gof, wanted in itertools.product(aborted, gofs):
+            for gof, wanted in itertools.product(aborted, self.gofs):
                 v = self.decoder()
                 before = state_of(v)
                 aborts += self.abort(v, gof, function)
@@ -268,6 +319,13 @@ class Aborted(unittest.TestCase):
         self.poison(v, before)
         with self.assertRaisesRegex(AssertionError, "stale"):
             self.random_access(v, 1)
+
+
+class AbortedTracks(Aborted):
+    """The same with skinned models."""
+
+    STREAM = HIGH / "MDL" / "MDL-0012a.rlpc"
+    FUNCTIONS = (*Aborted.FUNCTIONS, "StartVertices", "LoadModel", "StartTracks")
 
 
 if __name__ == "__main__":

@@ -155,7 +155,47 @@ class MainStreams(StreamTest):
             ("09-parsing.md", "96 * ComponentMean[l]", "95 * ComponentMean[l]")))
 
 
-SLICE = 6
+class HighStreams(StreamTest):
+    """The same for the High profile, with several GOFs of one skinned model."""
+
+    def encode_high(self, name, frames, *settings):
+        data = self.encode(cut_animation(self.folder, name, frames), *settings, profile="high")
+        self.assertIn(MODEL, [kind for kind, _ in units_of(data)])
+        return data
+
+    def test_several_gofs(self):
+        self.agree(self.encode_high("elephant", 9, "--kg", "0.3", "--gof", "3", "--keep-order"))
+        self.agree(self.encode_high("robot_arm", 12, "--kg", "0.3", "--gof", "4", "--hash",
+                                    "frame"))
+
+    def test_slices_can_be_left_out(self):
+        data = self.encode_high("curtain", 8, "--kg", "0.3", "--gof", "4", "--hash", "none")
+        whole = units_of(data)
+        last = max(i for i, (kind, _) in enumerate(whole) if kind == SLICE)
+        first = next(i for i, (kind, _) in enumerate(whole) if kind == SLICE)
+        outputs = set()
+        for kept in ([], [first], range(first, last), range(first, last + 1)):
+            cut = stream_of(data, [u for i, u in enumerate(whole)
+                                   if u[0] != SLICE or i in kept])
+            code, rule, frames, output = run_stream(cut)
+            self.assertEqual((code, frames), (0, 8), rule)
+            self.assertTrue(output == self.rlpcdec(cut)[3], "other bytes than from rlpcdec")
+            outputs.add(output)
+        self.assertEqual(len(outputs), 4)
+
+    def test_numbers_of_the_text_matter(self):
+        data = (ROOT / "streams/v1.2/accept/MDL/MDL-0004a.rlpc").read_bytes()
+        self.numbers_matter(data, (
+            ("06-syntax.md", "NumGofFrames = 0\n", "NumGofFrames = 1\n"),
+            ("08-decoding.md", "FirstOwnGroup = num_component_groups + 1",
+             "FirstOwnGroup = num_component_groups + 2"),
+            ("08-decoding.md", "AdaptiveWeights.append(CopyOf(weights))",
+             "AdaptiveWeights.append([0] * len(weights))"),
+            ("08-decoding.md", "NumTrajectories = GroupEnd[component_group_idx] - 3",
+             "NumTrajectories = GroupEnd[component_group_idx] - 4")))
+
+
+SLICE, MODEL = 6, 7
 
 
 class DamagedStreams(Clips):
@@ -197,7 +237,7 @@ class DamagedStreams(Clips):
         data = self.stream()
         cases = []
         for i in range(1, len(units_of(data))):
-            for kind in (0x01, 0x05, 0x06, 0x84):
+            for kind in (0x01, 0x05, 0x06, 0x07, 0x84):
                 all_units = units_of(data)
                 cases.append(stream_of(data, all_units[:i] + [(kind, b"?")] + all_units[i:]))
             del all_units[i]
@@ -218,6 +258,13 @@ class DamagedMixedStreams(DamagedStreams):
 
     def stream(self):
         return (ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc").read_bytes()
+
+
+class DamagedHighStreams(DamagedStreams):
+    """The same for streams with skinned models."""
+
+    def stream(self):
+        return (ROOT / "streams/v1.2/accept/MDL/MDL-0005a.rlpc").read_bytes()
 
 
 def main():

@@ -73,7 +73,7 @@ std::vector<KeyFigure> key_figures(const Distortion& d) {
 
 struct Parsed {
   BitCounter counter;
-  std::vector<GofSummary> gofs;
+  StreamSummary summary;
   StreamRates rates;
 };
 
@@ -89,12 +89,12 @@ std::optional<InputError> parse(const std::string& path, Parsed& parsed) {
   options.trace = &parsed.counter;
   StreamReader stream(std::move(*source), options);
   if (const auto opened = stream.open(); !opened) return complain(opened.error());
-  auto gofs = summarise_all(stream);
-  if (!gofs) return complain(gofs.error());
-  parsed.gofs = std::move(*gofs);
+  auto summary = summarise_all(stream);
+  if (!summary) return complain(summary.error());
+  parsed.summary = std::move(*summary);
   parsed.counter.finish(8 * bytes);
   parsed.rates = {stream.header().num_vertices, stream.header().num_frames, bytes,
-                  &parsed.counter, &parsed.gofs};
+                  &parsed.counter, &parsed.summary};
   return std::nullopt;
 }
 

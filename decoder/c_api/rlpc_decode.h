@@ -14,17 +14,18 @@
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
 //   rlpc_decoder_close(decoder);
 //
-// Frames are decoded one by one. Memory is bounded by one group of frames (GOF) plus four
-// frames, whatever the length of the stream, and by max_memory_bytes, whatever the stream
-// claims. No function throws or aborts. A handle may be used by one thread at a time; different
-// handles are independent.
+// Frames are decoded one by one. Memory is bounded by one group of frames (GOF), the skinned
+// models that it could use and one that is being replaced, plus four frames, whatever the
+// length of the stream, and by max_memory_bytes, whatever the stream claims. No function throws
+// or aborts. A handle may be used by one thread at a time; different handles are independent.
 //
 // Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
 // it can live in the caller's memory as well (place). Internally the decoder allocates with C++
-// operator new, without a hook for other allocators: when it opens a stream, for each GOF, and
-// for the first frame. Within a GOF, every fourth frame allocates one temporary buffer, the
-// others nothing; more with several threads, or after a seek. If memory runs out, calls return
-// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
+// operator new, without a hook for other allocators: when it opens a stream, for each GOF and
+// skinned model, and for the first frame. Within a GOF, every fourth frame allocates one
+// temporary buffer, the others nothing; more with several threads, or after a seek. If memory
+// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
+// everything.
 #pragma once
 
 #include <stddef.h>

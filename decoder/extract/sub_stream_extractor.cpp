@@ -13,8 +13,9 @@ namespace {
 
 // 8.6.2: hashes of the positions of an access unit, one per frame or one for the GOF.
 std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
-                                         const StreamContext& context, bool per_frame) {
-  const auto recon = make_recon(access_unit, context);
+                                         const StreamContext& context, ModelRecons& models,
+                                         bool per_frame) {
+  const auto recon = make_recon(access_unit, context, models);
   std::vector<std::int32_t> positions(3 * std::size_t{context.header.num_vertices});
   std::vector<std::uint32_t> crcs;
   std::uint32_t crc = 0;
@@ -27,19 +28,16 @@ std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
   return crcs;
 }
 
-Result<std::vector<GofSummary>> check_gofs(StreamReader& stream) {
-  std::vector<GofSummary> gofs;
-  for (;;) {
-    const auto access_unit = stream.next();
-    if (!access_unit) return access_unit.error();
-    if (!*access_unit) return gofs;
-    const std::optional<GofHash>& hash = (*access_unit)->hash;
-    if (hash && position_crcs(**access_unit, stream.context(), hash->per_frame_flag) !=
-                    hash->position_crc) {
-      return Error{Errc::kInvalid, "R-HSH-02", "position_crc", stream.offset() * 8};
+Result<StreamSummary> check_gofs(StreamReader& stream) {
+  ModelRecons models(stream.context());
+  return summarise_all(stream, [&](const AccessUnit& access_unit) -> std::optional<Error> {
+    const std::optional<GofHash>& hash = access_unit.hash;
+    if (!hash || position_crcs(access_unit, stream.context(), models, hash->per_frame_flag) ==
+                     hash->position_crc) {
+      return std::nullopt;
     }
-    gofs.push_back(summarise(**access_unit));
-  }
+    return Error{Errc::kInvalid, "R-HSH-02", "position_crc", stream.offset() * 8};
+  });
 }
 
 // 7.10: the requirements on metadata that decoding does not check.
@@ -70,12 +68,11 @@ DecoderOptions with_cut(DecoderOptions options, const SliceCut& cut) {
 }  // namespace
 
 SubStreamExtractor::SubStreamExtractor(std::unique_ptr<StreamReader> stream,
-                                       const DecoderOptions& options,
-                                       std::vector<GofSummary> gofs)
+                                       const DecoderOptions& options, StreamSummary summary)
     : stream_(std::move(stream)),
-      cut_units_(stream_->units(), stream_->context(), options),
+      cut_reader_(std::make_unique<CutReader>(*stream_, options)),
       cut_(options.cut),
-      gofs_(std::move(gofs)) {}
+      summary_(std::move(summary)) {}
 
 Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> source,
                                                     const SliceCut& cut,
@@ -86,15 +83,18 @@ Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> 
   left -= std::min(left, source->memory_bytes());
   auto stream = std::make_unique<StreamReader>(std::move(source), options);
   if (const auto ok = stream->open(); !ok) return ok.error();
-  auto gofs = check_gofs(*stream);
-  if (!gofs) return gofs.error();
+  auto summary = check_gofs(*stream);
+  if (!summary) return summary.error();
   if (const auto ok = check_metadata(stream->units()); !ok) return ok.error();
-  return SubStreamExtractor(std::move(stream), with_cut(options, cut), std::move(*gofs));
+  return SubStreamExtractor(std::move(stream), with_cut(options, cut), std::move(*summary));
 }
 
 bool SubStreamExtractor::cuts_any() const {
-  return std::any_of(gofs_.begin(), gofs_.end(),
-                     [this](const GofSummary& gof) { return cuts(gof); });
+  const auto& [models, gofs] = summary_;
+  return std::any_of(models.begin(), models.end(),
+                     [this](const auto& model) { return model->is_cut_by(cut_); }) ||
+         std::any_of(gofs.begin(), gofs.end(),
+                     [this](const GofSummary& gof) { return gof.is_cut_by(cut_); });
 }
 
 Result<Bytes> SubStreamExtractor::next() {
@@ -117,19 +117,22 @@ Result<Bytes> SubStreamExtractor::next_unit() {
   if (!unit) return unit.error();
   offset_ = unit->end();
   switch (unit->type()) {
+    case UnitType::kModel:
+      return model(*unit);
     case UnitType::kGof:
       return gof(*unit);
     case UnitType::kSlice:
+      return slice(*unit);
     case UnitType::kGofHash:
-      return access_unit_ ? slice_or_hash(*unit) : Bytes{};
+      return hash(*unit);
     case UnitType::kGofIndex:
-      access_unit_.reset();
+      open_.reset();
       has_index_ = true;
       return Bytes{};
     case UnitType::kEndOfSequence:
       return end_of_sequence();
     default:
-      access_unit_.reset();
+      open_.reset();
       return copy(*unit);
   }
 }
@@ -141,48 +144,60 @@ Result<Bytes> SubStreamExtractor::copy(const UnitHeader& unit) {
 }
 
 Result<Bytes> SubStreamExtractor::gof(const UnitHeader& unit) {
-  if (index_.empty()) {
-    first_gof_offset_ = written_;
+  if (index_.gofs.empty()) {
+    index_.first_gof_offset = written_;
   } else {
-    index_.back().bytes = written_ - gof_offset_;
+    index_.gofs.back().bytes = written_ - gof_offset_;
   }
   gof_offset_ = written_;
-  const GofSummary& gof = gofs_[num_gofs_++];
-  index_.push_back({gof.num_frames, 0});
-  access_unit_ = {unit, &gof, gof.groups_that_stay(cut_)};
+  const GofSummary& gof = summary_.gofs[num_gofs_++];
+  index_.gofs.push_back({gof.num_frames, 0});
+  open_ = {unit, &gof, &gof, gof.groups_that_stay(cut_)};
   return copy(unit);
 }
 
-Result<Bytes> SubStreamExtractor::slice_or_hash(const UnitHeader& unit) {
-  if (unit.type() == UnitType::kSlice) {
-    const SliceEntry& slice = access_unit_->gof->slices[access_unit_->num_slices++];
-    return access_unit_->groups.have(slice) ? copy(unit) : Bytes{};
-  }
-  auto bytes = cuts(*access_unit_->gof) ? new_hash() : copy(unit);
-  access_unit_.reset();
+Result<Bytes> SubStreamExtractor::model(const UnitHeader& unit) {
+  if (const auto ok = cut_reader_->models.read(unit); !ok) return ok.error();
+  const ModelSummary& model = *summary_.models[num_models_++];
+  index_.models.push_back({model.model_idx, written_});
+  open_ = {unit, &model, nullptr, model.groups_that_stay(cut_)};
+  return copy(unit);
+}
+
+// Only where it is allowed, as check_gofs() has checked.
+Result<Bytes> SubStreamExtractor::slice(const UnitHeader& unit) {
+  const SliceEntry& entry = open_->summary->slices[open_->num_slices++];
+  return open_->groups.have(entry) ? copy(unit) : Bytes{};
+}
+
+Result<Bytes> SubStreamExtractor::hash(const UnitHeader& unit) {
+  if (!open_ || open_->gof == nullptr) return Bytes{};
+  auto bytes = open_->gof->is_cut_by(cut_) ? new_hash() : copy(unit);
+  open_.reset();
   return bytes;
 }
 
 // 8.6.2 Hash check, of the same kind as in the input
 Result<Bytes> SubStreamExtractor::new_hash() {
-  const auto access_unit = cut_units_.read(access_unit_->unit, access_unit_->gof->first_frame);
+  const auto models = cut_reader_->models.at(open_->unit.offset);
+  if (!models) return models.error();
+  const auto access_unit =
+      cut_reader_->units.read(open_->unit, open_->gof->first_frame, *models);
   if (!access_unit) return access_unit.error();
   const bool per_frame = access_unit->hash->per_frame_flag;
-  return write_unit(
-      UnitType::kGofHash,
-      write_gof_hash(position_crcs(*access_unit, stream_->context(), per_frame), per_frame));
+  return write_unit(UnitType::kGofHash,
+                    write_gof_hash(position_crcs(*access_unit, stream_->context(),
+                                                 cut_reader_->recons, per_frame),
+                                   per_frame));
 }
 
 // Includes the GOF index if the input had one and its offsets fit (R-IDX-02).
 Bytes SubStreamExtractor::end_of_sequence() {
-  constexpr std::uint64_t kMost = 0xFFFFFFFE;
-  index_.back().bytes = written_ - gof_offset_;
-  const bool fits = first_gof_offset_ <= kMost &&
-                    std::all_of(index_.begin(), index_.end(),
-                                [](const GofEntry& gof) { return gof.bytes <= kMost; });
+  index_.gofs.back().bytes = written_ - gof_offset_;
   Bytes bytes;
-  if (has_index_ && fits) {
-    bytes = write_unit(UnitType::kGofIndex, write_gof_index(first_gof_offset_, index_));
+  if (has_index_ && index_.fits()) {
+    bytes =
+        write_unit(UnitType::kGofIndex, write_gof_index(index_, stream_->header().profile_idc));
   }
   const Bytes end = write_unit(UnitType::kEndOfSequence,
                                write_end_of_sequence(static_cast<std::uint32_t>(bytes.size())));

@@ -35,14 +35,19 @@ void gof_hash(BitReader& r, std::uint32_t num_frames) {
 }
 
 void gof_index(BitReader& r, std::uint32_t num_frames) {
-  const auto gofs = rlpc::parse_gof_index(r, num_frames);
-  if (!gofs) return;
-  fuzz_check(!gofs->empty() && gofs->front().first_frame == 0);
-  for (std::size_t g = 1; g < gofs->size(); ++g) {
-    fuzz_check((*gofs)[g].first_frame > (*gofs)[g - 1].first_frame);
-    fuzz_check((*gofs)[g].offset >= (*gofs)[g - 1].offset);
+  rlpc::SequenceHeader header;
+  header.num_frames = num_frames;
+  header.profile_idc = num_frames % 2 == 0 ? rlpc::kProfileHigh : rlpc::kProfileMain;
+  const auto index = rlpc::parse_gof_index(r, header);
+  if (!index) return;
+  const auto& gofs = index->gofs;
+  fuzz_check(!gofs.empty() && gofs.front().first_frame == 0);
+  for (std::size_t g = 1; g < gofs.size(); ++g) {
+    fuzz_check(gofs[g].first_frame > gofs[g - 1].first_frame);
+    fuzz_check(gofs[g].offset >= gofs[g - 1].offset);
   }
-  fuzz_check(gofs->back().first_frame < num_frames);
+  fuzz_check(gofs.back().first_frame < num_frames);
+  fuzz_check(index->models.size() <= num_frames);
 }
 
 void metadata(BitReader& r, std::uint32_t) {

@@ -1,15 +1,24 @@
-// Fuzzes the parser and the reconstruction of skinned GOFs and their slices, without CRCs.
+// Fuzzes the parser and the reconstruction of skinned GOFs, skinned models and their slices,
+// without CRCs.
 // Input: first frame, 4 bytes; then pieces, each preceded by its size, 2 bytes: the payloads of
-// sequence header, connectivity, GOF and slices.
+// sequence header, connectivity, GOF and slices. If the highest bit of the first frame is set,
+// the High profile: GOFs, skinned models and slices in any order, each after a byte with its
+// type.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "common/skinned_gof/model_slots.h"
+#include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
 #include "decoder/fuzz/recon_fuzz.h"
 #include "decoder/parse/parse_gof_header.h"
@@ -41,7 +50,7 @@ std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
   return pieces;
 }
 
-void check_influences(const rlpc::SkinnedGof& gof,
+void check_influences(const rlpc::SkinnedModel& gof,
                       std::span<const rlpc::Influences> of_vertices) {
   for (const rlpc::Influences& influences : of_vertices) {
     int sum = 0;
@@ -53,32 +62,110 @@ void check_influences(const rlpc::SkinnedGof& gof,
   }
 }
 
-void decode_gof(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes,
-                std::uint32_t first_frame, std::span<const Piece> pieces) {
-  rlpc::SkinnedGofParser parser(header, meshes, kMaxMemoryBytes);
-  rlpc::BitReader gof_bits(pieces[0]);
-  const rlpc::GofHeader gof_header = rlpc::parse_gof_header(gof_bits, header, first_frame);
-  if (gof_header.kind != rlpc::GofKind::kSkinned || !parser.bones(gof_bits, gof_header)) return;
-  for (const Piece& piece : pieces.subspan(1)) {
-    rlpc::BitReader slice_bits(piece);
-    if (!parser.slice(slice_bits, 0)) return;
+struct Unit {
+  rlpc::UnitType type;
+  std::span<const std::uint8_t> payload;
+};
+
+// Units of one stream, in order.
+class Units {
+ public:
+  Units(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes)
+      : header_(header), meshes_(meshes), parser_(header, meshes, kMaxMemoryBytes) {}
+
+  // False after an error.
+  bool add(const Unit& unit, std::uint32_t first_frame) {
+    rlpc::BitReader bits(unit.payload);
+    if (unit.type == rlpc::UnitType::kSlice) {
+      return open_ != rlpc::UnitType::kSlice && parser_.slice(bits, 0);
+    }
+    finish();
+    open_ = unit.type;
+    if (unit.type == rlpc::UnitType::kModel) {
+      return header_.profile_idc >= rlpc::kProfileHigh &&
+             static_cast<bool>(parser_.model(bits, models_));
+    }
+    const rlpc::GofHeader gof = rlpc::parse_gof_header(bits, header_, first_frame);
+    if (bits.error()) return false;
+    if (gof.kind == rlpc::GofKind::kTracks) {
+      return static_cast<bool>(parser_.tracks(bits, gof, models_));
+    }
+    return gof.kind == rlpc::GofKind::kSkinned &&
+           static_cast<bool>(parser_.bones(bits, gof, models_));
   }
-  const rlpc::SkinnedGof gof = parser.finish();
-  const rlpc::CodedMesh& mesh = meshes[gof.prediction];
-  check_influences(gof, rlpc::complete_influences(mesh, gof));
-  const rlpc::SkinnedRecon recon(mesh, gof, header.position_bits);
-  rlpc::fuzz_check_frames(recon, header, first_frame);
+  // The GOF or skinned model so far, without the slices that could follow.
+  void finish() {
+    if (open_ == rlpc::UnitType::kModel) finish_model();
+    if (open_ == rlpc::UnitType::kGof) finish_gof();
+    open_ = rlpc::UnitType::kSlice;
+  }
+
+ private:
+  void finish_model() {
+    const std::uint32_t idx = parser_.model_idx();
+    const auto model = parser_.finish_model();
+    const rlpc::CodedMesh& mesh = meshes_[model->prediction];
+    check_influences(*model, rlpc::complete_influences(mesh, *model));
+    models_.of_idx[idx] = model;
+    recons_[idx] =
+        std::make_shared<rlpc::ModelRecon>(mesh, *model, header_.position_bits, true);
+  }
+  void finish_gof() {
+    const rlpc::SkinnedGof gof = parser_.finish();
+    if (gof.model) return decode(rlpc::SkinnedRecon(recons_[gof.model_idx], gof));
+    const rlpc::CodedMesh& mesh = meshes_[gof.prediction];
+    check_influences(gof, rlpc::complete_influences(mesh, gof));
+    decode(rlpc::SkinnedRecon(mesh, gof, header_.position_bits));
+  }
+  void decode(const rlpc::SkinnedRecon& recon) const {
+    rlpc::fuzz_check(recon.num_frames() <= header_.num_frames);
+    std::vector<std::int32_t> positions(3 * std::size_t{header_.num_vertices});
+    const std::int32_t bound = std::int32_t{1} << (header_.position_bits - 1);
+    for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
+      recon.frame(f, positions);
+      for (const std::int32_t p : positions) rlpc::fuzz_check(p >= -bound && p < bound);
+    }
+  }
+
+  const rlpc::SequenceHeader& header_;
+  const rlpc::CodedMeshes& meshes_;
+  rlpc::SkinnedGofParser parser_;
+  rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // neither GOF nor skinned model
+  rlpc::ModelSlots models_;
+  std::array<std::shared_ptr<const rlpc::ModelRecon>, rlpc::kMaxModels> recons_;
+};
+
+// In the Main profile, the first of the pieces is a GOF, and the others are its slices.
+void decode(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes,
+            std::uint32_t first_frame, std::span<const Piece> pieces) {
+  Units units(header, meshes);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Unit unit{i == 0 ? rlpc::UnitType::kGof : rlpc::UnitType::kSlice, pieces[i]};
+    if (header.profile_idc >= rlpc::kProfileHigh) {
+      if (pieces[i].empty()) return;
+      unit = {rlpc::UnitType{pieces[i][0]}, unit.payload.subspan(1)};
+      if (unit.type < rlpc::UnitType::kGof || unit.type > rlpc::UnitType::kModel ||
+          unit.type == rlpc::UnitType::kEndOfSequence) {
+        return;
+      }
+    }
+    if (!units.add(unit, first_frame)) return;
+  }
+  units.finish();
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   rlpc::FuzzInput input(data, size);
-  const std::uint32_t first_frame = input.number(4);
+  constexpr std::uint32_t kHigh = 1U << 31;
+  const std::uint32_t number = input.number(4);
+  const std::uint32_t first_frame = number & ~kHigh;
   const std::vector<Piece> pieces = pieces_of(input);
   if (pieces.size() <= kGofPiece) return 0;
   rlpc::BitReader header_bits(pieces[0]);
-  const auto header = rlpc::parse_sequence_header(header_bits, rlpc::kProfileMain);
+  const auto header = rlpc::parse_sequence_header(
+      header_bits, (number & kHigh) != 0 ? rlpc::kProfileHigh : rlpc::kProfileMain);
   if (!header || header->num_vertices > kMaxVertices || header->num_frames > kMaxFrames ||
       first_frame >= header->num_frames) {
     return 0;
@@ -89,7 +176,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!triangles) return 0;
   const rlpc::Topology topology = rlpc::make_topology(header->num_vertices, *triangles);
   rlpc::CodedMeshes meshes(topology, *triangles);
-  decode_gof(*header, meshes, first_frame, std::span(pieces).subspan(kGofPiece));
+  decode(*header, meshes, first_frame, std::span(pieces).subspan(kGofPiece));
   return 0;
 }
 

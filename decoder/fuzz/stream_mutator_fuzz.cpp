@@ -83,7 +83,7 @@ void mutate(Stream& stream, std::size_t room, Random& random) {
   auto& units = stream.units;
   const std::size_t i = below(random, units.size());
   const std::size_t j = below(random, units.size());
-  constexpr std::uint8_t kTypes[] = {1, 2, 3, 4, 5, 6, 0x80, 0x81, 0x82, 0x83};
+  constexpr std::uint8_t kTypes[] = {1, 2, 3, 4, 5, 6, 7, 0x80, 0x81, 0x82, 0x83};
   switch (below(random, 16)) {
     case 0:
       units.erase(units.begin() + static_cast<std::ptrdiff_t>(i));

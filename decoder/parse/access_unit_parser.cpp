@@ -14,7 +14,7 @@ class GofParser {
  public:
   virtual ~GofParser() = default;
   // The GOF unit after its header.
-  virtual Result<bool> gof(BitReader& r, const GofHeader& header) = 0;
+  virtual Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) = 0;
   // Adds the slice, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              std::vector<SliceEntry>& slices);
@@ -35,7 +35,7 @@ class ClusterParser final : public GofParser {
   ClusterParser(const StreamContext& context, std::uint64_t max_memory_bytes)
       : context_(context), max_memory_bytes_(max_memory_bytes) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header) override {
+  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots&) override {
     auto gof = parse_clusters(r, context_.header, context_.topology, header, max_memory_bytes_);
     if (!gof) return gof.error();
     gof_ = std::move(*gof);
@@ -55,8 +55,9 @@ class SkinnedParser final : public GofParser {
                 const SliceCut& cut)
       : parser_(context.header, *context.meshes, max_memory_bytes, cut) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header) override {
-    return parser_.bones(r, header);
+  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
+    return header.kind == GofKind::kTracks ? parser_.tracks(r, header, models)
+                                           : parser_.bones(r, header, models);
   }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                      std::vector<SliceEntry>& slices) override {
@@ -84,20 +85,21 @@ std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
     case GofKind::kClusters:
       return std::make_unique<ClusterParser>(context_, max_memory_bytes_);
     case GofKind::kSkinned:
+    case GofKind::kTracks:
       return std::make_unique<SkinnedParser>(context_, max_memory_bytes_, cut_);
   }
   return nullptr;
 }
 
 Result<bool> AccessUnitParser::gof(BitReader& r, std::uint32_t first_frame,
-                                   std::uint64_t unit_bytes) {
+                                   const ModelSlots& models, std::uint64_t unit_bytes) {
   const GofHeader header = parse_gof_header(r, context_.header, first_frame);
   if (r.error()) return *r.error();
   kind_ = header.kind;
   num_frames_ = header.num_frames;
   access_unit_.gof_bytes = unit_bytes;
   parser_ = make_parser();
-  return parser_->gof(r, header);
+  return parser_->gof(r, header, models);
 }
 
 Result<bool> AccessUnitParser::slice(BitReader& r, std::uint64_t unit_bit_pos,

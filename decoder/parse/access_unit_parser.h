@@ -7,6 +7,7 @@
 
 #include "common/bitstream/bit_reader.h"
 #include "common/result.h"
+#include "common/skinned_gof/model_slots.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/slice_cut.h"
@@ -27,8 +28,10 @@ class AccessUnitParser {
 
   // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
   //
-  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have.
-  Result<bool> gof(BitReader& r, std::uint32_t first_frame, std::uint64_t unit_bytes);
+  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. models: the skinned
+  // models alive.
+  Result<bool> gof(BitReader& r, std::uint32_t first_frame, const ModelSlots& models,
+                   std::uint64_t unit_bytes);
   // Whether slice units may follow.
   bool has_slices() const { return rlpc::has_slices(kind_); }
   // 6.12 slice_unit( ), any number of times. unit_bit_pos: of the unit.

@@ -18,7 +18,17 @@ GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
       (gof.num_frames > level.max_gof_frames || num_values > level.max_gof_values)) {
     r.fail(Errc::kInvalid, "R-LVL-04", "num_gof_frames_minus1", at);
   }
-  if (header.has_skinned_gofs() && r.flag("bones_flag")) gof.kind = GofKind::kSkinned;
+  if (header.profile_idc == kProfileMain) {
+    if (r.flag("bones_flag")) gof.kind = GofKind::kSkinned;
+  } else if (header.profile_idc >= kProfileHigh) {
+    const std::uint64_t kind_at = r.bit_pos();
+    const std::uint32_t kind = r.u(2, "gof_kind");
+    if (kind > static_cast<std::uint32_t>(GofKind::kTracks)) {
+      r.fail(Errc::kUnsupported, "R-GOF-13", "gof_kind", kind_at);
+    } else {
+      gof.kind = static_cast<GofKind>(kind);
+    }
+  }
   return gof;
 }
 

@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "common/int_math.h"
-#include "common/skinned_gof/influences.h"
-#include "decoder/parse/parse_component_header.h"
+#include "decoder/parse/parse_slice.h"
 #include "decoder/parse/parse_track.h"
 #include "decoder/parse/section_reader.h"
 
@@ -22,7 +21,7 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
          level.max_gof_factors;
 }));
 
-// 6.11.2 bone( b )
+// 6.11.2 Bone
 class BoneParser {
  public:
   BoneParser(SectionReader& section, const SequenceHeader& header, std::uint32_t num_frames)
@@ -31,7 +30,8 @@ class BoneParser {
         rotation_mean_(num_frames, 0),
         origin_mean_(num_frames, 0) {}
 
-  Bone parse(std::uint32_t b) {
+  // bone( b )
+  Bone bone(std::uint32_t b) {
     Bone bone;
     if (b > 0) {
       const std::uint32_t parent_plus1 = section_.bypass(ceil_log2(b + 1), "bone_parent_plus1");
@@ -44,6 +44,11 @@ class BoneParser {
     }
     bone.rotation_flag = section_.bin(models_.rotation_flag, "rotation_flag");
     bone.origin_flag = section_.bin(models_.origin_flag, "origin_flag");
+    return bone;
+  }
+
+  // bone_tracks( b )
+  void tracks(Bone& bone) {
     if (bone.rotation_flag) {
       bone.rotation_step_idx = step_idx("rotation_step_idx");
       bone.rotation_order =
@@ -57,7 +62,6 @@ class BoneParser {
       bone.origin_residual =
           parse_track(section_, models_.origin, origin_mean_, "origin_residual");
     }
-    return bone;
   }
 
  private:
@@ -76,7 +80,9 @@ class BoneParser {
 
 }  // namespace
 
-// 6.11 layers_of_gof( )
+std::uint32_t parse_model_idx(BitReader& r) { return r.u(3, "model_idx"); }
+
+// 6.11 layers_of_rig( )
 void SkinnedGofParser::layers(BitReader& r) {
   gof_.layer_group_size = {mesh_->num_layers()};
   gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
@@ -85,8 +91,14 @@ void SkinnedGofParser::layers(BitReader& r) {
   gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
   gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
   if (header_.profile_idc >= kProfileHigh) {
+    const std::uint64_t at = r.bit_pos();
     gof_.weights.num_adaptive_factors =
         r.ue("num_adaptive_factors", {0, header_.level().max_components}, "R-BON-06");
+    const std::uint64_t adaptive_values =
+        std::uint64_t{gof_.weights.num_adaptive_factors} * header_.num_vertices;
+    if (!r.error() && adaptive_values > header_.level().max_adaptive_values) {
+      r.fail(Errc::kInvalid, "R-LVL-09", "num_adaptive_factors", at);
+    }
   }
   const std::int64_t num_layers = mesh_->num_layers();
   const std::uint32_t num_groups =
@@ -106,25 +118,52 @@ void SkinnedGofParser::layers(BitReader& r) {
   }
 }
 
+// NumFactors and the memory for it, before a section is parsed that adds to it.
+void SkinnedGofParser::check_factors(SectionReader& section, const char* element) const {
+  const std::uint64_t needed_bytes = (num_factors_ + uncounted_factors_) * kBytesPerFactor +
+                                     sizeof(Influences) * std::uint64_t{header_.num_vertices};
+  if (section.failed()) return;
+  if (num_factors_ > header_.level().max_gof_factors) {
+    section.fail("R-LVL-05", element);
+  } else if (needed_bytes > max_memory_bytes_) {
+    section.fail_memory(element, needed_bytes);
+  }
+}
+
 // 6.11.1 bone_section( )
 void SkinnedGofParser::bone_section(BitReader& r) {
   SectionReader section(r, "bone_section");
-  num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
-                 3 * std::uint64_t{header_.num_vertices};
-  if (section.failed()) return;
-  const std::uint64_t needed_bytes =
-      num_factors_ * kBytesPerFactor + sizeof(Influences) * std::uint64_t{header_.num_vertices};
-  if (needed_bytes > max_memory_bytes_) section.fail_memory("bone_section", needed_bytes);
+  const bool has_tracks = unit_ == Unit::kGof;
+  num_factors_ += 3 * std::uint64_t{header_.num_vertices};
+  if (has_tracks) num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
+  check_factors(section, "bone_section");
   if (section.failed()) return;
   BoneParser parser(section, header_, gof_.num_frames);
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
-    gof_.bones[b] = parser.parse(b);
-    section.check_overrun("origin_residual");
+    gof_.bones[b] = parser.bone(b);
+    if (has_tracks) parser.tracks(gof_.bones[b]);
+    section.check_overrun(has_tracks ? "origin_residual" : "origin_flag");
   }
   section.finish();
 }
 
-void SkinnedGofParser::SliceState::start(std::uint32_t num_frames) {
+// 6.13.1 track_section( )
+void SkinnedGofParser::track_section(BitReader& r) {
+  SectionReader section(r, "track_section");
+  num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
+  check_factors(section, "track_section");
+  if (section.failed()) return;
+  BoneParser parser(section, header_, gof_.num_frames);
+  for (Bone& bone : gof_.bones) {
+    parser.tracks(bone);
+    section.check_overrun("origin_residual");
+    if (section.failed()) return;
+  }
+  section.finish();
+}
+
+void SkinnedGofParser::SliceState::start(std::uint32_t num_frames, std::uint32_t first_group) {
+  first_own_group = first_group;
   models = {};
   previous = {};
   trajectory_mean.assign(num_frames, 0);
@@ -132,10 +171,8 @@ void SkinnedGofParser::SliceState::start(std::uint32_t num_frames) {
   last_group = 0;
 }
 
-// 6.11 bones_of_gof( )
-Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) {
-  gof_ = {};
-  static_cast<GofHeader&>(gof_) = gof_header;
+// 6.11 rig_header( )
+void SkinnedGofParser::rig_header(BitReader& r) {
   const Level& level = header_.level();
   const std::uint32_t num_bones =
       r.ue("num_bones_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
@@ -146,214 +183,130 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   gof_.num_component_groups =
       r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
   gof_.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
-  if (r.error()) return *r.error();
+  if (r.error()) return;
   mesh_ = &meshes_[gof_.prediction];
   layers(r);
+  if (!r.error()) gof_.bones.resize(num_bones);
+}
+
+// The part of a GOF of bones or skinned model that begins with rig_header( ).
+Result<bool> SkinnedGofParser::rig(BitReader& r) {
+  rig_header(r);
   r.byte_alignment();
   if (r.error()) return *r.error();
-  gof_.bones.resize(num_bones);
   bone_section(r);
   if (r.error()) return *r.error();
 
-  state_.start(gof_.num_frames);
+  // 8.14.1 StartSlices( )
+  state_.start(gof_.num_frames, 1);
   kept_.end_component_group = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
   kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
-  is_cut_ = false;
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
   gof_.influences.assign(header_.num_vertices, {});
   gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
   return true;
 }
 
+// 6.11 bones_of_gof( )
+Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
+                                     const ModelSlots& models) {
+  gof_ = {};
+  static_cast<GofHeader&>(gof_) = gof_header;
+  unit_ = Unit::kGof;
+  num_factors_ = 0;
+  uncounted_factors_ = models.num_factors(kMaxModels);
+  return rig(r);
+}
+
+// 6.13 model( )
+Result<bool> SkinnedGofParser::model(BitReader& r, const ModelSlots& models) {
+  gof_ = {};
+  gof_.num_frames = 0;
+  unit_ = Unit::kModel;
+  gof_.model_idx = parse_model_idx(r);
+  num_factors_ = models.num_factors(gof_.model_idx);
+  uncounted_factors_ = 0;
+  return rig(r);
+}
+
+// 6.13.1 tracks_of_gof( )
+Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
+                                      const ModelSlots& models) {
+  gof_ = {};
+  static_cast<GofHeader&>(gof_) = gof_header;
+  unit_ = Unit::kTracks;
+  const std::uint64_t at = r.bit_pos();
+  gof_.model_idx = parse_model_idx(r);
+  gof_.model = models.of_idx[gof_.model_idx];
+  if (!r.error() && !gof_.model) r.fail(Errc::kUnsupported, "R-MOD-01", "model_idx", at);
+  if (r.error()) return *r.error();
+  load_model();
+  gof_.num_local_groups = r.ue(
+      "num_local_groups", {0, kMaxComponentGroups - gof_.num_component_groups}, "R-BON-02");
+  r.byte_alignment();
+  if (r.error()) return *r.error();
+  num_factors_ = models.num_factors(kMaxModels);
+  uncounted_factors_ = 0;
+  track_section(r);
+  if (r.error()) return *r.error();
+
+  // 8.16.2 StartTracks( )
+  const std::uint32_t num_groups = gof_.num_component_groups + gof_.num_local_groups;
+  state_.start(gof_.num_frames, gof_.num_component_groups + 1);
+  gof_.slice_layers.assign(std::size_t{num_groups} + 1, 0);
+  gof_.slice_layers[0] = gof_.model->slice_layers[0];
+  gof_.vertex_residual.emplace_back();
+  // Groups that the cut leaves of the skinned model; of a complete one, local groups follow.
+  const bool is_complete = gof_.model->group_end.size() == gof_.num_component_groups + 1;
+  kept_.end_component_group = cut_.max_components == SliceCut::kAll || is_complete
+                                  ? num_groups + 1
+                                  : static_cast<std::uint32_t>(gof_.model->group_end.size());
+  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  return true;
+}
+
+// 8.16.2 LoadModel( )
+void SkinnedGofParser::load_model() {
+  const SkinnedModel& model = *gof_.model;
+  gof_.fraction_bits = model.fraction_bits;
+  gof_.weight_bits = model.weight_bits;
+  gof_.prediction = model.prediction;
+  gof_.weights = model.weights;
+  gof_.layer_group_size = model.layer_group_size;
+  gof_.layer_step = model.layer_step;
+  gof_.bones = model.bones;
+  gof_.num_component_groups = model.num_component_groups;
+  gof_.group_end = {model.group_end.back()};
+  gof_.is_cut = model.is_cut;
+  mesh_ = &meshes_[gof_.prediction];
+}
+
+std::shared_ptr<const SkinnedModel> SkinnedGofParser::finish_model() {
+  return std::make_shared<SkinnedModel>(std::move(static_cast<SkinnedModel&>(gof_)));
+}
+
 // 8.14.1 MayFollow( group, index )
 bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
   if (group < state_.last_group || layers != gof_.slice_layers[group]) return false;
+  if (has_only_tracks(group) &&
+      (group == 0 || layers > 0 || gof_.model->slice_layers[group] == 0)) {
+    return false;
+  }
   return group == 0 || gof_.slice_layers[group - 1] > layers;
-}
-
-// The section of a slice.
-class SkinnedGofParser::SliceParser {
- public:
-  SliceParser(SkinnedGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
-      : parser_(parser),
-        gof_(parser.gof_),
-        state_(parser.state_),
-        section_(r, "slice_section"),
-        group_(group),
-        layers_(layers) {}
-
-  void parse();
-
- private:
-  bool failed() const { return section_.failed(); }
-  void group_components();
-  void trajectory(Trajectory& trajectory);
-  void start();
-  void influences(std::uint32_t v, InfluencePrediction& prediction);
-  void spatial_residuals(std::uint32_t v);
-
-  SkinnedGofParser& parser_;
-  SkinnedGof& gof_;
-  SliceState& state_;
-  SectionReader section_;
-  std::uint32_t group_;
-  std::uint32_t layers_;
-};
-
-// 6.12.1 group_components( )
-void SkinnedGofParser::SliceParser::group_components() {
-  const Level& level = parser_.header_.level();
-  const auto left = static_cast<std::int64_t>(level.max_components - gof_.trajectories.size());
-  SliceModels& models = state_.models;
-  const int count = parse_header_field(section_, models.header, models.header_mean,
-                                       HeaderField::kNumComponents, 1, {1, left},
-                                       "num_group_components_minus1", "R-SLI-03");
-  if (failed()) return;
-  const std::uint64_t num_components =
-      gof_.trajectories.size() + static_cast<std::size_t>(count);
-  if (num_components > parser_.cut_.max_components) {
-    parser_.kept_.end_component_group = group_;
-    return;
-  }
-  if (num_components == parser_.cut_.max_components)
-    parser_.kept_.end_component_group = group_ + 1;
-  parser_.num_factors_ += static_cast<std::uint64_t>(count) *
-                          (parser_.header_.num_vertices + 3 * std::uint64_t{gof_.num_frames});
-  if (parser_.num_factors_ > level.max_gof_factors) {
-    section_.fail("R-LVL-05", "num_group_components_minus1");
-  } else if (parser_.num_factors_ * kBytesPerFactor > parser_.max_memory_bytes_) {
-    section_.fail_memory("num_group_components_minus1", parser_.num_factors_ * kBytesPerFactor);
-  }
-  for (int l = 0; l < count && !failed(); ++l) {
-    gof_.trajectories.emplace_back();
-    trajectory(gof_.trajectories.back());
-    section_.check_overrun("trajectory_residual");
-  }
-}
-
-// 6.12.1 trajectory( )
-void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
-  Trajectory& before = state_.previous;
-  parse_component_header(section_, state_.models.header, state_.models.header_mean, before,
-                         trajectory);
-  if (failed()) return;
-  before.scale_idx = trajectory.scale_idx;
-  before.spatial_bits = trajectory.spatial_bits;
-  before.temporal_bits = trajectory.temporal_bits;
-  trajectory.temporal_predictor =
-      section_.truncated_unary(state_.models.temporal_predictor, "temporal_predictor");
-  for (int k = 0; k < trajectory.temporal_predictor - kMaxPredictorOrder; ++k) {
-    const std::uint32_t weight = section_.bypass(9, "temporal_weight");
-    trajectory.temporal_weight[static_cast<std::size_t>(k)] =
-        static_cast<std::int16_t>(static_cast<int>(weight) - kTemporalWeightOffset);
-  }
-  trajectory.residual = parse_track(section_, state_.models.temporal, state_.trajectory_mean,
-                                    "trajectory_residual");
-}
-
-// 9.8.1 StartSlice( )
-void SkinnedGofParser::SliceParser::start() {
-  if (layers_ > 0) return;
-  if (group_ > 1) {
-    state_.vertex_models = std::make_unique<VertexModels>(*state_.models_of_group);
-  } else {
-    state_.vertex_models = std::make_unique<VertexModels>();
-  }
-  if (group_ > 0) {
-    gof_.group_end.push_back(kRestFactors + gof_.trajectories.size());
-    const std::size_t size = gof_.group_end[group_] - gof_.group_end[group_ - 1];
-    gof_.vertex_residual.emplace_back(size * parser_.header_.num_vertices);
-  }
-  const std::size_t size =
-      gof_.group_end[group_] - (group_ > 0 ? gof_.group_end[group_ - 1] : 0);
-  state_.contexts.emplace(*parser_.mesh_, size);
-}
-
-// 6.12.2 influences( v )
-void SkinnedGofParser::SliceParser::influences(std::uint32_t v,
-                                               InfluencePrediction& prediction) {
-  prediction.start(parser_.mesh_->ring(v));
-  SliceModels& models = state_.models;
-  while (prediction.can_add_bone()) {
-    const auto extra = static_cast<std::size_t>(prediction.num_extra_bones());
-    if (!section_.bin(models.extra_bone_flag[extra], "extra_bone_flag")) break;
-    const std::uint32_t bone = section_.bypass(ceil_log2(gof_.bones.size()), "extra_bone");
-    if (bone >= gof_.bones.size() || !prediction.is_new_bone(bone)) {
-      section_.fail("R-SLI-04", "extra_bone");
-      return;
-    }
-    const std::uint32_t weight =
-        section_.bypass(gof_.weight_bits, "extra_bone_weight_minus1") + 1;
-    if (weight > static_cast<std::uint32_t>(prediction.weight_left())) {
-      section_.fail("R-SLI-05", "extra_bone_weight_minus1");
-      return;
-    }
-    prediction.add_extra_bone(bone, static_cast<int>(weight));
-  }
-  for (std::size_t k = 1; k < prediction.num_candidates(); ++k) {
-    std::int32_t residual = 0;
-    if (prediction.has_residual()) {
-      residual = section_.residual(models.weight, prediction.expected(k), "weight_residual");
-    }
-    prediction.add_candidate(k, residual);
-  }
-  gof_.influences[v] = prediction.finish();
-}
-
-// 6.12.3 spatial_residuals( v )
-void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
-  std::vector<std::int32_t>& residuals = gof_.vertex_residual[group_];
-  const std::size_t size = residuals.size() / parser_.header_.num_vertices;
-  VertexContexts& contexts = *state_.contexts;
-  contexts.start(v);
-  struct Context {
-    VertexContexts& contexts;
-    VertexModels& of_activity;
-    ResidualModels& models() { return of_activity[contexts.activity()]; }
-    std::uint32_t expected() const { return contexts.expected(); }
-    void update(std::int32_t value) { contexts.update(value); }
-  };
-  section_.residuals(Context{contexts, *state_.vertex_models},
-                     std::span(residuals).subspan(v * size, size), "vertex_residual");
-}
-
-void SkinnedGofParser::SliceParser::parse() {
-  if (group_ > 0 && layers_ == 0 && !failed()) group_components();
-  if (failed() || group_ >= parser_.kept_.end_component_group) return;
-  start();
-  InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
-                                 gof_.weight_bits);
-  std::uint32_t first = 0;
-  for (std::uint32_t j = 0; j < layers_; ++j) first += gof_.layer_group_size[j];
-  for (const std::uint32_t v :
-       parser_.mesh_->vertices_of_layers(first, first + gof_.layer_group_size[layers_])) {
-    if (group_ == 0) influences(v, prediction);
-    if (failed()) return;
-    spatial_residuals(v);
-    section_.check_overrun("vertex_residual");
-    if (failed()) return;
-  }
-  section_.finish();
-  if (failed()) return;
-  // 9.8.1 EndSlice( )
-  if (layers_ == 0) {
-    state_.models_of_group = std::make_unique<VertexModels>(*state_.vertex_models);
-  }
-  gof_.slice_layers[group_] = layers_ + 1;
-  state_.last_group = group_;
 }
 
 // 6.12 slice_unit( )
 Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   const std::uint32_t group =
-      r.ue("component_group_idx", {0, gof_.num_component_groups}, "R-SLI-01");
+      r.ue("component_group_idx", {0, gof_.num_component_groups + gof_.num_local_groups},
+           "R-SLI-01");
   const std::uint32_t layers =
       r.ue("layer_group_idx", {0, static_cast<std::int64_t>(gof_.layer_group_size.size()) - 1},
            "R-SLI-01");
   if (r.error()) return *r.error();
   last_slice_.reset();
   if (!kept_.has(group, layers)) {
-    is_cut_ = true;
+    gof_.is_cut = true;
     return true;
   }
   if (!may_follow(group, layers)) {
@@ -366,7 +319,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   if (r.error()) return *r.error();
   // The number of trajectories in a group is known only from its slice.
   if (group >= kept_.end_component_group) {
-    is_cut_ = true;
+    gof_.is_cut = true;
     return true;
   }
   const std::size_t count = gof_.trajectories.size() - trajectories_before;

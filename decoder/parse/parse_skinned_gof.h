@@ -1,4 +1,4 @@
-// 6.11 and 6.12: skinned GOFs and slices, parsing side.
+// 6.11 to 6.13: skinned GOFs, skinned models and their slices, parsing side.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "common/bitstream/bit_reader.h"
 #include "common/mesh/coded_meshes.h"
 #include "common/result.h"
+#include "common/skinned_gof/model_slots.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/skinned_gof/slice_models.h"
 #include "common/syntax/access_unit.h"
@@ -18,9 +19,14 @@
 
 namespace rlpc {
 
-// The unit of a skinned GOF and the slice units after it, one by one. Every size is checked
-// against the level, and the memory it needs against max_memory_bytes, before anything is
-// allocated. Slices outside the cut are treated as absent.
+class SectionReader;
+
+// Of a skinned model unit, or of a GOF of tracks.
+std::uint32_t parse_model_idx(BitReader& r);
+
+// The unit of a skinned GOF or skinned model and the slice units after it, one by one. Every
+// size is checked against the level, and the memory it needs against max_memory_bytes, before
+// anything is allocated. Slices outside the cut are treated as absent.
 class SkinnedGofParser {
  public:
   // All must outlive it.
@@ -28,23 +34,48 @@ class SkinnedGofParser {
                    std::uint64_t max_memory_bytes, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
 
-  // 6.11 bones_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
-  Result<bool> bones(BitReader& r, const GofHeader& gof_header);
-  // 6.12 slice_unit( ), after bones( ). unit_bit_pos: of the slice unit.
+  // One of these three begins: the rest of the payload of a unit, to which `r` ends. models:
+  // those alive.
+  //
+  // 6.11 bones_of_gof( )
+  Result<bool> bones(BitReader& r, const GofHeader& gof_header, const ModelSlots& models = {});
+  // 6.13.1 tracks_of_gof( )
+  Result<bool> tracks(BitReader& r, const GofHeader& gof_header, const ModelSlots& models);
+  // 6.13 model( )
+  Result<bool> model(BitReader& r, const ModelSlots& models);
+
+  // 6.12 slice_unit( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
-  // After the last slice.
+
+  // After the last slice, of a GOF or of a skinned model.
   SkinnedGof finish() { return std::move(gof_); }
+  std::shared_ptr<const SkinnedModel> finish_model();
+  std::uint32_t model_idx() const { return gof_.model_idx; }
 
   // The slice that the last slice() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
   // Whether a slice has been dropped so far.
-  bool is_cut() const { return is_cut_; }
+  bool is_cut() const { return gof_.is_cut; }
 
  private:
   class SliceParser;
+  enum class Unit : std::uint8_t { kGof, kModel, kTracks };
 
+  Result<bool> rig(BitReader& r);
+  void rig_header(BitReader& r);
   void layers(BitReader& r);
+  void load_model();
   void bone_section(BitReader& r);
+  void track_section(BitReader& r);
+  void check_factors(SectionReader& section, const char* element) const;
+  // Whether slices of the group have tracks and no vertices: those are in the skinned model.
+  bool has_only_tracks(std::uint32_t group) const {
+    return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
+  }
+  // Index of a component group among those that have vertices here.
+  std::size_t own_group(std::uint32_t group) const {
+    return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
+  }
   bool may_follow(std::uint32_t group, std::uint32_t layers) const;
 
   const SequenceHeader& header_;
@@ -52,12 +83,15 @@ class SkinnedGofParser {
   std::uint64_t max_memory_bytes_;
   SliceCut cut_;
   const CodedMesh* mesh_ = nullptr;
-  SkinnedGof gof_;
+  Unit unit_ = Unit::kGof;
+  SkinnedGof gof_;  // or skinned model
   std::uint64_t num_factors_ = 0;
+  std::uint64_t uncounted_factors_ = 0;  // of skinned models that NumFactors leaves out
   // From slice to slice (9.8.1).
   struct SliceState {
-    void start(std::uint32_t num_frames);
+    void start(std::uint32_t num_frames, std::uint32_t first_group);
 
+    std::uint32_t first_own_group = 1;
     SliceModels models;
     Trajectory previous;  // header of the previous trajectory
     std::vector<std::uint32_t> trajectory_mean;
@@ -76,7 +110,6 @@ class SkinnedGofParser {
     }
   };
   CutGroups kept_;
-  bool is_cut_ = false;
   std::optional<SliceEntry> last_slice_;
 };
 

@@ -280,12 +280,12 @@ TEST(ParseSkinnedGof, AlignmentIsZero) {
   }
 }
 
-// Bones and rest positions take 75 factors, and the influences of nine vertices come on top;
-// each trajectory takes 15 more.
+// Bones and rest positions take 75 factors, each trajectory takes 15 more, and the influences
+// of nine vertices come on top.
 TEST(ParseSkinnedGof, FactorsStayWithinTheMemoryOfTheCaller) {
   constexpr std::uint64_t kFactor = 18;
   constexpr std::uint64_t kBones = 75 * kFactor + 9 * sizeof(Influences);
-  constexpr std::uint64_t kGroups[] = {(75 + 2 * 15) * kFactor, (75 + 3 * 15) * kFactor};
+  constexpr std::uint64_t kGroups[] = {kBones + 2 * 15 * kFactor, kBones + 3 * 15 * kFactor};
   static_assert(kBones < kGroups[0]);
   SkinnedGofUnits ample = legal_units(kGroups[1]);
   ASSERT_TRUE(ample.gof(kGof));

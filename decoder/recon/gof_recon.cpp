@@ -22,21 +22,23 @@ class ReconOfKind final : public GofRecon {
   Recon recon_;
 };
 
-ClusterRecon recon_of(const ClusterGof& gof, const StreamContext& context) {
+ClusterRecon recon_of(const ClusterGof& gof, const StreamContext& context, ModelRecons&) {
   return {context.header, context.topology, gof};
 }
 
-SkinnedRecon recon_of(const SkinnedGof& gof, const StreamContext& context) {
+SkinnedRecon recon_of(const SkinnedGof& gof, const StreamContext& context,
+                      ModelRecons& models) {
+  if (gof.model) return {models.of(gof.model), gof};
   return {(*context.meshes)[gof.prediction], gof, context.header.position_bits};
 }
 
 }  // namespace
 
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context) {
+                                     const StreamContext& context, ModelRecons& models) {
   return std::visit(
       [&](const auto& gof) -> std::unique_ptr<GofRecon> {
-        auto recon = recon_of(gof, context);
+        auto recon = recon_of(gof, context, models);
         return std::make_unique<ReconOfKind<decltype(recon)>>(std::move(recon));
       },
       access_unit.gof);

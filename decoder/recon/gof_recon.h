@@ -7,6 +7,7 @@
 
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
+#include "decoder/recon/model_recons.h"
 
 namespace rlpc {
 
@@ -28,8 +29,8 @@ class GofRecon {
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive
-// the result. Cannot fail: parsing has checked every range.
+// the result. models: of the same stream. Cannot fail: parsing has checked every range.
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context);
+                                     const StreamContext& context, ModelRecons& models);
 
 }  // namespace rlpc

@@ -20,7 +20,7 @@ const std::array<Part, kNumStreamParts>& parts() {
       {"sequence header", {"sequence_header"}},
       {"connectivity", {"connectivity"}},
       {"vertex order", {"vertex_order"}},
-      {"GOF headers", {"gof"}},
+      {"GOF headers", {"gof"}},  // and those of skinned models
       {"bones",
        {"bone_parent_plus1", "bone_pivot", "rotation_flag", "origin_flag", "rotation_step_idx",
         "rotation_order_minus1", "rotation_residual", "origin_step_idx", "origin_order",
@@ -32,8 +32,8 @@ const std::array<Part, kNumStreamParts>& parts() {
       {"seed tracks", {"seed_residual"}},
       {"component headers",
        {"num_components_delta", "num_group_components_minus1", "scale_idx_delta",
-        "spatial_bits_delta", "temporal_bits_delta", "temporal_predictor", "temporal_weight",
-        "spatial_predictor"}},
+        "spatial_bits_delta", "temporal_bits_delta", "trajectory_flag", "temporal_predictor",
+        "temporal_weight", "spatial_predictor"}},
       {"temporal factors", {"temporal_residual", "trajectory_residual"}},
       {"spatial factors", {"spatial_residual"}},
       {"hashes, index, metadata", {"other"}},
@@ -55,6 +55,7 @@ std::size_t part_of_unit(UnitType type) {
     case UnitType::kVertexOrder:
       return 3;
     case UnitType::kGof:
+    case UnitType::kModel:
     case UnitType::kSlice:
       return 4;
     default:
@@ -116,11 +117,17 @@ void BitCounter::close(std::uint64_t bit_pos) {
 
 void BitCounter::close_unit() {
   const UnitType type{unit_type_};
-  if (type == UnitType::kGof) gof_bits_.emplace_back();
-  if (type == UnitType::kGof || type == UnitType::kSlice || type == UnitType::kGofHash) {
-    // The first unit of a GOF is a GOF unit.
-    for (std::size_t p = 0; p < kNumStreamParts && !gof_bits_.empty(); ++p) {
-      gof_bits_.back()[p] += unit_bits_[p];
+  if (type == UnitType::kGof || type == UnitType::kModel) {
+    of_model_ = type == UnitType::kModel;
+    (of_model_ ? model_bits_ : gof_bits_).emplace_back();
+  }
+  // Slices belong to the GOF or skinned model before them, hashes to the GOF.
+  const bool is_slice = type == UnitType::kSlice && of_model_;
+  std::vector<PartSizes>& list = type == UnitType::kModel || is_slice ? model_bits_ : gof_bits_;
+  if (type == UnitType::kGof || type == UnitType::kModel || type == UnitType::kSlice ||
+      type == UnitType::kGofHash) {
+    for (std::size_t p = 0; p < kNumStreamParts && !list.empty(); ++p) {
+      list.back()[p] += unit_bits_[p];
     }
   }
   unit_bits_ = {};

@@ -1,4 +1,4 @@
-// Counts bits by purpose, for a stream and for each of its GOFs.
+// Counts bits by purpose, for a stream and for each of its GOFs and skinned models.
 #pragma once
 
 #include <array>
@@ -31,6 +31,8 @@ class BitCounter final : public Trace {
   std::uint64_t num_units() const { return num_units_; }
   // The bits of each GOF with its slices and hashes; valid after finish().
   const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
+  // The same for each skinned model with its slices.
+  const std::vector<PartSizes>& model_bits() const { return model_bits_; }
 
  private:
   void close(std::uint64_t bit_pos);
@@ -48,6 +50,8 @@ class BitCounter final : public Trace {
   std::uint64_t num_units_ = 0;
   PartSizes unit_bits_{};  // of the current unit
   std::vector<PartSizes> gof_bits_;
+  std::vector<PartSizes> model_bits_;
+  bool of_model_ = false;  // the last GOF or skinned model was one of the latter
 };
 
 }  // namespace rlpc

@@ -48,31 +48,33 @@ std::uint64_t sum(const PartSizes& bits) {
   return total;
 }
 
-// A row per component group, a column per layer group, and the size of the GOF when cut after
-// each of them.
-std::string slice_table(const GofSummary& gof) {
+// A row per component group, a column per layer group, and the size of the GOF or skinned model
+// when cut after each of them.
+template <class Summary>
+std::string slice_table(const Summary& summary, const std::string& to_here) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
-  const std::size_t columns = gof.layer_group_size.size();
-  for (const std::uint32_t layers : gof.layer_group_size) {
+  const std::size_t columns = summary.layer_group_size.size();
+  for (const std::uint32_t layers : summary.layer_group_size) {
     html += "<th>" + std::to_string(layers) + (layers == 1 ? " layer</th>" : " layers</th>");
   }
-  html += "<th>GOF to here</th></tr></thead>\n";
-  std::uint32_t group = 0;
-  for (auto slice = gof.slices.begin(); slice != gof.slices.end(); ++group) {
+  html += "<th>" + to_here + "</th></tr></thead>\n";
+  // From 1 in a GOF that uses a skinned model.
+  std::uint32_t group = summary.slices.front().component_group_idx;
+  for (auto slice = summary.slices.begin(); slice != summary.slices.end(); ++group) {
     html += "<tr>";
     html += cell(group == 0 ? "influences, rest positions"
                             : "group " + std::to_string(group) +
                                   ", trajectories: " + std::to_string(slice->num_trajectories));
     for (std::size_t layers = 0; layers < columns; ++layers) {
-      const bool present = slice != gof.slices.end() && slice->component_group_idx == group;
+      const bool present = slice != summary.slices.end() && slice->component_group_idx == group;
       html += cell(present ? grouped_text(slice->bytes) : "");
       if (present) ++slice;
     }
-    html += cell(grouped_text(gof.totals({group + 1, SliceCut::kAll}).bytes)) + "</tr>\n";
+    html += cell(grouped_text(summary.totals({group + 1, SliceCut::kAll}).bytes)) + "</tr>\n";
   }
-  html += "<tr>" + cell("GOF to here");
+  html += "<tr>" + cell(to_here);
   for (std::uint32_t layers = 0; layers < columns; ++layers) {
-    html += cell(grouped_text(gof.totals({SliceCut::kAll, layers + 1}).bytes));
+    html += cell(grouped_text(summary.totals({SliceCut::kAll, layers + 1}).bytes));
   }
   return html + cell("") + "</tr>\n</table></div>\n";
 }
@@ -96,8 +98,9 @@ std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>&
   return html + "</table></div>\n";
 }
 
+// Skinned models are not in it: they belong to several GOFs.
 std::string gof_rate_chart(const StreamRates& rates) {
-  const std::vector<GofSummary>& gofs = *rates.gofs;
+  const std::vector<GofSummary>& gofs = rates.summary->gofs;
   const std::vector<PartSizes>& bits = rates.counter->gof_bits();
   const std::size_t together = (gofs.size() + kMaxBars - 1) / kMaxBars;
   std::vector<Bar> bars;
@@ -125,7 +128,9 @@ std::string gof_rate_chart(const StreamRates& rates) {
     series.push_back(std::move(s));
   }
   const std::string title =
-      together == 1 ? "Rate of each GOF" : "Rate of " + std::to_string(together) + " GOFs each";
+      (together == 1 ? "Rate of each GOF"
+                     : "Rate of " + std::to_string(together) + " GOFs each") +
+      std::string(rates.summary->models.empty() ? "" : ", without skinned models");
   return stacked_bars(title, "bits per vertex and frame", bars, series);
 }
 
@@ -154,10 +159,43 @@ std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs)
   return figures;
 }
 
+namespace {
+
+// Rows with the figures, bytes and slices of each skinned model.
+std::string model_table(const StreamRates& rates) {
+  const auto& models = rates.summary->models;
+  if (models.empty()) return "";
+  std::string html =
+      "<div class=\"card wide\"><table>\n<thead><tr><th>skinned model</th><th>GOFs</th>";
+  for (const GofFigure& figure : models[0]->figures) {
+    if (figure.many != nullptr) html += std::string("<th>") + figure.many + "</th>";
+  }
+  html += "<th>bytes</th></tr></thead>\n";
+  for (std::size_t m = 0; m < std::min(models.size(), kMaxGofRows); ++m) {
+    html += "<tr>" + cell(std::to_string(m)) + cell(grouped_text(models[m]->num_gofs));
+    for (const GofFigure& figure : models[m]->figures) {
+      if (figure.many != nullptr) html += cell(grouped_text(figure.value));
+    }
+    html += cell(grouped_text(sum(rates.counter->model_bits()[m]) / 8)) + "</tr>\n";
+  }
+  html += "</table></div>\n";
+  for (std::size_t m = 0; m < std::min(models.size(), kMaxSliceTables); ++m) {
+    if (models[m]->slices.empty()) continue;
+    html += "<details class=\"card\"><summary>Slices of skinned model " + std::to_string(m) +
+            "</summary>\n" + slice_table(*models[m], "model to here") + "</details>\n";
+  }
+  return html;
+}
+
+}  // namespace
+
 void add_gof_section(HtmlPage& page, const StreamRates& rates) {
-  const std::vector<GofSummary>& gofs = *rates.gofs;
+  const std::vector<GofSummary>& gofs = rates.summary->gofs;
+  const bool has_models = !rates.summary->models.empty();
   const std::vector<GofFigure> columns = figures_of_all_kinds(gofs);
-  std::string html = "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
+  std::string html =
+      model_table(rates) + "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
+  if (has_models) html += "<th>skinned model</th>";
   for (const GofFigure& column : columns) html += std::string("<th>") + column.many + "</th>";
   html += "<th>bytes</th><th>bpvf</th></tr></thead>\n";
   const auto count = [](std::uint64_t n) { return cell(n == 0 ? "" : grouped_text(n)); };
@@ -165,6 +203,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
     const GofSummary& gof = gofs[g];
     const std::uint64_t bits = sum(rates.counter->gof_bits()[g]);
     html += "<tr>" + cell(frames_text(gof));
+    if (has_models) html += cell(gof.model ? std::to_string(gof.model->number) : "");
     for (const GofFigure& column : columns) html += count(gof.figure(column.key));
     html += count(bits / 8) +
             cell(number_text(static_cast<double>(bits) /
@@ -179,13 +218,15 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   for (std::size_t g = 0; g < std::min(gofs.size(), kMaxSliceTables); ++g) {
     if (gofs[g].slices.empty()) continue;
     html += "<details class=\"card\"><summary>Slices of frames " +
-            escape_html(frames_text(gofs[g])) + "</summary>\n" + slice_table(gofs[g]) +
-            "</details>\n";
+            escape_html(frames_text(gofs[g])) + "</summary>\n" +
+            slice_table(gofs[g], "GOF to here") + "</details>\n";
   }
   page.add_section(
       "Groups of frames",
-      "GOFs decode independently. Those of bones can be cut to fewer components or "
-      "layers without re-encoding (rlpcinfo --extract).",
+      std::string(has_models ? "Each GOF decodes without the others, with its skinned model. "
+                             : "GOFs decode independently. ") +
+          "Those of bones can be cut to fewer components or "
+          "layers without re-encoding (rlpcinfo --extract).",
       html);
 }
 

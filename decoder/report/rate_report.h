@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
@@ -15,8 +14,8 @@ struct StreamRates {
   std::uint64_t num_vertices = 0;
   std::uint64_t num_frames = 0;
   std::uint64_t bytes = 0;
-  const BitCounter* counter = nullptr;            // not owned; finished
-  const std::vector<GofSummary>* gofs = nullptr;  // not owned
+  const BitCounter* counter = nullptr;     // not owned; finished
+  const StreamSummary* summary = nullptr;  // not owned
 
   double bpvf(double bits) const {
     return bits / (static_cast<double>(num_vertices) * static_cast<double>(num_frames));
@@ -25,7 +24,7 @@ struct StreamRates {
 
 // Charts of the parts of the stream, and of the rate of each GOF over time.
 void add_rate_section(HtmlPage& page, const StreamRates& rates);
-// A table with a row per GOF, and the contents of its slices.
+// A table with a row per GOF and skinned model, and the contents of their slices.
 void add_gof_section(HtmlPage& page, const StreamRates& rates);
 
 }  // namespace rlpc

@@ -6,13 +6,15 @@
 
 namespace rlpc {
 
-Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit,
-                                          std::uint32_t first_frame) {
+Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                                          const ModelSlots& models) {
   AccessUnitParser parser(context_, max_memory_bytes_, cut_);
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
     const auto payload = units_.payload(*unit);
     if (!payload) return payload.error();
-    if (auto ok = parse_unit(parser, *unit, *payload, first_frame); !ok) return ok.error();
+    if (auto ok = parse_unit(parser, *unit, *payload, first_frame, models); !ok) {
+      return ok.error();
+    }
     end_ = unit->end();
     const auto next = unit_after(*unit, parser.has_slices());
     if (!next) return next.error();
@@ -45,10 +47,11 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
 }
 
 Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
+                                           const ModelSlots& models,
                                            std::uint64_t max_memory_bytes) const {
   AccessUnitParser parser(context_, max_memory_bytes, cut_);
   for (const auto& [unit, payload] : coded.units) {
-    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame); !ok)
+    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame, models); !ok)
       return ok.error();
   }
   return parser.finish();
@@ -56,17 +59,76 @@ Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
 
 Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
                                           const std::vector<std::uint8_t>& payload,
-                                          std::uint32_t first_frame) const {
+                                          std::uint32_t first_frame,
+                                          const ModelSlots& models) const {
   BitReader r = units_.bits(unit, payload);
   const std::uint64_t unit_bytes = unit.end() - unit.offset;
   switch (unit.type()) {
     case UnitType::kGof:
-      return parser.gof(r, first_frame, unit_bytes);
+      return parser.gof(r, first_frame, models, unit_bytes);
     case UnitType::kSlice:
       return parser.slice(r, unit.offset * 8, unit_bytes);
     default:
       return parser.hash(r);
   }
+}
+
+Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
+                                                 const ModelSlots& models) {
+  ModelParser parser(context_, max_memory_bytes_, cut_);
+  for (std::optional<UnitHeader> unit = model_unit; unit;) {
+    const auto payload = units_.payload(*unit);
+    if (!payload) return payload.error();
+    if (auto ok = parse_unit(parser, *unit, *payload, models); !ok) return ok.error();
+    end_ = unit->end();
+    const auto next = slice_after(*unit);
+    if (!next) return next.error();
+    unit = *next;
+  }
+  return parser.finish();
+}
+
+std::optional<std::vector<CodedUnit>> AccessUnitReader::collect_model(
+    const UnitHeader& model_unit, std::uint64_t max_memory_bytes) {
+  std::vector<CodedUnit> coded;
+  std::uint64_t num_bytes = 0;
+  for (std::optional<UnitHeader> unit = model_unit; unit;) {
+    num_bytes += unit->size;
+    if (num_bytes > max_memory_bytes) return std::nullopt;
+    auto payload = units_.payload(*unit);
+    if (!payload) return std::nullopt;
+    coded.push_back({*unit, std::move(*payload)});
+    const auto next = slice_after(*unit);
+    if (!next) return std::nullopt;
+    unit = *next;
+  }
+  return coded;
+}
+
+Result<ParsedModel> AccessUnitReader::parse_model(const std::vector<CodedUnit>& coded,
+                                                  const ModelSlots& models,
+                                                  std::uint64_t max_memory_bytes) const {
+  ModelParser parser(context_, max_memory_bytes, cut_);
+  for (const auto& [unit, payload] : coded) {
+    if (auto ok = parse_unit(parser, unit, payload, models); !ok) return ok.error();
+  }
+  return parser.finish();
+}
+
+Result<bool> AccessUnitReader::parse_unit(ModelParser& parser, const UnitHeader& unit,
+                                          const std::vector<std::uint8_t>& payload,
+                                          const ModelSlots& models) const {
+  BitReader r = units_.bits(unit, payload);
+  const std::uint64_t unit_bytes = unit.end() - unit.offset;
+  return unit.type() == UnitType::kModel ? parser.model(r, models, unit_bytes)
+                                         : parser.slice(r, unit.offset * 8, unit_bytes);
+}
+
+Result<std::optional<UnitHeader>> AccessUnitReader::slice_after(const UnitHeader& unit) {
+  const auto next = units_.header_at(unit.end());
+  if (!next) return next.error();
+  const bool follows = next->type() == UnitType::kSlice;
+  return follows ? std::optional(*next) : std::nullopt;
 }
 
 // The unit that follows `unit` in the same access unit; none if `unit` is the last.

@@ -1,4 +1,4 @@
-// Reads access units from a stream: collects their units and parses them.
+// Reads access units and skinned models from a stream: collects their units and parses them.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,21 @@
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/parse/access_unit_parser.h"
+#include "decoder/parse/model_parser.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/unit_reader.h"
 
 namespace rlpc {
 
+struct CodedUnit {
+  UnitHeader header;
+  std::vector<std::uint8_t> payload;
+};
+
 // The units of an access unit, not parsed except for the GOF header.
 struct CodedAccessUnit {
-  struct Unit {
-    UnitHeader header;
-    std::vector<std::uint8_t> payload;
-  };
   GofHeader gof;
-  std::vector<Unit> units;  // the GOF unit first
+  std::vector<CodedUnit> units;  // the GOF unit first
 
   // Bytes from the start of the stream.
   std::uint64_t end() const { return units.back().header.end(); }
@@ -42,21 +44,35 @@ class AccessUnitReader {
         wants_hash_(options.verify_hashes) {}
 
   // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
-  // the GOF must have.
-  Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame);
-  // End of the last access unit read, bytes from the start of the stream.
+  // the GOF must have; models: those alive.
+  Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                          const ModelSlots& models);
+  // Reads and parses a skinned model.
+  Result<ParsedModel> read_model(const UnitHeader& model_unit, const ModelSlots& models);
+  // End of the last access unit or skinned model read, bytes from the start of the stream.
   std::uint64_t end() const { return end_; }
 
   // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
   // payloads and, separately, the parsed result. If a step fails, read() reports the error.
   std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                          std::uint64_t max_memory_bytes);
-  Result<AccessUnit> parse(const CodedAccessUnit& coded, std::uint64_t max_memory_bytes) const;
+  Result<AccessUnit> parse(const CodedAccessUnit& coded, const ModelSlots& models,
+                           std::uint64_t max_memory_bytes) const;
+  // The same for a skinned model.
+  std::optional<std::vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
+                                                      std::uint64_t max_memory_bytes);
+  Result<ParsedModel> parse_model(const std::vector<CodedUnit>& coded, const ModelSlots& models,
+                                  std::uint64_t max_memory_bytes) const;
 
  private:
   Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
+                          const std::vector<std::uint8_t>& payload, std::uint32_t first_frame,
+                          const ModelSlots& models) const;
+  Result<bool> parse_unit(ModelParser& parser, const UnitHeader& unit,
                           const std::vector<std::uint8_t>& payload,
-                          std::uint32_t first_frame) const;
+                          const ModelSlots& models) const;
+  // The slice unit that follows `unit`; none if another unit follows.
+  Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
   Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit, bool has_slices);
 
   UnitReader& units_;

@@ -5,10 +5,10 @@
 
 namespace rlpc {
 
-Result<std::vector<GofLocation>> find_gof_index(UnitReader& units, std::uint64_t first_unit,
-                                                std::uint32_t num_frames) {
+Result<GofIndex> find_gof_index(UnitReader& units, std::uint64_t first_unit,
+                                const SequenceHeader& header) {
   constexpr std::uint64_t kEndBytes = kUnitHeaderBytes + 4 + kUnitCrcBytes;
-  const std::vector<GofLocation> none;
+  const GofIndex none;
   if (units.size() < first_unit + kEndBytes) return none;
   const auto end = units.header_at(units.size() - kEndBytes);
   if (!end || end->type() != UnitType::kEndOfSequence) return none;
@@ -25,7 +25,7 @@ Result<std::vector<GofLocation>> find_gof_index(UnitReader& units, std::uint64_t
   const auto payload = units.payload(*unit);
   if (!payload) return payload.error();
   BitReader r = units.bits(*unit, *payload);
-  return parse_gof_index(r, num_frames);
+  return parse_gof_index(r, header);
 }
 
 }  // namespace rlpc

@@ -9,12 +9,11 @@
 
 namespace rlpc {
 
-// The GOFs listed by the index before the end of the sequence; empty if there is none. Whether
-// they are there is checked when they are parsed (parse_gof_header).
+// What the index before the end of the sequence lists; nothing if there is none. Whether units
+// are there is checked when they are parsed.
 //
-// first_unit  lower bound of the offset of the end of the sequence, bytes
-//   num_frames  of the sequence
-Result<std::vector<GofLocation>> find_gof_index(UnitReader& units, std::uint64_t first_unit,
-                                                std::uint32_t num_frames);
+// first_unit: lower bound of the offset of the end of the sequence, bytes.
+Result<GofIndex> find_gof_index(UnitReader& units, std::uint64_t first_unit,
+                                const SequenceHeader& header);
 
 }  // namespace rlpc

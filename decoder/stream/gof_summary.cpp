@@ -1,5 +1,7 @@
 #include "decoder/stream/gof_summary.h"
 
+#include <array>
+#include <utility>
 #include <variant>
 
 namespace rlpc {
@@ -18,28 +20,93 @@ void add_kind(const ClusterGof& gof, GofSummary& summary) {
                       static_cast<std::uint32_t>(num_components)}};
 }
 
-void add_kind(const SkinnedGof& gof, GofSummary& summary) {
-  summary.layer_group_size = gof.layer_group_size;
+// What has vertices in a GOF of bones or skinned model.
+void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
+  summary.layer_group_size = rig.layer_group_size;
   summary.figures = {
-      {"num_bones", "bone", "bones", size_of(gof.bones)},
-      {"num_trajectories", "trajectory", "trajectories", size_of(gof.trajectories)},
-      {"num_component_groups", "component group", "component groups", gof.num_component_groups},
-      {"prediction_idc", nullptr, nullptr, static_cast<std::uint32_t>(gof.prediction)},
-      {"num_layers", "layer", "layers", size_of(gof.layer_step)},
-      {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
+      {"num_bones", "bone", "bones", size_of(rig.bones)},
+      {"num_trajectories", "trajectory", "trajectories", size_of(rig.trajectories)},
+      {"num_component_groups", "component group", "component groups", rig.num_component_groups},
+      {"prediction_idc", nullptr, nullptr, static_cast<std::uint32_t>(rig.prediction)},
+      {"num_layers", "layer", "layers", size_of(rig.layer_step)},
+      {"num_layer_groups", "layer group", "layer groups", size_of(rig.layer_group_size)},
       {"num_slices", "slice", "slices", size_of(summary.slices)}};
 }
 
+void add_kind(const SkinnedGof& gof, GofSummary& summary) {
+  if (!gof.model) return add_rig(gof, summary);
+  summary.layer_group_size = gof.layer_group_size;
+  summary.figures = {
+      {"num_trajectories", "trajectory", "trajectories", size_of(gof.trajectories)},
+      {"num_local_groups", nullptr, nullptr, gof.num_local_groups},
+      {"num_slices", "slice", "slices", size_of(summary.slices)}};
+}
+
+// 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:
+// of the groups before.
+void add_groups(const std::vector<SliceEntry>& slices, const SliceCut& cut,
+                std::uint64_t trajectories, SliceGroups& groups) {
+  for (const SliceEntry& slice : slices) {
+    if (slice.component_group_idx < groups.component_groups) continue;
+    trajectories += slice.num_trajectories;
+    if (trajectories > cut.max_components) break;
+    groups.component_groups = slice.component_group_idx + 1;
+  }
+}
+
+GofSummary summary_of(const AccessUnit& access_unit) {
+  const GofHeader& header = access_unit.header();
+  GofSummary summary;
+  summary.kind = header.kind;
+  summary.first_frame = header.first_frame;
+  summary.num_frames = header.num_frames;
+  summary.bytes = access_unit.gof_bytes;
+  summary.slices = access_unit.slices;
+  std::visit([&](const auto& gof) { add_kind(gof, summary); }, access_unit.gof);
+  return summary;
+}
+
+// Collects summaries, with the skinned models alive.
+class Summariser {
+ public:
+  void add(const ParsedModel& parsed) {
+    const auto model = std::make_shared<ModelSummary>();
+    model->number = summary_.models.size();
+    model->model_idx = parsed.model_idx;
+    model->num_component_groups = parsed.model->num_component_groups;
+    model->bytes = parsed.bytes;
+    model->slices = parsed.slices;
+    add_rig(*parsed.model, *model);
+    of_idx_[parsed.model_idx] = model;
+    summary_.models.push_back(model);
+  }
+  void add(const AccessUnit& access_unit) {
+    GofSummary gof = summary_of(access_unit);
+    const auto* skinned = std::get_if<SkinnedGof>(&access_unit.gof);
+    if (skinned != nullptr && skinned->model) {
+      const auto& model = of_idx_[skinned->model_idx];
+      ++model->num_gofs;
+      gof.model = model;
+    }
+    summary_.gofs.push_back(std::move(gof));
+  }
+  StreamSummary finish() { return std::move(summary_); }
+
+ private:
+  StreamSummary summary_;
+  std::array<std::shared_ptr<ModelSummary>, kMaxModels> of_idx_;
+};
+
 }  // namespace
 
-std::uint32_t GofSummary::figure(std::string_view key) const {
+std::uint32_t SlicedSummary::figure(std::string_view key) const {
   for (const GofFigure& f : figures) {
     if (key == f.key) return f.value;
   }
   return 0;
 }
 
-SliceTotals GofSummary::totals(const SliceGroups& groups) const {
+SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
   SliceTotals totals;
   totals.bytes = bytes;
   for (const SliceEntry& slice : slices) {
@@ -54,37 +121,54 @@ SliceTotals GofSummary::totals(const SliceGroups& groups) const {
   return totals;
 }
 
-// 8.14.1 Slices that are absent
-SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
+SliceGroups ModelSummary::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
-  std::uint64_t trajectories = 0;
-  for (const SliceEntry& slice : slices) {
-    trajectories += slice.num_trajectories;
-    if (trajectories > cut.max_components) break;
-    groups.component_groups = slice.component_group_idx + 1;
-  }
+  add_groups(slices, cut, 0, groups);
   return groups;
 }
 
-GofSummary summarise(const AccessUnit& access_unit) {
-  const GofHeader& header = access_unit.header();
-  GofSummary summary;
-  summary.kind = header.kind;
-  summary.first_frame = header.first_frame;
-  summary.num_frames = header.num_frames;
-  summary.bytes = access_unit.gof_bytes;
-  summary.slices = access_unit.slices;
-  std::visit([&](const auto& gof) { add_kind(gof, summary); }, access_unit.gof);
-  return summary;
+bool ModelSummary::is_cut_by(const SliceCut& cut) const {
+  return totals(groups_that_stay(cut)).num_slices < slices.size();
 }
 
-Result<std::vector<GofSummary>> summarise_all(StreamReader& stream) {
-  std::vector<GofSummary> gofs;
+SliceTotals GofSummary::totals(const SliceGroups& groups) const {
+  SliceTotals totals = SlicedSummary::totals(groups);
+  if (model) totals.num_layers = model->totals(groups).num_layers;
+  return totals;
+}
+
+// Local component groups follow those of a complete skinned model.
+SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
+  SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
+  std::uint64_t trajectories = 0;
+  if (model) {
+    groups = model->groups_that_stay(cut);
+    if (groups.component_groups <= model->num_component_groups) return groups;
+    trajectories = model->totals(groups).num_trajectories;
+  }
+  add_groups(slices, cut, trajectories, groups);
+  return groups;
+}
+
+bool GofSummary::is_cut_by(const SliceCut& cut) const {
+  return totals(groups_that_stay(cut)).num_slices < slices.size() ||
+         (model && model->is_cut_by(cut));
+}
+
+Result<StreamSummary> summarise_all(StreamReader& stream, const CheckAccessUnit& check) {
+  Summariser summariser;
+  stream.models().watch([&](const ParsedModel& model) { summariser.add(model); });
   for (;;) {
     const auto access_unit = stream.next();
+    if (!access_unit || !*access_unit) stream.models().watch({});
     if (!access_unit) return access_unit.error();
-    if (!*access_unit) return gofs;
-    gofs.push_back(summarise(**access_unit));
+    if (!*access_unit) return summariser.finish();
+    summariser.add(**access_unit);
+    if (!check) continue;
+    if (const auto error = check(**access_unit)) {
+      stream.models().watch({});
+      return *error;
+    }
   }
 }
 

@@ -1,8 +1,12 @@
-// Summarises a GOF in numbers: clusters and components, or bones, trajectories and slices.
+// Summarises GOFs and skinned models in numbers: clusters and components, or bones,
+// trajectories and slices.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -13,8 +17,8 @@
 
 namespace rlpc {
 
-// The leading component groups of a GOF, including that of the rest positions, and its leading
-// layer groups.
+// The leading component groups of a GOF or skinned model, including that of the rest positions,
+// and its leading layer groups.
 struct SliceGroups {
   std::uint32_t component_groups = SliceCut::kAll;
   std::uint32_t layer_groups = SliceCut::kAll;
@@ -24,12 +28,12 @@ struct SliceGroups {
   }
 };
 
-// Totals of a GOF within such groups.
+// Totals within such groups.
 struct SliceTotals {
   std::size_t num_slices = 0;
   std::uint32_t num_trajectories = 0;
   std::uint32_t num_layers = 0;  // layers with residuals of rest positions
-  std::uint64_t bytes = 0;       // of the GOF unit and of slice units
+  std::uint64_t bytes = 0;       // of the GOF or skinned model unit and of slice units
 };
 
 // A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
@@ -41,11 +45,9 @@ struct GofFigure {
   std::uint32_t value;
 };
 
-struct GofSummary {
-  GofKind kind = GofKind::kClusters;
-  std::uint32_t first_frame = 0;
-  std::uint32_t num_frames = 0;
-  std::uint64_t bytes = 0;  // of the GOF unit
+// A GOF or skinned model.
+struct SlicedSummary {
+  std::uint64_t bytes = 0;  // of its unit
 
   std::vector<GofFigure> figures;  // the same keys for each GOF of a kind
 
@@ -56,13 +58,44 @@ struct GofSummary {
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   std::vector<SliceEntry> slices;
 
+  // Component groups up to the last that has a slice, including that of the rest positions.
+  std::uint32_t num_groups() const {
+    return slices.empty() ? 0 : slices.back().component_group_idx + 1;
+  }
   SliceTotals totals(const SliceGroups& groups) const;
-  SliceGroups groups_that_stay(const SliceCut& cut) const;
 };
 
-GofSummary summarise(const AccessUnit& access_unit);
+struct ModelSummary : SlicedSummary {
+  std::size_t number = 0;  // among those of the stream, counted from 0
+  std::uint32_t model_idx = 0;
+  std::uint32_t num_component_groups = 0;
+  std::uint32_t num_gofs = 0;  // that use it
 
-// Summaries of all GOFs of a stream, which is read to its end.
-Result<std::vector<GofSummary>> summarise_all(StreamReader& stream);
+  SliceGroups groups_that_stay(const SliceCut& cut) const;
+  bool is_cut_by(const SliceCut& cut) const;
+};
+
+struct GofSummary : SlicedSummary {
+  GofKind kind = GofKind::kClusters;
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;
+  std::shared_ptr<const ModelSummary> model;  // that it uses; null: none
+
+  // Bytes and slices are its own; layers are those of its skinned model.
+  SliceTotals totals(const SliceGroups& groups) const;
+  SliceGroups groups_that_stay(const SliceCut& cut) const;
+  // Whether the GOF or its skinned model loses a slice.
+  bool is_cut_by(const SliceCut& cut) const;
+};
+
+struct StreamSummary {
+  std::vector<std::shared_ptr<const ModelSummary>> models;  // in the order of the stream
+  std::vector<GofSummary> gofs;
+};
+
+// Summaries of all GOFs and skinned models of a stream, which is read to its end. `check` is
+// called with each access unit, and can end it with an error.
+using CheckAccessUnit = std::function<std::optional<Error>(const AccessUnit&)>;
+Result<StreamSummary> summarise_all(StreamReader& stream, const CheckAccessUnit& check = {});
 
 }  // namespace rlpc

@@ -13,24 +13,11 @@
 #include "decoder/stream/find_gof_index.h"
 
 namespace rlpc {
-namespace {
-
-// 6.2 CheckUnitType( expected )
-// A unit in the wrong place, or a critical one that this version does not know.
-Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
-  const UnitType last = version_minor > 0 ? UnitType::kSlice : UnitType::kEndOfSequence;
-  const bool known =
-      unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader && unit.type() <= last);
-  return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
-               "unit_type", unit.offset * 8};
-}
-
-}  // namespace
-
 StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : limits_(options.limits),
       units_(std::move(source), options.trace, options.limits.max_memory_bytes),
-      access_units_(units_, context_, options) {}
+      access_units_(units_, context_, options),
+      models_(units_, access_units_) {}
 
 Result<bool> StreamReader::open() {
   if (auto ok = units_.stream_header(); !ok) return ok;
@@ -45,13 +32,19 @@ Result<bool> StreamReader::open() {
     } else if (unit->type() == UnitType::kVertexOrder && have_connectivity &&
                vertex_order_.empty()) {
       if (auto ok = read_vertex_order(*unit); !ok) return ok;
-    } else if (unit->type() == UnitType::kGof && have_connectivity) {
+    } else if (starts_gofs(*unit) && have_connectivity) {
       return true;
     } else if (auto ok = read_ancillary(*unit); !ok) {
       return ok;
     }
     offset_ = unit->end();
   }
+}
+
+// 6.1 StartsGofs( )
+bool StreamReader::starts_gofs(const UnitHeader& unit) const {
+  return unit.type() == UnitType::kGof ||
+         (unit.type() == UnitType::kModel && units_.version_minor() >= 2);
 }
 
 // 6.3: always the first unit.
@@ -126,7 +119,7 @@ Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   return true;
 }
 
-Result<std::optional<UnitHeader>> StreamReader::find_gof() {
+Result<std::optional<UnitHeader>> StreamReader::find_gof(Models models) {
   for (;;) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
@@ -139,6 +132,12 @@ Result<std::optional<UnitHeader>> StreamReader::find_gof() {
     if (unit->type() == UnitType::kEndOfSequence) {
       if (const auto ok = check_end(*unit); !ok) return ok.error();
       return std::optional<UnitHeader>();
+    }
+    if (starts_gofs(*unit)) {
+      const auto end = models == Models::kSkip ? models_.skip(*unit) : models_.read(*unit);
+      if (!end) return end.error();
+      offset_ = *end;
+      continue;
     }
     if (const auto ok = read_ancillary(*unit); !ok) return ok.error();
     offset_ = unit->end();
@@ -164,7 +163,9 @@ Result<bool> StreamReader::check_end(const UnitHeader& unit) {
 }
 
 Result<AccessUnit> StreamReader::read(const UnitHeader& gof_unit) {
-  auto access_unit = access_units_.read(gof_unit, frames_parsed_);
+  const auto models = models_.at(gof_unit.offset);
+  if (!models) return models.error();
+  auto access_unit = access_units_.read(gof_unit, frames_parsed_, *models);
   if (access_unit) {
     go_past(gof_unit, access_unit->header().num_frames, access_units_.end());
   }
@@ -188,7 +189,7 @@ Result<std::optional<AccessUnit>> StreamReader::next() {
 }
 
 Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
-  constexpr std::uint32_t kEnough = 16;  // two codes of at most 63 bits, and a flag
+  constexpr std::uint32_t kEnough = 17;  // two codes of at most 63 bits, and gof_kind
   const auto bytes = units_.payload_start(unit, kEnough);
   if (!bytes) return bytes.error();
   BitReader r = units_.bits(unit, *bytes);
@@ -217,10 +218,11 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
-    auto gofs = find_gof_index(units_, offset_, context_.header.num_frames);
-    if (!gofs) return gofs.error();
+    auto index = find_gof_index(units_, offset_, context_.header);
+    if (!index) return index.error();
     index_tried_ = true;
-    if (!gofs->empty()) gofs_ = std::move(*gofs);
+    models_.add(index->models);
+    if (!index->gofs.empty()) gofs_ = std::move(index->gofs);
   }
   const auto after =
       std::upper_bound(gofs_.begin(), gofs_.end(), frame,
@@ -231,7 +233,7 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
   }
   // Skips GOFs forward: only their headers are read.
   for (;;) {
-    const auto unit = find_gof();
+    const auto unit = find_gof(Models::kSkip);
     if (!unit) return unit.error();
     if (!*unit) return Error{Errc::kInvalid, "R-END-01", "unit_type", offset_ * 8};
     const auto gof = gof_header(**unit);

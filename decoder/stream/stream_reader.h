@@ -14,6 +14,7 @@
 #include "decoder/parse/sequence/parse_gof_index.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/access_unit_reader.h"
+#include "decoder/stream/stream_models.h"
 #include "decoder/stream/unit_reader.h"
 
 namespace rlpc {
@@ -39,8 +40,9 @@ class StreamReader {
   const std::string& metadata() const { return metadata_; }  // the last so far
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
-  // sequence.
-  Result<std::optional<UnitHeader>> find_gof();
+  // sequence. Skinned models are parsed, or only those that a GOF to be read uses.
+  enum class Models : std::uint8_t { kParse, kSkip };
+  Result<std::optional<UnitHeader>> find_gof(Models models = Models::kParse);
   // The access unit that begins with the unit found; advances past it.
   Result<AccessUnit> read(const UnitHeader& gof_unit);
   // The same for an access unit read elsewhere, whose units end at `end`.
@@ -57,8 +59,10 @@ class StreamReader {
   std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
   UnitReader& units() { return units_; }
   AccessUnitReader& access_units() { return access_units_; }
+  StreamModels& models() { return models_; }
 
  private:
+  bool starts_gofs(const UnitHeader& unit) const;
   Result<bool> read_sequence_header();
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
@@ -74,6 +78,7 @@ class StreamReader {
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;
+  StreamModels models_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> vertex_order_;
   std::string metadata_;

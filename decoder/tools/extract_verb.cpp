@@ -45,6 +45,11 @@ bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
   return after.num_layers > o.cut.max_layers;
 }
 
+// By its place in the stream: most streams have a single model_idx.
+std::string name_of(const ModelSummary& model) {
+  return "skinned model " + std::to_string(model.number);
+}
+
 nlohmann::ordered_json json_of(const SliceTotals& totals) {
   return {{"num_trajectories", totals.num_trajectories},
           {"num_layers", totals.num_layers},
@@ -59,8 +64,14 @@ nlohmann::ordered_json size_json(const SubStreamExtractor& cutter, std::uint64_t
 void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                 std::uint64_t bytes) {
   bool met = true;
+  nlohmann::ordered_json models = nlohmann::ordered_json::array();
+  for (const auto& model : cutter.summary().models) {
+    models.push_back({{"model_idx", model->model_idx},
+                      {"before", json_of(model->totals({}))},
+                      {"after", json_of(cutter.totals_that_stay(*model))}});
+  }
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
-  for (const GofSummary& gof : cutter.gofs()) {
+  for (const GofSummary& gof : cutter.summary().gofs) {
     const SliceTotals after = cutter.totals_that_stay(gof);
     met = met && !too_many_layers(o, after);
     gofs.push_back({{"first_frame", gof.first_frame},
@@ -73,9 +84,29 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                                        {"request_met", met},
                                        {"before", size_json(cutter, cutter.size())},
                                        {"after", size_json(cutter, bytes)},
+                                       {"models", std::move(models)},
                                        {"gofs", std::move(gofs)}};
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in the name
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+}
+
+// What stays of a GOF or skinned model with vertices.
+void print_cut(const ExtractOptions& o, const std::string& name, const SliceTotals& before,
+               const SliceTotals& after) {
+  std::printf("  %s: %u of %u trajectories, %u of %u layers, %zu of %zu slices, %" PRIu64
+              " of %" PRIu64 " bytes\n",
+              name.c_str(), after.num_trajectories, before.num_trajectories, after.num_layers,
+              before.num_layers, after.num_slices, before.num_slices, after.bytes,
+              before.bytes);
+  if (after.num_trajectories == 0 && before.num_trajectories > 0 && o.cut.max_components > 0) {
+    std::printf(
+        "    no group has %u trajectories or fewer: only bones and rest shape are kept\n",
+        o.cut.max_components);
+  }
+  if (too_many_layers(o, after)) {
+    std::printf("    more than %u layers: the first layer group is always kept\n",
+                o.cut.max_layers);
+  }
 }
 
 void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
@@ -84,29 +115,25 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
               cutter.size(), bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", printable(o.output).c_str(), bytes,
               bpvf(cutter, bytes));
-  for (const GofSummary& gof : cutter.gofs()) {
-    if (!has_slices(gof.kind)) {
-      std::printf("  frames %u to %u: %s GOF, %" PRIu64 " bytes, kept whole\n", gof.first_frame,
-                  gof.first_frame + gof.num_frames - 1, kind_name(gof.kind), gof.bytes);
-      continue;
-    }
+  for (const auto& model : cutter.summary().models) {
+    print_cut(o, name_of(*model), model->totals({}), cutter.totals_that_stay(*model));
+  }
+  for (const GofSummary& gof : cutter.summary().gofs) {
+    const std::string name = "frames " + std::to_string(gof.first_frame) + " to " +
+                             std::to_string(gof.first_frame + gof.num_frames - 1);
     const SliceTotals before = gof.totals({});
     const SliceTotals after = cutter.totals_that_stay(gof);
-    std::printf(
-        "  frames %u to %u: %u of %u trajectories, %u of %u layers, %zu of %zu slices, "
-        "%" PRIu64 " of %" PRIu64 " bytes\n",
-        gof.first_frame, gof.first_frame + gof.num_frames - 1, after.num_trajectories,
-        before.num_trajectories, after.num_layers, before.num_layers, after.num_slices,
-        before.num_slices, after.bytes, before.bytes);
-    if (after.num_trajectories == 0 && before.num_trajectories > 0 &&
-        o.cut.max_components > 0) {
-      std::printf(
-          "    no group has %u trajectories or fewer: only bones and rest shape are kept\n",
-          o.cut.max_components);
-    }
-    if (too_many_layers(o, after)) {
-      std::printf("    more than %u layers: the first layer group is always kept\n",
-                  o.cut.max_layers);
+    if (!has_slices(gof.kind)) {
+      std::printf("  %s: %s GOF, %" PRIu64 " bytes, kept whole\n", name.c_str(),
+                  kind_name(gof.kind), gof.bytes);
+    } else if (gof.model) {
+      std::printf("  %s, tracks of %s: %u of %u trajectories, %zu of %zu slices, %" PRIu64
+                  " of %" PRIu64 " bytes\n",
+                  name.c_str(), name_of(*gof.model).c_str(), after.num_trajectories,
+                  before.num_trajectories, after.num_slices, before.num_slices, after.bytes,
+                  before.bytes);
+    } else {
+      print_cut(o, name, before, after);
     }
   }
   if (!cutter.cuts_any())

@@ -32,10 +32,10 @@ constexpr const char* kExamples = R"(Examples
 
 constexpr const char* kDetails =
     R"(--extract writes the stream without the slices of finer detail (not Baseline),
-without re-encoding. Of each skinned GOF it keeps the component groups with up
-to K trajectories (0: only bones and rest shape), and the layer groups with up
-to L vertex layers, the coarsest (always at least the first). Cluster GOFs have
-no slices: they are kept whole. --gofs shows the possible cuts.
+without re-encoding. Of each skinned GOF and skinned model, it keeps component
+groups with up to K trajectories (0: only bones and rest shape), and the layer
+groups with up to L vertex layers, the coarsest (always at least the first).
+Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
 
 --trace prints bit position, name and value of every syntax element.
 
@@ -83,11 +83,11 @@ int inform(const Options& o) {
   options.trace = &counter;
   rlpc::StreamReader stream(std::move(*source), options);
   if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
-  const auto gofs = rlpc::summarise_all(stream);
-  if (!gofs) return complain(o, gofs.error());
+  const auto summary = rlpc::summarise_all(stream);
+  if (!summary) return complain(o, summary.error());
   counter.finish(8 * bytes);
   const rlpc::StreamInfo info{o.input, stream.header(), counter,
-                              bytes,   *gofs,           stream.metadata()};
+                              bytes,   *summary,        stream.metadata()};
   if (o.trace) return rlpc::kExitDone;
   if (page) {
     if (const auto error = rlpc::write_and_commit(*page, rlpc::page_text(info)))

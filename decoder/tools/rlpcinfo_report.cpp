@@ -19,41 +19,50 @@ double bpvf(const StreamInfo& s, double bits) {
   return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
 }
 
-// Component groups that have slices, including that of the rest positions.
-std::uint32_t num_groups(const GofSummary& gof) {
-  return gof.slices.empty() ? 0 : gof.slices.back().component_group_idx + 1;
-}
-
-nlohmann::ordered_json json_of(const GofSummary& gof) {
-  nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
-                                 {"num_frames", gof.num_frames}};
-  for (const GofFigure& figure : gof.figures) json[figure.key] = figure.value;
-  if (!has_slices(gof.kind)) {
-    json["bytes"] = gof.bytes;
-    return json;
-  }
+// The slices of a GOF or skinned model, and its sizes when cut.
+template <class Summary>
+void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
-  for (const SliceEntry& slice : gof.slices) {
+  for (const SliceEntry& slice : summary.slices) {
     slices.push_back({{"component_group_idx", slice.component_group_idx},
                       {"layer_group_idx", slice.layer_group_idx},
                       {"num_trajectories", slice.num_trajectories},
                       {"bytes", slice.bytes}});
   }
   nlohmann::ordered_json components = nlohmann::ordered_json::array();
-  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
-    const SliceTotals cut = gof.totals({group + 1, SliceCut::kAll});
+  for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
+    const SliceTotals cut = summary.totals({group + 1, SliceCut::kAll});
     components.push_back({{"components", cut.num_trajectories}, {"bytes", cut.bytes}});
   }
   nlohmann::ordered_json layers = nlohmann::ordered_json::array();
-  for (std::uint32_t group = 0; group < gof.layer_group_size.size(); ++group) {
-    const SliceTotals cut = gof.totals({SliceCut::kAll, group + 1});
+  for (std::uint32_t group = 0; group < summary.layer_group_size.size(); ++group) {
+    const SliceTotals cut = summary.totals({SliceCut::kAll, group + 1});
     layers.push_back({{"layers", cut.num_layers}, {"bytes", cut.bytes}});
   }
-  json["layer_group_size"] = gof.layer_group_size;
-  json["bytes"] = gof.bytes;
+  json["layer_group_size"] = summary.layer_group_size;
+  json["bytes"] = summary.bytes;
   json["slices"] = std::move(slices);
   json["cut_to_components"] = std::move(components);
   json["cut_to_layers"] = std::move(layers);
+}
+
+nlohmann::ordered_json json_of(const GofSummary& gof) {
+  nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
+                                 {"num_frames", gof.num_frames}};
+  if (gof.model) json["model"] = gof.model->number;
+  for (const GofFigure& figure : gof.figures) json[figure.key] = figure.value;
+  if (has_slices(gof.kind)) {
+    add_slices(gof, json);
+  } else {
+    json["bytes"] = gof.bytes;
+  }
+  return json;
+}
+
+nlohmann::ordered_json json_of(const ModelSummary& model) {
+  nlohmann::ordered_json json = {{"model_idx", model.model_idx}, {"num_gofs", model.num_gofs}};
+  for (const GofFigure& figure : model.figures) json[figure.key] = figure.value;
+  add_slices(model, json);
   return json;
 }
 
@@ -82,12 +91,16 @@ std::string counted(std::uint64_t count, const Noun& noun) {
   return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
 }
 
-// "12 clusters", or "3 to 12 clusters": a figure over all GOFs.
-std::string range_over(const std::vector<GofSummary>& gofs, std::size_t place) {
-  const auto value = [&](const GofSummary& gof) { return gof.figures[place].value; };
+using Summaries = std::vector<const SlicedSummary*>;
+
+// "12 clusters", or "3 to 12 clusters": a figure over all GOFs, or skinned models.
+std::string range_over(const Summaries& list, std::size_t place) {
+  const auto value = [&](const SlicedSummary* summary) {
+    return summary->figures[place].value;
+  };
   const auto compare = [&](const auto& a, const auto& b) { return value(a) < value(b); };
-  const auto [least, most] = std::minmax_element(gofs.begin(), gofs.end(), compare);
-  const GofFigure& figure = most->figures[place];
+  const auto [least, most] = std::minmax_element(list.begin(), list.end(), compare);
+  const GofFigure& figure = (*most)->figures[place];
   const std::string most_counted = counted(figure.value, {figure.one, figure.many});
   return value(*least) == figure.value ? most_counted
                                        : std::to_string(value(*least)) + " to " + most_counted;
@@ -103,60 +116,107 @@ std::string listed(const std::vector<std::string>& parts) {
   return text;
 }
 
-// One line per kind of GOF.
-void print_kinds(std::vector<GofSummary> gofs) {
-  while (!gofs.empty()) {
-    const auto end = std::stable_partition(
-        gofs.begin(), gofs.end(),
-        [kind = gofs[0].kind](const GofSummary& gof) { return gof.kind == kind; });
-    const std::vector<GofSummary> of_kind(gofs.begin(), end);
-    std::vector<std::string> ranges;
-    for (std::size_t i = 0; i < of_kind[0].figures.size(); ++i) {
-      if (of_kind[0].figures[i].many != nullptr) ranges.push_back(range_over(of_kind, i));
+void print_figures(const std::string& name, const Summaries& list) {
+  std::vector<std::string> ranges;
+  for (std::size_t i = 0; i < list[0]->figures.size(); ++i) {
+    if (list[0]->figures[i].many != nullptr) ranges.push_back(range_over(list, i));
+  }
+  std::printf("  %s: %zu, with %s each\n", name.c_str(), list.size(), listed(ranges).c_str());
+}
+
+// A line for skinned models, and one per kind of GOF.
+void print_kinds(const StreamSummary& stream) {
+  Summaries models;
+  for (const auto& model : stream.models) models.push_back(model.get());
+  if (!models.empty()) print_figures("skinned models", models);
+  std::vector<GofKind> kinds;
+  for (const GofSummary& gof : stream.gofs) {
+    if (std::find(kinds.begin(), kinds.end(), gof.kind) == kinds.end())
+      kinds.push_back(gof.kind);
+  }
+  for (const GofKind kind : kinds) {
+    Summaries gofs;
+    for (const GofSummary& gof : stream.gofs) {
+      if (gof.kind == kind) gofs.push_back(&gof);
     }
-    std::printf("  %s GOFs: %zu, with %s each\n", kind_name(of_kind[0].kind), of_kind.size(),
-                listed(ranges).c_str());
-    gofs.erase(gofs.begin(), end);
+    print_figures(
+        kind == GofKind::kTracks ? "GOFs of tracks" : std::string(kind_name(kind)) + " GOFs",
+        gofs);
   }
 }
 
-// For a skinned GOF, a row per component group, a column per layer group, and the size of the
-// GOF when cut after each of them.
-void print_gof(const GofSummary& gof) {
-  std::vector<std::string> figures;
-  for (const GofFigure& figure : gof.figures) {
-    if (figure.many == nullptr) continue;
-    figures.push_back(counted(figure.value, {figure.one, figure.many}));
-  }
-  const bool is_sliced = has_slices(gof.kind);
-  if (is_sliced) figures.resize(1);  // the table has the others
-  std::printf("\n  frames %u to %u: %s in %" PRIu64 " bytes%s\n", gof.first_frame,
-              gof.first_frame + gof.num_frames - 1, listed(figures).c_str(), gof.bytes,
-              is_sliced ? "; slices in bytes" : "");
-  if (!is_sliced) return;
+// A row per component group, a column per layer group, and the size of the GOF or skinned model
+// when cut after each of them.
+template <class Summary>
+void print_slices(const Summary& summary, const char* to_here) {
   std::printf("  %-40s", "layers");
-  for (const std::uint32_t size : gof.layer_group_size) std::printf(" %9u", size);
-  std::printf(" %12s\n", "GOF to here");
-  auto slice = gof.slices.begin();
-  for (std::uint32_t group = 0; group < num_groups(gof); ++group) {
-    const SliceTotals cut = gof.totals({group + 1, SliceCut::kAll});
+  for (const std::uint32_t size : summary.layer_group_size) std::printf(" %9u", size);
+  std::printf(" %12s\n", to_here);
+  auto slice = summary.slices.begin();
+  for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
+    const SliceTotals cut = summary.totals({group + 1, SliceCut::kAll});
+    const bool has_rest = slice->component_group_idx == 0;
+    if (group == 0 && !has_rest) continue;  // a GOF that uses a skinned model
     const std::string name =
         group == 0 ? "influences, rest positions"
                    : "group " + std::to_string(group) +
                          ", trajectories: " + std::to_string(slice->num_trajectories);
     std::printf("  %-40s", name.c_str());
-    for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
-      const bool present = slice != gof.slices.end() && slice->component_group_idx == group;
+    for (std::uint32_t layers = 0; layers < summary.layer_group_size.size(); ++layers) {
+      const bool present = slice != summary.slices.end() && slice->component_group_idx == group;
       std::printf(" %9s", present ? std::to_string(slice->bytes).c_str() : "");
       if (present) ++slice;
     }
     std::printf(" %12" PRIu64 "\n", cut.bytes);
   }
-  std::printf("  %-40s", "GOF to here");
-  for (std::uint32_t layers = 0; layers < gof.layer_group_size.size(); ++layers) {
-    std::printf(" %9" PRIu64, gof.totals({SliceCut::kAll, layers + 1}).bytes);
+  std::printf("  %-40s", to_here);
+  for (std::uint32_t layers = 0; layers < summary.layer_group_size.size(); ++layers) {
+    std::printf(" %9" PRIu64, summary.totals({SliceCut::kAll, layers + 1}).bytes);
   }
   std::printf("\n");
+}
+
+std::vector<std::string> figures_of(const SlicedSummary& summary) {
+  std::vector<std::string> figures;
+  for (const GofFigure& figure : summary.figures) {
+    if (figure.many == nullptr) continue;
+    figures.push_back(counted(figure.value, {figure.one, figure.many}));
+  }
+  return figures;
+}
+
+void print_model(const ModelSummary& model) {
+  std::printf("\n  skinned model %zu, of %s: %s in %" PRIu64 " bytes; slices in bytes\n",
+              model.number, counted(model.num_gofs, {"GOF", "GOFs"}).c_str(),
+              figures_of(model)[0].c_str(), model.bytes);
+  print_slices(model, "model to here");
+}
+
+void print_gof(const GofSummary& gof) {
+  std::printf("\n  frames %u to %u: ", gof.first_frame, gof.first_frame + gof.num_frames - 1);
+  if (!has_slices(gof.kind)) {
+    std::printf("%s in %" PRIu64 " bytes\n", listed(figures_of(gof)).c_str(), gof.bytes);
+    return;
+  }
+  const std::string what = gof.model
+                               ? "tracks of skinned model " + std::to_string(gof.model->number)
+                               : figures_of(gof)[0];  // the table has the others
+  std::printf("%s in %" PRIu64 " bytes; slices in bytes\n", what.c_str(), gof.bytes);
+  print_slices(gof, "GOF to here");
+}
+
+// Each skinned model is listed before the first GOF that uses it; those that none uses, at the
+// end.
+void print_all(const StreamSummary& stream) {
+  std::vector<bool> listed(stream.models.size(), false);
+  for (const GofSummary& gof : stream.gofs) {
+    if (gof.model && !listed[gof.model->number]) print_model(*gof.model);
+    if (gof.model) listed[gof.model->number] = true;
+    print_gof(gof);
+  }
+  for (const auto& model : stream.models) {
+    if (!listed[model->number]) print_model(*model);
+  }
 }
 
 std::string frame_rate_text(const SequenceHeader& h) {
@@ -182,12 +242,13 @@ void print_json(const StreamInfo& s) {
       {"grid_log2_step", h.grid.log2_step},
       {"grid_origin", h.grid.origin},
       {"position_bits", h.position_bits},
-      {"num_gofs", s.gofs.size()},
+      {"num_gofs", s.summary.gofs.size()},
       {"num_units", s.counter.num_units()},
       {"bytes", s.bytes},
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
-  for (const GofSummary& gof : s.gofs) json["gofs"].push_back(json_of(gof));
+  for (const auto& model : s.summary.models) json["models"].push_back(json_of(*model));
+  for (const GofSummary& gof : s.summary.gofs) json["gofs"].push_back(json_of(gof));
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
@@ -202,8 +263,9 @@ void print_table(const StreamInfo& s, bool with_gofs) {
               counted(h.num_vertices, {"vertex", "vertices"}).c_str(),
               counted(h.num_triangles, {"triangle", "triangles"}).c_str(),
               counted(h.num_frames, {"frame", "frames"}).c_str(), h.frame_rate.numerator,
-              h.frame_rate.denominator, counted(s.gofs.size(), {"GOF", "GOFs"}).c_str());
-  print_kinds(s.gofs);
+              h.frame_rate.denominator,
+              counted(s.summary.gofs.size(), {"GOF", "GOFs"}).c_str());
+  print_kinds(s.summary);
   std::printf("  grid step 2^%d, positions of %d bits\n\n", h.grid.log2_step, h.position_bits);
   std::printf("  %-26s %12s %8s %10s\n", "part", "bits", "share", "bpvf");
   const auto& names = stream_part_names();
@@ -216,9 +278,7 @@ void print_table(const StreamInfo& s, bool with_gofs) {
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty())
     std::printf("\n  metadata: %s\n", printable_lines(s.metadata).c_str());
-  if (with_gofs) {
-    for (const GofSummary& gof : s.gofs) print_gof(gof);
-  }
+  if (with_gofs) print_all(s.summary);
 }
 
 std::string page_text(const StreamInfo& s) {
@@ -233,7 +293,7 @@ std::string page_text(const StreamInfo& s) {
   page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
                             std::to_string(h.position_bits) + " bits");
   if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
-  const StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter, &s.gofs};
+  const StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter, &s.summary};
   const double total = 8.0 * static_cast<double>(s.bytes);
   const double seconds =
       static_cast<double>(h.num_frames) * h.frame_rate.denominator / h.frame_rate.numerator;
@@ -241,8 +301,8 @@ std::string page_text(const StreamInfo& s) {
                         {grouped_text(s.bytes), "bytes"},
                         {number_text(total / seconds / 1000, 3), "kbit per second"},
                         {number_text(96 / bpvf(s, total), 3) + " : 1", "against 32-bit floats"},
-                        {std::to_string(s.gofs.size()),
-                         s.gofs.size() == 1 ? "group of frames" : "groups of frames"}});
+                        {std::to_string(s.summary.gofs.size()),
+                         s.summary.gofs.size() == 1 ? "group of frames" : "groups of frames"}});
   add_rate_section(page, rates);
   add_gof_section(page, rates);
   return page.text();

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "common/syntax/sequence_header.h"
 #include "decoder/report/bit_counter.h"
@@ -16,7 +15,7 @@ struct StreamInfo {
   const SequenceHeader& header;
   const BitCounter& counter;
   std::uint64_t bytes;
-  const std::vector<GofSummary>& gofs;
+  const StreamSummary& summary;
   const std::string& metadata;
 };
 

@@ -74,7 +74,8 @@ typedef struct rlpc_encode_options {
   uint32_t preset;      // default RLPC_MEDIUM
   uint32_t target;      // default RLPC_TARGET_KG; approached from below, within 2 % if possible
   double target_value;  // default 0.1; above zero and finite
-  uint32_t gof_frames;  // maximum frames per GOF; 0: 128; UINT32_MAX: one GOF of all frames
+  // Maximum frames per GOF; 0: 128, or 256 in the High profile; UINT32_MAX: one GOF of all.
+  uint32_t gof_frames;
   // Main: maximum per GOF; Baseline: average per cluster; up to 1024; 0: chosen.
   uint32_t components;
   uint32_t keep_order;   // 1: decoders restore the vertex order of the input; 0: they do not

@@ -91,6 +91,7 @@ EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analy
   };
   encoded.num_factors = 3 * std::uint64_t{gof.seed_tracks.size()} * gof.num_frames;
   encoded.clusters = static_cast<std::uint32_t>(gof.clusters.size());
+  encoded.max_clusters = encoded.clusters;
   for (const Cluster& cluster : gof.clusters) {
     const auto components = static_cast<std::uint32_t>(cluster.components.size());
     encoded.components += components;

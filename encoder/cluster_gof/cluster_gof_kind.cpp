@@ -5,6 +5,7 @@
 
 #include "encoder/cluster_gof/cluster_gof_search.h"
 #include "encoder/gof/lagrangian.h"
+#include "encoder/gof/split_coder.h"
 #include "encoder/gof/step_cache.h"
 
 namespace rlpc {
@@ -39,21 +40,31 @@ class ClusterGofKind : public GofEncoder {
       : mesh_(mesh), settings_(settings) {}
 
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
+    if (frames.num_gofs > 1) {
+      return std::make_unique<SplitCoder>(
+          frames, [this](const GofFrames& of_gof) { return make_coder(of_gof); });
+    }
     return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames));
   }
 
-  // Encodes the GOF once, with many small clusters.
+  // Encodes each GOF once, with many small clusters.
   std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
                                       double step) const override {
     const std::uint32_t most = std::min(frames.num_vertices, 3 * frames.num_frames);
     if (best.components < kHighRank * most) return std::nullopt;
+    double cost = 0.0;
+    for (const GofSpan& gof : frames.gofs()) cost += estimate(frames_of_gof(frames, gof), step);
+    return cost;
+  }
+
+ private:
+  double estimate(const GofFrames& frames, double step) const {
     const ClusterGofCoding coding(mesh_, settings_, frames);
     const std::uint32_t count = usual_clusters(frames.num_vertices);
     MotionClusters motion = coding.motion();
     return lagrangian_cost(coding.encode(step, {count, false}, motion), frames, step);
   }
 
- private:
   const SequenceMesh& mesh_;
   const EncoderSettings& settings_;
 };

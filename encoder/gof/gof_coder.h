@@ -1,4 +1,5 @@
-// The interface that encodes one GOF at varying quantiser steps, for all kinds of GOF.
+// The interface that encodes a span of frames at varying quantiser steps, for all kinds of GOF.
+// A span is one GOF, or in the High profile, several that can share a skinned model.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +13,36 @@
 
 namespace rlpc {
 
-// Writes the positions [num_vertices][3] of frame f of a GOF exactly as a decoder outputs them.
+// Writes the positions [num_vertices][3] of frame f of a span exactly as a decoder outputs
+// them.
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
 
 // tuned (off: 1): An analysis made for one step is used for all steps within this factor. A
 // narrower range means more analyses, and more jumps of the error.
 inline constexpr double kAnalysisServes = 1.44;
 
-// One encoding of a GOF.
+// The model_idx of all skinned models: each replaces the one before.
+inline constexpr std::uint32_t kModelIdx = 0;  // fixed: any would do
+
+// One encoding of a span.
 struct EncodedGof {
   struct Unit {
     UnitType type;
     std::vector<std::uint8_t> payload;
   };
-  std::vector<Unit> units;  // the GOF unit, then its slices
+  // In the order of the stream: a skinned model and its slices, if the GOFs use one; then each
+  // GOF unit, with its slices.
+  std::vector<Unit> units;
   DecodeFrame frame;
-  std::uint64_t num_factors = 0;     // NumFactors of the specification
-  std::uint32_t clusters = 0;        // clusters or bones
-  std::uint32_t components = 0;      // components of all clusters, or trajectories
-  std::uint32_t max_components = 0;  // components of the largest cluster, or trajectories
+  std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
+  std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
+  std::uint32_t clusters = 0;         // clusters of all GOFs, or bones
+  std::uint32_t max_clusters = 0;     // of a GOF
+  std::uint32_t components = 0;       // components of all clusters, or trajectories
+  std::uint32_t max_components = 0;   // components of the largest cluster, or trajectories
 };
 
-// Encodes one GOF, repeatedly. Choices made for the GOF last as long as the coder. The analysis
+// Encodes one span, repeatedly. Choices made for it last as long as the coder. The analysis
 // of the last step is large; it can be released, and is computed again when needed.
 class GofCoder {
  public:

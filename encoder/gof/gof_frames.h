@@ -1,4 +1,4 @@
-// The frames of one GOF as the encoder analyses them: in grid units, unrounded.
+// The frames of a span as the encoder analyses them: in grid units, unrounded.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
+#include "encoder/gof/gof_span.h"
 
 namespace rlpc {
 
@@ -16,7 +17,10 @@ struct GofFrames {
   std::uint32_t num_frames = 0;
   std::vector<double> xyz;        // [num_frames][num_vertices][3], decoded vertex order
   std::uint32_t first_frame = 0;  // in the sequence
+  std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
 
+  // The GOFs, with frames counted from the start of the span.
+  std::vector<GofSpan> gofs() const { return equal_spans(num_frames, num_gofs); }
   const double* at(std::uint32_t frame, std::uint32_t vertex) const {
     return &xyz[(std::size_t{frame} * num_vertices + vertex) * 3];
   }

@@ -161,7 +161,7 @@ double FrameEncoder::Impl::fixed_bits_per_frame() const {
       largest.push_back(
           {span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
     }
-    bytes += stream_->index_bytes(largest);
+    bytes += stream_->index_bytes(std::move(largest));
   }
   return 8.0 * static_cast<double>(bytes) / format_.num_frames;
 }
@@ -277,7 +277,7 @@ std::optional<InputError> FrameEncoder::Impl::encode_gof() {
   const auto hash = coding_->measure(*buffer_, {0, span.count}, gof.frame, coded_.metrics);
   if (!hash) return hash.error();
   const bool written = (coded_.gofs > 0 || stream_->write_lead(coding_->header(), sink_)) &&
-                       stream_->write_gof(gof.bytes, sink_);
+                       stream_->write_gof(gof.gofs.front(), sink_);
   if (!written) return InputError{"the stream could not be written"};
   ++coded_.gofs;
   buffer_.reset();

@@ -66,12 +66,13 @@ InputResult<CodedGof> GofBatch::encode(Gof& gof, double step, double analysis_st
   if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
     gof.frames = {};
   }
-  auto hash_unit = coding_.measure(source_, gof.span, encoded.frame, metrics);
-  if (!hash_unit) return hash_unit.error();
-  return CodedGof{{gof.span.count, write_gof_units(encoded), std::move(*hash_unit)},
-                  LevelNeeds(encoded),
-                  encoded.clusters,
-                  encoded.components,
+  auto hash_units = coding_.measure(source_, gof.span, encoded.frame, metrics);
+  if (!hash_units) return hash_units.error();
+  std::vector<GofBytes> gofs = write_gof_units(encoded, gof.span);
+  for (std::size_t g = 0; g < gofs.size(); ++g) {
+    gofs[g].hash_unit = std::move((*hash_units)[g]);
+  }
+  return CodedGof{std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
                   options_.keep_decoded ? encoded.frame : nullptr};
 }
 
@@ -82,7 +83,7 @@ InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,
   for (Gof& gof : gofs_) {
     auto coded = encode(gof, step, analysis_step, metrics);
     if (!coded) return coded.error();
-    trial.gof_bytes += coded->bytes.size();
+    for (const GofBytes& of_gof : coded->gofs) trial.gof_bytes += of_gof.size();
     trial.gofs.push_back(std::move(*coded));
     if (progress) {
       progress(static_cast<double>(trial.gofs.size()) / static_cast<double>(gofs_.size()));

@@ -17,13 +17,13 @@
 
 namespace rlpc {
 
-// The result of encoding a GOF at one step.
+// The result of encoding a span at one step.
 struct CodedGof {
-  GofBytes bytes;
+  std::vector<GofBytes> gofs;
   LevelNeeds needs;
-  std::uint32_t clusters = 0;
-  std::uint32_t components = 0;
-  DecodeFrame frame;  // empty unless Options::keep_decoded
+  std::uint32_t clusters = 0;    // of all GOFs
+  std::uint32_t components = 0;  // of all GOFs
+  DecodeFrame frame;             // empty unless Options::keep_decoded
 };
 
 // All GOFs of a batch, encoded at one step.

@@ -71,7 +71,8 @@ TEST(GofBatch, GivesTheSameBytesWithoutKeepingAnalyses) {
       ASSERT_TRUE(kept && released);
       EXPECT_EQ(kept->gof_bytes, released->gof_bytes);
       for (std::size_t g = 0; g < spans.size(); ++g) {
-        EXPECT_EQ(kept->gofs[g].bytes.units, released->gofs[g].bytes.units) << step;
+        EXPECT_EQ(kept->gofs[g].gofs.front().units, released->gofs[g].gofs.front().units)
+            << step;
         EXPECT_FALSE(kept->gofs[g].frame);
       }
     }
@@ -107,7 +108,7 @@ TEST(GofBatch, NumbersFramesFromItsFirst) {
   const auto a = plain.encode(1000.0, 1000.0, {});
   const auto b = later.encode(1000.0, 1000.0, {});
   ASSERT_TRUE(a && b);
-  EXPECT_NE(a->gofs[0].bytes.units, b->gofs[0].bytes.units);
+  EXPECT_NE(a->gofs[0].gofs.front().units, b->gofs[0].gofs.front().units);
   EXPECT_EQ(a->metrics.kg_error_percent, b->metrics.kg_error_percent);
   EXPECT_TRUE(b->gofs[0].frame);
 }

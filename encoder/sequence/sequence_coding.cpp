@@ -1,5 +1,6 @@
 #include "encoder/sequence/sequence_coding.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,17 @@
 namespace rlpc {
 
 std::uint32_t longest_gof(const EncoderSettings& settings) {
-  return settings.gof_frames == 0 ? kDefaultGofFrames : settings.gof_frames;
+  if (settings.gof_frames > 0) return settings.gof_frames;
+  return settings.profile == Profile::kHigh ? kDefaultTrackFrames : kDefaultGofFrames;
+}
+
+std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
+  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 23;  // fixed: memory
+  const std::uint32_t longest = longest_gof(settings);
+  if (settings.profile != Profile::kHigh) return longest;
+  const std::uint64_t frames =
+      std::min<std::uint64_t>(kMostPositions / header.num_vertices, kMaxFrames);
+  return std::max(longest, static_cast<std::uint32_t>(frames));
 }
 
 std::optional<InputError> check_memory(const EncoderSettings& settings,
@@ -51,7 +62,7 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
   const std::uint32_t n = header_.num_vertices;
   GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
-                   span.first};
+                   span.first, span.num_gofs};
   std::vector<float> input(std::size_t{n} * 3);
   const double per_step = exact_exp2(-header_.grid.log2_step);
   double* out = frames.xyz.data();
@@ -74,42 +85,59 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
 }
 
-InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& span,
-                                           const DecodeFrame& decode,
-                                           MetricsAccumulator& metrics) const {
+InputResult<std::vector<Bytes>> SequenceCoding::measure(FrameSource& source,
+                                                        const GofSpan& span,
+                                                        const DecodeFrame& decode,
+                                                        MetricsAccumulator& metrics) const {
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
   std::vector<std::int32_t> positions(values);
   std::vector<float> original(values);
   std::vector<float> decoded(values);
-  std::vector<std::uint32_t> crc;
-  for (std::uint32_t f = 0; f < span.count; ++f) {
-    decode(f, positions);
-    if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
-      crc.push_back(crc32_of_positions(positions));
-    } else {
-      crc.back() = crc32_of_positions(positions, crc.back());
-    }
-    if (auto error = source.read_frame(span.first + f, original)) return *error;
-    for (std::size_t v = 0; v < header_.num_vertices; ++v) {
-      const std::size_t to = 3 * std::size_t{connectivity_.input_vertex[v]};
-      for (std::size_t c = 0; c < 3; ++c) {
-        decoded[to + c] = float_position(header_.grid, c, positions[3 * v + c]);
+  std::vector<Bytes> hash_units;
+  for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+    std::vector<std::uint32_t> crc;
+    for (std::uint32_t f = gof.first; f < gof.first + gof.count; ++f) {
+      decode(f, positions);
+      if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
+        crc.push_back(crc32_of_positions(positions));
+      } else {
+        crc.back() = crc32_of_positions(positions, crc.back());
       }
+      if (auto error = source.read_frame(span.first + f, original)) return *error;
+      to_input(positions, decoded);
+      metrics.add_frame(original, decoded);
     }
-    metrics.add_frame(original, decoded);
+    hash_units.emplace_back();
+    if (settings_.hash_mode == HashMode::kNone) continue;
+    hash_units.back() = write_unit(
+        UnitType::kGofHash, write_gof_hash(crc, settings_.hash_mode == HashMode::kFrame));
   }
-  if (settings_.hash_mode == HashMode::kNone) return Bytes{};
-  return write_unit(UnitType::kGofHash,
-                    write_gof_hash(crc, settings_.hash_mode == HashMode::kFrame));
+  return hash_units;
 }
 
-Bytes write_gof_units(const EncodedGof& encoded) {
-  Bytes units;
+// Positions as floats, in the order of the input.
+void SequenceCoding::to_input(std::span<const std::int32_t> positions,
+                              std::span<float> decoded) const {
+  for (std::size_t v = 0; v < header_.num_vertices; ++v) {
+    const std::size_t to = 3 * std::size_t{connectivity_.input_vertex[v]};
+    for (std::size_t c = 0; c < 3; ++c) {
+      decoded[to + c] = float_position(header_.grid, c, positions[3 * v + c]);
+    }
+  }
+}
+
+std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span) {
+  std::vector<GofBytes> gofs;
+  Bytes model;
   for (const auto& unit : encoded.units) {
     const Bytes bytes = write_unit(unit.type, unit.payload);
-    units.insert(units.end(), bytes.begin(), bytes.end());
+    if (unit.type == UnitType::kGof) gofs.push_back({0, std::exchange(model, {}), {}, {}});
+    Bytes& out = gofs.empty() ? model : gofs.back().units;
+    out.insert(out.end(), bytes.begin(), bytes.end());
   }
-  return units;
+  const std::vector<GofSpan> parts = equal_spans(span.count, span.num_gofs);
+  for (std::size_t g = 0; g < gofs.size(); ++g) gofs[g].num_frames = parts[g].count;
+  return gofs;
 }
 
 }  // namespace rlpc

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "common/mesh/topology.h"
 #include "common/syntax/sequence_header.h"
@@ -15,14 +16,19 @@
 #include "encoder/metrics/metrics.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/choices/gof_cuts.h"
+#include "encoder/sequence/stream_assembly.h"
 #include "encoder/write/write_connectivity.h"
 
 namespace rlpc {
 
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
+// With skinned models, a seek only parses the tracks of a GOF.
+inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
 // Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings);
+// Maximum frames per span: in the High profile, those of GOFs that share a skinned model.
+std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header);
 
 // Error: encoding may need more memory than the settings allow. kept_frames: number of frames
 // whose analyses stay in memory; source_bytes: memory held by the source.
@@ -44,19 +50,22 @@ class SequenceCoding {
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
 
-  // The frames of a GOF, in decoded vertex order and grid units; span: frames of the source.
+  // The frames of a span, in decoded vertex order and grid units; span: frames of the source.
   // Errors: those of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
   // Whether there is a further kind of GOF, for targets that the compared kinds miss.
   bool has_last_resort() const { return last_resort_ != nullptr; }
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
-  // Decodes the GOF as a decoder would and adds its errors against the source to the metrics.
-  // Returns the hash unit of the GOF; empty if hashes are off. Errors: those of the source.
-  InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
-                             const DecodeFrame& decode, MetricsAccumulator& metrics) const;
+  // Decodes the span as a decoder would and adds its errors against the source to the metrics.
+  // Returns the hash unit of each GOF; empty if hashes are off. Errors: those of the source.
+  InputResult<std::vector<Bytes>> measure(FrameSource& source, const GofSpan& span,
+                                          const DecodeFrame& decode,
+                                          MetricsAccumulator& metrics) const;
 
  private:
+  void to_input(std::span<const std::int32_t> positions, std::span<float> decoded) const;
+
   SequenceHeader header_;
   const EncoderSettings& settings_;
   ConnectivityCode connectivity_;
@@ -66,7 +75,7 @@ class SequenceCoding {
   std::unique_ptr<GofEncoder> last_resort_;
 };
 
-// The units of a coded GOF as bytes of a stream.
-Bytes write_gof_units(const EncodedGof& encoded);
+// The units of the GOFs of a coded span as bytes of a stream, without hashes.
+std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span);
 
 }  // namespace rlpc

@@ -38,6 +38,7 @@ class SequenceEncoder {
   std::optional<InputError> prepare();
   void use_grid(const GridChoice& grid);
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
+  void divide_spans();
   InputResult<TargetResult> search();
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
   void show_progress(std::uint32_t trial, double done) const;
@@ -61,8 +62,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.num_frames = source_.num_frames();
   header.frame_rate = source_.frame_rate();
   const std::uint32_t kept = keeps_analyses(header) ? header.num_frames : 0;
-  const std::uint32_t largest_gof = std::min(longest_gof(settings_), header.num_frames);
-  if (auto error = check_memory(settings_, header, largest_gof, kept, source_.memory_bytes())) {
+  const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
+  if (auto error = check_memory(settings_, header, largest, kept, source_.memory_bytes())) {
     return error;
   }
   const auto extent = measure_extent(source_);
@@ -72,17 +73,19 @@ std::optional<InputError> SequenceEncoder::prepare() {
 
   if (auto error = cut_gofs(header)) return error;
   std::uint32_t longest = 0;
-  for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
+  for (const GofSpan& span : spans_) {
+    longest = std::max(longest, (span.count + span.num_gofs - 1) / span.num_gofs);
+  }
   if (auto error = choose_level(header, longest)) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
   return std::nullopt;
 }
 
-// Divides the sequence into GOFs: by expected cost, or of equal length with preset fast and in
-// the Baseline profile.
+// Divides the sequence into spans: by expected cost, or of equal length with preset fast and in
+// the Baseline profile. A span is a GOF or, in the High profile, several.
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
-  const std::uint32_t longest = longest_gof(settings_);
+  const std::uint32_t longest = longest_span(settings_, header);
   if (header.num_frames > kMaxFrames) {
     return InputError{"a sequence has at most " + std::to_string(kMaxFrames) +
                       " frames (specification, Annex B), not " +
@@ -90,13 +93,20 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
   }
   if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast) {
     spans_ = equal_gofs(header.num_frames, longest);
+    divide_spans();
     return std::nullopt;
   }
   const double step = search_for(settings_, header, extent_.rms_spread).step();
   auto spans = cheapest_gofs(source_, longest, step * exact_exp2(header.grid.log2_step));
   if (!spans) return spans.error();
   spans_ = std::move(*spans);
+  divide_spans();
   return std::nullopt;
+}
+
+void SequenceEncoder::divide_spans() {
+  const std::uint32_t longest = longest_gof(settings_);
+  for (GofSpan& span : spans_) span.num_gofs = (span.count - 1) / longest + 1;
 }
 
 void SequenceEncoder::use_grid(const GridChoice& grid) {
@@ -152,14 +162,16 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   SequenceHeader header = coding_->header();
   EncodeReport report;
   for (const CodedGof& gof : best.trial.gofs) {
-    if (auto error = raise_level(header.level_idc, gof.needs, gof.bytes.num_frames)) {
+    if (auto error = raise_level(header.level_idc, gof.needs, gof.gofs.front().num_frames)) {
       return *error;
     }
     report.clusters += gof.clusters;
     report.components += gof.components;
   }
   bool ok = stream_->write_lead(header, sink);
-  for (const CodedGof& gof : best.trial.gofs) ok = ok && stream_->write_gof(gof.bytes, sink);
+  for (const CodedGof& span : best.trial.gofs) {
+    for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink);
+  }
   ok = ok && stream_->write_end(sink);
   if (!ok) return InputError{"the stream could not be written"};
   stream_->describe(header, coding_->connectivity(), report);

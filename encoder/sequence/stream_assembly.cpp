@@ -1,13 +1,15 @@
 #include "encoder/sequence/stream_assembly.h"
 
+#include <utility>
+
 #include "common/syntax/stream_format.h"
+#include "encoder/gof/gof_coder.h"
 #include "encoder/write/write_stream.h"
 
 namespace rlpc {
 namespace {
 
 constexpr std::size_t kMinIndexedGofs = 16;  // fixed: below, an index saves a reader nothing
-constexpr std::uint64_t kMaxIndexedBytes = 0xFFFFFFFE;  // fixed: of index_gof_bytes
 
 Bytes header_unit(const SequenceHeader& header) {
   return write_unit(UnitType::kSequenceHeader, write_sequence_header(header));
@@ -17,7 +19,8 @@ Bytes header_unit(const SequenceHeader& header) {
 
 StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
                                const ConnectivityCode& connectivity)
-    : connectivity_(write_unit(UnitType::kConnectivity, connectivity.payload)),
+    : profile_idc_(header.profile_idc),
+      connectivity_(write_unit(UnitType::kConnectivity, connectivity.payload)),
       end_bytes_(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(0)).size()) {
   if (!settings.metadata.empty()) {
     metadata_ = write_unit(UnitType::kMetadata, write_metadata(settings.metadata));
@@ -30,15 +33,14 @@ StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettin
                 metadata_.size() + connectivity_.size() + vertex_order_.size();
 }
 
-bool StreamAssembly::has_index(const std::vector<GofEntry>& gofs) const {
-  std::uint64_t bytes = lead_bytes_;
-  for (const GofEntry& gof : gofs) bytes += gof.bytes;
-  return gofs.size() >= kMinIndexedGofs && bytes <= kMaxIndexedBytes;
+bool StreamAssembly::has_index(const GofIndexEntries& index) {
+  return index.gofs.size() >= kMinIndexedGofs && index.fits();
 }
 
-std::uint64_t StreamAssembly::index_bytes(const std::vector<GofEntry>& gofs) const {
-  if (!has_index(gofs)) return 0;
-  return write_unit(UnitType::kGofIndex, write_gof_index(lead_bytes_, gofs)).size();
+std::uint64_t StreamAssembly::index_bytes(std::vector<GofEntry> gofs) const {
+  const GofIndexEntries index{lead_bytes_, std::move(gofs), {}};
+  if (!has_index(index)) return 0;
+  return write_unit(UnitType::kGofIndex, write_gof_index(index, profile_idc_)).size();
 }
 
 bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& sink) {
@@ -52,16 +54,24 @@ bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& si
 }
 
 bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
-  gof_bytes_ += gof.units.size();
+  gof_bytes_ += gof.model.size() + gof.units.size();
   hash_bytes_ += gof.hash_unit.size();
-  gofs_.push_back({gof.num_frames, gof.size()});
-  return put(gof.units, sink) && put(gof.hash_unit, sink);
+  if (!gof.model.empty()) index_.models.push_back({kModelIdx, written_});
+  const std::uint64_t offset = written_ + gof.model.size();
+  if (index_.gofs.empty()) {
+    index_.first_gof_offset = offset;
+  } else {
+    index_.gofs.back().bytes = offset - gof_offset_;
+  }
+  gof_offset_ = offset;
+  index_.gofs.push_back({gof.num_frames, gof.units.size() + gof.hash_unit.size()});
+  return put(gof.model, sink) && put(gof.units, sink) && put(gof.hash_unit, sink);
 }
 
 bool StreamAssembly::write_end(const ByteSink& sink) {
   std::uint32_t index_distance = 0;
-  if (has_index(gofs_)) {
-    const Bytes unit = write_unit(UnitType::kGofIndex, write_gof_index(lead_bytes_, gofs_));
+  if (has_index(index_)) {
+    const Bytes unit = write_unit(UnitType::kGofIndex, write_gof_index(index_, profile_idc_));
     index_distance = static_cast<std::uint32_t>(unit.size());
     if (!put(unit, sink)) return false;
   }
@@ -82,7 +92,7 @@ void StreamAssembly::describe(const SequenceHeader& header,
   report.bits.headers = 8 * written_ - report.bits.gofs - report.bits.hashes -
                         report.bits.connectivity - report.bits.vertex_order -
                         report.bits.metadata;
-  report.num_gofs = static_cast<std::uint32_t>(gofs_.size());
+  report.num_gofs = static_cast<std::uint32_t>(index_.gofs.size());
   report.input_vertex = connectivity.input_vertex;
 }
 

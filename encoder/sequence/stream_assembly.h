@@ -14,10 +14,11 @@ namespace rlpc {
 // The units of one GOF as bytes of a stream.
 struct GofBytes {
   std::uint32_t num_frames = 0;
+  Bytes model;      // the skinned model that comes before it, and its slices; empty: none
   Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
 
-  std::uint64_t size() const { return units.size() + hash_unit.size(); }
+  std::uint64_t size() const { return model.size() + units.size() + hash_unit.size(); }
 };
 
 class StreamAssembly {
@@ -27,8 +28,9 @@ class StreamAssembly {
 
   // Size of everything but GOFs, hashes and index.
   std::uint64_t overhead_bytes() const { return lead_bytes_ + end_bytes_; }
-  // Size of the index of a stream with these GOFs; 0 if it would have no index.
-  std::uint64_t index_bytes(const std::vector<GofEntry>& gofs) const;
+  // Size of the index of a stream with these GOFs and no skinned models; 0 if it would have no
+  // index.
+  std::uint64_t index_bytes(std::vector<GofEntry> gofs) const;
 
   // To be called in this order. False if the sink failed. The header may differ from that of
   // the constructor in its level only.
@@ -43,9 +45,10 @@ class StreamAssembly {
 
  private:
   // With few GOFs an index saves nothing; in very large streams its offsets would not fit.
-  bool has_index(const std::vector<GofEntry>& gofs) const;
+  static bool has_index(const GofIndexEntries& index);
   bool put(std::span<const std::uint8_t> bytes, const ByteSink& sink);
 
+  std::uint32_t profile_idc_;
   Bytes metadata_;
   Bytes connectivity_;
   Bytes vertex_order_;
@@ -54,7 +57,8 @@ class StreamAssembly {
   std::uint64_t gof_bytes_ = 0;
   std::uint64_t hash_bytes_ = 0;
   std::uint64_t written_ = 0;
-  std::vector<GofEntry> gofs_;
+  GofIndexEntries index_;
+  std::uint64_t gof_offset_ = 0;  // of the last GOF unit
 };
 
 }  // namespace rlpc

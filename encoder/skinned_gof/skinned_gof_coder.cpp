@@ -45,7 +45,7 @@ void SkinnedGofCoder::analyse(double analysis_step) {
 
 std::optional<double> SkinnedGofCoder::expected_error(double step) const {
   const SkinnedAnalysis* analysis = analysis_.last();
-  if (analysis == nullptr || analysis->gof.bones.size() > 1) return std::nullopt;
+  if (analysis == nullptr || analysis->model.bones.size() > 1) return std::nullopt;
   return expected_squared_error(*analysis, step);
 }
 

@@ -153,9 +153,9 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
       "Search effort: fast, medium (default), slow")
       ->group(kOutput);
-  app.add_option(
-         "--gof", line.gof,
-         "Maximum frames per group (default: 128), or `all`: smallest file, slow seeking")
+  app.add_option("--gof", line.gof,
+                 "Maximum frames per group (default: 128; 256 with --profile high), or `all`: "
+                 "smallest file, slow seeking")
       ->option_text("FRAMES")
       ->group(kOutput);
   auto* keep_order =

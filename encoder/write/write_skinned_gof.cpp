@@ -15,45 +15,83 @@
 namespace rlpc {
 namespace {
 
-// 6.11.1 bone_section( )
-std::vector<std::uint8_t> write_bone_section(const SkinnedGof& gof, int position_bits) {
-  SectionWriter section;
-  BoneModels models;
-  std::vector<std::uint32_t> rotation_mean(gof.num_frames, 0);
-  std::vector<std::uint32_t> origin_mean(gof.num_frames, 0);
-  for (std::size_t b = 0; b < gof.bones.size(); ++b) {
-    const Bone& bone = gof.bones[b];
+enum class Unit : std::uint8_t { kGof, kModel, kTracks };
+
+// 6.11.2 Bone
+class BoneWriter {
+ public:
+  BoneWriter(SectionWriter& section, std::uint32_t num_frames)
+      : section_(section), rotation_mean_(num_frames, 0), origin_mean_(num_frames, 0) {}
+
+  // bone( b )
+  void bone(const Bone& bone, std::size_t b, int position_bits) {
     assert(bone.parent < static_cast<std::int32_t>(b));
-    if (b > 0) section.bypass(ceil_log2(b + 1), static_cast<std::uint32_t>(bone.parent + 1));
+    if (b > 0) section_.bypass(ceil_log2(b + 1), static_cast<std::uint32_t>(bone.parent + 1));
     for (const std::int32_t x : bone.pivot) {
-      section.bypass(rest_bits(position_bits),
-                     static_cast<std::uint32_t>(x + (1 << (rest_bits(position_bits) - 1))));
+      section_.bypass(rest_bits(position_bits),
+                      static_cast<std::uint32_t>(x + (1 << (rest_bits(position_bits) - 1))));
     }
-    section.bin(models.rotation_flag, bone.rotation_flag);
-    section.bin(models.origin_flag, bone.origin_flag);
+    section_.bin(models_.rotation_flag, bone.rotation_flag);
+    section_.bin(models_.origin_flag, bone.origin_flag);
+  }
+
+  // bone_tracks( b )
+  void tracks(const Bone& bone) {
     if (bone.rotation_flag) {
-      section.bypass(8, bone.rotation_step_idx);
-      section.truncated_unary(models.rotation_order, bone.rotation_order - 1);
-      section.track(models.rotation, rotation_mean, bone.rotation_residual);
+      section_.bypass(8, bone.rotation_step_idx);
+      section_.truncated_unary(models_.rotation_order, bone.rotation_order - 1);
+      section_.track(models_.rotation, rotation_mean_, bone.rotation_residual);
     }
     if (bone.origin_flag) {
-      section.bypass(8, bone.origin_step_idx);
-      section.truncated_unary(models.origin_order, bone.origin_order);
-      section.track(models.origin, origin_mean, bone.origin_residual);
+      section_.bypass(8, bone.origin_step_idx);
+      section_.truncated_unary(models_.origin_order, bone.origin_order);
+      section_.track(models_.origin, origin_mean_, bone.origin_residual);
     }
+  }
+
+ private:
+  SectionWriter& section_;
+  BoneModels models_;
+  std::vector<std::uint32_t> rotation_mean_;
+  std::vector<std::uint32_t> origin_mean_;
+};
+
+// 6.11.1 bone_section( ), 6.13.1 track_section( )
+std::vector<std::uint8_t> write_bone_section(const SkinnedModel& model, Unit unit,
+                                             std::uint32_t num_frames, int position_bits) {
+  SectionWriter section;
+  BoneWriter writer(section, num_frames);
+  for (std::size_t b = 0; b < model.bones.size(); ++b) {
+    if (unit != Unit::kTracks) writer.bone(model.bones[b], b, position_bits);
+    if (unit != Unit::kModel) writer.tracks(model.bones[b]);
   }
   return section.finish();
 }
 
-// 6.12 slice_unit( ): writes the slices of a GOF in order.
+// 6.12 slice_unit( ): writes the slices of a GOF or skinned model in order.
 class SliceWriter {
  public:
-  SliceWriter(const SkinnedGof& gof, const CodedMesh& mesh)
-      : gof_(gof), mesh_(mesh), trajectory_mean_(gof.num_frames, 0) {}
+  // shared: the skinned model of a GOF of tracks.
+  SliceWriter(const SkinnedModel& gof, const CodedMesh& mesh, Unit unit,
+              std::uint32_t num_frames, const SkinnedModel* shared = nullptr)
+      : gof_(gof), mesh_(mesh), unit_(unit), shared_(shared), trajectory_mean_(num_frames, 0) {}
 
-  std::vector<std::uint8_t> write(std::uint32_t group, std::uint32_t layers);
+  std::vector<std::vector<std::uint8_t>> write_all();
 
  private:
+  std::uint32_t first_own_group() const {
+    return unit_ == Unit::kTracks ? gof_.num_component_groups + 1 : 1;
+  }
+  // The factors of a component group with vertices.
+  FactorGroup factors(std::uint32_t group) const {
+    return factor_group(gof_, own_group(group));
+  }
+  std::size_t own_group(std::uint32_t group) const {
+    return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
+  }
+  std::vector<std::uint8_t> write(std::uint32_t group, std::uint32_t layers);
+  void tracks_of_group(SectionWriter& section, std::uint32_t group);
+  void group_components(SectionWriter& section, std::uint32_t group);
   void header_value(SectionWriter& section, HeaderField field, int value, int previous) {
     section.header_value(models_.header, models_.header_mean[static_cast<std::size_t>(field)],
                          value, previous);
@@ -62,8 +100,10 @@ class SliceWriter {
   void influences(SectionWriter& section, std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(SectionWriter& section, std::uint32_t v, std::uint32_t group);
 
-  const SkinnedGof& gof_;
+  const SkinnedModel& gof_;
   const CodedMesh& mesh_;
+  Unit unit_;
+  const SkinnedModel* shared_;
   SliceModels models_;
   Trajectory previous_;
   std::vector<std::uint32_t> trajectory_mean_;
@@ -74,20 +114,50 @@ class SliceWriter {
 
 // 6.12.1 trajectory( )
 void SliceWriter::trajectory(SectionWriter& section, const Trajectory& trajectory) {
-  header_value(section, HeaderField::kScaleIdx, trajectory.scale_idx, previous_.scale_idx);
-  header_value(section, HeaderField::kSpatialBits, trajectory.spatial_bits,
-               previous_.spatial_bits);
-  header_value(section, HeaderField::kTemporalBits, trajectory.temporal_bits,
-               previous_.temporal_bits);
-  previous_.scale_idx = trajectory.scale_idx;
-  previous_.spatial_bits = trajectory.spatial_bits;
-  previous_.temporal_bits = trajectory.temporal_bits;
   section.truncated_unary(models_.temporal_predictor, trajectory.temporal_predictor);
   for (int k = 0; k < trajectory.temporal_predictor - kMaxPredictorOrder; ++k) {
     const int weight = trajectory.temporal_weight[static_cast<std::size_t>(k)];
     section.bypass(9, static_cast<std::uint32_t>(weight + kTemporalWeightOffset));
   }
   section.track(models_.temporal, trajectory_mean_, trajectory.residual);
+}
+
+// 6.12.1 group_components( )
+void SliceWriter::group_components(SectionWriter& section, std::uint32_t group) {
+  const FactorGroup of_group = factors(group);
+  header_value(section, HeaderField::kNumComponents, static_cast<int>(of_group.size()), 1);
+  for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+    const Trajectory& next = gof_.trajectories[l - kRestFactors];
+    const bool has_tracks = unit_ != Unit::kModel;
+    if (has_tracks) {
+      header_value(section, HeaderField::kScaleIdx, next.scale_idx, previous_.scale_idx);
+    }
+    header_value(section, HeaderField::kSpatialBits, next.spatial_bits, previous_.spatial_bits);
+    if (has_tracks) {
+      header_value(section, HeaderField::kTemporalBits, next.temporal_bits,
+                   previous_.temporal_bits);
+      trajectory(section, next);
+    }
+    previous_.scale_idx = next.scale_idx;
+    previous_.spatial_bits = next.spatial_bits;
+    previous_.temporal_bits = next.temporal_bits;
+  }
+}
+
+// 6.13.2 tracks_of_group( )
+void SliceWriter::tracks_of_group(SectionWriter& section, std::uint32_t group) {
+  const FactorGroup of_group = factor_group(*shared_, group);
+  for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+    const Trajectory& next = gof_.trajectories[l - kRestFactors];
+    section.bin(models_.trajectory_flag, next.trajectory_flag);
+    if (!next.trajectory_flag) continue;
+    header_value(section, HeaderField::kScaleIdx, next.scale_idx, previous_.scale_idx);
+    header_value(section, HeaderField::kTemporalBits, next.temporal_bits,
+                 previous_.temporal_bits);
+    trajectory(section, next);
+    previous_.scale_idx = next.scale_idx;
+    previous_.temporal_bits = next.temporal_bits;
+  }
 }
 
 // 6.12.2 influences( v )
@@ -129,10 +199,10 @@ void SliceWriter::influences(SectionWriter& section, std::uint32_t v,
 // 6.12.3 spatial_residuals( v )
 void SliceWriter::spatial_residuals(SectionWriter& section, std::uint32_t v,
                                     std::uint32_t group) {
-  const std::size_t size = factor_group(gof_, group).size();
+  const std::size_t size = factors(group).size();
   contexts_->start(v);
   for (std::size_t k = 0; k < size; ++k) {
-    const std::int32_t residual = gof_.vertex_residual[group][v * size + k];
+    const std::int32_t residual = gof_.vertex_residual[own_group(group)][v * size + k];
     ResidualModels& models = (*vertex_models_)[contexts_->activity()];
     section.residual(models, contexts_->expected(), residual);
     contexts_->update(residual);
@@ -145,17 +215,17 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   w.ue(layers);
   w.byte_alignment();
   SectionWriter section;
-  const FactorGroup factors = factor_group(gof_, group);
+  if (group < first_own_group() && unit_ == Unit::kTracks) {
+    tracks_of_group(section, group);
+    w.append(section.finish());
+    return w.take();
+  }
   if (layers == 0) {
-    if (group > 0) {
-      header_value(section, HeaderField::kNumComponents, static_cast<int>(factors.size()), 1);
-      for (std::size_t l = factors.first; l < factors.end; ++l) {
-        trajectory(section, gof_.trajectories[l - kRestFactors]);
-      }
-    }
-    vertex_models_ = group > 1 ? std::make_unique<VertexModels>(*models_of_group_)
-                               : std::make_unique<VertexModels>();
-    contexts_ = std::make_unique<VertexContexts>(mesh_, factors.size());
+    if (group > 0) group_components(section, group);
+    vertex_models_ = group > first_own_group()
+                         ? std::make_unique<VertexModels>(*models_of_group_)
+                         : std::make_unique<VertexModels>();
+    contexts_ = std::make_unique<VertexContexts>(mesh_, factors(group).size());
   }
   InfluencePrediction prediction(gof_.influences, static_cast<std::uint32_t>(gof_.bones.size()),
                                  gof_.weight_bits);
@@ -171,46 +241,75 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   return w.take();
 }
 
-// 6.5 gof( ) and 6.11 bones_of_gof( )
-std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof,
-                                             const SequenceHeader& header) {
-  BitWriter w;
-  write_gof_header(w, gof, header.profile_idc);
-  w.ue(static_cast<std::uint32_t>(gof.bones.size()) - 1);
-  w.u(5, static_cast<std::uint32_t>(gof.fraction_bits));
-  w.u(3, static_cast<std::uint32_t>(gof.weight_bits));
-  w.ue(gof.rest_step - 1);
-  w.ue(gof.num_component_groups);
-  w.u(2, static_cast<std::uint32_t>(gof.prediction));
-  if (gof.prediction == Prediction::kLayers) {
-    w.u(4, static_cast<std::uint32_t>(gof.weights.damping_log2));
-    w.u(4, static_cast<std::uint32_t>(gof.weights.outer_weight));
-    w.u(4, static_cast<std::uint32_t>(gof.weights.outer_scale));
-    if (header.profile_idc >= kProfileHigh) w.ue(gof.weights.num_adaptive_factors);
-    w.ue(static_cast<std::uint32_t>(gof.layer_group_size.size()) - 1);
-    for (std::size_t j = 0; j + 1 < gof.layer_group_size.size(); ++j) {
-      w.ue(gof.layer_group_size[j] - 1);
+// Of a GOF of tracks, slice_layers says of the groups of the skinned model only whether they
+// have a slice.
+std::vector<std::vector<std::uint8_t>> SliceWriter::write_all() {
+  std::vector<std::vector<std::uint8_t>> slices;
+  for (std::uint32_t group = 0; group < gof_.slice_layers.size(); ++group) {
+    const bool has_only_tracks = unit_ == Unit::kTracks && group < first_own_group();
+    if (has_only_tracks && group == 0) continue;
+    const std::uint32_t most = has_only_tracks ? 1 : gof_.slice_layers[group];
+    for (std::uint32_t layers = 0; layers < std::min(most, gof_.slice_layers[group]);
+         ++layers) {
+      slices.push_back(write(group, layers));
     }
-    for (const std::uint8_t step : gof.layer_step) w.u(4, step - 1U);
   }
-  w.byte_alignment();
-  w.append(write_bone_section(gof, header.position_bits));
-  return w.take();
+  return slices;
+}
+
+// 6.11 rig_header( )
+void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t profile_idc) {
+  w.ue(static_cast<std::uint32_t>(model.bones.size()) - 1);
+  w.u(5, static_cast<std::uint32_t>(model.fraction_bits));
+  w.u(3, static_cast<std::uint32_t>(model.weight_bits));
+  w.ue(model.rest_step - 1);
+  w.ue(model.num_component_groups);
+  w.u(2, static_cast<std::uint32_t>(model.prediction));
+  if (model.prediction == Prediction::kLayers) {
+    w.u(4, static_cast<std::uint32_t>(model.weights.damping_log2));
+    w.u(4, static_cast<std::uint32_t>(model.weights.outer_weight));
+    w.u(4, static_cast<std::uint32_t>(model.weights.outer_scale));
+    if (profile_idc >= kProfileHigh) w.ue(model.weights.num_adaptive_factors);
+    w.ue(static_cast<std::uint32_t>(model.layer_group_size.size()) - 1);
+    for (std::size_t j = 0; j + 1 < model.layer_group_size.size(); ++j) {
+      w.ue(model.layer_group_size[j] - 1);
+    }
+    for (const std::uint8_t step : model.layer_step) w.u(4, step - 1U);
+  }
 }
 
 }  // namespace
 
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
                                      const SequenceHeader& header) {
-  SkinnedGofPayloads payloads;
-  payloads.gof = write_bones_of_gof(gof, header);
-  SliceWriter writer(gof, mesh);
-  for (std::uint32_t group = 0; group < gof.slice_layers.size(); ++group) {
-    for (std::uint32_t layers = 0; layers < gof.slice_layers[group]; ++layers) {
-      payloads.slices.push_back(writer.write(group, layers));
-    }
-  }
-  return payloads;
+  BitWriter w;
+  write_gof_header(w, gof, header.profile_idc);
+  write_rig_header(w, gof, header.profile_idc);
+  w.byte_alignment();
+  w.append(write_bone_section(gof, Unit::kGof, gof.num_frames, header.position_bits));
+  return {w.take(), SliceWriter(gof, mesh, Unit::kGof, gof.num_frames).write_all()};
+}
+
+SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
+                                       const CodedMesh& mesh, const SequenceHeader& header) {
+  BitWriter w;
+  w.u(3, model_idx);
+  write_rig_header(w, model, header.profile_idc);
+  w.byte_alignment();
+  w.append(write_bone_section(model, Unit::kModel, 0, header.position_bits));
+  return {w.take(), SliceWriter(model, mesh, Unit::kModel, 0).write_all()};
+}
+
+SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
+                                const SequenceHeader& header) {
+  BitWriter w;
+  write_gof_header(w, gof, header.profile_idc);
+  w.u(3, gof.model_idx);
+  w.ue(gof.num_local_groups);
+  w.byte_alignment();
+  w.append(write_bone_section(gof, Unit::kTracks, gof.num_frames, header.position_bits));
+  return {w.take(),
+          SliceWriter(gof, mesh, Unit::kTracks, gof.num_frames, gof.model.get()).write_all()};
 }
 
 }  // namespace rlpc

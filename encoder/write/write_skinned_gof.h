@@ -1,4 +1,4 @@
-// 6.11 and 6.12 Skinned GOFs and their slices, writing side.
+// 6.11 to 6.13 Skinned GOFs, skinned models and their slices, writing side.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,22 @@
 
 namespace rlpc {
 
-// Payloads of the GOF unit and the slice units of a skinned GOF.
+// Payloads of a GOF or skinned model unit, and of its slice units.
 struct SkinnedGofPayloads {
-  std::vector<std::uint8_t> gof;
+  std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> slices;
 };
-// Writes the slices that gof.slice_layers lists. All values must be legal, which is asserted.
+// The functions below write the slices that slice_layers lists. All values must be legal, which
+// is asserted.
+//
+// 6.11 bones_of_gof( )
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
                                      const SequenceHeader& header);
+// 6.13 model( )
+SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
+                                       const CodedMesh& mesh, const SequenceHeader& header);
+// 6.13.1 tracks_of_gof( )
+SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
+                                const SequenceHeader& header);
 
 }  // namespace rlpc

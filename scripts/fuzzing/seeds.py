@@ -13,7 +13,7 @@ MAX_SEED_BYTES = 1 << 16
 STREAM_HEADER_BYTES = 10
 UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
-SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE = 1, 2, 3, 4, 6
+SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE, MODEL = 1, 2, 3, 4, 6, 7
 GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
 # In the order of decoder/fuzz/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
@@ -28,8 +28,8 @@ SETTINGS = [
     [*BASELINE, "--gof", "all", "--clusters", "3", "--components", "2", "--qu", "8", "--qc", "8",
      "--qdelta", "8", "--frame", "lcf", "--no-rdo"],
 ]
-# The encoder uses only a part of the Main profile, so random streams are added.
-RANDOM_MAIN_STREAMS = 60
+# The encoder uses only a part of the Main and High profiles, so random streams of each are added.
+RANDOM_SKINNED_STREAMS = 60
 OBJ_SEEDS = [
     b"# frame_rate 30000/1001\nv 0 0 0\nv 1 0 .5e-3\nv 0 +1 -2.25\nv 1 1 1e-50\nf 1 2 3 4\n",
     b"\xef\xbb\xbfo a\r\nv 0 0 0 1.0\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 0 0\r\nv 0 1 0\r\n"
@@ -139,20 +139,19 @@ def encoded_streams(root, work, encoder):
             yield (work / "seed.rlpc").read_bytes()
 
 
-def random_main_streams(root):
-    """Random legal streams of the Main profile, as rlpcgen makes them."""
+def random_skinned_streams(root):
+    """Random legal streams of the Main and High profiles, as rlpcgen makes them."""
     for folder in ("judge", "specdec", "rlpcgen"):
         sys.path.insert(0, str(root / "conformance" / folder))
-    import random_main
-    import random_streams
+    import random_high
     import spec_program
-    builder = random_streams.RandomBuilder(
-        spec_program.Program(root / "spec"), random_main.MainPlan, random_main.MainSource,
-        random_main.MainSequence)
-    for seed in range(RANDOM_MAIN_STREAMS):
-        stream, _ = builder.build(seed)
-        if len(stream) <= MAX_SEED_BYTES:
-            yield stream
+    program = spec_program.Program(root / "spec")
+    for profile in ("main", "high"):
+        builder = random_high.builder_of(profile)(program)
+        for seed in range(RANDOM_SKINNED_STREAMS):
+            stream, _ = builder.build(seed)
+            if len(stream) <= MAX_SEED_BYTES:
+                yield stream
 
 
 def released_streams(root):
@@ -222,8 +221,9 @@ def is_main(header):
     return header[0] == 1
 
 
-def skinned_gof_seeds(found, _):
-    """GOFs with the slices that follow them."""
+def skinned_gof_seeds(found, counts):
+    """GOFs with the slices that follow them; with all skinned models before them."""
+    yield from high_gof_seeds(found, counts)
     before = {}
     for place, (code, payload) in enumerate(found):
         before.setdefault(code, payload)
@@ -234,6 +234,29 @@ def skinned_gof_seeds(found, _):
         if max(map(len, pieces)) < 65536:
             yield struct.pack("<I", Bits(payload[:16]).ue()) + b"".join(
                 struct.pack("<H", len(piece)) + piece for piece in pieces)
+
+
+def high_gof_seeds(found, _):
+    if found[0][1][0] != 2:
+        return
+    before, models, of_gof = {}, [], []
+    frame = None
+    for code, payload in [*found, (None, b"")]:
+        before.setdefault(code, payload)
+        if code == SLICE:
+            (of_gof if of_gof else models).append((code, payload))
+            continue
+        if of_gof and CONNECTIVITY in before:
+            pieces = [before[SEQUENCE_HEADER], before[CONNECTIVITY]]
+            pieces += [bytes([c]) + p for c, p in models + of_gof]
+            if max(map(len, pieces)) < 65536:
+                yield struct.pack("<I", frame | 1 << 31) + b"".join(
+                    struct.pack("<H", len(piece)) + piece for piece in pieces)
+        of_gof = []
+        if code == MODEL:
+            models.append((code, payload))
+        elif code == GOF:
+            of_gof, frame = [(code, payload)], min(Bits(payload[:16]).ue(), (1 << 31) - 1)
 
 
 def payload_seeds(found, counts):
@@ -316,7 +339,7 @@ def seeds_of(target, streams, root):
 
 def write_all(root, corpus, encoder, targets):
     """Seeds of all targets, in CORPUS/TARGET/seeds; and CORPUS/TARGET/found for what is new."""
-    streams = [*released_streams(root), *random_main_streams(root),
+    streams = [*released_streams(root), *random_skinned_streams(root),
                *encoded_streams(root, corpus / "work", encoder)]
     for target in targets:
         folder = corpus / target / "seeds"

@@ -113,22 +113,22 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
     std::vector<std::uint32_t>& vertices = members.vertices[i];
     const SpatialPrediction prediction(topology, vertices, gof.cluster_of_vertex,
                                        members.local_index);
-    ComponentSum factors(3 * vertices.size(), num_frames_);
+    const auto spatial = std::make_shared<SpatialFactors>(3 * vertices.size());
+    std::vector<TemporalFactor> temporal;
     for (const Component& component : cluster.components) {
-      std::vector<std::int32_t> temporal = recon_temporal(component);
-      for (std::int32_t& t : temporal) {
+      spatial->add(recon_spatial(component, prediction), component.spatial_bits);
+      temporal.push_back({recon_temporal(component), component.temporal_bits});
+      for (std::int32_t& t : temporal.back().values) {
         t = scale_temporal(t, component.scale_idx, component.temporal_bits);
       }
-      factors.add(temporal, component.temporal_bits, recon_spatial(component, prediction),
-                  component.spatial_bits);
     }
     std::array<std::size_t, 3> seed_track{};
     if (cluster.lcf_flag) {
       for (std::size_t k = 0; k < 3; ++k)
         seed_track[k] = track_of_vertex[cluster.seed_vertex[k]];
     }
-    clusters_.push_back(
-        {cluster.lcf_flag, seed_track, std::move(vertices), std::move(factors)});
+    clusters_.push_back({cluster.lcf_flag, seed_track, std::move(vertices),
+                         ComponentSum(spatial, temporal, num_frames_)});
   }
 }
 

@@ -1,43 +1,21 @@
-// 8.10 and 8.14: reconstructs the integer positions of a skinned GOF from residuals, frame by
+// 8.14: reconstructs the integer positions of a skinned GOF from residuals, frame by
 // frame. Used by the decoder, and by the encoder for closed-loop coding.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
-#include "common/mesh_prediction/adaptive_weights.h"
-#include "common/mesh_prediction/value_prediction.h"
 #include "common/skinned_gof/recon/bones.h"
+#include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
-
-// 8.10.2 Spatial values: the contribution of a residual of rest positions, or of trajectories,
-// at a vertex of a layer.
-inline std::int64_t rest_difference(const SkinnedGof& gof, std::int32_t residual,
-                                    int layer_step) {
-  return round2(std::int64_t{residual} * layer_step * gof.rest_step, 4);
-}
-inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
-  return std::int64_t{residual} * layer_step;
-}
-
-// 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
-// of layers whose slices are absent. weights: null if no factor is adaptive.
-std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
-                                       std::size_t group, int position_bits,
-                                       const ValuePrediction& prediction,
-                                       AdaptiveWeights* weights = nullptr);
-
-// 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
-// absent; [num_vertices].
-std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedGof& gof);
 
 // 8.14.2 PredictTrajectory( series, f ), from the values of the preceding frames.
 Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values);
@@ -51,8 +29,12 @@ Vec3l skinned_point(const Influences& influences, int weight_bits,
 
 class SkinnedRecon {
  public:
-  // Prepares the GOF. Reads the arguments only during the call. Cannot fail.
+  // Prepares a GOF with vertices of its own. The mesh must outlive the object; the GOF is read
+  // only during the call. Cannot fail.
   SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
+               const Kernels& loops = kernels().back());
+  // Prepares a GOF with the vertices of a skinned model.
+  SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,
                const Kernels& loops = kernels().back());
 
   // Reconstructs frames first to first + count - 1 of the GOF, grid units,
@@ -65,32 +47,18 @@ class SkinnedRecon {
   std::uint32_t num_frames() const { return num_frames_; }
 
  private:
-  // Influences of one bone on vertices of a tile: elements first to end - 1 of the lists below.
-  struct Run {
-    std::uint32_t bone;
-    std::uint32_t first;
-    std::uint32_t end;
-  };
   using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
 
-  void add_influences(std::span<const Influences> influences,
-                      std::span<const std::int32_t> rest);
-  void add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
-                   std::span<const std::int32_t> rest);
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
 
   std::uint32_t num_frames_;
-  std::size_t num_vertices_;
   PositionWidths widths_;
   Kernels loops_;
+  std::shared_ptr<const ModelRecon> model_;
   std::vector<BoneMotion> bones_;
-  std::vector<Run> runs_;
-  std::vector<std::size_t> first_run_;  // [tiles + 1]
-  // Influences, by tile, then by bone:
-  std::array<std::vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
-  std::vector<std::int32_t> weight_;
-  std::vector<std::uint8_t> place_;  // index of the vertex in its tile
-  ComponentSum factors_;             // row 3 * f + c: coordinate c of frame f
+  // Displacements; row 3 * f + c: coordinate c of frame f. Of the skinned model, then of local
+  // component groups.
+  std::vector<ComponentSum> sums_;
 };
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 
 #include "common/bitstream/bit_reader.h"
 #include "common/result.h"
+#include "common/syntax/sequence_header.h"
 
 namespace rlpc {
 
@@ -14,7 +15,18 @@ struct GofLocation {
   std::uint32_t first_frame = 0;
 };
 
-// num_frames: of the sequence. Offsets are not checked against the units here.
-Result<std::vector<GofLocation>> parse_gof_index(BitReader& r, std::uint32_t num_frames);
+// Of a skinned model unit.
+struct ModelLocation {
+  std::uint64_t offset = 0;
+  std::uint32_t model_idx = 0;
+};
+
+struct GofIndex {
+  std::vector<GofLocation> gofs;
+  std::vector<ModelLocation> models;
+};
+
+// Offsets are not checked against the units here.
+Result<GofIndex> parse_gof_index(BitReader& r, const SequenceHeader& header);
 
 }  // namespace rlpc

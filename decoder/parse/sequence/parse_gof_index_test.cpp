@@ -13,7 +13,7 @@ namespace rlpc {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using Index = Result<std::vector<GofLocation>>;
+using Index = Result<GofIndex>;
 
 // num_index_gofs_minus1 2, first_gof_offset 45, then index_gof_frames_minus1 and
 // index_gof_bytes: 2 and 100, 0 and 20, 1 and 70000, alignment
@@ -21,7 +21,9 @@ const Bytes kLegal{0x60, 0xB9, 0x81, 0x96, 0x15, 0x40, 0x00, 0x11, 0x17, 0x10};
 
 Index parse(const Bytes& payload, std::uint32_t num_frames) {
   BitReader r(payload);
-  return parse_gof_index(r, num_frames);
+  SequenceHeader header;
+  header.num_frames = num_frames;
+  return parse_gof_index(r, header);
 }
 
 // num_index_gofs_minus1; index_gof_frames_minus1 and index_gof_bytes of each GOF
@@ -48,13 +50,13 @@ void expect_invalid(const Index& index, const std::string& rule, const std::stri
 TEST(ParseGofIndex, GivesOffsetsAndFirstFrames) {
   const Index index = parse(kLegal, 6);
   ASSERT_TRUE(index);
-  ASSERT_EQ(index->size(), 3U);
-  EXPECT_EQ((*index)[0].offset, 45U);
-  EXPECT_EQ((*index)[0].first_frame, 0U);
-  EXPECT_EQ((*index)[1].offset, 145U);
-  EXPECT_EQ((*index)[1].first_frame, 3U);
-  EXPECT_EQ((*index)[2].offset, 165U);
-  EXPECT_EQ((*index)[2].first_frame, 4U);
+  ASSERT_EQ(index->gofs.size(), 3U);
+  EXPECT_EQ(index->gofs[0].offset, 45U);
+  EXPECT_EQ(index->gofs[0].first_frame, 0U);
+  EXPECT_EQ(index->gofs[1].offset, 145U);
+  EXPECT_EQ(index->gofs[1].first_frame, 3U);
+  EXPECT_EQ(index->gofs[2].offset, 165U);
+  EXPECT_EQ(index->gofs[2].first_frame, 4U);
 }
 
 TEST(ParseGofIndex, EveryProperPrefixFails) {
@@ -70,7 +72,7 @@ TEST(ParseGofIndex, OffsetsBeyond32BitsAddUp) {
   const std::uint32_t most = 0xFFFFFFFE;
   const Index index = parse(payload_of(2, {{0, most}, {0, most}, {0, most}}), 3);
   ASSERT_TRUE(index);
-  EXPECT_EQ((*index)[2].offset, 45 + 2 * std::uint64_t{most});
+  EXPECT_EQ(index->gofs[2].offset, 45 + 2 * std::uint64_t{most});
 }
 
 TEST(ParseGofIndex, FramesOfTheGofsAreThoseOfTheSequence) {

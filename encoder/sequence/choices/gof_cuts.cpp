@@ -168,17 +168,6 @@ void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, GofSpan&
 
 }  // namespace
 
-std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest) {
-  const std::uint64_t count = (std::uint64_t{num_frames} + longest - 1) / longest;
-  std::vector<GofSpan> spans;
-  for (std::uint64_t g = 0; g < count; ++g) {
-    const auto first = static_cast<std::uint32_t>(num_frames * g / count);
-    const auto next = static_cast<std::uint32_t>(num_frames * (g + 1) / count);
-    spans.push_back({first, next - first});
-  }
-  return spans;
-}
-
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
                                                 double step) {
   // tuned (off: 1): GOFs are first cut at multiples of the longest length divided by this

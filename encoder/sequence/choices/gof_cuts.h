@@ -4,18 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/gof/gof_span.h"
 #include "encoder/input/frame_source.h"
 
 namespace rlpc {
-
-// Consecutive frames: `count` of them, starting with frame `first`.
-struct GofSpan {
-  std::uint32_t first;
-  std::uint32_t count;
-};
-
-// The fewest GOFs of at most `longest` frames; their lengths differ by at most one frame.
-std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest);
 
 // The GOFs of at most `longest` frames with the lowest expected cost: cut where the motion
 // changes. Returns equal_gofs() unless the others are clearly cheaper. Reads each frame once

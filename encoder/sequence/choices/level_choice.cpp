@@ -23,7 +23,8 @@ std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t lon
 
 LevelNeeds::LevelNeeds(const EncodedGof& encoded)
     : factors(encoded.num_factors),
-      clusters(encoded.clusters),
+      adaptive_values(encoded.adaptive_values),
+      clusters(encoded.max_clusters),
       components(encoded.max_components) {
   for (const auto& unit : encoded.units) {
     unit_bytes = std::max<std::uint64_t>(unit_bytes, unit.payload.size());
@@ -43,6 +44,7 @@ LevelNeeds LevelNeeds::with_reserve() const {
   LevelNeeds needs = *this;
   needs.factors = doubled(factors, most.max_gof_factors);
   needs.unit_bytes = doubled(unit_bytes, most.max_unit_bytes);
+  needs.adaptive_values = doubled(adaptive_values, most.max_adaptive_values);
   needs.clusters = doubled(clusters, most.max_clusters);
   needs.components = doubled(components, most.max_components);
   return needs;
@@ -52,7 +54,8 @@ std::optional<std::uint32_t> LevelNeeds::level_from(std::uint32_t level_idc) con
   for (; level_idc <= kMaxLevelIdc; ++level_idc) {
     const Level& level = kLevels[level_idc - 1];
     if (factors <= level.max_gof_factors && unit_bytes <= level.max_unit_bytes &&
-        clusters <= level.max_clusters && components <= level.max_components) {
+        adaptive_values <= level.max_adaptive_values && clusters <= level.max_clusters &&
+        components <= level.max_components) {
       return level_idc;
     }
   }

@@ -19,6 +19,7 @@ std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t lon
 struct LevelNeeds {
   std::uint64_t factors = 0;
   std::uint64_t unit_bytes = 0;  // size of the largest unit
+  std::uint64_t adaptive_values = 0;
   std::uint32_t clusters = 0;
   std::uint32_t components = 0;
 

@@ -37,7 +37,7 @@ EncodedGof coded(std::uint64_t factors, std::size_t bytes, std::uint32_t cluster
   gof.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(bytes)});
   gof.units.push_back({UnitType::kSlice, std::vector<std::uint8_t>(1)});
   gof.num_factors = factors;
-  gof.clusters = clusters;
+  gof.max_clusters = clusters;
   gof.max_components = components;
   return gof;
 }

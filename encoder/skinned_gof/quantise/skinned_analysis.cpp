@@ -100,17 +100,20 @@ class SkinnedAnalyser {
         step_(step) {}
 
   SkinnedAnalysis analyse() {
-    SkinnedGof& gof = found_.gof;
-    gof.first_frame = frames_.first_frame;
-    gof.num_frames = frames_.num_frames;
-    gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
-    gof.prediction = settings_.prediction;
-    gof.layer_group_size = {mesh_.num_layers()};
-    gof.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
-    gof.slice_layers = {1};
+    SkinnedModel& model = found_.model;
+    model.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
+    model.prediction = settings_.prediction;
+    model.layer_group_size = {mesh_.num_layers()};
+    model.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
+    model.slice_layers = {1};
+    for (const GofSpan& span : frames_.gofs()) {
+      SkinnedGof& gof = found_.gofs.emplace_back();
+      gof.first_frame = frames_.first_frame + span.first;
+      gof.num_frames = span.count;
+    }
     code_bones();
     for (const auto& weights : rig_.weights) {
-      gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
+      model.influences.push_back(quantise_weights(weights, 1 << model.weight_bits));
     }
     code_rest();
     // A component of less energy than the error of quantising its factors is not worth a
@@ -176,8 +179,12 @@ class SkinnedAnalyser {
   }
 
   void code_bones() {
-    TrackState rotations(frames_.num_frames);
-    TrackState origins(frames_.num_frames);
+    std::vector<TrackState> rotations;
+    std::vector<TrackState> origins;
+    for (const SkinnedGof& gof : found_.gofs) {
+      rotations.emplace_back(gof.num_frames);
+      origins.emplace_back(gof.num_frames);
+    }
     found_.bones.reserve(rig_.bones.size());
     const int limit = 1 << (rest_bits(position_bits_) - 1);
     for (std::size_t b = 0; b < rig_.bones.size(); ++b) {
@@ -206,21 +213,42 @@ class SkinnedAnalyser {
           wanted[f].origin[c] = from.poses[f].origin[c] * kPointScale;
         }
       }
-      const BoneMotion* parent =
-          bone.parent < 0 ? nullptr : &found_.bones[static_cast<std::size_t>(bone.parent)];
-      found_.bones.push_back(code_bone(wanted, parent, settings_.rounding == Rounding::kNearest,
-                                       rotations, origins, bone));
+      found_.bones.push_back(code_tracks(bone, wanted, rotations, origins));
       motions_.push_back(motions_of(found_.bones.back()));
-      found_.gof.bones.push_back(std::move(bone));
+      found_.model.bones.push_back(std::move(bone));
     }
+  }
+
+  // Codes the motion of a bone, GOF by GOF.
+  BoneMotion code_tracks(const Bone& bone, std::span<const WantedPose> wanted,
+                         std::span<TrackState> rotations, std::span<TrackState> origins) {
+    BoneMotion motion;
+    BoneMotion parent;  // of the bone, in the frames of a GOF
+    for (std::size_t g = 0; g < found_.gofs.size(); ++g) {
+      const std::size_t count = found_.gofs[g].num_frames;
+      const std::size_t first = motion.poses.size();
+      if (bone.parent >= 0) {
+        const BoneMotion& whole = found_.bones[static_cast<std::size_t>(bone.parent)];
+        const auto begin = whole.poses.begin() + static_cast<std::ptrdiff_t>(first);
+        parent.pivot = whole.pivot;
+        parent.poses.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+      }
+      Bone& coded = found_.gofs[g].bones.emplace_back(bone);
+      const BoneMotion part =
+          code_bone(wanted.subspan(first, count), bone.parent < 0 ? nullptr : &parent,
+                    settings_.rounding == Rounding::kNearest, rotations[g], origins[g], coded);
+      motion.pivot = part.pivot;
+      motion.poses.insert(motion.poses.end(), part.poses.begin(), part.poses.end());
+    }
+    return motion;
   }
 
   // Sets mean_ to the weighted mean of the motions of the bones of a vertex.
   void find_mean_motion(std::uint32_t v) {
-    const Influences& influences = found_.gof.influences[v];
+    const Influences& influences = found_.model.influences[v];
     if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
     mean_of_ = influences;
-    const double unit = exact_exp2(-found_.gof.weight_bits);
+    const double unit = exact_exp2(-found_.model.weight_bits);
     mean_.assign(frames_.num_frames, {});
     for (const Influence& influence : influences) {
       const double weight = influence.weight * unit;
@@ -256,30 +284,30 @@ class SkinnedAnalyser {
   }
 
   void code_rest() {
-    SkinnedGof& gof = found_.gof;
+    SkinnedModel& model = found_.model;
     const double rest_step =
         step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
-    gof.rest_step = static_cast<std::uint32_t>(
+    model.rest_step = static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
     const std::uint32_t n = frames_.num_vertices;
     std::vector<std::int32_t> values(kRestFactors * std::size_t{n});
-    gof.vertex_residual.emplace_back(values.size());
+    model.vertex_residual.emplace_back(values.size());
     const ValuePrediction prediction(mesh_, true, nullptr);
     std::array<std::int64_t, kRestFactors> predicted{};
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
-      const int layer_step = gof.layer_step[mesh_.layer_of(v)];
-      const double unit = static_cast<double>(gof.rest_step) * layer_step / kMaxLayerStep;
+      const int layer_step = model.layer_step[mesh_.layer_of(v)];
+      const double unit = static_cast<double>(model.rest_step) * layer_step / kMaxLayerStep;
       const Point rest = fit_rest(v);
       for (std::size_t c = 0; c < 3; ++c) {
         constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
         const double steps = (rest[c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
             static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
-        gof.vertex_residual[0][v * kRestFactors + c] = residual;
+        model.vertex_residual[0][v * kRestFactors + c] = residual;
         values[v * kRestFactors + c] =
             clip_signed(rest_bits(position_bits_),
-                        predicted[c] + rest_difference(gof, residual, layer_step));
+                        predicted[c] + rest_difference(model, residual, layer_step));
       }
     }
     for (std::size_t c = 0; c < 3; ++c) {

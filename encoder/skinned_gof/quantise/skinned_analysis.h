@@ -1,4 +1,4 @@
-// Analysis of one skinned GOF: quantised bones, influences and rest positions, and the
+// Analysis of a span of skinned GOFs: quantised bones, influences and rest positions, and the
 // principal components of the residual of bone motion (inverse of clauses 8.10 to 8.13).
 #pragma once
 
@@ -49,8 +49,10 @@ struct SkinnedSettings {
 };
 
 struct SkinnedAnalysis {
-  SkinnedGof gof;                                 // without trajectories and geometry weights
-  std::vector<BoneMotion> bones;                  // as decoded
+  SkinnedModel model;  // without trajectories and geometry weights; bones without motion
+  // The GOFs of the span, with their bones; without trajectories.
+  std::vector<SkinnedGof> gofs;
+  std::vector<BoneMotion> bones;                  // as decoded, in all frames
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
   // What prediction leaves of spatial factors near each of some vertices, mean square:

@@ -24,21 +24,33 @@ int signed_width(std::int64_t magnitude) {
   return magnitude == 0 ? 1 : floor_log2(static_cast<std::uint64_t>(magnitude)) + 2;
 }
 
+// The frames of a GOF, `first` being that after the GOF before.
+std::span<const Vec3i> frames_of(const SkinnedGof& gof, std::span<const Vec3i> values,
+                                 std::size_t& first) {
+  first += gof.num_frames;
+  return values.subspan(first - gof.num_frames, gof.num_frames);
+}
+
 // False if a temporal value exceeds the maximum width; the sums then need fewer fraction bits.
 bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
-                         TemporalValues& temporal) {
+                         std::span<const SkinnedGof> gofs, TemporalValues& temporal) {
   for (std::size_t l = 0; l < temporal.size(); ++l) {
-    Trajectory& t = temporal.trajectories[l];
-    t.scale_idx = idx[l] + 8 * fraction_bits;
-    std::int64_t largest = 0;
-    for (const Vec3i& value : temporal.indices[l]) {
-      for (const std::int32_t x : value) {
-        const std::int64_t scaled = scale_temporal(x, t.scale_idx, kMaxTemporalBits + 1);
-        largest = std::max(largest, scaled < 0 ? ~scaled : scaled);
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < gofs.size(); ++g) {
+      Trajectory& t = temporal.of_gof[g][l];
+      const auto values = frames_of(gofs[g], temporal.indices[l], first);
+      if (!t.trajectory_flag) continue;
+      t.scale_idx = idx[l] + 8 * fraction_bits;
+      std::int64_t largest = 0;
+      for (const Vec3i& value : values) {
+        for (const std::int32_t x : value) {
+          const std::int64_t scaled = scale_temporal(x, t.scale_idx, kMaxTemporalBits + 1);
+          largest = std::max(largest, scaled < 0 ? ~scaled : scaled);
+        }
       }
+      t.temporal_bits = signed_width(largest);
+      if (t.temporal_bits > kMaxTemporalBits) return false;
     }
-    t.temporal_bits = signed_width(largest);
-    if (t.temporal_bits > kMaxTemporalBits) return false;
   }
   return true;
 }
@@ -46,14 +58,14 @@ bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
 // Sets widths and scales of the trajectories, with as many fraction bits in the sums as all
 // temporal factors need. Returns 0, or if the range of scales is too large, the excess in
 // eighths of an octave.
-int set_scales(const std::vector<std::int32_t>& largest, TemporalValues& temporal,
-               int& fraction_bits) {
+int set_scales(const std::vector<std::int32_t>& largest, std::span<const SkinnedGof> gofs,
+               TemporalValues& temporal, int& fraction_bits) {
   std::vector<int> idx(temporal.size());
   fraction_bits = 0;
   for (std::size_t l = 0; l < idx.size(); ++l) {
-    Trajectory& t = temporal.trajectories[l];
-    t.spatial_bits = signed_width(largest[l]);
-    const int shift = spatial_factor_bits(t.spatial_bits) - t.spatial_bits;
+    const int spatial_bits = signed_width(largest[l]);
+    for (auto& trajectories : temporal.of_gof) trajectories[l].spatial_bits = spatial_bits;
+    const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
     idx[l] = temporal.eighths[l] + 8 * (4 - shift);
     fraction_bits = std::max(fraction_bits, (kWantedScaleIdx - idx[l] + 7) / 8);
   }
@@ -62,7 +74,7 @@ int set_scales(const std::vector<std::int32_t>& largest, TemporalValues& tempora
   while (fraction_bits > 0 && most + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
   const int lacking = -(*std::min_element(idx.begin(), idx.end()) + 8 * fraction_bits);
   if (lacking > 0) return lacking;
-  while (!set_temporal_widths(idx, fraction_bits, temporal)) --fraction_bits;
+  while (!set_temporal_widths(idx, fraction_bits, gofs, temporal)) --fraction_bits;
   return 0;
 }
 
@@ -72,38 +84,45 @@ struct CodedTrajectories {
   SliceCuts cuts;
 };
 
-// Adds trajectories to a GOF. Coarsens the steps if values do not fit their widths.
+// Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
 CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
-                                    SkinnedGof& gof) {
+                                    CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
+  SkinnedModel& model = coded.model;
   TemporalLimits limits{kLevels.back().max_components};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, {}, 0)};
     const std::size_t count = temporal.size();
     const auto code = [&](std::span<const std::size_t> group_end) {
-      return code_spatial_values(mesh, gof, analysis, temporal, group_end, settings.rounding,
+      return code_spatial_values(mesh, model, analysis, temporal, group_end, settings.rounding,
                                  step);
     };
-    gof.weights.num_adaptive_factors = 0;
-    if (gof.prediction == Prediction::kLayers) {
-      gof.weights.num_adaptive_factors =
+    model.weights.num_adaptive_factors = 0;
+    if (model.prediction == Prediction::kLayers) {
+      model.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
     SpatialValues spatial = code(std::array{count});
     SliceCuts cuts = choose_slice_cuts(settings, spatial.residual, count);
     // Where groups begin, adaptive weights start afresh.
-    if (gof.weights.num_adaptive_factors > 0 && cuts.group_end.size() > 1) {
+    if (model.weights.num_adaptive_factors > 0 && cuts.group_end.size() > 1) {
       spatial = code(cuts.group_end);
     }
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
     }
-    const int lacking = set_scales(spatial.largest, temporal, gof.fraction_bits);
+    const int lacking = set_scales(spatial.largest, coded.gofs, temporal, model.fraction_bits);
     if (lacking == 0) {
-      gof.trajectories = std::move(temporal.trajectories);
+      model.trajectories.resize(count);
+      for (std::size_t l = 0; l < count; ++l) {
+        model.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
+      }
+      for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
+        coded.gofs[g].trajectories = std::move(temporal.of_gof[g]);
+      }
       return {std::move(spatial.residual), std::move(cuts)};
     }
     limits.least_eighths =
@@ -123,8 +142,10 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
   // forecast that starts the search. Most small values are rounded to zero and err by less than
   // half a step.
   constexpr double kOfCoded = 0.52;
+  std::size_t num_frames = 0;
+  for (const SkinnedGof& gof : analysis.gofs) num_frames += gof.num_frames;
   const double num_values = static_cast<double>(analysis.rest[0].size()) +
-                            3.0 * kTemporalError * analysis.gof.num_frames;
+                            3.0 * kTemporalError * static_cast<double>(num_frames);
   const double quantised = kOfCoded * step * step / 12.0 * num_values;
   double error = analysis.pc.total_energy;
   for (const double energy : analysis.pc.energy)
@@ -132,13 +153,39 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
   return error;
 }
 
-SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step) {
-  SkinnedGof gof = analysis.gof;
-  gof.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
-  const CodedTrajectories coded = code_trajectories(mesh, analysis, settings, step, gof);
-  cut_slices(mesh, settings, coded.cuts, coded.residual, gof);
+  CodedSpan coded{analysis.model, analysis.gofs};
+  SkinnedModel& model = coded.model;
+  model.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
+  const CodedTrajectories trajectories =
+      code_trajectories(mesh, analysis, settings, step, coded);
+  cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, model);
+  return coded;
+}
+
+SkinnedGof merge_into_gof(CodedSpan coded) {
+  SkinnedGof gof = std::move(coded.gofs.front());
+  std::vector<Bone> bones = std::move(gof.bones);
+  std::vector<Trajectory> trajectories = std::move(gof.trajectories);
+  static_cast<SkinnedModel&>(gof) = std::move(coded.model);
+  gof.bones = std::move(bones);
+  gof.trajectories = std::move(trajectories);
   return gof;
+}
+
+void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof) {
+  gof.kind = GofKind::kTracks;
+  gof.fraction_bits = model->fraction_bits;
+  gof.weight_bits = model->weight_bits;
+  gof.prediction = model->prediction;
+  gof.weights = model->weights;
+  gof.layer_group_size = model->layer_group_size;
+  gof.layer_step = model->layer_step;
+  gof.num_component_groups = model->num_component_groups;
+  gof.group_end = {model->group_end.back()};
+  gof.slice_layers = model->slice_layers;
+  gof.model = std::move(model);
 }
 
 }  // namespace rlpc

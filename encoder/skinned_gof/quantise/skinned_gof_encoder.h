@@ -1,8 +1,10 @@
-// Quantisation of one skinned GOF: trajectories, their spatial factors, and the division into
-// slices (inverse of clauses 8.10, 8.11 and 8.14).
+// Quantisation of a span of skinned GOFs: trajectories, their spatial factors, and the division
+// into slices (inverse of clauses 8.10, 8.11 and 8.14).
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <vector>
 
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -20,8 +22,19 @@ bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
 // estimate, a factor that is almost independent of the step.
 double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 
-// Quantises the trajectories and completes the GOF. step: quantiser step, grid units.
-SkinnedGof code_skinned_gof(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+// A span as coded: what its GOFs share, and what each has of its own.
+struct CodedSpan {
+  SkinnedModel model;
+  std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
+};
+
+// Quantises the trajectories and completes the span. step: quantiser step, grid units.
+CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step);
+
+// The only GOF of a span, with vertices of its own.
+SkinnedGof merge_into_gof(CodedSpan coded);
+// Makes a GOF of a span a GOF of tracks.
+void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof);
 
 }  // namespace rlpc

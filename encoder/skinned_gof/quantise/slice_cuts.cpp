@@ -27,7 +27,7 @@ double estimated_bytes(std::span<const std::int32_t> residual) {
 // end. A group is smaller if it would not leave enough layers for the requested number of
 // groups.
 void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t requested,
-                SkinnedGof& gof) {
+                SkinnedModel& model) {
   const std::uint32_t num_layers = mesh.num_layers();
   requested = std::min(requested, num_layers);
   std::vector<std::uint32_t> ends{num_layers};
@@ -38,10 +38,10 @@ void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t req
     while (last > first && mesh.vertices_of_layers(0, last).size() > most) --last;
     if (last == ends.back()) break;
   }
-  gof.layer_group_size.clear();
+  model.layer_group_size.clear();
   std::uint32_t first = 0;
   for (std::size_t i = ends.size(); i-- > 0;) {
-    gof.layer_group_size.push_back(ends[i] - first);
+    model.layer_group_size.push_back(ends[i] - first);
     first = ends[i];
   }
 }
@@ -63,8 +63,8 @@ std::vector<std::size_t> component_group_ends(std::size_t num_groups, std::size_
 }
 
 void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
-                    std::span<const std::int32_t> residual, SkinnedGof& gof) {
-  const std::size_t count = gof.trajectories.size();
+                    std::span<const std::int32_t> residual, SkinnedModel& model) {
+  const std::size_t count = model.trajectories.size();
   std::size_t first = 0;
   for (const std::size_t end : ends) {
     const std::size_t size = end - first;
@@ -72,11 +72,11 @@ void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
     for (std::size_t v = 0; v < num_vertices; ++v) {
       std::copy_n(&residual[v * count + first], size, &of_group[v * size]);
     }
-    gof.vertex_residual.push_back(std::move(of_group));
-    gof.group_end.push_back(kRestFactors + end);
+    model.vertex_residual.push_back(std::move(of_group));
+    model.group_end.push_back(kRestFactors + end);
     first = end;
   }
-  gof.num_component_groups = static_cast<std::uint32_t>(ends.size());
+  model.num_component_groups = static_cast<std::uint32_t>(ends.size());
 }
 
 }  // namespace
@@ -95,11 +95,11 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
 }
 
 void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
-                std::span<const std::int32_t> residual, SkinnedGof& gof) {
-  cut_layers(mesh, cuts.num_layer_groups, settings.layer_groups, gof);
-  cut_components(mesh.num_vertices(), cuts.group_end, residual, gof);
-  gof.slice_layers.assign(gof.group_end.size(),
-                          static_cast<std::uint32_t>(gof.layer_group_size.size()));
+                std::span<const std::int32_t> residual, SkinnedModel& model) {
+  cut_layers(mesh, cuts.num_layer_groups, settings.layer_groups, model);
+  cut_components(mesh.num_vertices(), cuts.group_end, residual, model);
+  model.slice_layers.assign(model.group_end.size(),
+                            static_cast<std::uint32_t>(model.layer_group_size.size()));
 }
 
 }  // namespace rlpc

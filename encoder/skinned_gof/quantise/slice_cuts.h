@@ -30,6 +30,6 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
 //   residual  [num_vertices][trajectory of the GOF]
 //   gof       its trajectories are set; layer groups, component groups and slices are added
 void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
-                std::span<const std::int32_t> residual, SkinnedGof& gof);
+                std::span<const std::int32_t> residual, SkinnedModel& model);
 
 }  // namespace rlpc

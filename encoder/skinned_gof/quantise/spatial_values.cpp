@@ -22,9 +22,9 @@ constexpr double kMostSpatial =
 // Spatial factors in grid units: the least-squares fit to the decoded temporal vectors. The
 // matrix is approximated by pc.spatial * pc.temporal, since the dropped components are almost
 // orthogonal to the decoded vectors. So the factors are pc.spatial * mixing.
-class SpatialFactors {
+class FittedFactors {
  public:
-  SpatialFactors(const ComponentsByRow& pc, const TemporalValues& temporal)
+  FittedFactors(const ComponentsByRow& pc, const TemporalValues& temporal)
       : pc_(pc),
         count_(temporal.size()),
         num_tried_(temporal.num_tried),
@@ -96,7 +96,7 @@ class ResidualRounding {
 
 }  // namespace
 
-SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
+SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end, Rounding rounding,
@@ -104,22 +104,22 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
   constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
   const std::size_t count = temporal.size();
   std::optional<GeometryWeights> weights;
-  if (gof.prediction == Prediction::kLayers) {
+  if (model.prediction == Prediction::kLayers) {
     const auto& rest = analysis.rest;
-    weights.emplace(mesh, gof.weights,
+    weights.emplace(mesh, model.weights,
                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
   std::optional<AdaptiveWeights> adaptive;
   std::optional<VertexAdaptation> adaptation;
-  if (gof.weights.num_adaptive_factors > 0) {
+  if (model.weights.num_adaptive_factors > 0) {
     const auto& rest = analysis.rest;
-    adaptive.emplace(mesh, *weights, gof.weights,
+    adaptive.emplace(mesh, *weights, model.weights,
                      std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
     adaptive->start(0, count, group_end);
     adaptation.emplace(*adaptive);
   }
-  const SpatialFactors all_factors(analysis.pc, temporal);
+  const FittedFactors all_factors(analysis.pc, temporal);
   ResidualRounding residuals(mesh, count, rounding);
   SpatialValues result;
   result.residual.resize(mesh.num_vertices() * count);
@@ -138,7 +138,7 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
     if (place == 0) {
       factors = all_factors.of(order.subspan(i, std::min(kTogether, order.size() - i)));
     }
-    const int layer_step = gof.layer_step[mesh.layer_of(v)];
+    const int layer_step = model.layer_step[mesh.layer_of(v)];
     residuals.start(v);
     for (std::size_t l = 0; l < count; ++l) {
       const double wanted = factors[place * count + l] * per_step;

@@ -20,10 +20,10 @@ struct SpatialValues {
 // Spatial values that fit best, in the least-squares sense, with the decoded temporal values.
 // There must be at least one trajectory.
 //
-//   gof        that of the analysis, with its weight settings
+//   model      that of the analysis, with its weight settings
 //   group_end  ends of the component groups, in trajectories
 //   step       quantiser step, grid units
-SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedGof& gof,
+SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end, Rounding rounding,

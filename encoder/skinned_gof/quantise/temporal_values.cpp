@@ -44,11 +44,16 @@ class TemporalCoder {
       : analysis_(analysis),
         settings_(settings),
         step_(step),
-        num_vertices_(analysis.gof.influences.size()),
-        state_(analysis.gof.num_frames) {}
+        num_vertices_(analysis.model.influences.size()) {
+    for (const SkinnedGof& gof : analysis.gofs) {
+      states_.emplace_back(gof.num_frames);
+      num_frames_ += gof.num_frames;
+    }
+  }
 
   TemporalValues code(const TemporalLimits& limits) {
     TemporalValues values;
+    values.of_gof.resize(analysis_.gofs.size());
     std::size_t& l = values.num_tried;
     for (; l < analysis_.pc.temporal.size() && values.size() < limits.max_trajectories; ++l) {
       if (!code(l, limits.least_eighths, values)) break;
@@ -60,7 +65,7 @@ class TemporalCoder {
   // Codes a component with the step that gives equal distortion. False: the component is not
   // worth its bits.
   bool code(std::size_t l, int least_eighths, TemporalValues& values) {
-    const std::size_t num_frames = analysis_.gof.num_frames;
+    const std::size_t num_frames = num_frames_;
     const std::vector<double>& temporal = analysis_.pc.temporal[l];
     const int eighths = eighths_of(l, least_eighths);
     const double unit = power_of_eighths(eighths) / step_;
@@ -68,19 +73,23 @@ class TemporalCoder {
     for (std::size_t f = 0; f < num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) wanted[f][c] = temporal[c * num_frames + f];
     }
-    Trajectory trajectory;
-    TrackState after = state_;
-    const TrackCost cost =
-        code_trajectory(wanted, unit,
-                        {.refine = settings_.temporal_weights,
-                         .nearest = settings_.rounding == Rounding::kNearest},
-                        after, trajectory);
+    std::vector<TrackState> after = states_;
+    std::vector<Trajectory> trajectories(after.size());
+    const TrackCost cost = code_tracks(wanted, unit, after, trajectories);
     const double saved = analysis_.pc.energy[l] * (1.0 - cost.error * unit * unit);
     if (saved < least_worth(cost.bits, l)) return false;
-    state_ = std::move(after);
+    states_ = std::move(after);
     values.eighths.push_back(eighths);
-    values.indices.push_back(recon_trajectory(trajectory));
-    values.trajectories.push_back(std::move(trajectory));
+    std::vector<Vec3i>& indices = values.indices.emplace_back();
+    for (std::size_t g = 0; g < trajectories.size(); ++g) {
+      if (trajectories[g].trajectory_flag) {
+        const std::vector<Vec3i> part = recon_trajectory(trajectories[g]);
+        indices.insert(indices.end(), part.begin(), part.end());
+      } else {
+        indices.resize(indices.size() + analysis_.gofs[g].num_frames);
+      }
+      values.of_gof[g].push_back(std::move(trajectories[g]));
+    }
     std::vector<double>& decoded = values.decoded.emplace_back(3 * num_frames);
     for (std::size_t f = 0; f < num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -88,6 +97,36 @@ class TemporalCoder {
       }
     }
     return true;
+  }
+
+  // Codes a component, GOF by GOF; in a GOF of tracks, it need not occur.
+  TrackCost code_tracks(std::span<const std::array<double, 3>> wanted, double unit,
+                        std::span<TrackState> states,
+                        std::span<Trajectory> trajectories) const {
+    TrackCost sum;
+    for (std::size_t g = 0; g < states.size(); ++g) {
+      const auto of_gof = wanted.first(analysis_.gofs[g].num_frames);
+      wanted = wanted.subspan(of_gof.size());
+      TrackState after = states[g];
+      TrackCost cost = code_trajectory(of_gof, unit,
+                                       {.refine = settings_.temporal_weights,
+                                        .nearest = settings_.rounding == Rounding::kNearest},
+                                       after, trajectories[g]);
+      TrackCost left_out;
+      for (const auto& value : of_gof) {
+        for (const double x : value) left_out.error += x * x / (unit * unit);
+      }
+      if (states.size() > 1 && lagrangian_cost(left_out) < lagrangian_cost(cost)) {
+        trajectories[g] = {};
+        trajectories[g].trajectory_flag = false;
+        cost = left_out;
+      } else {
+        states[g] = std::move(after);
+      }
+      sum.bits += cost.bits;
+      sum.error += cost.error;
+    }
+    return sum;
   }
 
   // The exponent of the product of both steps, 2^(eighths / 8), which is what the stream codes.
@@ -113,7 +152,7 @@ class TemporalCoder {
     return lambda(step_) * bits + error * cost * static_cast<double>(num_vertices_);
   }
 
-  bool has_bones() const { return analysis_.gof.bones.size() > 1; }
+  bool has_bones() const { return analysis_.model.bones.size() > 1; }
 
   // The weight of a squared error of a temporal value: the sum of squared spatial factors or,
   // as in Vasa and Skala 2009, (18) and (19), the squared sum of their magnitudes per vertex.
@@ -132,7 +171,8 @@ class TemporalCoder {
   const SkinnedSettings& settings_;
   double step_;
   std::size_t num_vertices_;
-  TrackState state_;
+  std::size_t num_frames_ = 0;
+  std::vector<TrackState> states_;  // [GOF]
 };
 
 }  // namespace

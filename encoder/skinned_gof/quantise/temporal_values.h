@@ -1,4 +1,4 @@
-// Temporal values of the trajectories of a GOF: selects the components worth coding, quantises
+// Temporal values of the trajectories of a span: selects the components worth coding, quantises
 // and predicts their values (inverse of 8.14.2).
 #pragma once
 
@@ -16,13 +16,13 @@ namespace rlpc {
 inline constexpr double kTemporalError = 0.8;
 
 struct TemporalValues {
-  std::vector<Trajectory> trajectories;  // predictors, weights and residuals
+  std::vector<std::vector<Trajectory>> of_gof;  // [GOF][trajectory], weights and residuals
   std::vector<int> eighths;  // [trajectory], product of both steps is 2^(eighths / 8)
   std::vector<std::vector<Vec3i>> indices;   // [trajectory][frame]
   std::vector<std::vector<double>> decoded;  // [trajectory][3 * num_frames], unit vectors
   std::size_t num_tried = 0;  // number of leading components that factors are computed from
 
-  std::size_t size() const { return trajectories.size(); }
+  std::size_t size() const { return eighths.size(); }
 };
 
 struct TemporalLimits {

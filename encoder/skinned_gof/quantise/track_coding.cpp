@@ -88,8 +88,6 @@ class ResidualChoice {
   double error_ = 0.0;
 };
 
-double lagrangian_cost(const TrackCost& cost) { return cost.error + kLambda * cost.bits; }
-
 // The residuals with a given predictor; none, early, if they cost at least as much as `other`.
 std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,
                                            double step, const Trajectory& trajectory,

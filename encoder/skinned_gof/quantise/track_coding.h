@@ -9,6 +9,7 @@
 #include "common/bitstream/residual_models.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/skinned_gof.h"
+#include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
 
@@ -24,6 +25,11 @@ struct TrackCost {
   double bits = 0.0;
   double error = 0.0;  // sum of squared errors of all values, in squared steps
 };
+
+// D + lambda R, in squared steps.
+inline double lagrangian_cost(const TrackCost& cost) {
+  return cost.error + kLambda * cost.bits;
+}
 
 struct TrackOptions {
   bool refine = true;    // also try transmitted weights, fitted to the series

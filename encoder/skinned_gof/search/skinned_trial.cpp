@@ -1,5 +1,6 @@
 #include "encoder/skinned_gof/search/skinned_trial.h"
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <utility>
@@ -74,28 +75,68 @@ SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
   return trial;
 }
 
-EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
-                              const SkinnedSettings& settings, double step) {
-  const CodedMesh& mesh = context.meshes[settings.prediction];
-  const int position_bits = context.header.position_bits;
-  const SkinnedGof gof = code_skinned_gof(mesh, analysis, settings, step);
-  EncodedGof encoded;
-  SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, context.header);
-  encoded.units.push_back({UnitType::kGof, std::move(payloads.gof)});
+namespace {
+
+void add_units(SkinnedGofPayloads payloads, UnitType first, EncodedGof& encoded) {
+  encoded.units.push_back({first, std::move(payloads.first)});
   for (auto& slice : payloads.slices) {
     encoded.units.push_back({UnitType::kSlice, std::move(slice)});
   }
-  const auto recon = std::make_shared<SkinnedRecon>(mesh, gof, position_bits);
-  encoded.frame = [recon](std::uint32_t f, std::span<std::int32_t> positions) {
+}
+
+// A GOF with vertices of its own.
+DecodeFrame encode_alone(const CodedMesh& mesh, const SequenceHeader& header, CodedSpan coded,
+                         EncodedGof& encoded) {
+  const SkinnedGof gof = merge_into_gof(std::move(coded));
+  add_units(write_skinned_gof(gof, mesh, header), UnitType::kGof, encoded);
+  const auto recon = std::make_shared<SkinnedRecon>(mesh, gof, header.position_bits);
+  return [recon](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);
   };
-  encoded.clusters = static_cast<std::uint32_t>(gof.bones.size());
-  encoded.components = static_cast<std::uint32_t>(gof.trajectories.size());
+}
+
+// A skinned model and GOFs of tracks.
+DecodeFrame encode_with_model(const CodedMesh& mesh, const SequenceHeader& header,
+                              CodedSpan coded, EncodedGof& encoded) {
+  const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
+  add_units(write_skinned_model(*model, kModelIdx, mesh, header), UnitType::kModel, encoded);
+  const auto shared =
+      std::make_shared<const ModelRecon>(mesh, *model, header.position_bits, false);
+  std::vector<std::shared_ptr<const SkinnedRecon>> recons;
+  for (SkinnedGof& gof : coded.gofs) {
+    use_model(model, gof);
+    add_units(write_tracks(gof, mesh, header), UnitType::kGof, encoded);
+    recons.push_back(std::make_shared<SkinnedRecon>(shared, gof));
+  }
+  return [recons = std::move(recons)](std::uint32_t f, std::span<std::int32_t> positions) {
+    auto recon = recons.begin();
+    while (f >= (*recon)->num_frames()) f -= (*recon++)->num_frames();
+    (*recon)->frame(f, positions);
+  };
+}
+
+}  // namespace
+
+EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
+                              const SkinnedSettings& settings, double step) {
+  const CodedMesh& mesh = context.meshes[settings.prediction];
+  CodedSpan coded = code_skinned_span(mesh, analysis, settings, step);
+  const std::uint64_t num_vertices = mesh.num_vertices();
+  const std::uint64_t num_bones = coded.model.bones.size();
+  const std::uint64_t num_trajectories = coded.model.trajectories.size();
+  std::uint32_t longest = 0;
+  for (const SkinnedGof& gof : coded.gofs) longest = std::max(longest, gof.num_frames);
+  EncodedGof encoded;
+  encoded.clusters = static_cast<std::uint32_t>(num_bones);
+  encoded.max_clusters = encoded.clusters;
+  encoded.components = static_cast<std::uint32_t>(num_trajectories);
   encoded.max_components = encoded.components;
-  encoded.num_factors =
-      6 * std::uint64_t{gof.bones.size()} * gof.num_frames +
-      3 * std::uint64_t{mesh.num_vertices()} +
-      gof.trajectories.size() * (mesh.num_vertices() + 3 * std::uint64_t{gof.num_frames});
+  encoded.num_factors = (kRestFactors + num_trajectories) * num_vertices +
+                        (6 * num_bones + 3 * num_trajectories) * longest;
+  encoded.adaptive_values = coded.model.weights.num_adaptive_factors * num_vertices;
+  encoded.frame = coded.gofs.size() == 1
+                      ? encode_alone(mesh, context.header, std::move(coded), encoded)
+                      : encode_with_model(mesh, context.header, std::move(coded), encoded);
   return encoded;
 }
 

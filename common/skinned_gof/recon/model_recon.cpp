@@ -1,0 +1,160 @@
+#include "common/skinned_gof/recon/model_recon.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/int_math.h"
+#include "common/skinned_gof/influences.h"
+
+namespace rlpc {
+
+// 8.10.2 Spatial values
+std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+                                       std::size_t group, int position_bits,
+                                       const ValuePrediction& prediction,
+                                       AdaptiveWeights* weights) {
+  const FactorGroup factors = factor_group(model, group);
+  const std::size_t n = factors.size();
+  const std::vector<std::int32_t>& residuals = model.vertex_residual[group];
+  std::vector<int> bits(n, rest_bits(position_bits));
+  for (std::size_t k = 0; k < n && group > 0; ++k) {
+    bits[k] = model.trajectories[factors.first + k - kRestFactors].spatial_bits;
+  }
+  std::vector<std::int32_t> values(residuals.size());
+  std::vector<std::int64_t> predicted(n);
+  std::optional<VertexAdaptation> adaptation;
+  if (weights != nullptr) {
+    weights->start(factors.first - kRestFactors, n);
+    adaptation.emplace(*weights);
+  }
+  for (const std::uint32_t v : mesh.order()) {
+    const int layer_step = model.layer_step[mesh.layer_of(v)];
+    if (adaptation && adaptation->start(v, values)) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::int64_t of_weights = adaptation->predict();
+        values[v * n + k] = clip_signed(
+            bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
+        adaptation->add(of_weights, values[v * n + k]);
+      }
+      adaptation->finish();
+      continue;
+    }
+    prediction.predict(v, values, predicted);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t residual = residuals[v * n + k];
+      const std::int64_t difference = group == 0 ? rest_difference(model, residual, layer_step)
+                                                 : factor_difference(residual, layer_step);
+      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
+    }
+  }
+  return values;
+}
+
+std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model) {
+  std::vector<Influences> influences = model.influences;
+  InfluencePrediction prediction(influences, static_cast<std::uint32_t>(model.bones.size()),
+                                 model.weight_bits);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < model.slice_layers[0]; ++j) first += model.layer_group_size[j];
+  for (const std::uint32_t v : mesh.vertices_of_layers(first, mesh.num_layers())) {
+    prediction.start(mesh.ring(v));
+    for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
+      prediction.add_candidate(k, 0);
+    influences[v] = prediction.finish();
+  }
+  return influences;
+}
+
+ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+                       bool has_more_groups)
+    : mesh_(mesh), position_bits_(position_bits) {
+  const auto rest = recon_values(mesh, model, 0, position_bits, {mesh, true, nullptr});
+  add_influences(model, rest);
+  if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
+  factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);
+  if (has_more_groups) return;
+  weights_.reset();
+  adaptive_.reset();
+  rest_ = {};
+}
+
+void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {
+  const std::vector<Influences> influences = complete_influences(mesh_, model);
+  struct Entry {
+    Influence influence;
+    std::size_t vertex;
+  };
+  std::vector<Entry> of_tile;
+  for (std::size_t first = 0; first < num_vertices(); first += kTileValues) {
+    of_tile.clear();
+    for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices()); ++v) {
+      for (const Influence& influence : influences[v]) of_tile.push_back({influence, v});
+    }
+    std::stable_sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
+      return a.influence.bone < b.influence.bone;
+    });
+    first_run_.push_back(runs_.size());
+    for (const auto& [influence, v] : of_tile) {
+      const auto next = static_cast<std::uint32_t>(weight_.size());
+      if (first_run_.back() == runs_.size() || runs_.back().bone != influence.bone) {
+        runs_.push_back({influence.bone, next, next});
+      }
+      ++runs_.back().end;
+      const Vec3i& pivot = model.bones[influence.bone].pivot;
+      for (std::size_t c = 0; c < 3; ++c) {
+        arm_[c].push_back(rest[3 * v + c] - pivot[c]);
+      }
+      weight_.push_back(influence.weight);
+      place_.push_back(static_cast<std::uint8_t>(v - first));
+    }
+  }
+  first_run_.push_back(runs_.size());
+  // The kernels may read one vector past the end.
+  for (auto& list : arm_) list.resize(list.size() + 3);
+  weight_.resize(weight_.size() + 3);
+}
+
+void ModelRecon::start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest) {
+  if (model.prediction != Prediction::kLayers) return;
+  for (std::size_t i = 0; i < rest.size(); ++i) rest_[i % 3].push_back(rest[i]);
+  const std::array<std::span<const std::int32_t>, 3> planes{rest_[0], rest_[1], rest_[2]};
+  weights_.emplace(mesh_, model.weights, planes);
+  if (model.weights.num_adaptive_factors > 0) {
+    adaptive_.emplace(mesh_, *weights_, model.weights, planes);
+  }
+}
+
+// Of the component groups from 1 on.
+std::shared_ptr<const SpatialFactors> ModelRecon::recon_factors(
+    const SkinnedModel& model, AdaptiveWeights* adaptive) const {
+  auto factors = std::make_shared<SpatialFactors>(num_vertices());
+  const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
+  for (std::size_t group = 1; group < model.group_end.size(); ++group) {
+    const FactorGroup of_group = factor_group(model, group);
+    const auto values = recon_values(mesh_, model, group, position_bits_, prediction, adaptive);
+    for (std::size_t k = 0; k < of_group.size(); ++k) {
+      factors->add(std::span(values).subspan(k),
+                   model.trajectories[of_group.first + k - kRestFactors].spatial_bits,
+                   of_group.size());
+    }
+  }
+  return factors;
+}
+
+// 8.16.2 GOF of tracks: the adaptive weights go on from those of the skinned model.
+std::shared_ptr<const SpatialFactors> ModelRecon::local_factors(const SkinnedGof& gof) const {
+  std::optional<AdaptiveWeights> adaptive = adaptive_;
+  return recon_factors(gof, adaptive ? &*adaptive : nullptr);
+}
+
+ModelRecon::Run ModelRecon::run(std::size_t tile, std::size_t i) const {
+  const RunRange& range = runs_[first_run_[tile] + i];
+  const std::size_t size = range.end - range.first;
+  return {range.bone,
+          {{&arm_[0][range.first], &arm_[1][range.first], &arm_[2][range.first]},
+           &weight_[range.first],
+           size},
+          std::span(place_).subspan(range.first, size)};
+}
+
+}  // namespace rlpc

@@ -1,0 +1,117 @@
+// A random skinned GOF divided into a skinned model and a GOF that uses it, for tests.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "common/testing/random_skinned_gof.h"
+
+namespace rlpc {
+
+// The bones and trajectories of a skinned model have no motion.
+inline void remove_motion(SkinnedModel& model) {
+  for (Bone& bone : model.bones) {
+    Bone still;
+    still.parent = bone.parent;
+    still.pivot = bone.pivot;
+    still.rotation_flag = bone.rotation_flag;
+    still.origin_flag = bone.origin_flag;
+    bone = still;
+  }
+  for (Trajectory& t : model.trajectories) {
+    const int spatial_bits = t.spatial_bits;
+    t = {};
+    t.spatial_bits = spatial_bits;
+  }
+}
+
+class SplitSkinnedGof {
+ public:
+  SplitSkinnedGof(unsigned seed, const SkinnedGofSizes& sizes)
+      : whole(seed, sizes), state_(seed) {
+    whole.header.profile_idc = kProfileHigh;
+    const std::uint32_t num_groups = whole.gof.num_component_groups;
+    const std::size_t of_model = random() % (num_groups + 1);
+    make_model(of_model);
+    make_tracks(of_model);
+    if (tracks.trajectories.size() == whole.gof.trajectories.size()) return;
+    // Without tracks: as if they were zero.
+    for (std::size_t l = tracks.trajectories.size(); l < whole.gof.trajectories.size(); ++l) {
+      make_still(whole.gof.trajectories[l]);
+    }
+  }
+
+  RandomSkinnedGof whole;  // with all component groups, in one GOF
+  std::uint32_t model_idx = 0;
+  std::shared_ptr<const SkinnedModel> model;  // with its first component groups
+  SkinnedGof tracks;                          // with the motion, and the other groups
+
+ private:
+  void make_model(std::size_t of_model) {
+    const SkinnedGof& gof = whole.gof;
+    model_idx = static_cast<std::uint32_t>(random() % kMaxModels);
+    auto made = std::make_shared<SkinnedModel>(gof);
+    made->num_component_groups = static_cast<std::uint32_t>(of_model);
+    made->slice_layers.resize(of_model + 1);
+    made->group_end.resize(std::min(of_model + 1, gof.group_end.size()));
+    made->vertex_residual.resize(std::min(of_model + 1, gof.vertex_residual.size()));
+    made->trajectories.resize(made->group_end.back() - kRestFactors);
+    remove_motion(*made);
+    model = std::move(made);
+  }
+
+  void make_tracks(std::size_t of_model) {
+    const SkinnedGof& gof = whole.gof;
+    const std::size_t with_slices = gof.group_end.size();  // groups, with that of influences
+    tracks = gof;
+    tracks.kind = GofKind::kTracks;
+    tracks.model = model;
+    tracks.model_idx = model_idx;
+    tracks.num_component_groups = model->num_component_groups;
+    tracks.num_local_groups = gof.num_component_groups - model->num_component_groups;
+    tracks.rest_step = 1;
+    tracks.influences.clear();
+    tracks.group_end = {model->group_end.back()};
+    tracks.vertex_residual = {{}};
+    for (std::size_t group = of_model + 1; group < with_slices; ++group) {
+      tracks.group_end.push_back(gof.group_end[group]);
+      tracks.vertex_residual.push_back(gof.vertex_residual[group]);
+    }
+    if (with_slices <= of_model + 1) drop_last_tracks(with_slices);
+    for (std::size_t l = 0;
+         l < std::min(model->trajectories.size(), tracks.trajectories.size()); ++l) {
+      if (random() % 4 != 0) continue;
+      Trajectory& t = tracks.trajectories[l];
+      const int spatial_bits = t.spatial_bits;
+      t = {};
+      t.spatial_bits = spatial_bits;
+      t.trajectory_flag = false;
+      make_still(whole.gof.trajectories[l]);
+    }
+  }
+  // Some of the groups of the model have no tracks.
+  void drop_last_tracks(std::size_t with_slices) {
+    std::size_t kept = with_slices;
+    while (kept > 1 && random() % 3 == 0) --kept;
+    tracks.trajectories.resize(model->group_end[kept - 1] - kRestFactors);
+    for (std::size_t group = kept; group < tracks.slice_layers.size(); ++group) {
+      tracks.slice_layers[group] = 0;
+    }
+  }
+  // As that of RandomSkinnedGof.
+  std::uint32_t random() {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::uint32_t>(state_ >> 33);
+  }
+  static void make_still(Trajectory& t) {
+    t.temporal_predictor = 0;
+    t.temporal_weight = {};
+    for (Vec3i& residual : t.residual) residual = {};
+  }
+
+  std::uint64_t state_;
+};
+
+}  // namespace rlpc

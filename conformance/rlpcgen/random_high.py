@@ -1,0 +1,92 @@
+"""Random legal streams of the High profile: skinned models and GOFs that use them, too."""
+
+import random_main
+import random_streams
+
+
+class HighPlan(random_main.MainPlan):
+    """What a random stream of the High profile is like."""
+
+    def __init__(self, numbers):
+        super().__init__(numbers)
+        n = numbers
+        self.models_percent = n.pick([0, 30, 60])  # skinned models before a GOF
+        if self.models_percent:
+            self.gof_frames = n.pick([1, 3])
+        self.tracks_percent = n.pick([50, 100])  # of the GOFs that can use a skinned model
+        self.present_percent = n.pick([100, 70, 0])  # trajectories that occur in a GOF
+        self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
+
+
+class HighSource(random_main.MainSource):
+    """Values of the elements that the Main profile does not have, too."""
+
+    def _profile_idc(self, ns, indices, arguments):
+        return 2
+
+    def _num_adaptive_factors(self, ns, indices, arguments):
+        return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
+
+    def _gof_kind(self, ns, indices, arguments):
+        if _kept(ns) and self.numbers.chance(self.plan.tracks_percent):
+            return 2
+        return self._bones_flag(ns, indices, arguments)
+
+    def _model_idx(self, ns, indices, arguments):
+        if self.unit_code == ns["MODEL"]:
+            return self.numbers.pick([0, 0, 1, self.numbers.between(0, 7)])
+        return self.numbers.pick(_kept(ns))
+
+    def _num_local_groups(self, ns, indices, arguments):
+        return min(self.plan.local_groups, 255 - ns["num_component_groups"])
+
+    def _trajectory_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(self.plan.present_percent))
+
+
+def _kept(ns):
+    """The indices of the skinned models that there are."""
+    return [m for m, model in enumerate(ns["Models"]) if model]
+
+
+class HighSequence(random_main.MainSequence):
+    """The units of a random stream of the High profile."""
+
+    version_minor = 2
+
+    def _gof(self):
+        while (self._n.chance(self._plan.models_percent)
+               and len(self._writer.model_indices) < self._writer.ns["NumFrames"]):  # R-IDX-05
+            self._unit("MODEL")
+            self._slices()
+            self._skippable()
+        super()._gof()
+
+    def _slices(self):
+        ns = self._writer.ns
+        if ns["HasVertices"] == 0:
+            self._tracks()
+        else:
+            super()._slices()
+
+    def _tracks(self):
+        ns = self._writer.ns
+        layers = ns["ModelLayers"]
+        first_local = ns["num_component_groups"] + 1
+        for group in range(1, first_local):
+            if layers[group] == 0 or self._n.chance(self._plan.cut_percent):
+                return
+            self._slice(group, 0)
+        self._groups(range(first_local, first_local + ns["num_local_groups"]),
+                     layers[first_local - 1])
+
+
+class HighBuilder(random_streams.RandomBuilder):
+    def __init__(self, program):
+        super().__init__(program, HighPlan, HighSource, HighSequence)
+
+
+def builder_of(profile):
+    """The class that builds random streams of a profile, by the name that sidecars have for it."""
+    return {"baseline": random_streams.RandomBuilder, "main": random_main.MainBuilder,
+            "high": HighBuilder}[profile]

@@ -1,0 +1,241 @@
+// Writer and parser of skinned models, and of GOFs that use them, against each other (6.13);
+// and their reconstruction against that of one GOF with the same contents (8.16).
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/skinned_gof/recon/model_recon.h"
+#include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/testing/split_skinned_gof.h"
+#include "decoder/parse/parse_gof_header.h"
+#include "decoder/parse/parse_skinned_gof.h"
+#include "encoder/write/write_skinned_gof.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+using Payload = std::vector<std::uint8_t>;
+
+// A decoder's side of a model or of a GOF that uses it.
+class Reading {
+ public:
+  explicit Reading(const SplitSkinnedGof& from, const ModelSlots& models = {})
+      : from_(from),
+        models_(models),
+        meshes_(from.whole.topology, from.whole.triangles),
+        parser_(from.whole.header, meshes_, kMemory) {}
+
+  std::optional<Error> model(const Payload& payload) {
+    BitReader r(payload);
+    return error_of(parser_.model(r, models_));
+  }
+  std::optional<Error> tracks(const Payload& payload) {
+    BitReader r(payload);
+    const GofHeader header =
+        parse_gof_header(r, from_.whole.header, from_.whole.gof.first_frame);
+    if (r.error()) return *r.error();
+    if (header.kind != GofKind::kTracks) return Error{Errc::kInvalid, "", "gof_kind", 0};
+    return error_of(parser_.tracks(r, header, models_));
+  }
+  std::optional<Error> slice(const Payload& payload) {
+    BitReader r(payload);
+    return error_of(parser_.slice(r, 0));
+  }
+  // A unit and its slices, up to the first error.
+  std::optional<Error> all(const SkinnedGofPayloads& payloads, bool is_model) {
+    auto error = is_model ? model(payloads.first) : tracks(payloads.first);
+    for (std::size_t i = 0; i < payloads.slices.size() && !error; ++i) {
+      error = slice(payloads.slices[i]);
+    }
+    return error;
+  }
+  const CodedMeshes& meshes() const { return meshes_; }
+  SkinnedGofParser& parser() { return parser_; }
+
+ private:
+  static std::optional<Error> error_of(const Result<bool>& result) {
+    if (result) return std::nullopt;
+    return result.error();
+  }
+
+  const SplitSkinnedGof& from_;
+  ModelSlots models_;
+  CodedMeshes meshes_;
+  SkinnedGofParser parser_;
+};
+
+std::string text_of(const std::optional<Error>& error) {
+  return error ? std::string(error->rule) + " " + error->element : "no error";
+}
+
+SkinnedGofPayloads payloads_of_model(const SplitSkinnedGof& from) {
+  return write_skinned_model(*from.model, from.model_idx, from.whole.coded_mesh(),
+                             from.whole.header);
+}
+SkinnedGofPayloads payloads_of_tracks(const SplitSkinnedGof& from) {
+  return write_tracks(from.tracks, from.whole.coded_mesh(), from.whole.header);
+}
+ModelSlots slots_with(const SplitSkinnedGof& from) {
+  ModelSlots models;
+  models.of_idx[from.model_idx] = from.model;
+  return models;
+}
+
+void expect_round_trip(const SplitSkinnedGof& from) {
+  Reading model(from);
+  auto error = model.all(payloads_of_model(from), true);
+  ASSERT_FALSE(error) << text_of(error);
+  EXPECT_EQ(model.parser().model_idx(), from.model_idx);
+  SkinnedModel parsed = *model.parser().finish_model();
+  parsed.influences = complete_influences(model.meshes()[parsed.prediction], parsed);
+  EXPECT_TRUE(*from.model == parsed);
+
+  Reading gof(from, slots_with(from));
+  error = gof.all(payloads_of_tracks(from), false);
+  ASSERT_FALSE(error) << text_of(error);
+  const SkinnedGof tracks = gof.parser().finish();
+  EXPECT_TRUE(from.tracks == tracks);
+}
+
+TEST(SkinnedModelRoundTrip, RandomLegalModelsAndGofsComeBack) {
+  int with_local_groups = 0;
+  int still = 0;
+  for (unsigned seed = 1; seed <= 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    const SplitSkinnedGof from(seed, {});
+    expect_round_trip(from);
+    if (HasFailure()) return;
+    with_local_groups += from.tracks.group_end.size() > 1 ? 1 : 0;
+    for (const Trajectory& t : from.tracks.trajectories) still += t.trajectory_flag ? 0 : 1;
+  }
+  EXPECT_GT(with_local_groups, 200);
+  EXPECT_GT(still, 200);
+}
+
+TEST(SkinnedModelRoundTrip, TheSmallestAndManyGroupsComeBack) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_round_trip(
+        SplitSkinnedGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
+  }
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_round_trip(SplitSkinnedGof(
+        seed, {.max_vertices = 8, .max_groups = kMaxComponentGroups, .max_components = 2}));
+    expect_round_trip(SplitSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
+  }
+}
+
+// A few prefixes of a payload happen to be payloads themselves.
+TEST(SkinnedModelParser, ProperPrefixesFailOrParse) {
+  int refused = 0;
+  int parsed = 0;
+  for (unsigned seed = 1; seed <= 120; ++seed) {
+    SCOPED_TRACE(seed);
+    const SplitSkinnedGof from(seed, {.max_vertices = 12,
+                                      .max_frames = 3,
+                                      .max_bones = 3,
+                                      .max_groups = 3,
+                                      .max_components = 2});
+    for (const bool is_model : {true, false}) {
+      const SkinnedGofPayloads whole =
+          is_model ? payloads_of_model(from) : payloads_of_tracks(from);
+      for (std::size_t i = 0; i <= whole.slices.size(); ++i) {
+        SkinnedGofPayloads cut = whole;
+        cut.slices.resize(i);
+        Payload& last = i == 0 ? cut.first : cut.slices.back();
+        const Payload all = last;
+        for (std::size_t n = 0; n < all.size(); ++n) {
+          last = Payload(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
+          ++(Reading(from, slots_with(from)).all(cut, is_model) ? refused : parsed);
+        }
+        last = all;
+        last.push_back(0);
+        EXPECT_TRUE(Reading(from, slots_with(from)).all(cut, is_model));
+      }
+    }
+  }
+  EXPECT_GT(refused, 10000);
+  EXPECT_LT(parsed, refused / 50);
+}
+
+// 7.13.2: tracks stand for the slices of the model.
+TEST(SkinnedModelParser, RefusesSlicesInAnotherOrderOrTwice) {
+  int tried = 0;
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    const SplitSkinnedGof from(seed, {});
+    const SkinnedGofPayloads good = payloads_of_tracks(from);
+    for (std::size_t i = 0; i < good.slices.size(); ++i) {
+      SkinnedGofPayloads changed = good;
+      changed.slices.insert(changed.slices.begin() + static_cast<std::ptrdiff_t>(i),
+                            good.slices[i]);
+      EXPECT_EQ(text_of(Reading(from, slots_with(from)).all(changed, false)),
+                "R-SLI-02 slice_unit");
+      ++tried;
+      if (i == 0) continue;
+      changed = good;
+      std::swap(changed.slices[i - 1], changed.slices[i]);
+      EXPECT_EQ(text_of(Reading(from, slots_with(from)).all(changed, false)),
+                "R-SLI-02 slice_unit");
+    }
+  }
+  EXPECT_GT(tried, 200);
+}
+
+TEST(SkinnedModelParser, RefusesTracksWithoutTheirModel) {
+  const SplitSkinnedGof from(1, {});
+  const auto error = Reading(from).tracks(payloads_of_tracks(from).first);
+  EXPECT_EQ(text_of(error), "R-MOD-01 model_idx");
+  EXPECT_EQ(error->code, Errc::kUnsupported);
+}
+
+std::vector<std::int32_t> frames_of(const SkinnedRecon& recon, std::size_t num_vertices) {
+  std::vector<std::int32_t> positions(3 * num_vertices * recon.num_frames());
+  recon.frames(0, recon.num_frames(), positions);
+  return positions;
+}
+
+TEST(SkinnedModelRecon, GivesTheFramesOfOneGof) {
+  int adaptive = 0;
+  for (unsigned seed = 1; seed <= 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    const SplitSkinnedGof from(seed, {});
+    const CodedMesh mesh = from.whole.coded_mesh();
+    const int bits = from.whole.header.position_bits;
+    const auto model = std::make_shared<ModelRecon>(mesh, *from.model, bits, true);
+    const SkinnedRecon whole(mesh, from.whole.gof, bits);
+    const SkinnedRecon tracks(model, from.tracks);
+    ASSERT_EQ(frames_of(tracks, mesh.num_vertices()), frames_of(whole, mesh.num_vertices()));
+    adaptive +=
+        from.whole.gof.weights.num_adaptive_factors > 0 && from.tracks.group_end.size() > 1 ? 1
+                                                                                            : 0;
+  }
+  EXPECT_GT(adaptive, 20);  // whose weights go on from those of the model
+}
+
+// The model is only read: its GOFs do not depend on each other or on their order.
+TEST(SkinnedModelRecon, ServesSeveralGofs) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const SplitSkinnedGof from(seed, {});
+    const CodedMesh mesh = from.whole.coded_mesh();
+    const auto model =
+        std::make_shared<ModelRecon>(mesh, *from.model, from.whole.header.position_bits, true);
+    SkinnedGof other = from.tracks;
+    for (Trajectory& t : other.trajectories) t.residual.assign(other.num_frames, {3, -2, 1});
+    const auto before = frames_of(SkinnedRecon(model, from.tracks), mesh.num_vertices());
+    (void)frames_of(SkinnedRecon(model, other), mesh.num_vertices());
+    EXPECT_EQ(frames_of(SkinnedRecon(model, from.tracks), mesh.num_vertices()), before);
+  }
+}
+
+}  // namespace
+}  // namespace rlpc

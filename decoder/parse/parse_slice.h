@@ -1,0 +1,44 @@
+// 6.12 slice_section( ): the section of a slice, parsed by SkinnedGofParser.
+#pragma once
+
+#include <cstdint>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/skinned_gof/influences.h"
+#include "decoder/parse/parse_skinned_gof.h"
+#include "decoder/parse/section_reader.h"
+
+namespace rlpc {
+
+class SkinnedGofParser::SliceParser {
+ public:
+  SliceParser(SkinnedGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
+      : parser_(parser),
+        gof_(parser.gof_),
+        state_(parser.state_),
+        section_(r, "slice_section"),
+        group_(group),
+        layers_(layers) {}
+
+  void parse();
+
+ private:
+  bool failed() const { return section_.failed(); }
+  FactorGroup own_factors() const { return factor_group(gof_, parser_.own_group(group_)); }
+  void count_factors(std::uint64_t count, const char* element);
+  void tracks_of_group();
+  void group_components();
+  void trajectory(Trajectory& trajectory);
+  void start();
+  void influences(std::uint32_t v, InfluencePrediction& prediction);
+  void spatial_residuals(std::uint32_t v);
+
+  SkinnedGofParser& parser_;
+  SkinnedGof& gof_;
+  SliceState& state_;
+  SectionReader section_;
+  std::uint32_t group_;
+  std::uint32_t layers_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,29 @@
+#include "decoder/recon/model_recons.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rlpc {
+
+std::shared_ptr<ModelRecons::Entry> ModelRecons::entry_of(
+    const std::shared_ptr<const SkinnedModel>& model) {
+  const std::lock_guard lock(listing_);
+  std::erase_if(entries_, [](const auto& entry) { return entry->model.use_count() == 1; });
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const auto& entry) { return entry->model == model; });
+  if (found != entries_.end()) return *found;
+  return entries_.emplace_back(std::make_shared<Entry>(model));
+}
+
+std::shared_ptr<const ModelRecon> ModelRecons::of(
+    const std::shared_ptr<const SkinnedModel>& model) {
+  const std::shared_ptr<Entry> entry = entry_of(model);
+  const std::lock_guard lock(entry->making);
+  if (!entry->recon) {
+    entry->recon = std::make_shared<ModelRecon>((*context_.meshes)[model->prediction], *model,
+                                                context_.header.position_bits, true);
+  }
+  return entry->recon;
+}
+
+}  // namespace rlpc

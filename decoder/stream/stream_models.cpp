@@ -1,0 +1,116 @@
+#include "decoder/stream/stream_models.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/syntax/stream_format.h"
+#include "decoder/parse/parse_skinned_gof.h"
+
+namespace rlpc {
+
+Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
+  constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
+                                          UnitType::kModel};
+  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
+                                          unit.type() <= kLast[std::min(version_minor, 2U)]);
+  return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
+               "unit_type", unit.offset * 8};
+}
+
+void StreamModels::put(std::uint64_t offset, Entry entry) {
+  const auto [place, is_new] = entries_.try_emplace(offset);
+  if (!is_new) offsets_[place->second.model_idx].erase(offset);
+  offsets_[entry.model_idx].insert(offset);
+  if (entry.model) kept_.insert(offset);
+  place->second = std::move(entry);
+}
+
+void StreamModels::add(const std::vector<ModelLocation>& locations) {
+  for (const ModelLocation& l : locations) {
+    if (!entries_.contains(l.offset)) put(l.offset, {l.model_idx, 0, nullptr});
+  }
+}
+
+void StreamModels::add(std::uint64_t offset, std::uint64_t end, const ParsedModel& parsed) {
+  put(offset, {parsed.model_idx, end, parsed.model});
+}
+
+std::vector<std::uint64_t> StreamModels::alive_at(std::uint64_t offset) const {
+  std::vector<std::uint64_t> alive;
+  for (const std::set<std::uint64_t>& of_idx : offsets_) {
+    const auto after = of_idx.lower_bound(offset);
+    if (after != of_idx.begin()) alive.push_back(*std::prev(after));
+  }
+  std::sort(alive.begin(), alive.end());
+  return alive;
+}
+
+Result<bool> StreamModels::parse(std::uint64_t offset, Entry& entry, const ModelSlots& models) {
+  const auto unit = units_.header_at(offset);
+  if (!unit) return unit.error();
+  if (unit->type() != UnitType::kModel) return misplaced(*unit, units_.version_minor());
+  const auto parsed = access_units_.read_model(*unit, models);
+  if (!parsed) return parsed.error();
+  if (parsed->model_idx != entry.model_idx) {
+    return Error{Errc::kInvalid, "R-IDX-06", "index_model_idx", access_units_.end() * 8};
+  }
+  entry.end = access_units_.end();
+  entry.model = parsed->model;
+  kept_.insert(offset);
+  return true;
+}
+
+Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
+  const std::vector<std::uint64_t> alive = alive_at(gof_offset);
+  std::erase_if(kept_, [&](std::uint64_t offset) {
+    const bool drop = !std::binary_search(alive.begin(), alive.end(), offset);
+    if (drop) entries_[offset].model.reset();
+    return drop;
+  });
+  ModelSlots models;
+  for (const std::uint64_t offset : alive) {
+    Entry& entry = entries_[offset];
+    if (!entry.model) {
+      if (const auto ok = parse(offset, entry, models); !ok) return ok.error();
+    }
+    models.of_idx[entry.model_idx] = entry.model;
+  }
+  return models;
+}
+
+Result<std::uint64_t> StreamModels::read(const UnitHeader& unit) {
+  const auto known = entries_.find(unit.offset);
+  if (known == entries_.end() || !known->second.model) {
+    const auto models = at(unit.offset);
+    if (!models) return models.error();
+    const auto parsed = access_units_.read_model(unit, *models);
+    if (!parsed) return parsed.error();
+    add(unit.offset, access_units_.end(), *parsed);
+    if (see_) see_(*parsed);
+  }
+  return entries_[unit.offset].end;
+}
+
+Result<std::uint64_t> StreamModels::skip(const UnitHeader& unit) {
+  const auto known = entries_.find(unit.offset);
+  if (known != entries_.end() && known->second.end > 0) return known->second.end;
+  const auto bytes = units_.payload_start(unit, 1);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  Entry entry{parse_model_idx(r), unit.end(), nullptr};
+  if (r.error()) return *r.error();
+  while (entry.end < units_.size()) {
+    const auto next = units_.header_at(entry.end);
+    if (!next) return next.error();
+    if (next->type() != UnitType::kSlice) break;
+    entry.end = next->end();
+  }
+  const std::uint64_t end = entry.end;
+  put(unit.offset, std::move(entry));
+  return end;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,32 @@
+// Stretches of a sequence.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace rlpc {
+
+// Consecutive frames: `count` of them, starting with frame `first`.
+struct GofSpan {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t num_gofs = 1;  // GOFs of about equal length that it is divided into
+};
+
+// `num_spans` spans whose lengths differ by at most one frame.
+inline std::vector<GofSpan> equal_spans(std::uint32_t num_frames, std::uint64_t num_spans) {
+  std::vector<GofSpan> spans;
+  for (std::uint64_t g = 0; g < num_spans; ++g) {
+    const auto first = static_cast<std::uint32_t>(num_frames * g / num_spans);
+    const auto next = static_cast<std::uint32_t>(num_frames * (g + 1) / num_spans);
+    spans.push_back({first, next - first});
+  }
+  return spans;
+}
+
+// The fewest spans of at most `longest` frames.
+inline std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest) {
+  return equal_spans(num_frames, (std::uint64_t{num_frames} + longest - 1) / longest);
+}
+
+}  // namespace rlpc
