@@ -39,7 +39,13 @@ struct SkinnedGofRecipe {
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
   std::uint32_t outer_scale = 0;
-  std::optional<std::uint32_t> num_adaptive_factors;  // of the High profile
+  // Of the High profile, which all of these are, or none.
+  std::optional<std::uint32_t> num_adaptive_factors;
+  bool rest_order_flag = false;
+  std::uint32_t rest_edge_weight = 0;
+  std::uint32_t rest_ring_weight = 0;
+  bool rest_axes_flag = false;
+  bool rest_counterparts_flag = false;
   std::uint32_t num_layer_groups_minus1 = 0;
   std::vector<std::uint32_t> layer_group_layers_minus1;
   std::vector<std::uint32_t> layer_step_minus1;
@@ -65,6 +71,13 @@ struct SkinnedGofRecipe {
       w.ue(num_layer_groups_minus1);
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
+    }
+    if (num_adaptive_factors) w.flag(rest_order_flag);
+    if (rest_order_flag) {
+      w.u(6, rest_edge_weight);
+      w.u(6, rest_ring_weight);
+      w.flag(rest_axes_flag);
+      w.flag(rest_counterparts_flag);
     }
     w.byte_alignment();
     w.append(bone_section());

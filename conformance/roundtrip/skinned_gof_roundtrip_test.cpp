@@ -96,6 +96,22 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
   EXPECT_EQ(a.residual, b.residual);
 }
 
+void expect_equal(const Counterpart& a, const Counterpart& b) {
+  EXPECT_EQ(a.flag, b.flag);
+  EXPECT_EQ(a.new_flag, b.new_flag);
+  EXPECT_EQ(a.hinge, b.hinge);
+  EXPECT_EQ(a.idx, b.idx);
+  EXPECT_EQ(a.mirrored, b.mirrored);
+}
+
+void expect_equal(const RestSettings& a, const RestSettings& b) {
+  EXPECT_EQ(a.order_flag, b.order_flag);
+  EXPECT_EQ(a.edge_weight, b.edge_weight);
+  EXPECT_EQ(a.ring_weight, b.ring_weight);
+  EXPECT_EQ(a.axes_flag, b.axes_flag);
+  EXPECT_EQ(a.counterparts_flag, b.counterparts_flag);
+}
+
 void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   EXPECT_EQ(a.first_frame, b.first_frame);
   EXPECT_EQ(a.num_frames, b.num_frames);
@@ -110,6 +126,11 @@ void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   EXPECT_EQ(a.group_end, b.group_end);
   EXPECT_EQ(a.slice_layers, b.slice_layers);
   EXPECT_EQ(a.vertex_residual, b.vertex_residual);
+  expect_equal(a.rest, b.rest);
+  ASSERT_EQ(a.counterparts.size(), b.counterparts.size());
+  for (std::size_t v = 0; v < a.counterparts.size(); ++v) {
+    expect_equal(a.counterparts[v], b.counterparts[v]);
+  }
   ASSERT_EQ(a.bones.size(), b.bones.size());
   for (std::size_t i = 0; i < a.bones.size(); ++i) expect_equal(a.bones[i], b.bones[i]);
   ASSERT_EQ(a.trajectories.size(), b.trajectories.size());
@@ -310,9 +331,10 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
       for (std::uint32_t j = 0; j < kept[group]; ++j) end += from.gof.layer_group_size[j];
       for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
         const bool is_there = mesh.layer_of(v) < end;
+        const bool is_coded = group == 0 && cut.rest.order_flag ? kept[0] > 0 : is_there;
         for (std::size_t k = 0; k < size; ++k) {
           ASSERT_EQ(cut.vertex_residual[group][v * size + k],
-                    is_there ? from.gof.vertex_residual[group][v * size + k] : 0);
+                    is_coded ? from.gof.vertex_residual[group][v * size + k] : 0);
         }
         if (group == 0 && is_there) {
           EXPECT_TRUE(std::equal(cut.influences[v].begin(), cut.influences[v].end(),

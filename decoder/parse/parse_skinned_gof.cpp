@@ -6,6 +6,7 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
 #include "decoder/parse/parse_component_header.h"
+#include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/parse_track.h"
 #include "decoder/parse/section_reader.h"
 
@@ -14,6 +15,8 @@ namespace {
 
 // Bytes per factor: as a residual with its magnitude, as a value, and laid out for the sums.
 constexpr std::uint64_t kBytesPerFactor = 18;
+// Bytes per vertex of counterparts, and of the hinges that they are chosen from.
+constexpr std::uint64_t kBytesPerCounterpart = 64;
 
 // 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
 static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level) {
@@ -106,14 +109,28 @@ void SkinnedGofParser::layers(BitReader& r) {
   }
 }
 
+// 6.11 rest_of_gof( )
+void SkinnedGofParser::rest(BitReader& r) {
+  if (header_.profile_idc < kProfileHigh) return;
+  RestSettings& rest = gof_.rest;
+  rest.order_flag = r.flag("rest_order_flag");
+  if (!rest.order_flag) return;
+  rest.edge_weight = static_cast<int>(r.u(kRestWeightBits, "rest_edge_weight"));
+  rest.ring_weight = static_cast<int>(r.u(kRestWeightBits, "rest_ring_weight"));
+  rest.axes_flag = r.flag("rest_axes_flag");
+  rest.counterparts_flag = r.flag("rest_counterparts_flag");
+}
+
 // 6.11.1 bone_section( )
 void SkinnedGofParser::bone_section(BitReader& r) {
   SectionReader section(r, "bone_section");
   num_factors_ = 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames +
                  3 * std::uint64_t{header_.num_vertices};
   if (section.failed()) return;
+  const std::uint64_t of_vertex =
+      sizeof(Influences) + (gof_.rest.order_flag ? kBytesPerCounterpart : 0);
   const std::uint64_t needed_bytes =
-      num_factors_ * kBytesPerFactor + sizeof(Influences) * std::uint64_t{header_.num_vertices};
+      num_factors_ * kBytesPerFactor + of_vertex * std::uint64_t{header_.num_vertices};
   if (needed_bytes > max_memory_bytes_) section.fail_memory("bone_section", needed_bytes);
   if (section.failed()) return;
   BoneParser parser(section, header_, gof_.num_frames);
@@ -149,6 +166,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   if (r.error()) return *r.error();
   mesh_ = &meshes_[gof_.prediction];
   layers(r);
+  rest(r);
   r.byte_alignment();
   if (r.error()) return *r.error();
   gof_.bones.resize(num_bones);
@@ -162,6 +180,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
   gof_.influences.assign(header_.num_vertices, {});
   gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
+  if (gof_.rest.counterparts_flag) gof_.counterparts.resize(header_.num_vertices);
   return true;
 }
 
@@ -329,9 +348,12 @@ void SkinnedGofParser::SliceParser::parse() {
        parser_.mesh_->vertices_of_layers(first, first + gof_.layer_group_size[layers_])) {
     if (group_ == 0) influences(v, prediction);
     if (failed()) return;
-    spatial_residuals(v);
+    if (group_ > 0 || !gof_.rest.order_flag) spatial_residuals(v);
     section_.check_overrun("vertex_residual");
     if (failed()) return;
+  }
+  if (gof_.rest.order_flag && group_ == 0 && layers_ == 0) {
+    parse_rest_residuals(section_, parser_.mesh_->rest_order(), *state_.vertex_models, gof_);
   }
   section_.finish();
   if (failed()) return;

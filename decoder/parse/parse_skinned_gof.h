@@ -44,6 +44,7 @@ class SkinnedGofParser {
   class SliceParser;
 
   void layers(BitReader& r);
+  void rest(BitReader& r);
   void bone_section(BitReader& r);
   bool may_follow(std::uint32_t group, std::uint32_t layers) const;
 

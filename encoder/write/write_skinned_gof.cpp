@@ -11,6 +11,7 @@
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/write/section_writer.h"
 #include "encoder/write/write_gof_header.h"
+#include "encoder/write/write_rest.h"
 
 namespace rlpc {
 namespace {
@@ -61,6 +62,7 @@ class SliceWriter {
   void trajectory(SectionWriter& section, const Trajectory& trajectory);
   void influences(SectionWriter& section, std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(SectionWriter& section, std::uint32_t v, std::uint32_t group);
+  void rest_residuals(SectionWriter& section);
 
   const SkinnedGof& gof_;
   const CodedMesh& mesh_;
@@ -139,6 +141,17 @@ void SliceWriter::spatial_residuals(SectionWriter& section, std::uint32_t v,
   }
 }
 
+// 6.12.4 rest_residuals( v ), of all vertices
+void SliceWriter::rest_residuals(SectionWriter& section) {
+  RestWriter writer(mesh_.rest_order(), *vertex_models_);
+  for (const std::uint32_t v : mesh_.rest_order().order()) {
+    const std::int32_t* const residual = &gof_.vertex_residual[0][v * kRestFactors];
+    writer.start(v);
+    if (gof_.rest.counterparts_flag) writer.counterpart(section, gof_.counterparts[v]);
+    writer.finish(section, {residual[0], residual[1], residual[2]});
+  }
+}
+
 std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t layers) {
   BitWriter w;
   w.ue(group);
@@ -164,11 +177,22 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   for (const std::uint32_t v :
        mesh_.vertices_of_layers(first, first + gof_.layer_group_size[layers])) {
     if (group == 0) influences(section, v, prediction);
-    spatial_residuals(section, v, group);
+    if (group > 0 || !gof_.rest.order_flag) spatial_residuals(section, v, group);
   }
+  if (gof_.rest.order_flag && group == 0 && layers == 0) rest_residuals(section);
   if (layers == 0) models_of_group_ = std::make_unique<VertexModels>(*vertex_models_);
   w.append(section.finish());
   return w.take();
+}
+
+// 6.11 rest_of_gof( )
+void write_rest_of_gof(BitWriter& w, const RestSettings& rest) {
+  w.flag(rest.order_flag);
+  if (!rest.order_flag) return;
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.edge_weight));
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.ring_weight));
+  w.flag(rest.axes_flag);
+  w.flag(rest.counterparts_flag);
 }
 
 // 6.5 gof( ) and 6.11 bones_of_gof( )
@@ -193,6 +217,7 @@ std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof,
     }
     for (const std::uint8_t step : gof.layer_step) w.u(4, step - 1U);
   }
+  if (header.profile_idc >= kProfileHigh) write_rest_of_gof(w, gof.rest);
   w.byte_alignment();
   w.append(write_bone_section(gof, header.position_bits));
   return w.take();

@@ -6,6 +6,7 @@
 #include "common/components/series_predictor.h"
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
+#include "common/skinned_gof/recon/rest_recon.h"
 
 namespace rlpc {
 namespace {
@@ -132,7 +133,9 @@ SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int pos
       loops_(loops),
       bones_(recon_bones(gof.bones, gof.num_frames)),
       factors_(mesh.num_vertices(), 3 * std::size_t{gof.num_frames}, loops) {
-  const auto rest = recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
+  const auto rest = gof.rest.order_flag
+                        ? recon_rest(mesh.rest_order(), gof, position_bits)
+                        : recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
   add_influences(complete_influences(mesh, gof), rest);
   add_factors(mesh, gof, rest);
 }

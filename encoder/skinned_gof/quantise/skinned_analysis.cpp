@@ -11,6 +11,7 @@
 #include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
+#include "encoder/skinned_gof/quantise/rest_coding.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
 
 namespace rlpc {
@@ -255,14 +256,10 @@ class SkinnedAnalyser {
     return rest.is_unique ? rest.x : rig_.rest[v];
   }
 
-  void code_rest() {
+  // Residuals by layers, of the wanted positions; gives the values as decoded.
+  std::vector<std::int32_t> code_rest_in_layers(std::span<const Point> wanted) {
     SkinnedGof& gof = found_.gof;
-    const double rest_step =
-        step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
-    gof.rest_step = static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
-    const std::uint32_t n = frames_.num_vertices;
-    std::vector<std::int32_t> values(kRestFactors * std::size_t{n});
+    std::vector<std::int32_t> values(kRestFactors * wanted.size());
     gof.vertex_residual.emplace_back(values.size());
     const ValuePrediction prediction(mesh_, true, nullptr);
     std::array<std::int64_t, kRestFactors> predicted{};
@@ -270,10 +267,10 @@ class SkinnedAnalyser {
       prediction.predict(v, values, predicted);
       const int layer_step = gof.layer_step[mesh_.layer_of(v)];
       const double unit = static_cast<double>(gof.rest_step) * layer_step / kMaxLayerStep;
-      const Point rest = fit_rest(v);
       for (std::size_t c = 0; c < 3; ++c) {
         constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
-        const double steps = (rest[c] * kPointScale - static_cast<double>(predicted[c])) / unit;
+        const double steps =
+            (wanted[v][c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
             static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
         gof.vertex_residual[0][v * kRestFactors + c] = residual;
@@ -282,6 +279,41 @@ class SkinnedAnalyser {
                         predicted[c] + rest_difference(gof, residual, layer_step));
       }
     }
+    return values;
+  }
+
+  // Replaces residuals by those in an order of their own (8.16) if these take fewer bits.
+  void code_rest_in_order_of_its_own(std::span<const Point> wanted,
+                                     std::vector<std::int32_t>& values) {
+    SkinnedGof& gof = found_.gof;
+    const double limit = exact_exp2(rest_bits(position_bits_) - 1);
+    std::vector<std::int32_t> rounded;
+    for (const Point& x : wanted) {
+      for (const double of_axis : x) {
+        rounded.push_back(static_cast<std::int32_t>(
+            round_to_int(std::clamp(of_axis * kPointScale, -limit, limit - 1.0))));
+      }
+    }
+    CodedRest coded = code_rest_in_order(mesh_, rounded, gof.rest_step, position_bits_,
+                                         settings_.rest == RestTools::kCounterparts);
+    if (!(coded.bits < rest_bits_in_layers(mesh_, gof.vertex_residual[0]))) return;
+    gof.rest = coded.settings;
+    gof.vertex_residual[0] = std::move(coded.residual);
+    gof.counterparts = std::move(coded.counterparts);
+    values = std::move(coded.values);
+  }
+
+  void code_rest() {
+    SkinnedGof& gof = found_.gof;
+    const double rest_step =
+        step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
+    gof.rest_step = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
+    const std::uint32_t n = frames_.num_vertices;
+    std::vector<Point> wanted;
+    for (std::uint32_t v = 0; v < n; ++v) wanted.push_back(fit_rest(v));
+    std::vector<std::int32_t> values = code_rest_in_layers(wanted);
+    if (settings_.rest != RestTools::kPrediction) code_rest_in_order_of_its_own(wanted, values);
     for (std::size_t c = 0; c < 3; ++c) {
       found_.rest[c].resize(n);
       for (std::uint32_t v = 0; v < n; ++v) found_.rest[c][v] = values[v * kRestFactors + c];

@@ -21,6 +21,7 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   if (!tools.outer_ring) usual.outer_scale = 0;
   usual.layer_steps = tools.layer_steps;
   if (settings.profile == Profile::kHigh) {
+    usual.rest = tools.rest.value_or(RestTools::kCounterparts);
     usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
   }
   if (settings.preset == Preset::kFast) usual.rounding = Rounding::kDeadZone;

@@ -1,0 +1,29 @@
+// Codes rest positions in an order of their own (8.16), with the weights, axes and counterparts
+// that take the fewest bits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+
+namespace rlpc {
+
+struct CodedRest {
+  RestSettings settings;
+  std::vector<std::int32_t> residual;     // [num_vertices][3]
+  std::vector<std::int32_t> values;       // as decoded, [num_vertices][3]
+  std::vector<Counterpart> counterparts;  // [num_vertices], or empty
+  double bits = 0.0;                      // of the residuals and counterparts
+};
+
+// wanted: [num_vertices][3], 1/16 grid units, in the range of rest positions.
+CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
+                             std::uint32_t rest_step, int position_bits, bool counterparts);
+
+// The bits of rest residuals in the order of the mesh (9.8.4): [num_vertices][3].
+double rest_bits_in_layers(const CodedMesh& mesh, std::span<const std::int32_t> residual);
+
+}  // namespace rlpc
