@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/components/component_limits.h"
+#include "common/components/track_order.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/weight_settings.h"
@@ -36,11 +37,13 @@ struct Bone {
   Vec3i pivot{};             // 1/16 grid units, signed, position_bits + 5 bits
   bool rotation_flag = false;
   std::uint32_t rotation_step_idx = 0;
-  int rotation_order = 1;  // 1 to kMaxPredictorOrder
+  int rotation_order = 1;    // 1 to kMaxPredictorOrder
+  int rotation_between = 0;  // 0 to kMaxBetween
   TrackResiduals rotation_residual;
   bool origin_flag = false;
   std::uint32_t origin_step_idx = 0;
-  int origin_order = 0;  // 0 to kMaxPredictorOrder
+  int origin_order = 0;    // 0 to kMaxPredictorOrder
+  int origin_between = 0;  // 0 to kMaxBetween
   TrackResiduals origin_residual;
 };
 
@@ -64,6 +67,7 @@ struct Trajectory {
   int spatial_bits = 1;
   int temporal_bits = 1;
   int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
+  int temporal_between = 0;    // 0 to kMaxBetween
   std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
   TrackResiduals residual;
 };
@@ -75,6 +79,7 @@ struct SkinnedGof : GofHeader {
   int fraction_bits = 0;
   int weight_bits = 0;
   std::uint32_t rest_step = 1;  // 1/16 grid units
+  int track_levels = 0;         // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
   Prediction prediction = Prediction::kLayers;
   WeightSettings weights;
   std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers

@@ -169,6 +169,14 @@ class HighSource(MainSource):
     def _num_adaptive_factors(self, ns, indices, arguments):
         return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
 
+    def _track_levels(self, ns, indices, arguments):
+        return self.numbers.pick([0, 1, 2, 3, self.numbers.between(0, 7)])
+
+    def _rotation_between(self, ns, indices, arguments):
+        return self.numbers.between(0, 2)
+
+    _origin_between = _temporal_between = _rotation_between
+
 
 class HighSequence(MainSequence):
     """The units of a random stream of the High profile."""

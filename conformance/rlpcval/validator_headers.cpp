@@ -184,6 +184,7 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
   const bool good_groups =
       r.require(groups <= kMaxComponentGroups, "R-BON-02", at_most(kMaxComponentGroups));
   good &= good_groups;
+  if (header.profile_idc >= kProfileHigh) (void)r.u(3, "track_levels");
   SliceCounts slices;
   const auto prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
   if (prediction == Prediction::kLayers &&

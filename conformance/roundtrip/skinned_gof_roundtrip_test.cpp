@@ -80,10 +80,12 @@ void expect_equal(const Bone& a, const Bone& b) {
   EXPECT_EQ(a.rotation_flag, b.rotation_flag);
   EXPECT_EQ(a.rotation_step_idx, b.rotation_step_idx);
   EXPECT_EQ(a.rotation_order, b.rotation_order);
+  EXPECT_EQ(a.rotation_between, b.rotation_between);
   EXPECT_EQ(a.rotation_residual, b.rotation_residual);
   EXPECT_EQ(a.origin_flag, b.origin_flag);
   EXPECT_EQ(a.origin_step_idx, b.origin_step_idx);
   EXPECT_EQ(a.origin_order, b.origin_order);
+  EXPECT_EQ(a.origin_between, b.origin_between);
   EXPECT_EQ(a.origin_residual, b.origin_residual);
 }
 
@@ -92,6 +94,7 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
   EXPECT_EQ(a.spatial_bits, b.spatial_bits);
   EXPECT_EQ(a.temporal_bits, b.temporal_bits);
   EXPECT_EQ(a.temporal_predictor, b.temporal_predictor);
+  EXPECT_EQ(a.temporal_between, b.temporal_between);
   EXPECT_EQ(a.temporal_weight, b.temporal_weight);
   EXPECT_EQ(a.residual, b.residual);
 }
@@ -102,6 +105,7 @@ void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   EXPECT_EQ(a.fraction_bits, b.fraction_bits);
   EXPECT_EQ(a.weight_bits, b.weight_bits);
   EXPECT_EQ(a.rest_step, b.rest_step);
+  EXPECT_EQ(a.track_levels, b.track_levels);
   EXPECT_EQ(a.prediction, b.prediction);
   EXPECT_EQ(a.weights, b.weights);
   EXPECT_EQ(a.layer_group_size, b.layer_group_size);

@@ -25,11 +25,12 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
 // 6.11.2 bone( b )
 class BoneParser {
  public:
-  BoneParser(SectionReader& section, const SequenceHeader& header, std::uint32_t num_frames)
+  BoneParser(SectionReader& section, const SequenceHeader& header, const SkinnedGof& gof)
       : section_(section),
         header_(header),
-        rotation_mean_(num_frames, 0),
-        origin_mean_(num_frames, 0) {}
+        gof_(gof),
+        rotation_mean_(gof.num_frames, 0),
+        origin_mean_(gof.num_frames, 0) {}
 
   Bone parse(std::uint32_t b) {
     Bone bone;
@@ -48,14 +49,16 @@ class BoneParser {
       bone.rotation_step_idx = step_idx("rotation_step_idx");
       bone.rotation_order =
           section_.truncated_unary(models_.rotation_order, "rotation_order_minus1") + 1;
-      bone.rotation_residual =
-          parse_track(section_, models_.rotation, rotation_mean_, "rotation_residual");
+      bone.rotation_between = between(models_.rotation_between, "rotation_between");
+      bone.rotation_residual = parse_track(section_, models_.rotation, rotation_mean_,
+                                           order(bone.rotation_between), "rotation_residual");
     }
     if (bone.origin_flag) {
       bone.origin_step_idx = step_idx("origin_step_idx");
       bone.origin_order = section_.truncated_unary(models_.origin_order, "origin_order");
-      bone.origin_residual =
-          parse_track(section_, models_.origin, origin_mean_, "origin_residual");
+      bone.origin_between = between(models_.origin_between, "origin_between");
+      bone.origin_residual = parse_track(section_, models_.origin, origin_mean_,
+                                         order(bone.origin_between), "origin_residual");
     }
     return bone;
   }
@@ -67,8 +70,16 @@ class BoneParser {
     return std::min(idx, kMaxStepIdx);
   }
 
+  int between(std::array<BitModel, kMaxBetween>& models, const char* element) {
+    return gof_.track_levels > 0 ? section_.truncated_unary(models, element) : 0;
+  }
+  std::vector<TrackPlace> order(int between) const {
+    return track_order(gof_.num_frames, gof_.track_levels, between);
+  }
+
   SectionReader& section_;
   const SequenceHeader& header_;
+  const SkinnedGof& gof_;
   BoneModels models_;
   std::vector<std::uint32_t> rotation_mean_;
   std::vector<std::uint32_t> origin_mean_;
@@ -116,7 +127,7 @@ void SkinnedGofParser::bone_section(BitReader& r) {
       num_factors_ * kBytesPerFactor + sizeof(Influences) * std::uint64_t{header_.num_vertices};
   if (needed_bytes > max_memory_bytes_) section.fail_memory("bone_section", needed_bytes);
   if (section.failed()) return;
-  BoneParser parser(section, header_, gof_.num_frames);
+  BoneParser parser(section, header_, gof_);
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
     gof_.bones[b] = parser.parse(b);
     section.check_overrun("origin_residual");
@@ -145,6 +156,9 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header) 
   gof_.rest_step = r.ue("rest_step_minus1", {0, kMaxRestStep - 1}, "R-BON-01") + 1;
   gof_.num_component_groups =
       r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
+  if (header_.profile_idc >= kProfileHigh) {
+    gof_.track_levels = static_cast<int>(r.u(3, "track_levels"));
+  }
   gof_.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
   if (r.error()) return *r.error();
   mesh_ = &meshes_[gof_.prediction];
@@ -247,8 +261,14 @@ void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
     trajectory.temporal_weight[static_cast<std::size_t>(k)] =
         static_cast<std::int16_t>(static_cast<int>(weight) - kTemporalWeightOffset);
   }
-  trajectory.residual = parse_track(section_, state_.models.temporal, state_.trajectory_mean,
-                                    "trajectory_residual");
+  if (gof_.track_levels > 0) {
+    trajectory.temporal_between =
+        section_.truncated_unary(state_.models.temporal_between, "temporal_between");
+  }
+  trajectory.residual =
+      parse_track(section_, state_.models.trajectory, state_.trajectory_mean,
+                  track_order(gof_.num_frames, gof_.track_levels, trajectory.temporal_between),
+                  "trajectory_residual");
 }
 
 // 9.8.1 StartSlice( )

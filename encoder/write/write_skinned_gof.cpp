@@ -15,6 +15,15 @@
 namespace rlpc {
 namespace {
 
+void write_between(SectionWriter& section, const SkinnedGof& gof,
+                   std::array<BitModel, kMaxBetween>& models, int between) {
+  if (gof.track_levels > 0) section.truncated_unary(models, between);
+}
+
+std::vector<TrackPlace> order_of(const SkinnedGof& gof, int between) {
+  return track_order(gof.num_frames, gof.track_levels, between);
+}
+
 // 6.11.1 bone_section( )
 std::vector<std::uint8_t> write_bone_section(const SkinnedGof& gof, int position_bits) {
   SectionWriter section;
@@ -34,12 +43,16 @@ std::vector<std::uint8_t> write_bone_section(const SkinnedGof& gof, int position
     if (bone.rotation_flag) {
       section.bypass(8, bone.rotation_step_idx);
       section.truncated_unary(models.rotation_order, bone.rotation_order - 1);
-      section.track(models.rotation, rotation_mean, bone.rotation_residual);
+      write_between(section, gof, models.rotation_between, bone.rotation_between);
+      section.track(models.rotation, rotation_mean, order_of(gof, bone.rotation_between),
+                    bone.rotation_residual);
     }
     if (bone.origin_flag) {
       section.bypass(8, bone.origin_step_idx);
       section.truncated_unary(models.origin_order, bone.origin_order);
-      section.track(models.origin, origin_mean, bone.origin_residual);
+      write_between(section, gof, models.origin_between, bone.origin_between);
+      section.track(models.origin, origin_mean, order_of(gof, bone.origin_between),
+                    bone.origin_residual);
     }
   }
   return section.finish();
@@ -87,7 +100,9 @@ void SliceWriter::trajectory(SectionWriter& section, const Trajectory& trajector
     const int weight = trajectory.temporal_weight[static_cast<std::size_t>(k)];
     section.bypass(9, static_cast<std::uint32_t>(weight + kTemporalWeightOffset));
   }
-  section.track(models_.temporal, trajectory_mean_, trajectory.residual);
+  write_between(section, gof_, models_.temporal_between, trajectory.temporal_between);
+  section.track(models_.trajectory, trajectory_mean_,
+                order_of(gof_, trajectory.temporal_between), trajectory.residual);
 }
 
 // 6.12.2 influences( v )
@@ -181,6 +196,9 @@ std::vector<std::uint8_t> write_bones_of_gof(const SkinnedGof& gof,
   w.u(3, static_cast<std::uint32_t>(gof.weight_bits));
   w.ue(gof.rest_step - 1);
   w.ue(gof.num_component_groups);
+  if (header.profile_idc >= kProfileHigh) {
+    w.u(3, static_cast<std::uint32_t>(gof.track_levels));
+  }
   w.u(2, static_cast<std::uint32_t>(gof.prediction));
   if (gof.prediction == Prediction::kLayers) {
     w.u(4, static_cast<std::uint32_t>(gof.weights.damping_log2));

@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/components/series_predictor.h"
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
 
 namespace rlpc {
-namespace {
-
-constexpr int kTemporalWeightFractionBits = 6;
-
-}  // namespace
-
 // 8.10.2 Spatial values
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
@@ -72,41 +65,17 @@ std::vector<Influences> complete_influences(const CodedMesh& mesh, const Skinned
 }
 
 // 8.14.2 Trajectories
-Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values) {
-  Vec3l prediction{};
-  const auto f = static_cast<std::uint32_t>(values.size());
-  int order = trajectory.temporal_predictor;
-  if (order > kMaxPredictorOrder) {
-    const auto count = static_cast<std::size_t>(order - kMaxPredictorOrder);
-    if (f >= count) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        std::int64_t sum = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-          sum += std::int64_t{trajectory.temporal_weight[k]} * values[f - 1 - k][c];
-        }
-        prediction[c] = round2(sum, kTemporalWeightFractionBits);
-      }
-      return prediction;
-    }
-    order = 1;
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    prediction[c] =
-        predict_series([&](std::uint32_t g) { return std::int64_t{values[g][c]}; }, f, order);
-  }
-  return prediction;
-}
-
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory) {
-  std::vector<Vec3i> values;
-  values.reserve(trajectory.residual.size());
-  for (const Vec3i& residual : trajectory.residual) {
-    const Vec3l prediction = predict_trajectory(trajectory, values);
-    Vec3i value{};
+std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels) {
+  const auto num_frames = static_cast<std::uint32_t>(trajectory.residual.size());
+  std::vector<Vec3i> values(num_frames);
+  for (const TrackPlace& at :
+       track_order(num_frames, track_levels, trajectory.temporal_between)) {
     for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = clip_signed(kTemporalIndexBits, prediction[c] + residual[c]);
+      const auto known = [&](std::uint32_t f) { return std::int64_t{values[f][c]}; };
+      values[at.frame][c] =
+          clip_signed(kTemporalIndexBits, predict_trajectory(trajectory, known, at) +
+                                              trajectory.residual[at.frame][c]);
     }
-    values.push_back(value);
   }
   return values;
 }
@@ -130,7 +99,7 @@ SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int pos
       num_vertices_(mesh.num_vertices()),
       widths_{gof.weight_bits, gof.fraction_bits, position_bits},
       loops_(loops),
-      bones_(recon_bones(gof.bones, gof.num_frames)),
+      bones_(recon_bones(gof.bones, gof.num_frames, gof.track_levels)),
       factors_(mesh.num_vertices(), 3 * std::size_t{gof.num_frames}, loops) {
   const auto rest = recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
   add_influences(complete_influences(mesh, gof), rest);
@@ -194,7 +163,7 @@ void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
                                      adaptive ? &*adaptive : nullptr);
     for (std::size_t k = 0; k < factors.size(); ++k) {
       const Trajectory& trajectory = gof.trajectories[factors.first + k - kRestFactors];
-      const std::vector<Vec3i> series = recon_trajectory(trajectory);
+      const std::vector<Vec3i> series = recon_trajectory(trajectory, gof.track_levels);
       for (std::size_t f = 0; f < num_frames_; ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
           temporal[3 * f + c] =

@@ -11,7 +11,6 @@
 #include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
-#include "encoder/skinned_gof/quantise/track_coding.h"
 
 namespace rlpc {
 namespace {
@@ -88,6 +87,17 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
   return motions;
 }
 
+}  // namespace
+
+TrackOptions track_options(const SkinnedSettings& settings) {
+  return {.refine = settings.temporal_weights,
+          .nearest = settings.rounding == Rounding::kNearest,
+          .track_levels = settings.track_levels,
+          .fast = settings.rounding == Rounding::kDeadZone};
+}
+
+namespace {
+
 class SkinnedAnalyser {
  public:
   SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
@@ -105,6 +115,7 @@ class SkinnedAnalyser {
     gof.num_frames = frames_.num_frames;
     gof.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
     gof.prediction = settings_.prediction;
+    gof.track_levels = settings_.track_levels;
     gof.layer_group_size = {mesh_.num_layers()};
     gof.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
     gof.slice_layers = {1};
@@ -208,8 +219,8 @@ class SkinnedAnalyser {
       }
       const BoneMotion* parent =
           bone.parent < 0 ? nullptr : &found_.bones[static_cast<std::size_t>(bone.parent)];
-      found_.bones.push_back(code_bone(wanted, parent, settings_.rounding == Rounding::kNearest,
-                                       rotations, origins, bone));
+      found_.bones.push_back(
+          code_bone(wanted, parent, track_options(settings_), rotations, origins, bone));
       motions_.push_back(motions_of(found_.bones.back()));
       found_.gof.bones.push_back(std::move(bone));
     }

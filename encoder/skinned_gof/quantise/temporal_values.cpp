@@ -71,15 +71,12 @@ class TemporalCoder {
     Trajectory trajectory;
     TrackState after = state_;
     const TrackCost cost =
-        code_trajectory(wanted, unit,
-                        {.refine = settings_.temporal_weights,
-                         .nearest = settings_.rounding == Rounding::kNearest},
-                        after, trajectory);
+        code_trajectory(wanted, unit, track_options(settings_), after, trajectory);
     const double saved = analysis_.pc.energy[l] * (1.0 - cost.error * unit * unit);
     if (saved < least_worth(cost.bits, l)) return false;
     state_ = std::move(after);
     values.eighths.push_back(eighths);
-    values.indices.push_back(recon_trajectory(trajectory));
+    values.indices.push_back(recon_trajectory(trajectory, settings_.track_levels));
     values.trajectories.push_back(std::move(trajectory));
     std::vector<double>& decoded = values.decoded.emplace_back(3 * num_frames);
     for (std::size_t f = 0; f < num_frames; ++f) {
