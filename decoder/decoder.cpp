@@ -26,7 +26,7 @@ class Decoder::Impl {
         band_(threads_) {
     // A trace follows the order of the stream.
     if (threads_ > 1 && options.trace == nullptr) {
-      prefetch_.emplace(stream_, options.limits.max_memory_bytes / threads_);
+      prefetch_.emplace(stream_, options.limits.max_memory_bytes / threads_, threads_);
     }
   }
 
@@ -99,7 +99,7 @@ Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   }
   auto access_unit = stream_.read(unit);
   if (!access_unit) return access_unit.error();
-  return prepare(std::move(*access_unit), stream_.context());
+  return prepare(std::move(*access_unit), stream_.context(), threads_);
 }
 
 // 8.6.1 Output order

@@ -96,6 +96,8 @@ struct Target {
   double value = 0.1;  // above zero and finite
 };
 
+inline constexpr std::uint32_t kMaxEncoderThreads = 256;  // fixed: a guard
+
 struct EncoderSettings {
   static constexpr std::uint32_t kWholeSequence = std::numeric_limits<std::uint32_t>::max();
 
@@ -114,6 +116,10 @@ struct EncoderSettings {
   // Encodings that may need more memory fail before they start. The estimate is for animations
   // that compress badly, and includes the memory held by the source.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
+  // Threads, with that of the caller; the bytes do not depend on it. Each needs memory for a
+  // GOF: there are fewer where that would exceed max_memory_bytes. Clamped to 1 to
+  // kMaxEncoderThreads.
+  std::uint32_t threads = 1;
 };
 
 // Bits of the stream by purpose.

@@ -10,7 +10,7 @@ import struct
 import subprocess
 import threading
 
-from tools_testing import Result, Tools, ToolsTest, main, write_pc2
+from tools_testing import INPUTS, NAMES, Result, Tools, ToolsTest, main, run, write_pc2
 
 MIB = 1 << 20
 SIGNATURE = b"\x89RLPC\r\n\x1a"
@@ -63,6 +63,27 @@ def endless(begin, block=bytes(MIB)):
         for _ in range(2000):
             pipe.write(block)
     return feed
+
+
+class Threads(ToolsTest):
+    """The stream does not depend on the number of threads."""
+
+    def test_any_number_of_threads_gives_the_same_bytes(self):
+        runs = [(name, *profile, *preset, *gof)
+                for name in NAMES
+                for profile in (("--profile", "main"), ("--profile", "high"))
+                for preset in (("--preset", "fast"), ("--preset", "medium"), ("--preset", "slow"))
+                for gof in (("--gof", "all"), ("--gof", "16"))]
+        for name, *options in runs:
+            streams = []
+            for threads in (1, 2, 3, 7):
+                out = self.path(f"{threads}.rlpc")
+                done = run("rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2",
+                           "-o", out, "-q", "--kg", "0.3", "--threads", threads, *options)
+                self.assertEqual(done.code, 0, done.err)
+                streams.append(out.read_bytes())
+            for stream in streams[1:]:
+                self.assertEqual(stream, streams[0], f"{name} {options}")
 
 
 class Endless(MeasuredTest):

@@ -12,4 +12,6 @@ std::future<bool> run_async(std::function<void()> /*work*/) {
   return none.get_future();
 }
 
+ForEach on_threads(std::uint32_t /*threads*/) { return in_order; }
+
 }  // namespace rlpc

@@ -22,21 +22,23 @@ class ReconOfKind final : public GofRecon {
   Recon recon_;
 };
 
-ClusterRecon recon_of(const ClusterGof& gof, const StreamContext& context) {
+ClusterRecon recon_of(const ClusterGof& gof, const StreamContext& context,
+                      const ForEach& /*for_each*/) {
   return {context.header, context.topology, gof};
 }
 
-SkinnedRecon recon_of(const SkinnedGof& gof, const StreamContext& context) {
-  return {(*context.meshes)[gof.prediction], gof, context.header.position_bits};
+SkinnedRecon recon_of(const SkinnedGof& gof, const StreamContext& context,
+                      const ForEach& for_each) {
+  return {(*context.meshes)[gof.prediction], gof, context.header.position_bits, for_each};
 }
 
 }  // namespace
 
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context) {
+                                     const StreamContext& context, const ForEach& for_each) {
   return std::visit(
       [&](const auto& gof) -> std::unique_ptr<GofRecon> {
-        auto recon = recon_of(gof, context);
+        auto recon = recon_of(gof, context, for_each);
         return std::make_unique<ReconOfKind<decltype(recon)>>(std::move(recon));
       },
       access_unit.gof);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "common/for_each.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 
@@ -28,8 +29,9 @@ class GofRecon {
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive
-// the result. Cannot fail: parsing has checked every range.
+// the result. Cannot fail: parsing has checked every range. for_each: runs over vertices.
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context);
+                                     const StreamContext& context,
+                                     const ForEach& for_each = in_order);
 
 }  // namespace rlpc

@@ -20,7 +20,8 @@ struct PreparedGof {
   bool is_cut = false;
   std::unique_ptr<GofRecon> recon;
 };
-PreparedGof prepare(AccessUnit access_unit, const StreamContext& context);
+PreparedGof prepare(AccessUnit access_unit, const StreamContext& context,
+                    std::uint32_t threads = 1);
 
 class Prefetch {
  public:
@@ -29,9 +30,9 @@ class Prefetch {
     std::uint64_t end;  // of its units, bytes from the start of the stream
   };
 
-  // The stream must outlive it. max_memory_bytes: of each GOF.
-  Prefetch(StreamReader& stream, std::uint64_t max_memory_bytes)
-      : stream_(stream), max_memory_bytes_(max_memory_bytes) {}
+  // The stream must outlive it. max_memory_bytes: of each GOF. threads: of all GOFs together.
+  Prefetch(StreamReader& stream, std::uint64_t max_memory_bytes, std::uint32_t threads)
+      : stream_(stream), max_memory_bytes_(max_memory_bytes), threads_(threads) {}
 
   // Keeps up to `count` GOFs ready or in progress, from a byte offset on; the first of them
   // begins with first_frame. Drops earlier ones.
@@ -49,10 +50,11 @@ class Prefetch {
   };
 
   std::optional<CodedAccessUnit> collect(std::uint64_t offset, std::uint32_t first_frame);
-  std::optional<PreparedGof> parse(const CodedAccessUnit& coded) const;
+  std::optional<PreparedGof> parse(const CodedAccessUnit& coded, std::uint32_t threads) const;
 
   StreamReader& stream_;
   std::uint64_t max_memory_bytes_;
+  std::uint32_t threads_;
   std::deque<Ahead> gofs_;
 };
 

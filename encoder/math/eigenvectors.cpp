@@ -223,8 +223,8 @@ class SubspaceIteration {
 }  // namespace
 
 EigenPairs leading_eigenvectors(const std::vector<double>& matrix, std::size_t width,
-                                std::size_t max_count, double least) {
-  if (width >= kWide) {
+                                std::size_t max_count, double least, bool may_be_few) {
+  if (may_be_few && width >= kWide) {
     if (auto few = SubspaceIteration(matrix, width).find(max_count, least)) {
       return std::move(*few);
     }

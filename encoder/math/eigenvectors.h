@@ -16,9 +16,10 @@ struct EigenPairs {
 // eigenvalues or, for a wide matrix of which few vectors are wanted, at least theirs; the time
 // is then quadratic in the width instead of cubic.
 //
-//   matrix  [width][width], the lower triangle is read
-//   least   not negative
+//   matrix       [width][width], the lower triangle is read
+//   least        not negative
+//   may_be_few   false: it is known that many vectors are wanted
 EigenPairs leading_eigenvectors(const std::vector<double>& matrix, std::size_t width,
-                                std::size_t max_count, double least);
+                                std::size_t max_count, double least, bool may_be_few = true);
 
 }  // namespace rlpc

@@ -30,6 +30,15 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result);
 
+// The same in single precision: a * b, and a^T * b.
+//
+//   a  [num_rows][a_width]
+//   b  [a_width][b_width], or for a^T * b, [num_rows][b_width]
+std::vector<float> matrix_product(std::span<const float> a, std::size_t a_width,
+                                  std::span<const float> b, std::size_t b_width);
+std::vector<float> transposed_product(std::span<const float> a, std::size_t a_width,
+                                      std::span<const float> b, std::size_t b_width);
+
 // row * b, each element summed strictly in the order of the rows of b.
 //
 //   row     [width]

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "encoder/math/eigenvectors.h"
+#include "encoder/math/few_components.h"
 #include "encoder/math/matrix_products.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -32,6 +34,15 @@ double squared_norm(const std::vector<double>& a) {
   return sum;
 }
 
+// Writes consecutive rows, starting with row `first`.
+void write_rows(const TrajectoryRows& rows, std::size_t first, std::span<double> to) {
+  constexpr std::size_t kTogether = 32;  // rows to a pass of the loop
+  const std::size_t width = rows.num_frames;
+  for_ranges(to.size() / width, kTogether, [&](std::size_t begin, std::size_t end) {
+    rows.write(first + begin, to.subspan(begin * width, (end - begin) * width));
+  });
+}
+
 // Visits all rows in order, a block at a time.
 void for_some_rows(const TrajectoryRows& rows,
                    const std::function<void(std::span<const double>)>& use) {
@@ -39,7 +50,7 @@ void for_some_rows(const TrajectoryRows& rows,
   std::vector<double> some;
   for (std::size_t first = 0; first < rows.num_values; first += kTogether) {
     some.resize(std::min(kTogether, rows.num_values - first) * rows.num_frames);
-    rows.write(first, some);
+    write_rows(rows, first, some);
     use(some);
   }
 }
@@ -77,39 +88,58 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
   return pc;
 }
 
-ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_components,
-                                  double min_energy) {
+namespace {
+
+// From the eigenvectors of the smaller of the two Gram matrices.
+ComponentsByRow all_components(const TrajectoryRows& rows, std::span<const float> single,
+                               std::size_t max_components, double least) {
   ComponentsByRow result;
   const std::size_t width = rows.num_frames;
   if (width > rows.num_values) {
     TrajectoryMatrix matrix{rows.num_values, width,
                             std::vector<double>(rows.num_values * width)};
-    rows.write(0, matrix.a);
-    PrincipalComponents pc = principal_components(matrix, max_components, min_energy);
+    write_rows(rows, 0, matrix.a);
+    PrincipalComponents pc = principal_components(matrix, max_components, least);
     const std::vector<double> spatial = as_columns(pc.spatial, rows.num_values);
     result.spatial.assign(spatial.begin(), spatial.end());
-    result.total_energy = pc.total_energy;
     result.energy = std::move(pc.energy);
     result.temporal = std::move(pc.temporal);
     return result;
   }
-  if (width == 0) return result;
   std::vector<double> gram(width * width);
-  for_some_rows(rows, [&](std::span<const double> some) {
-    for (const double x : some) result.total_energy += x * x;
-    add_gram_matrix(some, width, gram);
-  });
-  EigenPairs pairs = leading_eigenvectors(gram, width, max_components,
-                                          least_energy(result.total_energy, min_energy));
+  for_some_rows(rows,
+                [&](std::span<const double> some) { add_gram_matrix(some, width, gram); });
+  EigenPairs pairs = leading_eigenvectors(gram, width, max_components, least, false);
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
   const std::vector<double> vectors = as_columns(result.temporal, width);
-  result.spatial.reserve(rows.num_values * result.temporal.size());
+  const std::vector<float> of_single(vectors.begin(), vectors.end());
+  result.spatial = matrix_product(single, width, of_single, result.temporal.size());
+  return result;
+}
+
+}  // namespace
+
+ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_components,
+                                  double min_energy) {
+  const std::size_t width = rows.num_frames;
+  if (width == 0 || rows.num_values == 0) return {};
+  double total_energy = 0.0;
+  std::vector<float> single;
+  single.reserve(rows.num_values * width);
   for_some_rows(rows, [&](std::span<const double> some) {
-    const std::vector<double> products =
-        matrix_product(some, width, vectors, result.temporal.size());
-    result.spatial.insert(result.spatial.end(), products.begin(), products.end());
+    for (const double x : some) {
+      total_energy += x * x;
+      single.push_back(static_cast<float>(x));
+    }
   });
+  const double least = least_energy(total_energy, min_energy);
+  if (auto few = few_components(single, width, max_components, least)) {
+    few->total_energy = total_energy;
+    return std::move(*few);
+  }
+  ComponentsByRow result = all_components(rows, single, max_components, least);
+  result.total_energy = total_energy;
   return result;
 }
 

@@ -33,15 +33,17 @@ struct PrincipalComponents {
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 
-// A matrix [num_values][num_frames] that is generated row by row and never stored as a whole.
+// A matrix [num_values][num_frames] that is generated row by row; stored, if at all, in single
+// precision.
 struct TrajectoryRows {
   std::size_t num_values = 0;
   std::size_t num_frames = 0;
-  // Fills `rows` with consecutive rows, starting with row `first`; called twice for each row.
+  // Fills `rows` with consecutive rows, starting with row `first`; called once or twice for
+  // each row, by any thread.
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };
 
-// The same components of such a matrix; needs little memory besides the result.
+// The same components of such a matrix.
 struct ComponentsByRow {
   double total_energy = 0.0;
   std::vector<double> energy;

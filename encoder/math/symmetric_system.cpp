@@ -1,5 +1,6 @@
 #include "encoder/math/symmetric_system.h"
 
+#include <array>
 #include <utility>
 
 #include "encoder/math/matrix_products.h"
@@ -10,11 +11,18 @@ namespace {
 // Row `to` of b -= factor * row `from`.
 void subtract_row(std::span<double> b, std::size_t width, double factor, std::size_t from,
                   std::size_t to) {
-  if (width == 1) {
-    b[to] -= factor * b[from];
-  } else {
-    subtract_multiple(factor, b.subspan(from * width, width), b.subspan(to * width, width));
+  subtract_multiple(factor, b.subspan(from * width, width), b.subspan(to * width, width));
+}
+
+// The sum of a[i] * b[i], as four partial sums.
+double dot(std::span<const double> a, std::span<const double> b) {
+  std::array<double, 4> sum{};
+  std::size_t i = 0;
+  for (; i + sum.size() <= a.size(); i += sum.size()) {
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += a[i + k] * b[i + k];
   }
+  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 }  // namespace
@@ -33,13 +41,26 @@ SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double le
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = top[i] / top[k];
       if (factor == 0.0) continue;
-      double* row = &factors_[i * n];
-      for (std::size_t j = i; j < n; ++j) row[j] -= factor * top[j];
+      subtract_multiple(factor, {top + i, n - i}, {&factors_[i * n + i], n - i});
     }
   }
 }
 
+void SymmetricSystem::solve_one(std::span<double> b) const {
+  for (std::size_t k = 0; k < n_; ++k) {
+    const double* top = &factors_[k * n_];
+    if (top[k] == 0.0) continue;
+    subtract_multiple(b[k] / top[k], {top + k + 1, n_ - k - 1}, b.subspan(k + 1));
+  }
+  for (std::size_t k = n_; k-- > 0;) {
+    const double* top = &factors_[k * n_];
+    b[k] = top[k] == 0.0 ? 0.0
+                         : (b[k] - dot({top + k + 1, n_ - k - 1}, b.subspan(k + 1))) / top[k];
+  }
+}
+
 void SymmetricSystem::solve(std::span<double> b, std::size_t width) const {
+  if (width == 1) return solve_one(b);
   for (std::size_t k = 0; k < n_; ++k) {
     const double* top = &factors_[k * n_];
     if (top[k] == 0.0) continue;

@@ -23,6 +23,8 @@ class SymmetricSystem {
   void solve(std::span<double> b, std::size_t width = 1) const;
 
  private:
+  void solve_one(std::span<double> b) const;
+
   std::size_t n_;
   std::vector<double> factors_;  // [n][n], rows of D L^T; a pivot of 0 is not used
   bool is_unique_ = true;

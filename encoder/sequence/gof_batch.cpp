@@ -1,6 +1,9 @@
 #include "encoder/sequence/gof_batch.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 
@@ -26,6 +29,7 @@ bool GofBatch::use_last_resort() {
 std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analysis_step) {
   const bool needed = !gof.coder || gof.coder->needs_frames(step, analysis_step);
   if (needed && gof.frames.xyz.empty()) {
+    const std::lock_guard lock(reading_);
     auto frames = coding_.read_frames(source_, gof.span);
     if (!frames) return frames.error();
     gof.frames = std::move(*frames);
@@ -37,12 +41,17 @@ std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analys
 
 std::optional<InputError> GofBatch::analyse(double analysis_step) {
   if (!options_.keep_analyses) return std::nullopt;
-  for (Gof& gof : gofs_) {
-    if (auto error = prepare(gof, analysis_step, analysis_step)) return error;
+  std::vector<std::optional<InputError>> errors(gofs_.size());
+  for_each(gofs_.size(), [&](std::size_t g) {
+    Gof& gof = gofs_[g];
+    errors[g] = prepare(gof, analysis_step, analysis_step);
+    if (errors[g]) return;
     gof.coder->analyse(analysis_step);
     gof.frames = {};
-  }
-  return std::nullopt;
+  });
+  const auto first = std::find_if(errors.begin(), errors.end(),
+                                  [](const auto& error) { return error.has_value(); });
+  return first == errors.end() ? std::nullopt : *first;
 }
 
 std::function<double(double step)> GofBatch::expected_error() const {
@@ -58,35 +67,43 @@ std::function<double(double step)> GofBatch::expected_error() const {
   };
 }
 
-InputResult<CodedGof> GofBatch::encode(Gof& gof, double step, double analysis_step,
-                                       MetricsAccumulator& metrics) {
+InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
+                                                    double analysis_step) {
   if (auto error = prepare(gof, step, analysis_step)) return *error;
   const EncodedGof encoded = gof.coder->encode(step, analysis_step);
   if (!options_.keep_analyses) gof.coder->release_analysis();
   if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
     gof.frames = {};
   }
-  auto hash_unit = coding_.measure(source_, gof.span, encoded.frame, metrics);
+  MetricsAccumulator metrics(coding_.header().num_vertices);
+  auto hash_unit = coding_.measure({source_, reading_}, gof.span, encoded.frame, metrics);
   if (!hash_unit) return hash_unit.error();
-  return CodedGof{{gof.span.count, write_gof_units(encoded), std::move(*hash_unit)},
-                  LevelNeeds(encoded),
-                  encoded.clusters,
-                  encoded.components,
-                  options_.keep_decoded ? encoded.frame : nullptr};
+  return MeasuredGof{{{gof.span.count, write_gof_units(encoded), std::move(*hash_unit)},
+                      LevelNeeds(encoded),
+                      encoded.clusters,
+                      encoded.components,
+                      options_.keep_decoded ? encoded.frame : nullptr},
+                     std::move(metrics)};
 }
 
 InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,
                                          const Progress& progress) {
+  std::vector<std::optional<InputResult<MeasuredGof>>> coded(gofs_.size());
+  std::mutex counting;
+  std::size_t done = 0;
+  for_each(gofs_.size(), [&](std::size_t g) {
+    coded[g] = encode(gofs_[g], step, analysis_step);
+    const std::lock_guard lock(counting);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(gofs_.size()));
+  });
   BatchTrial trial;
   MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
-  for (Gof& gof : gofs_) {
-    auto coded = encode(gof, step, analysis_step, metrics);
-    if (!coded) return coded.error();
-    trial.gof_bytes += coded->bytes.size();
-    trial.gofs.push_back(std::move(*coded));
-    if (progress) {
-      progress(static_cast<double>(trial.gofs.size()) / static_cast<double>(gofs_.size()));
-    }
+  for (auto& gof : coded) {
+    if (!*gof) return gof->error();
+    trial.gof_bytes += (*gof)->coded.bytes.size();
+    metrics.append((*gof)->metrics);
+    trial.gofs.push_back(std::move((*gof)->coded));
   }
   trial.metrics = metrics.result();
   return trial;

@@ -1,5 +1,6 @@
 #include "encoder/sequence/sequence_coding.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "encoder/cluster_gof/cluster_gof_kind.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/choices/gof_kinds.h"
 
 namespace rlpc {
@@ -17,20 +19,26 @@ std::uint32_t longest_gof(const EncoderSettings& settings) {
   return settings.gof_frames == 0 ? kDefaultGofFrames : settings.gof_frames;
 }
 
-std::optional<InputError> check_memory(const EncoderSettings& settings,
-                                       const SequenceHeader& header, std::uint32_t longest_gof,
-                                       std::uint32_t kept_frames, std::uint64_t source_bytes) {
+InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
+                                        const SequenceHeader& header, std::uint32_t longest_gof,
+                                        std::uint32_t kept_frames, std::uint64_t source_bytes) {
   // Measured with random motion: 90 to 150 bytes per position of the GOF being coded, 70 bytes
-  // per position of a kept analysis. Real motion needs 40 and 10 bytes.
+  // per position of a kept analysis. Real motion needs 40 and 10 bytes. Each thread has a GOF
+  // of its own, or a candidate for one.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kInGof = 150;                      // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  const std::uint64_t of_vertex = kOfVertex + kInGof * longest_gof + kKept * kept_frames;
-  const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle;
-  if (needed <= settings.max_memory_bytes) return std::nullopt;
+  const std::uint64_t of_thread = header.num_vertices * kInGof * longest_gof;
+  const std::uint64_t needed = kFixed + source_bytes +
+                               header.num_vertices * (kOfVertex + kKept * kept_frames) +
+                               header.num_triangles * kOfTriangle + of_thread;
+  if (needed <= settings.max_memory_bytes) {
+    const std::uint64_t others = (settings.max_memory_bytes - needed) / of_thread;
+    const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, others + 1));
+  }
   return InputError{"encoding may need " + std::to_string((needed >> 20) + 1) +
                         " MiB of memory; the limit is " + size_text(settings.max_memory_bytes) +
                         " (--max-memory). A shorter --gof needs less",
@@ -74,29 +82,55 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
 }
 
-InputResult<Bytes> SequenceCoding::measure(FrameSource& source, const GofSpan& span,
+InputResult<Bytes> SequenceCoding::measure(const SharedSource& source, const GofSpan& span,
                                            const DecodeFrame& decode,
                                            MetricsAccumulator& metrics) const {
+  constexpr std::uint32_t kTogether = 16;  // fixed: memory
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
-  std::vector<std::int32_t> positions(values);
-  std::vector<float> original(values);
-  std::vector<float> decoded(values);
+  struct Frame {
+    std::vector<std::int32_t> positions;
+    std::vector<float> original;
+    std::vector<float> decoded;
+    MetricsAccumulator metrics;
+  };
   std::vector<std::uint32_t> crc;
-  for (std::uint32_t f = 0; f < span.count; ++f) {
-    decode(f, positions);
-    if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
-      crc.push_back(crc32_of_positions(positions));
-    } else {
-      crc.back() = crc32_of_positions(positions, crc.back());
-    }
-    if (auto error = source.read_frame(span.first + f, original)) return *error;
-    for (std::size_t v = 0; v < header_.num_vertices; ++v) {
-      const std::size_t to = 3 * std::size_t{connectivity_.input_vertex[v]};
-      for (std::size_t c = 0; c < 3; ++c) {
-        decoded[to + c] = float_position(header_.grid, c, positions[3 * v + c]);
+  std::vector<float> before(metrics.last_original().begin(), metrics.last_original().end());
+  if (before.empty() && span.first > 0) {
+    before.resize(values);
+    if (auto error = source.read_frame(span.first - 1, before)) return *error;
+  }
+  for (std::uint32_t first = 0; first < span.count; first += kTogether) {
+    const std::uint32_t count = std::min(kTogether, span.count - first);
+    std::vector<Frame> frames(count, {{}, {}, {}, MetricsAccumulator(header_.num_vertices)});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      frames[i].original.resize(values);
+      if (auto error = source.read_frame(span.first + first + i, frames[i].original)) {
+        return *error;
       }
     }
-    metrics.add_frame(original, decoded);
+    for_each(count, [&](std::size_t i) {
+      Frame& frame = frames[i];
+      frame.positions.resize(values);
+      decode(first + static_cast<std::uint32_t>(i), frame.positions);
+      frame.decoded.resize(values);
+      for (std::size_t v = 0; v < header_.num_vertices; ++v) {
+        const std::size_t to = 3 * std::size_t{connectivity_.input_vertex[v]};
+        for (std::size_t c = 0; c < 3; ++c) {
+          frame.decoded[to + c] = float_position(header_.grid, c, frame.positions[3 * v + c]);
+        }
+      }
+      frame.metrics.follow(i > 0 ? frames[i - 1].original : before);
+      frame.metrics.add_frame(frame.original, frame.decoded);
+    });
+    for (Frame& frame : frames) {
+      if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
+        crc.push_back(crc32_of_positions(frame.positions));
+      } else {
+        crc.back() = crc32_of_positions(frame.positions, crc.back());
+      }
+      metrics.append(frame.metrics);
+    }
+    before = std::move(frames.back().original);
   }
   if (settings_.hash_mode == HashMode::kNone) return Bytes{};
   return write_unit(UnitType::kGofHash,

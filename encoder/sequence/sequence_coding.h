@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 
@@ -24,11 +25,23 @@ inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a see
 // Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings);
 
-// Error: encoding may need more memory than the settings allow. kept_frames: number of frames
-// whose analyses stay in memory; source_bytes: memory held by the source.
-std::optional<InputError> check_memory(const EncoderSettings& settings,
-                                       const SequenceHeader& header, std::uint32_t longest_gof,
-                                       std::uint32_t kept_frames, std::uint64_t source_bytes);
+// The threads of the settings, or as many as the memory that they allow suffices for. Error:
+// one may need more. kept_frames: number of frames whose analyses stay in memory; source_bytes:
+// memory held by the source.
+InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
+                                        const SequenceHeader& header, std::uint32_t longest_gof,
+                                        std::uint32_t kept_frames, std::uint64_t source_bytes);
+
+// A source that several threads read from, one at a time.
+struct SharedSource {
+  FrameSource& source;
+  std::mutex& reading;
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) const {
+    const std::lock_guard lock(reading);
+    return source.read_frame(frame, xyz);
+  }
+};
 
 class SequenceCoding {
  public:
@@ -52,8 +65,9 @@ class SequenceCoding {
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
   // Decodes the GOF as a decoder would and adds its errors against the source to the metrics.
-  // Returns the hash unit of the GOF; empty if hashes are off. Errors: those of the source.
-  InputResult<Bytes> measure(FrameSource& source, const GofSpan& span,
+  // Those that have no frames yet follow the frame before the GOF. Returns the hash unit of the
+  // GOF; empty if hashes are off. Errors: those of the source.
+  InputResult<Bytes> measure(const SharedSource& source, const GofSpan& span,
                              const DecodeFrame& decode, MetricsAccumulator& metrics) const;
 
  private:

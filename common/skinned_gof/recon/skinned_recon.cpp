@@ -12,48 +12,97 @@ namespace {
 
 constexpr int kTemporalWeightFractionBits = 6;
 
+// 8.10.2 Spatial values, vertex by vertex.
+class GroupRecon {
+ public:
+  GroupRecon(const CodedMesh& mesh, const SkinnedGof& gof, std::size_t group, int position_bits,
+             const ValuePrediction& prediction, AdaptiveWeights* weights)
+      : mesh_(mesh),
+        gof_(gof),
+        group_(group),
+        prediction_(prediction),
+        weights_(weights),
+        bits_(factor_group(gof, group).size(), rest_bits(position_bits)),
+        values_(gof.vertex_residual[group].size()) {
+    const FactorGroup factors = factor_group(gof, group);
+    for (std::size_t k = 0; k < bits_.size() && group > 0; ++k) {
+      bits_[k] = gof.trajectories[factors.first + k - kRestFactors].spatial_bits;
+    }
+    if (weights != nullptr) weights->start(factors.first - kRestFactors, factors.size());
+  }
+
+  // Vertices that precede these in the order must be done, unless they are in the same layer
+  // and that is not the base.
+  void decode(std::span<const std::uint32_t> vertices) {
+    std::vector<std::int64_t> predicted(bits_.size());
+    std::optional<VertexAdaptation> adaptation;
+    if (weights_ != nullptr) adaptation.emplace(*weights_);
+    for (const std::uint32_t v : vertices) {
+      if (adaptation && adaptation->start(v, values_)) {
+        decode(v, *adaptation);
+      } else {
+        decode(v, predicted);
+      }
+    }
+  }
+  std::vector<std::int32_t> take_values() { return std::move(values_); }
+
+ private:
+  void decode(std::uint32_t v, VertexAdaptation& adaptation) {
+    const std::size_t n = bits_.size();
+    const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int64_t predicted = adaptation.predict();
+      const std::int32_t residual = gof_.vertex_residual[group_][v * n + k];
+      values_[v * n + k] =
+          clip_signed(bits_[k], predicted + factor_difference(residual, layer_step));
+      adaptation.add(predicted, values_[v * n + k]);
+    }
+    adaptation.finish();
+  }
+
+  void decode(std::uint32_t v, std::span<std::int64_t> predicted) {
+    const std::size_t n = bits_.size();
+    const int layer_step = gof_.layer_step[mesh_.layer_of(v)];
+    prediction_.predict(v, values_, predicted);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t residual = gof_.vertex_residual[group_][v * n + k];
+      const std::int64_t difference = group_ == 0 ? rest_difference(gof_, residual, layer_step)
+                                                  : factor_difference(residual, layer_step);
+      values_[v * n + k] = clip_signed(bits_[k], predicted[k] + difference);
+    }
+  }
+
+  const CodedMesh& mesh_;
+  const SkinnedGof& gof_;
+  std::size_t group_;
+  const ValuePrediction& prediction_;
+  AdaptiveWeights* weights_;
+  std::vector<int> bits_;             // [factor]
+  std::vector<std::int32_t> values_;  // [num_vertices][factor]
+};
+
 }  // namespace
 
-// 8.10.2 Spatial values
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
                                        const ValuePrediction& prediction,
-                                       AdaptiveWeights* weights) {
-  const FactorGroup factors = factor_group(gof, group);
-  const std::size_t n = factors.size();
-  const std::vector<std::int32_t>& residuals = gof.vertex_residual[group];
-  std::vector<int> bits(n, rest_bits(position_bits));
-  for (std::size_t k = 0; k < n && group > 0; ++k) {
-    bits[k] = gof.trajectories[factors.first + k - kRestFactors].spatial_bits;
+                                       AdaptiveWeights* weights, const ForEach& for_each) {
+  GroupRecon recon(mesh, gof, group, position_bits, prediction, weights);
+  if (weights == nullptr) {
+    recon.decode(mesh.order());
+    return recon.take_values();
   }
-  std::vector<std::int32_t> values(residuals.size());
-  std::vector<std::int64_t> predicted(n);
-  std::optional<VertexAdaptation> adaptation;
-  if (weights != nullptr) {
-    weights->start(factors.first - kRestFactors, n);
-    adaptation.emplace(*weights);
+  constexpr std::size_t kTogether = 64;  // vertices to a pass of the loop
+  recon.decode(mesh.vertices_of_layers(0, 1));
+  for (std::uint32_t layer = 1; layer < mesh.num_layers(); ++layer) {
+    const auto vertices = mesh.vertices_of_layers(layer, layer + 1);
+    for_each((vertices.size() + kTogether - 1) / kTogether, [&](std::size_t i) {
+      const std::size_t first = i * kTogether;
+      recon.decode(vertices.subspan(first, std::min(kTogether, vertices.size() - first)));
+    });
   }
-  for (const std::uint32_t v : mesh.order()) {
-    const int layer_step = gof.layer_step[mesh.layer_of(v)];
-    if (adaptation && adaptation->start(v, values)) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const std::int64_t of_weights = adaptation->predict();
-        values[v * n + k] = clip_signed(
-            bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
-        adaptation->add(of_weights, values[v * n + k]);
-      }
-      adaptation->finish();
-      continue;
-    }
-    prediction.predict(v, values, predicted);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::int32_t residual = residuals[v * n + k];
-      const std::int64_t difference = group == 0 ? rest_difference(gof, residual, layer_step)
-                                                 : factor_difference(residual, layer_step);
-      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
-    }
-  }
-  return values;
+  return recon.take_values();
 }
 
 std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedGof& gof) {
@@ -125,7 +174,7 @@ Vec3l skinned_point(const Influences& influences, int weight_bits,
 
 // 8.14.3 Positions
 SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
-                           const Kernels& loops)
+                           const ForEach& for_each, const Kernels& loops)
     : num_frames_(gof.num_frames),
       num_vertices_(mesh.num_vertices()),
       widths_{gof.weight_bits, gof.fraction_bits, position_bits},
@@ -134,7 +183,7 @@ SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int pos
       factors_(mesh.num_vertices(), 3 * std::size_t{gof.num_frames}, loops) {
   const auto rest = recon_values(mesh, gof, 0, position_bits, {mesh, true, nullptr});
   add_influences(complete_influences(mesh, gof), rest);
-  add_factors(mesh, gof, rest);
+  add_factors(mesh, gof, rest, for_each);
 }
 
 void SkinnedRecon::add_influences(std::span<const Influences> influences,
@@ -174,7 +223,7 @@ void SkinnedRecon::add_influences(std::span<const Influences> influences,
 }
 
 void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
-                               std::span<const std::int32_t> rest) {
+                               std::span<const std::int32_t> rest, const ForEach& for_each) {
   std::array<std::vector<std::int32_t>, 3> plane;
   std::optional<GeometryWeights> weights;
   std::optional<AdaptiveWeights> adaptive;
@@ -191,7 +240,7 @@ void SkinnedRecon::add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
   for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
     const FactorGroup factors = factor_group(gof, group);
     const auto values = recon_values(mesh, gof, group, widths_.position_bits, prediction,
-                                     adaptive ? &*adaptive : nullptr);
+                                     adaptive ? &*adaptive : nullptr, for_each);
     for (std::size_t k = 0; k < factors.size(); ++k) {
       const Trajectory& trajectory = gof.trajectories[factors.first + k - kRestFactors];
       const std::vector<Vec3i> series = recon_trajectory(trajectory);

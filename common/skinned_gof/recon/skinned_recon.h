@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/for_each.h"
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
@@ -29,11 +30,13 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
 }
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
-// of layers whose slices are absent. weights: null if no factor is adaptive.
+// of layers whose slices are absent. weights: null if no factor is adaptive. for_each: runs
+// over vertices of a layer.
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedGof& gof,
                                        std::size_t group, int position_bits,
                                        const ValuePrediction& prediction,
-                                       AdaptiveWeights* weights = nullptr);
+                                       AdaptiveWeights* weights = nullptr,
+                                       const ForEach& for_each = in_order);
 
 // 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
 // absent; [num_vertices].
@@ -53,7 +56,7 @@ class SkinnedRecon {
  public:
   // Prepares the GOF. Reads the arguments only during the call. Cannot fail.
   SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
-               const Kernels& loops = kernels().back());
+               const ForEach& for_each = in_order, const Kernels& loops = kernels().back());
 
   // Reconstructs frames first to first + count - 1 of the GOF, grid units,
   // [count][num_vertices][3]. Several frames at a time are faster than single ones.
@@ -76,7 +79,7 @@ class SkinnedRecon {
   void add_influences(std::span<const Influences> influences,
                       std::span<const std::int32_t> rest);
   void add_factors(const CodedMesh& mesh, const SkinnedGof& gof,
-                   std::span<const std::int32_t> rest);
+                   std::span<const std::int32_t> rest, const ForEach& for_each);
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
 
   std::uint32_t num_frames_;

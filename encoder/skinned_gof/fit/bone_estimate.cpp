@@ -13,20 +13,20 @@
 namespace rlpc {
 namespace {
 
-// Mean squared spatial prediction residual of each component: the difference between the centre
-// vertex of a patch and the mean of the vertices around it.
+// Mean squared spatial prediction residual of each component: the difference between a
+// vertex and the mean of its neighbours.
 std::vector<double> differences(const BoneSample& sample, const PrincipalComponents& pc) {
   const std::size_t count = pc.spatial.size();
   std::vector<double> sum(count, 0.0);
-  for (const auto& patch : sample.patches) {
-    const auto around = static_cast<double>(patch.size() - 1);
+  for (const auto& ring : sample.rings) {
+    const auto around = static_cast<double>(ring.size() - 1);
     for (std::size_t l = 0; l < count; ++l) {
-      double d = pc.spatial[l][patch[0]];
-      for (std::size_t i = 1; i < patch.size(); ++i) d -= pc.spatial[l][patch[i]] / around;
+      double d = pc.spatial[l][ring[0]];
+      for (std::size_t i = 1; i < ring.size(); ++i) d -= pc.spatial[l][ring[i]] / around;
       sum[l] += d * d;
     }
   }
-  for (double& s : sum) s /= static_cast<double>(sample.patches.size());
+  for (double& s : sum) s /= static_cast<double>(sample.rings.size());
   return sum;
 }
 

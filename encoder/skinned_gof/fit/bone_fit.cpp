@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "encoder/gof/lagrangian.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"
 
 namespace rlpc {
 namespace {
+
+// tuned (off: 0): Rounds in which weights, rest positions and poses of all vertices and frames
+// are improved in turn, after those of the sample. Each takes about as long as an analysis.
+constexpr int kPolish = 2;
 
 // Bits of one influence: its weight, and the flag that it is present.
 constexpr double kInfluenceBits = 7.0;  // fixed: those of the usual weight_bits, and one
@@ -40,6 +46,8 @@ std::vector<Vec3d> centres(const GofFrames& frames) {
   return result;
 }
 
+constexpr std::uint32_t kRings = 100;  // fixed: as kProbeVertices
+
 using Neighbours = std::vector<std::vector<std::uint32_t>>;
 
 Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
@@ -57,22 +65,27 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
   return result;
 }
 
-// A vertex, then its neighbours, then the neighbours of these if the first ring is small.
-std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
-  // tuned (off: 1): Patches of fewer vertices than this are extended by a second ring. The
+// Places in the sample of a vertex and those around it, ring by ring until they are enough.
+std::vector<std::uint32_t> patch_around(const Neighbours& neighbours,
+                                        std::span<const std::uint32_t> place,
+                                        std::uint32_t vertex) {
+  // tuned (off: 1): Patches of fewer vertices than this are extended by a further ring. The
   // motion of too small a patch is not determined well enough to seed a bone.
   constexpr std::size_t kSmall = 6;
-  constexpr std::size_t kLargest = 24;  // fixed: memory, where all triangles share a vertex
-  std::vector<std::uint32_t> patch{vertex};
-  const auto add = [&](std::uint32_t v) {
-    if (patch.size() < kLargest && std::find(patch.begin(), patch.end(), v) == patch.end()) {
-      patch.push_back(v);
+  constexpr std::size_t kLargest = 24;   // fixed: memory, where all triangles share a vertex
+  constexpr std::size_t kVisited = 100;  // fixed: time, likewise
+  std::vector<std::uint32_t> visited{vertex};
+  std::vector<std::uint32_t> patch{place[vertex]};
+  for (std::size_t first = 0; first < visited.size() && patch.size() < kSmall;) {
+    const std::size_t end = visited.size();
+    for (; first < end; ++first) {
+      for (const std::uint32_t u : neighbours[visited[first]]) {
+        if (visited.size() == kVisited || patch.size() == kLargest) return patch;
+        if (std::find(visited.begin(), visited.end(), u) != visited.end()) continue;
+        visited.push_back(u);
+        if (place[u] != BoneSample::kNone) patch.push_back(place[u]);
+      }
     }
-  };
-  for (const std::uint32_t v : neighbours[vertex]) add(v);
-  if (patch.size() >= kSmall) return patch;
-  for (const std::uint32_t v : neighbours[vertex]) {
-    for (const std::uint32_t u : neighbours[v]) add(u);
   }
   return patch;
 }
@@ -80,6 +93,29 @@ std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint3
 Vec3d rest_of(const Rig& rig, std::uint32_t vertex) {
   const auto& p = rig.rest[vertex];
   return {p[0], p[1], p[2]};
+}
+
+SkinMoments moments_of(const Rig& rig, std::size_t num_bones) {
+  SkinMoments moments(num_bones);
+  for (std::uint32_t v = 0; v < rig.rest.size(); ++v) {
+    moments.add(rest_of(rig, v), rig.weights[v]);
+  }
+  return moments;
+}
+
+// A motion from a (part 0) to b (part 1): the rotations are blended, and the images of a point.
+Motion between(const Motion& a, const Motion& b, double part, const Vec3d& point) {
+  UnitQuaternion p = rotation_quaternion(a.leftCols<3>());
+  const UnitQuaternion q = rotation_quaternion(b.leftCols<3>());
+  double same = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) same += p[k] * q[k];
+  const double sign = same < 0.0 ? -1.0 : 1.0;
+  for (std::size_t k = 0; k < 4; ++k) p[k] = (1.0 - part) * p[k] + part * sign * q[k];
+  const Vec3d image = (1.0 - part) * moved(a, point) + part * moved(b, point);
+  Motion result;
+  result.leftCols<3>() = rotation_matrix(normalised(p));
+  result.col(3) = image - result.leftCols<3>() * point;
+  return result;
 }
 
 RigBone rig_bone(const TreeBone& bone, const std::vector<Motion>& motion) {
@@ -124,8 +160,8 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
       centre_(centres(frames)),
       chosen_(sample_frames(frames.num_frames, options.sample_frames)),
       unsteady_(unsteadiness(frames)),
-      sample_(sample_of(triangles)),
-      solver_(sample_, options.max_influences) {}
+      sample_(std::make_shared<const BoneSample>(sample_of(triangles))),
+      solver_(*sample_, options.max_influences) {}
 
 // A position relative to the centre of all vertices in the frame.
 Vec3d BoneFit::centred(std::uint32_t frame, std::uint32_t vertex) const {
@@ -137,31 +173,37 @@ void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) co
   for (const std::uint32_t f : chosen_) to.push_back(centred(f, vertex));
 }
 
-// All vertices or, in large meshes, the patches around evenly spaced vertices.
+// All vertices or, in large meshes, evenly spaced ones, and the rings of a few of them.
 BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
-  constexpr std::uint32_t kPatchSize = 7;  // fixed: vertices of a regular one
   const std::uint32_t n = frames_.num_vertices;
-  const std::uint32_t seeds =
-      n <= options_.sample_vertices ? n : options_.sample_vertices / kPatchSize;
+  const std::uint32_t count = std::min(n, options_.sample_vertices);
+  const std::uint32_t num_rings = std::min(count, kRings);
   const Neighbours neighbours = neighbours_of(n, triangles);
   BoneSample sample;
   sample.num_frames = chosen_.size();
-  sample.positions.reserve(chosen_.size() * std::min(n, options_.sample_vertices));
-  std::vector<std::uint32_t>& index = sample.place;
-  index.assign(n, BoneSample::kNone);
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < seeds; ++i) {
-    const auto seed = static_cast<std::uint32_t>(std::uint64_t{i} * n / seeds);
-    std::vector<std::uint32_t> patch = patch_around(neighbours, seed);
-    for (std::uint32_t& v : patch) {
-      if (index[v] == BoneSample::kNone) {
-        index[v] = count++;
-        append_trajectory(v, sample.positions);
-      }
-      v = index[v];
-    }
-    sample.patches.push_back(std::move(patch));
+  sample.place.assign(n, BoneSample::kNone);
+  std::vector<std::uint32_t> vertices;
+  const auto add = [&](std::uint32_t v) {
+    if (sample.place[v] != BoneSample::kNone) return;
+    sample.place[v] = static_cast<std::uint32_t>(vertices.size());
+    vertices.push_back(v);
+  };
+  const auto spaced = [n](std::uint32_t i, std::uint32_t of) {
+    return static_cast<std::uint32_t>(std::uint64_t{i} * n / of);
+  };
+  for (std::uint32_t i = 0; i < count; ++i) add(spaced(i, count));
+  for (std::uint32_t i = 0; i < num_rings; ++i) {
+    const std::uint32_t v = spaced(i, num_rings);
+    add(v);
+    for (const std::uint32_t u : neighbours[v]) add(u);
+    std::vector<std::uint32_t>& ring = sample.rings.emplace_back(1, sample.place[v]);
+    for (const std::uint32_t u : neighbours[v]) ring.push_back(sample.place[u]);
   }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    sample.patches.push_back(patch_around(neighbours, sample.place, spaced(i, count)));
+  }
+  sample.positions.reserve(chosen_.size() * vertices.size());
+  for (const std::uint32_t v : vertices) append_trajectory(v, sample.positions);
   return sample;
 }
 
@@ -174,7 +216,7 @@ double BoneFit::cost_of_bone() const {
 
 double BoneFit::expected_cost() const {
   const double n = static_cast<double>(frames_.num_vertices);
-  return rlpc::expected_cost(sample_, solver_.residuals(), frames_.num_vertices,
+  return rlpc::expected_cost(*sample_, solver_.residuals(), frames_.num_vertices,
                              frames_.num_frames, options_.step) +
          static_cast<double>(num_bones()) * cost_of_bone() +
          lambda(options_.step) * kInfluenceBits * n * solver_.mean_influences();
@@ -182,94 +224,128 @@ double BoneFit::expected_cost() const {
 
 double BoneFit::expected_translation_cost() const {
   std::vector<double> residuals;
-  residuals.reserve(3 * sample_.positions.size());
-  for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
+  residuals.reserve(3 * sample_->positions.size());
+  for (std::size_t v = 0; v < sample_->num_vertices(); ++v) {
     Vec3d mean = Vec3d::Zero();
-    for (const Vec3d& x : sample_.trajectory(v)) mean += x;
-    mean /= static_cast<double>(sample_.num_frames);
-    for (const Vec3d& x : sample_.trajectory(v)) {
+    for (const Vec3d& x : sample_->trajectory(v)) mean += x;
+    mean /= static_cast<double>(sample_->num_frames);
+    for (const Vec3d& x : sample_->trajectory(v)) {
       const Vec3d residual = x - mean;
       residuals.insert(residuals.end(), {residual(0), residual(1), residual(2)});
     }
   }
-  return rlpc::expected_cost(sample_, std::move(residuals), frames_.num_vertices,
+  return rlpc::expected_cost(*sample_, std::move(residuals), frames_.num_vertices,
                              frames_.num_frames, options_.step);
 }
 
 double BoneFit::rms_error() const {
-  return std::sqrt(solver_.error() / static_cast<double>(sample_.positions.size()));
+  return std::sqrt(solver_.error() / static_cast<double>(sample_->positions.size()));
 }
 
 double BoneFit::translation_error() const {
   double sum = 0.0;
-  for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
+  for (std::size_t v = 0; v < sample_->num_vertices(); ++v) {
     Vec3d mean = Vec3d::Zero();
-    for (const Vec3d& x : sample_.trajectory(v)) mean += x;
-    mean /= static_cast<double>(sample_.num_frames);
-    for (const Vec3d& x : sample_.trajectory(v)) sum += (x - mean).squaredNorm();
+    for (const Vec3d& x : sample_->trajectory(v)) mean += x;
+    mean /= static_cast<double>(sample_->num_frames);
+    for (const Vec3d& x : sample_->trajectory(v)) sum += (x - mean).squaredNorm();
   }
-  return std::sqrt(sum / static_cast<double>(sample_.positions.size()));
+  return std::sqrt(sum / static_cast<double>(sample_->positions.size()));
 }
 
-// Fits weights and rest positions of all vertices to the bones.
-void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
-                           Rig& rig) const {
-  constexpr std::uint32_t kTogether = 256;  // fixed: memory
-  const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
+// Fits weights and rest positions of all vertices to the bones in some frames. rig: has the
+// rest positions to start from.
+void BoneFit::fit_vertices(std::span<const std::uint32_t> frames, const BoneMotions& motions,
+                           std::size_t max_influences, Rig& rig) const {
+  constexpr std::size_t kTogether = 64;  // fixed: memory
+  const double part = static_cast<double>(frames.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * lambda(options_.step) * part;
-  std::vector<Vec3d> positions;
-  SkinSums sums(positions, solver.motions());
-  for (std::uint32_t first = 0; first < frames_.num_vertices; first += kTogether) {
-    const std::uint32_t end = std::min(first + kTogether, frames_.num_vertices);
-    positions.clear();
-    for (std::uint32_t v = first; v < end; ++v) append_trajectory(v, positions);
+  const SkinSums sums_of_motions({}, motions);
+  for_ranges(frames_.num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
+    std::vector<Vec3d> positions;
+    for (std::size_t v = first; v < end; ++v) {
+      for (const std::uint32_t f : frames) {
+        positions.push_back(centred(f, static_cast<std::uint32_t>(v)));
+      }
+    }
+    SkinSums sums = sums_of_motions;
     sums.set_positions(positions);
-    for (std::uint32_t v = first; v < end; ++v) {
+    for (std::size_t v = first; v < end; ++v) {
       const std::size_t i = v - first;
-      const auto place = sample_.place_of(v);
-      Vec3d rest = place ? solver.rest(*place) : sums.single_rest(i);
+      const Point& start = rig.rest[v];
+      Vec3d rest(start[0], start[1], start[2]);
       BoneWeights best;
       for (int round = 0; round < kRounds; ++round) {
         const std::vector<std::size_t> bones =
             sums.closest_bones(i, rest, SkinSums::kMaxCandidates);
-        best = sparse_weights(sums.gram(i, bones, rest), SkinSums::kMaxCandidates, bones.size(),
-                              max_influences, per_influence);
+        best =
+            sparse_weights(sums.gram(i, bones, rest, max_influences), SkinSums::kMaxCandidates,
+                           bones.size(), max_influences, per_influence);
         for (RigWeight& w : best.weights) w.bone = static_cast<std::uint32_t>(bones[w.bone]);
         rest = sums.fit_rest(i, rest, best.weights);
       }
       rig.weights[v] = std::move(best.weights);
       rig.rest[v] = {rest(0), rest(1), rest(2)};
     }
+  });
+}
+
+// The rest positions of the solver where it has the vertex, else those that fit best with the
+// best single bone.
+void BoneFit::start_rest(const BoneSolver& solver, Rig& rig) const {
+  std::vector<Vec3d> positions;
+  SkinSums sums(positions, solver.motions());
+  for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
+    const auto place = sample_->place_of(v);
+    if (!place) {
+      positions.clear();
+      append_trajectory(v, positions);
+      sums.set_positions(positions);
+    }
+    const Vec3d rest = place ? solver.rest(*place) : sums.single_rest(0);
+    rig.rest[v] = {rest(0), rest(1), rest(2)};
   }
 }
 
-// Fits the bone motions of all frames. Each frame starts from the motions in the last sampled
-// frame up to it.
-BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
-                                const Rig& rig) const {
-  constexpr std::uint32_t kTogether = 64;  // fixed: memory
+// Improves the motions of the bones in all frames.
+void BoneFit::fit_frames(const Rig& rig, const PoseRounds& rounds, BoneMotions& motions) const {
+  constexpr std::size_t kTogether = 16;  // fixed: frames to a pass of the loop
   const std::size_t n = motions.size();
-  BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
-  std::vector<Motion> now(n);
-  std::size_t nearest = 0;
-  for (std::uint32_t first = 0; first < frames_.num_frames; first += kTogether) {
-    const std::uint32_t end = std::min(first + kTogether, frames_.num_frames);
+  const SkinMoments moments = moments_of(rig, n);
+  const std::vector<std::size_t> order = elimination_order(moments);
+  for_ranges(frames_.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
     PoseTargets targets(n, end - first);
     std::vector<Vec3d> trajectory(end - first);
     for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-      for (std::uint32_t f = first; f < end; ++f) trajectory[f - first] = centred(f, v);
+      for (std::size_t f = first; f < end; ++f) {
+        trajectory[f - first] = centred(static_cast<std::uint32_t>(f), v);
+      }
       targets.add(rest_of(rig, v), rig.weights[v], trajectory);
     }
-    for (std::uint32_t f = first; f < end; ++f) {
-      while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
+    std::vector<Motion> now(n);
+    for (std::size_t f = first; f < end; ++f) {
       const std::vector<Motion> wanted = targets.of_frame(f - first);
-      for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-      for (int i = 0; i < kRounds; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kRounds; ++i) solve_poses(moments, wanted, now);
-      for (std::size_t b = 0; b < n; ++b) {
-        result[b][f] = now[b];
-        result[b][f].col(3) += centre_[f];
-      }
+      for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][f];
+      for (int i = 0; i < rounds.single; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < rounds.joint; ++i) solve_poses(moments, order, wanted, now);
+      for (std::size_t b = 0; b < n; ++b) motions[b][f] = now[b];
+    }
+  });
+}
+
+// Motions in all frames, interpolated between those of the sample.
+BoneMotions BoneFit::in_all_frames(const BoneMotions& motions, const Rig& rig) const {
+  const SkinMoments moments = moments_of(rig, motions.size());
+  BoneMotions result(motions.size(), std::vector<Motion>(frames_.num_frames));
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    const Vec3d centre = moments.centre(b);
+    std::size_t i = 0;
+    for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
+      if (i + 1 < chosen_.size() && chosen_[i + 1] <= f) ++i;
+      const std::size_t next = std::min(i + 1, chosen_.size() - 1);
+      const double part =
+          next == i ? 0.0 : static_cast<double>(f - chosen_[i]) / (chosen_[next] - chosen_[i]);
+      result[b][f] = between(motions[b][i], motions[b][next], part, centre);
     }
   }
   return result;
@@ -281,15 +357,23 @@ Rig BoneFit::rig(std::size_t max_influences) const {
   rig.weights.resize(frames_.num_vertices);
   BoneSolver settled = solver_;
   settled.settle();
-  const double sampled = static_cast<double>(sample_.positions.size()) /
+  const double sampled = static_cast<double>(sample_->positions.size()) /
                          (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
   settled.remove_worthless_bones(cost_of_bone() * sampled);
-  fit_vertices(settled, max_influences, rig);
-  SkinMoments moments(settled.motions().size());
-  for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-    moments.add(rest_of(rig, v), rig.weights[v]);
+  start_rest(settled, rig);
+  fit_vertices(chosen_, settled.motions(), max_influences, rig);
+  BoneMotions motions = in_all_frames(settled.motions(), rig);
+  fit_frames(rig, {.single = kRounds, .joint = kRounds}, motions);
+  std::vector<std::uint32_t> all(frames_.num_frames);
+  std::iota(all.begin(), all.end(), 0U);
+  for (int i = 0; i < kPolish; ++i) {
+    fit_vertices(all, motions, max_influences, rig);
+    fit_frames(rig, {.joint = 2}, motions);
   }
-  BoneMotions motions = fit_frames(settled.motions(), moments, rig);
+  const SkinMoments moments = moments_of(rig, motions.size());
+  for (auto& motion : motions) {
+    for (std::size_t f = 0; f < motion.size(); ++f) motion[f].col(3) += centre_[f];
+  }
   const double pin_error = 0.5 * cost_of_bone();  // pinning saves three of six values per pose
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
   put_in_tree_order(tree, motions, rig);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -36,8 +37,6 @@ class BoneFit {
   // Keeps a reference to the frames: at least one, with at least one vertex.
   BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
           const BoneFitOptions& options);
-  BoneFit(const BoneFit&) = delete;
-  BoneFit& operator=(const BoneFit&) = delete;
 
   // Adds bones until there are num_bones; false if none was worth adding.
   bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
@@ -64,16 +63,23 @@ class BoneFit {
   Vec3d centred(std::uint32_t frame, std::uint32_t vertex) const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;
   BoneSample sample_of(std::span<const Triangle> triangles) const;
-  void fit_vertices(const BoneSolver& solver, std::size_t max_influences, Rig& rig) const;
-  BoneMotions fit_frames(const BoneMotions& motions, const SkinMoments& moments,
-                         const Rig& rig) const;
+  void start_rest(const BoneSolver& solver, Rig& rig) const;
+  void fit_vertices(std::span<const std::uint32_t> frames, const BoneMotions& motions,
+                    std::size_t max_influences, Rig& rig) const;
+  // Rounds of refine_poses(), then of solve_poses().
+  struct PoseRounds {
+    int single = 0;
+    int joint = 0;
+  };
+  void fit_frames(const Rig& rig, const PoseRounds& rounds, BoneMotions& motions) const;
+  BoneMotions in_all_frames(const BoneMotions& motions, const Rig& rig) const;
 
   const GofFrames& frames_;
   BoneFitOptions options_;
   std::vector<Vec3d> centre_;  // [num_frames], mean vertex; the sample is relative to it
-  std::vector<std::uint32_t> chosen_;  // the frames of the sample
-  std::vector<double> unsteady_;       // unsteadiness() of the frames
-  BoneSample sample_;
+  std::vector<std::uint32_t> chosen_;         // the frames of the sample
+  std::vector<double> unsteady_;              // unsteadiness() of the frames
+  std::shared_ptr<const BoneSample> sample_;  // shared by copies of the fit
   BoneSolver solver_;
 };
 

@@ -112,43 +112,77 @@ Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen
 
 }  // namespace
 
-void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
-                 std::vector<Motion>& motions) {
+std::vector<std::size_t> elimination_order(const SkinMoments& moments) {
+  const std::size_t n = moments.num_bones();
+  std::vector<std::vector<bool>> shares(n, std::vector<bool>(n));
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b < n; ++b) shares[a][b] = moments.block(a, b)(3, 3) > 0.0;
+  }
+  std::vector<std::size_t> order;
+  std::vector<bool> done(n);
+  while (order.size() < n) {
+    std::size_t next = n;
+    std::size_t fewest = n + 1;
+    for (std::size_t b = 0; b < n; ++b) {
+      if (done[b]) continue;
+      std::size_t others = 0;
+      for (std::size_t c = 0; c < n; ++c) others += !done[c] && shares[b][c] ? 1 : 0;
+      if (others >= fewest) continue;
+      fewest = others;
+      next = b;
+    }
+    // Elimination couples all bones that the bone shares vertices with.
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t c = 0; c < n; ++c) {
+        if (shares[next][a] && shares[next][c]) shares[a][c] = true;
+      }
+    }
+    done[next] = true;
+    order.push_back(next);
+  }
+  return order;
+}
+
+void solve_poses(const SkinMoments& moments, std::span<const std::size_t> order,
+                 std::span<const Motion> targets, std::vector<Motion>& motions) {
   constexpr double kDamping = 1e-3;  // fixed: of the diagonal
   const std::size_t n = motions.size();
   std::vector<double> a(36 * n * n, 0.0);
   std::vector<double> x(6 * n, 0.0);
-  for (std::size_t b = 0; b < n; ++b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t b = order[i];
     Motion residual = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all bones
     const Eigen::Matrix3d rb = motions[b].leftCols<3>();
-    for (std::size_t c = 0; c < n; ++c) {
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t c = order[k];
       const Eigen::Matrix4d& m = moments.block(c, b);
       if (!(m(3, 3) > 0.0)) continue;
       residual -= motions[c] * m;
-      if (c < b) continue;
+      if (k < i) continue;
       const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
-      for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t k = 0; k < 6; ++k) {
-          a[(6 * b + i) * 6 * n + 6 * c + k] =
-              block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      for (std::size_t row = 0; row < 6; ++row) {
+        for (std::size_t column = 0; column < 6; ++column) {
+          a[(6 * i + row) * 6 * n + 6 * k + column] =
+              block(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
         }
       }
     }
     const Vec3d turn = curl(residual.leftCols<3>() * rb.transpose());
-    for (std::size_t i = 0; i < 3; ++i) {
-      x[6 * b + i] = turn(static_cast<Eigen::Index>(i));
-      x[6 * b + 3 + i] = residual(static_cast<Eigen::Index>(i), 3);
+    for (std::size_t row = 0; row < 3; ++row) {
+      x[6 * i + row] = turn(static_cast<Eigen::Index>(row));
+      x[6 * i + 3 + row] = residual(static_cast<Eigen::Index>(row), 3);
     }
   }
   for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;
   SymmetricSystem(std::move(a), 6 * n).solve(x);
-  for (std::size_t b = 0; b < n; ++b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t b = order[i];
     if (!(moments.mass(b) > 0.0)) continue;
-    const Vec3d turn{x[6 * b], x[6 * b + 1], x[6 * b + 2]};
+    const Vec3d turn{x[6 * i], x[6 * i + 1], x[6 * i + 2]};
     const Eigen::Matrix3d r =
         rotation_matrix(normalised({1.0, 0.5 * turn(0), 0.5 * turn(1), 0.5 * turn(2)}));
     motions[b].leftCols<3>() = r * motions[b].leftCols<3>();
-    motions[b].col(3) += Vec3d(x[6 * b + 3], x[6 * b + 4], x[6 * b + 5]);
+    motions[b].col(3) += Vec3d(x[6 * i + 3], x[6 * i + 4], x[6 * i + 5]);
   }
 }
 

@@ -55,9 +55,14 @@ class PoseTargets {
 void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
                   std::vector<Motion>& motions);
 
+// An order of the bones in which the equations of solve_poses() are solved with few products:
+// each time, the bone that shares vertices with the fewest others is next.
+std::vector<std::size_t> elimination_order(const SkinMoments& moments);
+
 // Lowers the squared error with one Gauss-Newton step for all bones together: slower, but it
-// converges where vertices follow several bones. The motions must already be close.
-void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
-                 std::vector<Motion>& motions);
+// converges where vertices follow several bones. The motions must already be close. order: of
+// elimination.
+void solve_poses(const SkinMoments& moments, std::span<const std::size_t> order,
+                 std::span<const Motion> targets, std::vector<Motion>& motions);
 
 }  // namespace rlpc

@@ -82,7 +82,8 @@ struct Skin {
     refine_poses(moments(motions.size()), targets(motions.size()), motions);
   }
   void solve(std::vector<Motion>& motions) const {
-    solve_poses(moments(motions.size()), targets(motions.size()), motions);
+    const SkinMoments sums = moments(motions.size());
+    solve_poses(sums, elimination_order(sums), targets(motions.size()), motions);
   }
 };
 

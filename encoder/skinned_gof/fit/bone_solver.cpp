@@ -5,16 +5,21 @@
 #include <numeric>
 #include <utility>
 
+#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
 namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 64;  // fixed: vertices to a pass of a loop
+
+}  // namespace
 
 BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
     : sample_(sample),
       max_influences_(max_influences),
       weights_(sample.num_vertices()),
-      candidates_(sample.num_vertices()),
-      gram_(sample.num_vertices()) {
+      candidates_(sample.num_vertices()) {
   Vec3d mean = Vec3d::Zero();
   const std::size_t n = sample.num_vertices();
   for (std::size_t v = 0; v < n; ++v) {
@@ -37,7 +42,7 @@ bool BoneSolver::grow(std::size_t num_bones) {
   if (before >= num_bones) return false;
   SkinSums sums(sample_.positions, motions_);
   while (motions_.size() < num_bones) {
-    const std::size_t count = std::min(num_bones - motions_.size(), motions_.size());
+    const std::size_t count = std::min(num_bones - motions_.size(), (motions_.size() + 1) / 2);
     const std::size_t added = add_bones(count, sums);
     if (added > 0) improve(2 * kRounds, sums);
     if (added < count) break;
@@ -58,25 +63,30 @@ void BoneSolver::exchange_bones(int times) {
 
 std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertices) const {
   std::vector<Motion> motion(sample_.num_frames);
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   for (std::size_t f = 0; f < sample_.num_frames; ++f) {
     MotionFit fit;
     for (const std::uint32_t v : vertices) fit.add(rest_[v], sample_.trajectory(v)[f]);
-    motion[f] = fit.motion();
+    motion[f] = fit.motion(rotation);
+    rotation = motion[f].leftCols<3>();
   }
   return motion;
 }
 
 void BoneSolver::find_patch_errors() {
-  for (const auto& patch : sample_.patches) {
-    const std::vector<Motion> motion = motion_of(patch);
-    double error = 0.0;
-    for (const std::uint32_t v : patch) {
-      for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-        error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+  patch_error_.assign(sample_.patches.size(), 0.0);
+  for_ranges(sample_.patches.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const auto& patch = sample_.patches[i];
+      const std::vector<Motion> motion = motion_of(patch);
+      for (const std::uint32_t v : patch) {
+        for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+          patch_error_[i] +=
+              (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+        }
       }
     }
-    patch_error_.push_back(error);
-  }
+  });
 }
 
 // Adds at most `count` bones; returns how many were added.
@@ -149,7 +159,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   std::optional<SkinSums> sums;
   bool changed = true;
   for (int i = 0; i < kRounds && changed; ++i) {
-    for (std::size_t t = 0; t < cores.size(); ++t) motions[t] = motion_of(cores[t]);
+    for_each(cores.size(), [&](std::size_t t) { motions[t] = motion_of(cores[t]); });
     if (sums) {
       sums->set_motions(motions);
     } else {
@@ -202,34 +212,36 @@ BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
   return best;
 }
 
-void BoneSolver::choose_candidates(const SkinSums& sums) {
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    std::vector<std::size_t>& list = candidates_[v];
-    list.clear();
-    for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
-    for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
-      if (list.size() == SkinSums::kMaxCandidates) break;
-      if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
-    }
+void BoneSolver::choose_candidates(std::size_t v, const SkinSums& sums) {
+  std::vector<std::size_t>& list = candidates_[v];
+  list.clear();
+  for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
+  for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
+    if (list.size() == SkinSums::kMaxCandidates) break;
+    if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
   }
 }
 
 void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
-  if (new_candidates) choose_candidates(sums);
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const auto fit = [&] {
-      gram_[v] = sums.gram(v, candidates_[v], rest_[v]);
-      weights_[v] = sparse_weights(gram_[v], SkinSums::kMaxCandidates, candidates_[v].size(),
-                                   max_influences_, 0.0);
-      for (RigWeight& w : weights_[v].weights) {
-        w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
-      }
-    };
-    fit();
-    if (!refines_rest_) continue;
-    rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
-    fit();
-  }
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) fit_weights(v, new_candidates, sums);
+  });
+}
+
+void BoneSolver::fit_weights(std::size_t v, bool new_candidates, const SkinSums& sums) {
+  if (new_candidates) choose_candidates(v, sums);
+  const auto fit = [&] {
+    const SkinSums::Gram gram = sums.gram(v, candidates_[v], rest_[v], max_influences_);
+    weights_[v] = sparse_weights(gram, SkinSums::kMaxCandidates, candidates_[v].size(),
+                                 max_influences_, 0.0);
+    for (RigWeight& w : weights_[v].weights) {
+      w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
+    }
+  };
+  fit();
+  if (!refines_rest_) return;
+  rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
+  fit();
 }
 
 void BoneSolver::improve(int rounds, SkinSums& sums) {
@@ -251,42 +263,46 @@ void BoneSolver::improve_motions() {
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
-  PoseTargets targets(n, sample_.num_frames);
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v));
-  }
-  std::vector<Motion> frame(n);
-  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-    const std::vector<Motion> wanted = targets.of_frame(f);
-    for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
-    // Twice: bones that share vertices follow each other.
-    refine_poses(moments, wanted, frame);
-    refine_poses(moments, wanted, frame);
-    for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
-  }
+  constexpr std::size_t kFrames = 32;  // fixed: to a pass of the loop
+  for_ranges(sample_.num_frames, kFrames, [&](std::size_t first, std::size_t end) {
+    PoseTargets targets(n, end - first);
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      targets.add(rest_[v], weights_[v].weights,
+                  sample_.trajectory(v).subspan(first, end - first));
+    }
+    std::vector<Motion> frame(n);
+    for (std::size_t f = first; f < end; ++f) {
+      const std::vector<Motion> wanted = targets.of_frame(f - first);
+      for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
+      // Twice: bones that share vertices follow each other.
+      refine_poses(moments, wanted, frame);
+      refine_poses(moments, wanted, frame);
+      for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
+    }
+  });
 }
 
 // [bone], the increase of the squared error if the bone is removed.
-std::vector<double> BoneSolver::losses() const {
+std::vector<double> BoneSolver::losses(const SkinSums& sums) const {
+  std::vector<std::vector<double>> of_vertex(rest_.size());  // [vertex][influence]
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      if (candidates_[v].size() < 2) continue;
+      for (const RigWeight& w : weights_[v].weights) {
+        std::vector<std::size_t> others = candidates_[v];
+        std::erase(others, std::size_t{w.bone});
+        const double without =
+            sparse_weights(sums.gram(v, others, rest_[v], max_influences_),
+                           SkinSums::kMaxCandidates, others.size(), max_influences_, 0.0)
+                .error;
+        of_vertex[v].push_back(std::max(without - weights_[v].error, 0.0));
+      }
+    }
+  });
   std::vector<double> loss(motions_.size(), 0.0);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const std::size_t count = candidates_[v].size();
-    if (count < 2) continue;
-    for (const RigWeight& w : weights_[v].weights) {
-      // Remove the bone from the Gram matrix: the last candidate takes its row and column.
-      SkinSums::Gram gram = gram_[v];
-      const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
-      const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
-      constexpr std::size_t kStride = SkinSums::kMaxCandidates;
-      for (std::size_t i = 0; i < count; ++i) {
-        gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
-      }
-      for (std::size_t i = 0; i < count; ++i) {
-        gram[i * kStride + gone] = gram[i * kStride + count - 1];
-      }
-      const double without =
-          sparse_weights(gram, kStride, count - 1, max_influences_, 0.0).error;
-      loss[w.bone] += std::max(without - weights_[v].error, 0.0);
+    for (std::size_t i = 0; i < of_vertex[v].size(); ++i) {
+      loss[weights_[v].weights[i].bone] += of_vertex[v][i];
     }
   }
   return loss;
@@ -331,7 +347,7 @@ std::vector<double> BoneSolver::residuals() const {
 bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   const BoneSolver before = *this;
   for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
-    const std::vector<double> loss = losses();
+    const std::vector<double> loss = losses(sums);
     remove_bone(
         static_cast<std::size_t>(std::min_element(loss.begin(), loss.end()) - loss.begin()),
         sums);
@@ -349,19 +365,18 @@ void BoneSolver::take(const BoneSolver& other) {
   rest_ = other.rest_;
   weights_ = other.weights_;
   candidates_ = other.candidates_;
-  gram_ = other.gram_;
 }
 
 void BoneSolver::remove_worthless_bones(double worth) {
-  std::optional<SkinSums> sums;  // made once a bone is removed
+  SkinSums sums(sample_.positions, motions_);
+  const std::size_t before = motions_.size();
   while (motions_.size() > 1) {
-    const std::vector<double> loss = losses();
+    const std::vector<double> loss = losses(sums);
     const auto least = std::min_element(loss.begin(), loss.end());
     if (*least >= worth) break;
-    if (!sums) sums.emplace(sample_.positions, motions_);
-    remove_bone(static_cast<std::size_t>(least - loss.begin()), *sums);
+    remove_bone(static_cast<std::size_t>(least - loss.begin()), sums);
   }
-  if (sums) improve(2 * kRounds, *sums);
+  if (motions_.size() < before) improve(2 * kRounds, sums);
 }
 
 }  // namespace rlpc

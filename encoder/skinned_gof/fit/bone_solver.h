@@ -21,6 +21,8 @@ struct BoneSample {
   // Small patches of the mesh, each a centre vertex, which is first, and those around it. New
   // bones start from patches that move rigidly.
   std::vector<std::vector<std::uint32_t>> patches;
+  // A few vertices, each with all its neighbours.
+  std::vector<std::vector<std::uint32_t>> rings;
 
   std::size_t num_vertices() const { return positions.size() / num_frames; }
   std::optional<std::size_t> place_of(std::uint32_t vertex) const {
@@ -89,10 +91,11 @@ class BoneSolver {
 
   void improve(int rounds, SkinSums& sums);
   void improve_motions();
-  void choose_candidates(const SkinSums& sums);
+  void choose_candidates(std::size_t v, const SkinSums& sums);
+  void fit_weights(std::size_t v, bool new_candidates, const SkinSums& sums);
   void fit_all_weights(bool new_candidates, const SkinSums& sums);
 
-  std::vector<double> losses() const;
+  std::vector<double> losses(const SkinSums& sums) const;
   void remove_bone(std::size_t bone, SkinSums& sums);
 
   const BoneSample& sample_;
@@ -105,7 +108,6 @@ class BoneSolver {
   std::vector<Vec3d> rest_;
   std::vector<BoneWeights> weights_;  // [vertex]; here `bone` is an index of motions_
   std::vector<std::vector<std::size_t>> candidates_;  // [vertex], bones that it may follow
-  std::vector<SkinSums::Gram> gram_;                  // [vertex], of its candidates
 };
 
 }  // namespace rlpc

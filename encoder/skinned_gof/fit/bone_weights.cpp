@@ -45,6 +45,27 @@ class SparseBlend {
     return {1, {best}, {1.0}, at(best, best)};
   }
 
+  // The best blend of `first`, the best single candidate, and one other; of size 0 if there is
+  // none that lowers the error.
+  Blend pair_with(std::size_t first) const {
+    Blend best;
+    const double of_first = at(first, first);
+    for (std::size_t j = 0; j < count_; ++j) {
+      if (j == first) continue;
+      const double both = at(first, j);
+      const double over_first = of_first + regular_ - both;
+      const double over_other = at(j, j) + regular_ - both;
+      if (!(over_first > 0.0 && over_other > 0.0)) continue;
+      const double other = over_first / (over_first + over_other);
+      const double rest = 1.0 - other;
+      const double error =
+          rest * rest * of_first + 2.0 * (rest * other * both) + other * other * at(j, j);
+      if (best.size > 0 && error >= best.error) continue;
+      best = {2, {first, j}, {rest, other}, std::max(error, 0.0)};
+    }
+    return best;
+  }
+
   // Optimal weights of the chosen candidates, after removing those with negative weights.
   void solve(Blend& blend) const {
     for (;;) {
@@ -100,7 +121,8 @@ BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std
   Blend current = problem.single();
   while (current.size < max_influences) {
     Blend best;
-    for (std::size_t j = 0; j < count; ++j) {
+    if (current.size == 1) best = problem.pair_with(current.chosen[0]);
+    for (std::size_t j = 0; j < count && current.size > 1; ++j) {
       if (current.has(j)) continue;
       Blend blend = current;
       blend.chosen[blend.size++] = j;

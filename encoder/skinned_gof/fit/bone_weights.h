@@ -19,7 +19,8 @@ struct BoneWeights {
 // lowers the squared error by more than `error_per_influence`; those with negative weights are
 // removed.
 //
-//   gram            [count][stride], row-major, positive semidefinite
+//   gram            [count][stride], row-major, positive semidefinite; with at most two
+//                   influences only the diagonal is read, and the row of its smallest element
 //   max_influences  1 to kMaxExtraBones
 BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std::size_t count,
                            std::size_t max_influences, double error_per_influence);

@@ -93,12 +93,12 @@ void MotionFit::add(const Vec3d& original, const Vec3d& image) {
   products_ += b * a.transpose();
 }
 
-Motion MotionFit::motion() const {
+Motion MotionFit::motion(const Eigen::Matrix3d& start) const {
   Motion m = Motion::Zero();
   m.leftCols<3>().setIdentity();
   if (count_ == 0.0) return m;
   const Eigen::Matrix3d h = products_ - image_ * original_.transpose() / count_;
-  m.leftCols<3>() = rotation_matrix(nearest_rotation(h));
+  m.leftCols<3>() = closest_rotation(h, start);
   m.col(3) =
       first_image_ + image_ / count_ - m.leftCols<3>() * (first_original_ + original_ / count_);
   return m;

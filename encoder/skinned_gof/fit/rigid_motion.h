@@ -31,7 +31,8 @@ Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d
 class MotionFit {
  public:
   void add(const Vec3d& original, const Vec3d& image);
-  Motion motion() const;
+  // start: a rotation that is perhaps close to the result.
+  Motion motion(const Eigen::Matrix3d& start) const;
 
  private:
   double count_ = 0.0;

@@ -182,7 +182,7 @@ double squared_error(const Motion& m, const std::vector<std::pair<Vec3d, Vec3d>>
 Motion fit(const std::vector<std::pair<Vec3d, Vec3d>>& pairs) {
   MotionFit collected;
   for (const auto& [original, image] : pairs) collected.add(original, image);
-  return collected.motion();
+  return collected.motion(Eigen::Matrix3d::Identity());
 }
 
 TEST(MotionFit, IsTheIdentityWithoutPairsAndATranslationWithOne) {

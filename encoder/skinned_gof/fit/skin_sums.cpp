@@ -8,6 +8,7 @@
 
 #include "encoder/math/matrix_products.h"
 #include "encoder/math/small_system.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -97,7 +98,13 @@ void SkinSums::set_positions(std::span<const Vec3d> positions) {
 void SkinSums::sum_along() {
   const std::size_t columns = kColumns * num_bones_;
   along_.assign(square_.size() * columns, 0.0);
-  add_matrix_product(positions_, 3 * num_frames_, by_frame_, columns, along_);
+  constexpr std::size_t kTogether = 64;  // fixed: vertices to a pass of the loop
+  const std::size_t width = 3 * num_frames_;
+  for_ranges(square_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    add_matrix_product(positions_.subspan(first * width, (end - first) * width), width,
+                       by_frame_, columns,
+                       std::span(along_).subspan(first * columns, (end - first) * columns));
+  });
 }
 
 void SkinSums::set_motions(const BoneMotions& motions) {
@@ -197,22 +204,30 @@ std::vector<std::size_t> SkinSums::closest_bones(std::size_t vertex, const Vec3d
 }
 
 SkinSums::Gram SkinSums::gram(std::size_t vertex, std::span<const std::size_t> bones,
-                              const Vec3d& rest) const {
+                              const Vec3d& rest, std::size_t max_influences) const {
   assert(bones.size() <= kMaxCandidates);
+  const std::size_t n = bones.size();
   const Eigen::Vector4d p = homogeneous(rest);
   std::array<double, kMaxCandidates> part{};
-  for (std::size_t i = 0; i < bones.size(); ++i) part[i] = p.dot(along(vertex, bones[i]));
+  for (std::size_t i = 0; i < n; ++i) part[i] = p.dot(along(vertex, bones[i]));
   Gram gram{};
-  for (std::size_t i = 0; i < bones.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double both = p.dot(product(bones[i], bones[j]) * p);
-      const double value = both - part[i] - part[j] + square_[vertex];
-      gram[i * kMaxCandidates + j] = gram[j * kMaxCandidates + i] = value;
-    }
+  const auto set = [&](std::size_t i, std::size_t j) {
+    const double both = p.dot(product(bones[i], bones[j]) * p);
+    const double value = both - part[i] - part[j] + square_[vertex];
+    gram[i * kMaxCandidates + j] = gram[j * kMaxCandidates + i] =
+        i == j ? std::max(value, 0.0) : value;  // negative only by rounding
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    set(i, i);
+    if (gram[i * kMaxCandidates + i] < gram[best * kMaxCandidates + best]) best = i;
   }
-  for (std::size_t i = 0; i < bones.size(); ++i) {
-    double& own = gram[i * kMaxCandidates + i];
-    own = std::max(own, 0.0);  // negative only by rounding
+  for (std::size_t i = 0; i < n; ++i) {
+    if (max_influences <= 2) {
+      if (i != best && max_influences == 2) set(std::max(i, best), std::min(i, best));
+      continue;
+    }
+    for (std::size_t j = 0; j < i; ++j) set(i, j);
   }
   return gram;
 }

@@ -34,10 +34,12 @@ class SkinSums {
   std::vector<std::size_t> closest_bones(std::size_t vertex, const Vec3d& rest,
                                          std::size_t count) const;
 
-  // Gram matrix of the errors of a vertex at `rest` under each of some bones.
+  // Gram matrix of the errors of a vertex at `rest` under each of some bones. With at most two
+  // influences, as far as sparse_weights() reads it; all else is 0.
   static constexpr std::size_t kMaxCandidates = 8;  // fixed: size of arrays
   using Gram = std::array<double, kMaxCandidates * kMaxCandidates>;
-  Gram gram(std::size_t vertex, std::span<const std::size_t> bones, const Vec3d& rest) const;
+  Gram gram(std::size_t vertex, std::span<const std::size_t> bones, const Vec3d& rest,
+            std::size_t max_influences) const;
 
   // The rest position with the smallest error, regularised weakly towards `before`.
   Vec3d fit_rest(std::size_t vertex, const Vec3d& before,

@@ -45,7 +45,7 @@ void expect_same(const SkinSums& a, const SkinSums& b, std::size_t num_bones) {
     EXPECT_EQ(a.closest_bones(v, rest, num_bones + 1), b.closest_bones(v, rest, num_bones + 1));
     for (std::size_t i = 0; i < num_bones; ++i) {
       const std::vector<std::size_t> two{i, (i + 1) % num_bones};
-      EXPECT_EQ(a.gram(v, two, rest), b.gram(v, two, rest));
+      EXPECT_EQ(a.gram(v, two, rest, 2), b.gram(v, two, rest, 2));
     }
   }
 }

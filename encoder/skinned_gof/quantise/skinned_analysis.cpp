@@ -91,13 +91,15 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
 class SkinnedAnalyser {
  public:
   SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-                  const Rig& rig, const SkinnedSettings& settings, double step)
+                  const Rig& rig, const SkinnedSettings& settings, double step,
+                  const SkinnedAnalysis* same_bones)
       : mesh_(mesh),
         position_bits_(position_bits),
         frames_(frames),
         rig_(rig),
         settings_(settings),
-        step_(step) {}
+        step_(step),
+        same_bones_(same_bones) {}
 
   SkinnedAnalysis analyse() {
     SkinnedGof& gof = found_.gof;
@@ -108,7 +110,7 @@ class SkinnedAnalyser {
     gof.layer_group_size = {mesh_.num_layers()};
     gof.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
     gof.slice_layers = {1};
-    code_bones();
+    take_or_code_bones();
     for (const auto& weights : rig_.weights) {
       gof.influences.push_back(quantise_weights(weights, 1 << gof.weight_bits));
     }
@@ -175,6 +177,13 @@ class SkinnedAnalyser {
     return {mass, moment};
   }
 
+  void take_or_code_bones() {
+    if (same_bones_ == nullptr) return code_bones();
+    found_.gof.bones = same_bones_->gof.bones;
+    found_.bones = same_bones_->bones;
+    for (const BoneMotion& bone : found_.bones) motions_.push_back(motions_of(bone));
+  }
+
   void code_bones() {
     TrackState rotations(frames_.num_frames);
     TrackState origins(frames_.num_frames);
@@ -215,33 +224,39 @@ class SkinnedAnalyser {
     }
   }
 
-  // Sets mean_ to the weighted mean of the motions of the bones of a vertex.
-  void find_mean_motion(std::uint32_t v) {
+  // The weighted mean of the motions of the bones of the vertex asked for last.
+  struct VertexMotion {
+    std::vector<MeanMotion> mean;  // [frame]
+    Influences of;
+  };
+
+  // The motions of a vertex; faster if the one before had the same influences.
+  const std::vector<MeanMotion>& mean_motion(std::uint32_t v, VertexMotion& last) const {
     const Influences& influences = found_.gof.influences[v];
-    if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
-    mean_of_ = influences;
+    if (std::ranges::equal(influences, last.of) && !last.mean.empty()) return last.mean;
+    last.of = influences;
     const double unit = exact_exp2(-found_.gof.weight_bits);
-    mean_.assign(frames_.num_frames, {});
+    last.mean.assign(frames_.num_frames, {});
     for (const Influence& influence : influences) {
       const double weight = influence.weight * unit;
       const std::vector<MeanMotion>& motions = motions_[influence.bone];
-      for (std::size_t f = 0; f < mean_.size(); ++f) {
+      for (std::size_t f = 0; f < last.mean.size(); ++f) {
+        MeanMotion& mean = last.mean[f];
         for (std::size_t c = 0; c < 3; ++c) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            mean_[f].turn[k][c] += weight * motions[f].turn[k][c];
-          }
-          mean_[f].shift[c] += weight * motions[f].shift[c];
+          for (std::size_t k = 0; k < 3; ++k) mean.turn[k][c] += weight * motions[f].turn[k][c];
+          mean.shift[c] += weight * motions[f].shift[c];
         }
       }
     }
+    return last.mean;
   }
 
   // The least-squares rest position for the decoded bones.
   Point fit_rest(std::uint32_t v) {
-    find_mean_motion(v);
+    const std::vector<MeanMotion>& motions = mean_motion(v, last_);
     SmallSystem<3> m;
     for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
-      const MeanMotion& motion = mean_[f];
+      const MeanMotion& motion = motions[f];
       const double* x = frames_.at(f, v);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -289,22 +304,24 @@ class SkinnedAnalyser {
   }
 
   // The residual of bone motion: frames minus skinned rest positions.
-  TrajectoryRows displacement() {
+  TrajectoryRows displacement() const {
     const std::size_t width = 3 * std::size_t{frames_.num_frames};
     return {frames_.num_vertices, width,
             [this, width](std::size_t first, std::span<double> rows) {
+              VertexMotion last;
               for (std::size_t i = 0; i * width < rows.size(); ++i) {
-                write_displacement(static_cast<std::uint32_t>(first + i), &rows[i * width]);
+                const auto v = static_cast<std::uint32_t>(first + i);
+                write_displacement(v, mean_motion(v, last), &rows[i * width]);
               }
             }};
   }
 
   // Writes the residual of one vertex: for each coordinate, all frames.
-  void write_displacement(std::uint32_t v, double* row) {
-    find_mean_motion(v);
+  void write_displacement(std::uint32_t v, const std::vector<MeanMotion>& motions,
+                          double* row) const {
     const std::size_t num_frames = frames_.num_frames;
     for (std::uint32_t f = 0; f < num_frames; ++f) {
-      const MeanMotion& motion = mean_[f];
+      const MeanMotion& motion = motions[f];
       const double* x = frames_.at(f, v);
       for (std::size_t c = 0; c < 3; ++c) {
         double residual = x[c] - motion.shift[c];
@@ -322,18 +339,20 @@ class SkinnedAnalyser {
   const Rig& rig_;
   const SkinnedSettings& settings_;
   double step_;
+  const SkinnedAnalysis* same_bones_;
   SkinnedAnalysis found_;
   std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
-  std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
-  Influences mean_of_;
+  VertexMotion last_;
 };
 
 }  // namespace
 
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
-                                    const SkinnedSettings& settings, double step) {
-  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step).analyse();
+                                    const SkinnedSettings& settings, double step,
+                                    const SkinnedAnalysis* same_bones) {
+  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step, same_bones)
+      .analyse();
 }
 
 }  // namespace rlpc

@@ -59,9 +59,11 @@ struct SkinnedAnalysis {
 };
 
 // Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
-// to the sum over all coordinates of all frames. step: grid units.
+// to the sum over all coordinates of all frames. step: grid units. same_bones: an analysis for
+// the same rig, step and rounding, whose bones are taken; null: none.
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
-                                    const SkinnedSettings& settings, double step);
+                                    const SkinnedSettings& settings, double step,
+                                    const SkinnedAnalysis* same_bones = nullptr);
 
 }  // namespace rlpc

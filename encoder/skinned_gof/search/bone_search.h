@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,32 +30,29 @@ class BoneSearch {
   SkinnedTrial search() const;
 
  private:
-  // Expected costs of different numbers of bones, from a small sample.
-  struct Estimate {
-    std::uint32_t count = 0;                                // the number that costs least
-    double cost = std::numeric_limits<double>::infinity();  // its expected cost
-    double translation = 0.0;   // expected cost of a single bone that only translates
-    std::vector<double> costs;  // expected costs of all numbers, as far as tried
+  // A fit, and the Lagrangian cost that its sample lets expect.
+  struct Candidate {
+    std::unique_ptr<BoneFit> fit;
+    BoneCounts counts;
+    double expected = 0.0;
+  };
+  // Candidates, and the expected cost of a single bone from the same sample.
+  struct Candidates {
+    std::vector<Candidate> list;
+    double of_one = std::numeric_limits<double>::infinity();
   };
 
-  // Estimates for each maximum number of bones per vertex.
-  struct Estimates {
-    std::vector<Estimate> of_influences;                     // [influences - 1]
-    double least = std::numeric_limits<double>::infinity();  // the lowest cost of all
-  };
-
-  BoneFit fit(std::size_t influences) const;
-  BoneFit quick_fit(std::size_t influences) const;
-  bool grow(BoneFit& fit, std::uint32_t count) const;
+  BoneFit fit(std::size_t influences, std::uint32_t part) const;
+  Candidates candidates_from(std::span<const BoneCounts> counts, std::uint32_t part,
+                             bool settles) const;
+  Candidates grown(std::uint32_t influences, std::span<const std::uint32_t> counts,
+                   std::uint32_t part) const;
   SkinnedTrial run(Rig rig, const BoneCounts& counts) const;
-  Estimate estimate(std::size_t influences) const;
-  Estimates estimates() const;
-  SkinnedTrial try_one_bone() const;
+  SkinnedTrial run(const Candidate& candidate) const;
+  std::vector<SkinnedTrial> try_one_bone() const;
   BestTrial try_requested() const;
-  BestTrial try_estimated(BestTrial best, std::uint32_t influences, const Estimate& estimate,
-                          double without) const;
-  BestTrial try_counts(BestTrial best, BoneFit& full, std::uint32_t influences,
-                       std::span<const std::uint32_t> counts, std::uint32_t likely) const;
+  SkinnedTrial search_by_samples() const;
+  SkinnedTrial search_all() const;
 
   const SkinnedContext& context_;
   const GofFrames& frames_;

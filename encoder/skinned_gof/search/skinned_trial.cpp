@@ -39,10 +39,11 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial) {
   return trial;
 }
 
-SkinnedAnalysis SkinnedTrials::analyse(const SkinnedCandidate& candidate) const {
+SkinnedAnalysis SkinnedTrials::analyse(const SkinnedCandidate& candidate,
+                                       const SkinnedAnalysis* same_bones) const {
   return analyse_skinned_gof(context_.meshes[candidate.settings.prediction],
                              context_.header.position_bits, frames_, candidate.rig,
-                             candidate.settings, step_);
+                             candidate.settings, step_, same_bones);
 }
 
 double SkinnedTrials::cost(const SkinnedAnalysis& analysis,
@@ -63,8 +64,11 @@ SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
   const bool same_analysis =
       settings.prediction == before.prediction && settings.layer_steps == before.layer_steps;
   if (!same_analysis) {
-    SkinnedTrial other = run({trial.candidate.rig, trial.candidate.counts, settings});
-    return other.cost < trial.cost ? std::move(other) : std::move(trial);
+    SkinnedCandidate candidate{trial.candidate.rig, trial.candidate.counts, settings};
+    SkinnedAnalysis analysis = analyse(candidate, &trial.analysis);
+    const double other_cost = cost(analysis, settings);
+    if (other_cost >= trial.cost) return trial;
+    return {std::move(candidate), std::move(analysis), other_cost};
   }
   const double other_cost = cost(trial.analysis, settings);
   if (other_cost < trial.cost) {

@@ -44,7 +44,9 @@ class SkinnedTrials {
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
-  SkinnedAnalysis analyse(const SkinnedCandidate& candidate) const;
+  // same_bones: as of analyse_skinned_gof().
+  SkinnedAnalysis analyse(const SkinnedCandidate& candidate,
+                          const SkinnedAnalysis* same_bones = nullptr) const;
   SkinnedTrial run(SkinnedCandidate candidate) const;
   // Tries the candidate with other settings; returns the cheaper of the two trials.
   SkinnedTrial with_settings(SkinnedTrial trial, const SkinnedSettings& settings) const;
