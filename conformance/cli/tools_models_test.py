@@ -4,6 +4,8 @@
     tools_models_test.py --bin BUILD/bin [unittest arguments, such as Models]
 """
 
+import struct
+
 from tools_testing import NAMES, ToolsTest, main
 
 
@@ -24,6 +26,19 @@ class Models(ToolsTest):
             self.assertEqual([gof["model"] for gof in info["gofs"]], [0] * info["num_gofs"])
             self.assertEqual(info["models"][0]["num_gofs"], info["num_gofs"])
             self.assertLess(sizes["high"], 0.8 * sizes["main"], name)
+
+    def test_the_profile_decides_how_long_gofs_are(self):
+        mesh, points = self.path("long.obj"), self.path("long.pc2")
+        mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        frames = [[0, 0, f % 7, 1, 0, f % 5, 0, 1, f % 3] for f in range(300)]
+        points.write_bytes(b"POINTCACHE2\0" + struct.pack("<iiffi", 1, 3, 0, 1, len(frames)) +
+                           b"".join(struct.pack("<9f", *frame) for frame in frames))
+        for profile, num_gofs in (("main", 3), ("high", 2)):
+            stream = self.path(profile + ".rlpc")
+            self.ok("rlpcenc", mesh, "--points", points, "--preset", "fast", "--profile",
+                    profile, "-o", stream)
+            info = self.ok("rlpcinfo", stream, "--json").json()
+            self.assertEqual(info["num_gofs"], num_gofs, profile)
 
     def test_rlpcinfo_lists_models_with_their_slices(self):
         stream = self.path("a.rlpc")

@@ -18,7 +18,7 @@ struct EncodeCommandLine {
 
   EncodeOptions& options;
   std::string fps;
-  std::string gof = "128";
+  std::optional<std::string> gof;  // none: chosen by the profile
   std::string metadata_path;
   std::optional<double> kg;
   std::optional<double> bpvf;

@@ -30,11 +30,11 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   o.input.max_memory_bytes = s.max_memory_bytes;
   if (line.gof == "all") {
     s.gof_frames = EncoderSettings::kWholeSequence;
-  } else {
-    const char* const end = line.gof.data() + line.gof.size();
-    const auto [rest, error] = std::from_chars(line.gof.data(), end, s.gof_frames);
+  } else if (line.gof) {
+    const char* const end = line.gof->data() + line.gof->size();
+    const auto [rest, error] = std::from_chars(line.gof->data(), end, s.gof_frames);
     if (error != std::errc() || rest != end || s.gof_frames == 0) {
-      return "--gof: expected a number of frames or `all`, found `" + line.gof + "`";
+      return "--gof: expected a number of frames or `all`, found `" + *line.gof + "`";
     }
   }
   for (const NamedQuality& q : kQualities) {
