@@ -12,8 +12,7 @@ constexpr std::uint32_t kSmallMesh = 1000;
 
 }  // namespace
 
-// Geometry weights do not pay off if the rest positions say little about the motion, adaptive
-// weights if few trajectories follow each other's pattern.
+// Geometry weights do not pay off if the rest positions say little about the motion.
 // Parallelograms predict small regular meshes better. If the residual of bone motion is small,
 // rest positions cost less without layers.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
@@ -29,7 +28,6 @@ SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& tr
       context.settings.preset == Preset::kSlow || context.header.num_vertices <= kSmallMesh;
   if (best.candidate.settings.prediction == Prediction::kLayers) {
     if (tools.geometry_weights) try_other(&SkinnedSettings::damping_log2, 0);
-    if (!tools.adaptive_factors) try_other(&SkinnedSettings::num_adaptive_factors, 0U);
     if (tools.layer_steps && thorough) try_other(&SkinnedSettings::layer_steps, false);
   }
   const bool any_prediction = !tools.prediction && tools.layer_groups <= 1;
