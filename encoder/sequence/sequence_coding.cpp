@@ -14,6 +14,14 @@
 
 namespace rlpc {
 
+namespace {
+
+// Per position of the span being coded. Measured with random motion: 90 to 150. Real motion
+// needs 40.
+constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
+
+}  // namespace
+
 std::uint32_t longest_gof(const EncoderSettings& settings) {
   if (settings.gof_frames > 0) return settings.gof_frames;
   return settings.profile == Profile::kHigh ? kDefaultTrackFrames : kDefaultGofFrames;
@@ -21,24 +29,27 @@ std::uint32_t longest_gof(const EncoderSettings& settings) {
 
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
   constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 23;  // fixed: memory
+  constexpr std::uint64_t kPart = 4;  // fixed: a span takes at most a quarter of the limit
   const std::uint32_t longest = longest_gof(settings);
   if (settings.profile != Profile::kHigh) return longest;
+  const std::uint64_t positions =
+      std::min(kMostPositions, settings.max_memory_bytes / (kPart * kBytesOfPosition));
   const std::uint64_t frames =
-      std::min<std::uint64_t>(kMostPositions / header.num_vertices, kMaxFrames);
+      std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames);
   return std::max(longest, static_cast<std::uint32_t>(frames));
 }
 
 std::optional<InputError> check_memory(const EncoderSettings& settings,
                                        const SequenceHeader& header, std::uint32_t longest_gof,
                                        std::uint32_t kept_frames, std::uint64_t source_bytes) {
-  // Measured with random motion: 90 to 150 bytes per position of the GOF being coded, 70 bytes
-  // per position of a kept analysis. Real motion needs 40 and 10 bytes.
+  // Measured with random motion: 70 bytes per position of a kept analysis. Real motion
+  // needs 10.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
-  constexpr std::uint64_t kInGof = 150;                      // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  const std::uint64_t of_vertex = kOfVertex + kInGof * longest_gof + kKept * kept_frames;
+  const std::uint64_t of_vertex =
+      kOfVertex + kBytesOfPosition * longest_gof + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
                                header.num_triangles * kOfTriangle;
   if (needed <= settings.max_memory_bytes) return std::nullopt;

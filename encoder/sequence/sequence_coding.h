@@ -22,12 +22,15 @@
 namespace rlpc {
 
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
-// With skinned models, a seek only parses the tracks of a GOF.
+// With skinned models, a seek only parses the tracks of a GOF, some milliseconds. Compared with
+// a single GOF, this length takes up to 3 % more bytes (morph-stress), half of it up to 6 %, at
+// a KG error of 0.1 %; sequences of twice the length were not at hand.
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
 // Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings);
-// Maximum frames per span: in the High profile, those of GOFs that share a skinned model.
+// Maximum frames per span: in the High profile, those of GOFs that share a skinned model, as
+// many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header);
 
 // Error: encoding may need more memory than the settings allow. kept_frames: number of frames
