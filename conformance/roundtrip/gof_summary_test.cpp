@@ -8,18 +8,12 @@
 #include <vector>
 
 #include "conformance/roundtrip/model_animation.h"
+#include "conformance/roundtrip/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
 namespace {
 
-StreamSummary summary_of(const StreamBytes& stream) {
-  StreamReader reader(memory_source(stream), {});
-  EXPECT_TRUE(reader.open());
-  const auto summary = summarise_all(reader);
-  EXPECT_TRUE(summary);
-  return summary ? *summary : StreamSummary();
-}
 std::vector<GofSummary> entries_of(const StreamBytes& stream) {
   return summary_of(stream).gofs;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "conformance/roundtrip/small_animation.h"
+#include "conformance/roundtrip/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/gof_summary.h"
 
@@ -37,14 +38,6 @@ Encoded encoded(Profile profile, Target target, std::uint32_t gof_frames,
   if (report) result.report = std::move(*report);
   require_conforming(result.bytes);
   return result;
-}
-
-StreamSummary summary_of(const StreamBytes& stream) {
-  StreamReader reader(memory_source(stream), {});
-  EXPECT_TRUE(reader.open());
-  const auto summary = summarise_all(reader);
-  EXPECT_TRUE(summary);
-  return summary ? *summary : StreamSummary();
 }
 
 TEST(HighProfile, GofsShareAModel) {
