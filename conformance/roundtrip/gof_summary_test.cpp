@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "conformance/roundtrip/model_animation.h"
-#include "conformance/roundtrip/stream_summary.h"
+#include "conformance/roundtrip/stream_summary_test.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

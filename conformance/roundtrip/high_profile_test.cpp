@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "conformance/roundtrip/small_animation.h"
-#include "conformance/roundtrip/stream_summary.h"
+#include "conformance/roundtrip/stream_summary_test.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/gof_summary.h"
 
