@@ -9,6 +9,7 @@
 #include <span>
 
 #include "common/bitstream/residual_models.h"
+#include "common/components/track_order.h"
 
 namespace rlpc {
 
@@ -24,6 +25,12 @@ struct RunningMagnitude {
   }
 };
 
+// 9.6.3 and 9.8.2: of the running magnitude of a track, and the running mean of its frame.
+constexpr std::uint32_t expected_in_track(const RunningMagnitude& of_track,
+                                          std::uint32_t of_frame) {
+  return (of_track.fast + of_track.slow + 2 * of_frame) >> 6;
+}
+
 // 9.6.1 ClippedMagnitude( residual ): scaled to 8 fractional bits, as running means are.
 constexpr std::uint32_t clipped_magnitude(std::int32_t residual) {
   return std::min<std::uint32_t>(magnitude_of(residual), 0x100000) << 8;
@@ -37,24 +44,33 @@ enum class HeaderField : std::uint8_t {
   kTemporalBits
 };
 
+// 9.8.1: models of the residuals of bones or of trajectories: of level 0, and of all others.
+using TrackModels = std::array<ResidualModels, 2>;
+// The index of a level among them.
+constexpr std::size_t models_of_level(int level) { return level == 0 ? 0 : 1; }
+
+// Running magnitudes of a track, [level][coordinate].
+using TrackMagnitudes = std::array<std::array<RunningMagnitude, 3>, kMaxTrackLevels + 1>;
+
 // 9.6.3 and 9.8.2 Expected magnitude of a residual of a track (of a seed vertex, a bone or a
 // trajectory).
 class TrackContext {
  public:
   // frame_mean [num_gof_frames]: running mean over the previous tracks, per frame; updated.
   explicit TrackContext(std::span<std::uint32_t> frame_mean) : frame_mean_(frame_mean) {}
-  std::uint32_t expected(std::uint32_t f, std::size_t c) const {
-    return (mean_[c].fast + mean_[c].slow + 2 * frame_mean_[f]) >> 6;
+  std::uint32_t expected(const TrackPlace& at, std::size_t c) const {
+    const RunningMagnitude& mean = mean_[static_cast<std::size_t>(at.level)][c];
+    return expected_in_track(mean, frame_mean_[at.frame]);
   }
-  void update(std::uint32_t f, std::size_t c, std::int32_t residual) {
+  void update(const TrackPlace& at, std::size_t c, std::int32_t residual) {
     const std::uint32_t magnitude = magnitude_of(residual);
-    mean_[c].update(magnitude);
-    frame_mean_[f] = update_mean(frame_mean_[f], magnitude, 3);
+    mean_[static_cast<std::size_t>(at.level)][c].update(magnitude);
+    frame_mean_[at.frame] = update_mean(frame_mean_[at.frame], magnitude, 3);
   }
 
  private:
   std::span<std::uint32_t> frame_mean_;
-  std::array<RunningMagnitude, 3> mean_;
+  TrackMagnitudes mean_;
 };
 
 }  // namespace rlpc

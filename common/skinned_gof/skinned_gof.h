@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/components/component_limits.h"
+#include "common/components/track_order.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/weight_settings.h"
@@ -39,11 +40,13 @@ struct Bone {
   Vec3i pivot{};             // 1/16 grid units, signed, position_bits + 5 bits
   bool rotation_flag = false;
   std::uint32_t rotation_step_idx = 0;
-  int rotation_order = 1;  // 1 to kMaxPredictorOrder
+  int rotation_order = 1;    // 1 to kMaxPredictorOrder
+  int rotation_between = 0;  // 0 to kMaxBetween
   TrackResiduals rotation_residual;
   bool origin_flag = false;
   std::uint32_t origin_step_idx = 0;
-  int origin_order = 0;  // 0 to kMaxPredictorOrder
+  int origin_order = 0;    // 0 to kMaxPredictorOrder
+  int origin_between = 0;  // 0 to kMaxBetween
   TrackResiduals origin_residual;
 
   bool operator==(const Bone&) const = default;
@@ -72,6 +75,7 @@ struct Trajectory {
   int spatial_bits = 1;
   int temporal_bits = 1;
   int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
+  int temporal_between = 0;    // 0 to kMaxBetween
   std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
   TrackResiduals residual;
   bool trajectory_flag = true;  // false: does not occur in the GOF, which has no other element
@@ -108,6 +112,7 @@ struct SkinnedModel {
 struct SkinnedGof : GofHeader, SkinnedModel {
   SkinnedGof() { kind = GofKind::kSkinned; }
 
+  int track_levels = 0;  // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
   // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
   // vertices is then there. The settings, bones and leading trajectories of the GOF are those
   // of the model, with their motion; slice_layers counts the component groups of both; and

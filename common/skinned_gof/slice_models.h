@@ -25,17 +25,20 @@ struct BoneModels {
   BitModel origin_flag;
   std::array<BitModel, kMaxPredictorOrder - 1> rotation_order;
   std::array<BitModel, kMaxPredictorOrder> origin_order;
-  ResidualModels rotation;
-  ResidualModels origin;
+  std::array<BitModel, kMaxBetween> rotation_between;
+  std::array<BitModel, kMaxBetween> origin_between;
+  TrackModels rotation;
+  TrackModels origin;
 };
 
 // 9.8.1: models of the slices of a GOF, except those of spatial residuals.
 struct SliceModels {
   BitModel trajectory_flag;
   std::array<BitModel, kMaxTemporalPredictor> temporal_predictor;
+  std::array<BitModel, kMaxBetween> temporal_between;
   std::array<BitModel, kMaxExtraBones> extra_bone_flag;
   ResidualModels header;
-  ResidualModels temporal;
+  TrackModels trajectory;
   ResidualModels weight;
   std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
 };

@@ -77,6 +77,8 @@ class RandomSkinnedGof {
     return residuals;
   }
 
+  int order_of_track() { return gof.track_levels > 0 ? between(0, kMaxBetween) : 0; }
+
   // A sheet with holes and stray triangles.
   void make_mesh(const SkinnedGofSizes& sizes) {
     const std::uint32_t n = 1 + below(sizes.max_vertices);
@@ -105,6 +107,9 @@ class RandomSkinnedGof {
     gof.prediction = static_cast<Prediction>(below(4));
     gof.bones.resize(1 + below(sizes.max_bones));
     if (coin()) header.profile_idc = kProfileHigh;
+    if (header.profile_idc == kProfileHigh && coin()) {
+      gof.track_levels = between(0, kMaxTrackLevels);
+    }
   }
 
   void make_layers_of_gof(const CodedMesh& mesh) {
@@ -135,11 +140,13 @@ class RandomSkinnedGof {
     if (bone.rotation_flag) {
       bone.rotation_step_idx = static_cast<std::uint32_t>(between(0, kMaxStepIdx));
       bone.rotation_order = between(1, kMaxPredictorOrder);
+      bone.rotation_between = order_of_track();
       bone.rotation_residual = track();
     }
     if (bone.origin_flag) {
       bone.origin_step_idx = static_cast<std::uint32_t>(between(0, kMaxStepIdx));
       bone.origin_order = between(0, kMaxPredictorOrder);
+      bone.origin_between = order_of_track();
       bone.origin_residual = track();
     }
   }
@@ -150,6 +157,7 @@ class RandomSkinnedGof {
     t.spatial_bits = between(1, kMaxSpatialBits);
     t.temporal_bits = between(1, kMaxTemporalBits);
     t.temporal_predictor = between(0, kMaxTemporalPredictor);
+    t.temporal_between = order_of_track();
     for (int k = 0; k < t.temporal_predictor - kMaxPredictorOrder; ++k) {
       t.temporal_weight[static_cast<std::size_t>(k)] =
           static_cast<std::int16_t>(between(-kTemporalWeightOffset, kTemporalWeightOffset - 1));

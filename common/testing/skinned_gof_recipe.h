@@ -26,6 +26,8 @@ struct BoneRecipe {
   std::uint32_t rotation_order_minus1 = 0;
   std::uint32_t origin_step_idx = 0;
   std::uint32_t origin_order = 0;
+  std::uint32_t rotation_between = 0;
+  std::uint32_t origin_between = 0;
 };
 
 // 6.5 and 6.11, of a GOF that begins with frame 0; 6.13, of a skinned model; and 6.13.1, of a
@@ -36,6 +38,7 @@ struct SkinnedGofRecipe {
   std::uint32_t weight_bits = 0;
   std::uint32_t rest_step_minus1 = 0;
   std::uint32_t num_component_groups = 0;
+  std::optional<std::uint32_t> track_levels;  // of the High profile
   std::uint32_t prediction_idc = 0;
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
@@ -51,7 +54,8 @@ struct SkinnedGofRecipe {
     BitWriter w;
     w.ue(0);
     w.ue(num_gof_frames_minus1);
-    w.u(num_adaptive_factors ? 2 : 1, 1);  // gof_kind or, in the Main profile, bones_flag
+    w.u(is_high() ? 2 : 1, 1);  // gof_kind or, in the Main profile, bones_flag
+    if (is_high()) w.u(3, track_levels.value_or(0));
     rig_header(w);
     w.byte_alignment();
     w.append(bone_section(true, true));
@@ -72,11 +76,14 @@ struct SkinnedGofRecipe {
     w.ue(num_gof_frames_minus1);
     w.u(2, gof_kind);
     w.u(3, model_idx);
+    w.u(3, track_levels.value_or(0));
     w.ue(num_local_groups);
     w.byte_alignment();
     w.append(bone_section(false, true));
     return w.take();
   }
+
+  bool is_high() const { return track_levels || num_adaptive_factors; }
 
  private:
   void rig_header(BitWriter& w) const {
@@ -90,7 +97,7 @@ struct SkinnedGofRecipe {
       w.u(4, damping_log2);
       w.u(4, outer_weight);
       w.u(4, outer_scale);
-      if (num_adaptive_factors) w.ue(*num_adaptive_factors);
+      if (is_high()) w.ue(num_adaptive_factors.value_or(0));
       w.ue(num_layer_groups_minus1);
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
@@ -110,19 +117,24 @@ struct SkinnedGofRecipe {
       if (has_tracks && bone.rotation_flag) {
         r.section.bypass(8, bone.rotation_step_idx);
         r.truncated_unary(models.rotation_order, bone.rotation_order_minus1);
-        track(r, models.rotation);
+        if (has_levels()) r.truncated_unary(models.rotation_between, bone.rotation_between);
+        track(r, models.rotation, bone.rotation_between);
       }
       if (has_tracks && bone.origin_flag) {
         r.section.bypass(8, bone.origin_step_idx);
         r.truncated_unary(models.origin_order, bone.origin_order);
-        track(r, models.origin);
+        if (has_levels()) r.truncated_unary(models.origin_between, bone.origin_between);
+        track(r, models.origin, bone.origin_between);
       }
     }
     return r.section.finish();
   }
-  void track(SectionRecipe& r, ResidualModels& models) const {
-    for (std::uint32_t i = 0; i < 3 * (num_gof_frames_minus1 + 1); ++i) {
-      r.residual(models, 0, 0);
+  bool has_levels() const { return track_levels.value_or(0) > 0; }
+  void track(SectionRecipe& r, TrackModels& models, std::uint32_t between) const {
+    for (const TrackPlace& at :
+         track_order(num_gof_frames_minus1 + 1, static_cast<int>(track_levels.value_or(0)),
+                     static_cast<int>(between))) {
+      for (int c = 0; c < 3; ++c) r.residual(models[models_of_level(at.level)], 0, 0);
     }
   }
 };
@@ -146,7 +158,7 @@ class SliceRecipe : public SectionRecipe {
     field(HeaderField::kTemporalBits, temporal_bits_delta);
     truncated_unary(models.temporal_predictor, temporal_predictor);
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
-    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
+    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
   // 6.12.1, of a skinned model.
   void spatial_header(std::int32_t spatial_bits_delta) {
@@ -160,7 +172,7 @@ class SliceRecipe : public SectionRecipe {
     field(HeaderField::kScaleIdx, scale_idx_delta);
     field(HeaderField::kTemporalBits, temporal_bits_delta);
     truncated_unary(models.temporal_predictor, 0);
-    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.temporal, 0, 0);
+    for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
   // Of the first vertex: bones, and weights minus 1, of this many bits each.
   void extra_bones(std::span<const std::pair<std::uint32_t, std::uint32_t>> bones,

@@ -21,7 +21,7 @@ _INFERRED = ("ancillary_flag", "unit_type", "unit_size", "unit_crc", "position_c
              "version_minor")
 _COMPONENT = ("trajectory_flag", "scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta",
               "temporal_predictor", "spatial_predictor", "temporal_residual", "spatial_residual",
-              "temporal_weight", "trajectory_residual")
+              "temporal_weight", "temporal_between", "trajectory_residual")
 
 
 class _Recorder:

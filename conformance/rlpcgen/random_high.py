@@ -40,6 +40,14 @@ class HighSource(random_main.MainSource):
     def _num_local_groups(self, ns, indices, arguments):
         return min(self.plan.local_groups, 255 - ns["num_component_groups"])
 
+    def _track_levels(self, ns, indices, arguments):
+        return self.numbers.pick([0, 1, 2, 3, self.numbers.between(0, 7)])
+
+    def _rotation_between(self, ns, indices, arguments):
+        return self.numbers.between(0, 2)
+
+    _origin_between = _temporal_between = _rotation_between
+
     def _trajectory_flag(self, ns, indices, arguments):
         return int(self.numbers.chance(self.plan.present_percent))
 

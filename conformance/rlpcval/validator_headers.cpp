@@ -214,6 +214,7 @@ bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& go
           "the stream has no skinned model " + std::to_string(model_idx) + " up to here")) {
     return false;
   }
+  (void)r.u(3, "track_levels");
   const std::int64_t groups = r.ue("num_local_groups");
   if (!kept.model || !r.readable()) return false;
   gof.model_suspect = kept.suspect;
@@ -256,6 +257,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
       gof.section_readable = check_clusters(r, header);
       break;
     case GofKind::kSkinned:
+      if (header.profile_idc >= kProfileHigh) (void)r.u(3, "track_levels");
       gof.section_readable = check_rig(r, header, num_layers, gof.slices);
       break;
     case GofKind::kTracks:

@@ -49,6 +49,7 @@ Bytes tracks(std::uint32_t gof_kind, std::uint32_t model_idx, std::uint32_t num_
   w.ue(1);
   w.u(2, gof_kind);
   w.u(3, model_idx);
+  w.u(3, 0);  // track_levels
   w.ue(num_local_groups);
   w.byte_alignment();
   return w.take();

@@ -151,9 +151,11 @@ void ClusterSectionParser::seed_tracks() {
   const std::uint64_t values = 3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames;
   count_factors(values, "seed_residual");
   take_memory(kBytesPerTrackValue * values, "seed_residual");
+  const std::vector<TrackPlace> order = track_order(gof_.num_frames, 0, 0);
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
-    track.residual = parse_track(section_, models_.seed, frame_mean_, "seed_residual");
+    track.residual =
+        parse_track(section_, {&models_.seed, 1}, frame_mean_, order, "seed_residual");
     section_.check_overrun("seed_residual");
   }
 }

@@ -24,11 +24,12 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
 // 6.11.2 Bone
 class BoneParser {
  public:
-  BoneParser(SectionReader& section, const SequenceHeader& header, std::uint32_t num_frames)
+  BoneParser(SectionReader& section, const SequenceHeader& header, const SkinnedGof& gof)
       : section_(section),
         header_(header),
-        rotation_mean_(num_frames, 0),
-        origin_mean_(num_frames, 0) {}
+        gof_(gof),
+        rotation_mean_(gof.num_frames, 0),
+        origin_mean_(gof.num_frames, 0) {}
 
   // bone( b )
   Bone bone(std::uint32_t b) {
@@ -53,14 +54,16 @@ class BoneParser {
       bone.rotation_step_idx = step_idx("rotation_step_idx");
       bone.rotation_order =
           section_.truncated_unary(models_.rotation_order, "rotation_order_minus1") + 1;
-      bone.rotation_residual =
-          parse_track(section_, models_.rotation, rotation_mean_, "rotation_residual");
+      bone.rotation_between = between(models_.rotation_between, "rotation_between");
+      bone.rotation_residual = parse_track(section_, models_.rotation, rotation_mean_,
+                                           order(bone.rotation_between), "rotation_residual");
     }
     if (bone.origin_flag) {
       bone.origin_step_idx = step_idx("origin_step_idx");
       bone.origin_order = section_.truncated_unary(models_.origin_order, "origin_order");
-      bone.origin_residual =
-          parse_track(section_, models_.origin, origin_mean_, "origin_residual");
+      bone.origin_between = between(models_.origin_between, "origin_between");
+      bone.origin_residual = parse_track(section_, models_.origin, origin_mean_,
+                                         order(bone.origin_between), "origin_residual");
     }
   }
 
@@ -71,8 +74,16 @@ class BoneParser {
     return std::min(idx, kMaxStepIdx);
   }
 
+  int between(std::array<BitModel, kMaxBetween>& models, const char* element) {
+    return gof_.track_levels > 0 ? section_.truncated_unary(models, element) : 0;
+  }
+  std::vector<TrackPlace> order(int between) const {
+    return track_order(gof_.num_frames, gof_.track_levels, between);
+  }
+
   SectionReader& section_;
   const SequenceHeader& header_;
+  const SkinnedGof& gof_;
   BoneModels models_;
   std::vector<std::uint32_t> rotation_mean_;
   std::vector<std::uint32_t> origin_mean_;
@@ -138,7 +149,7 @@ void SkinnedGofParser::bone_section(BitReader& r) {
   if (has_tracks) num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
   check_factors(section, "bone_section");
   if (section.failed()) return;
-  BoneParser parser(section, header_, gof_.num_frames);
+  BoneParser parser(section, header_, gof_);
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
     gof_.bones[b] = parser.bone(b);
     if (has_tracks) parser.tracks(gof_.bones[b]);
@@ -153,7 +164,7 @@ void SkinnedGofParser::track_section(BitReader& r) {
   num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
   check_factors(section, "track_section");
   if (section.failed()) return;
-  BoneParser parser(section, header_, gof_.num_frames);
+  BoneParser parser(section, header_, gof_);
   for (Bone& bone : gof_.bones) {
     parser.tracks(bone);
     section.check_overrun("origin_residual");
@@ -207,6 +218,10 @@ Result<bool> SkinnedGofParser::rig(BitReader& r) {
   return true;
 }
 
+void SkinnedGofParser::track_levels(BitReader& r) {
+  gof_.track_levels = static_cast<int>(r.u(3, "track_levels"));
+}
+
 // 6.11 bones_of_gof( )
 Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
                                      const ModelSlots& models) {
@@ -215,6 +230,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
   unit_ = Unit::kGof;
   num_factors_ = 0;
   uncounted_factors_ = models.num_factors(kMaxModels);
+  if (header_.profile_idc >= kProfileHigh) track_levels(r);
   return rig(r);
 }
 
@@ -241,6 +257,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   if (!r.error() && !gof_.model) r.fail(Errc::kUnsupported, "R-MOD-01", "model_idx", at);
   if (r.error()) return *r.error();
   load_model();
+  track_levels(r);
   gof_.num_local_groups = r.ue(
       "num_local_groups", {0, kMaxComponentGroups - gof_.num_component_groups}, "R-BON-02");
   r.byte_alignment();

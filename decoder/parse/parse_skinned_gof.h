@@ -63,6 +63,7 @@ class SkinnedGofParser {
 
   Result<bool> rig(BitReader& r);
   void rig_header(BitReader& r);
+  void track_levels(BitReader& r);
   void layers(BitReader& r);
   void load_model();
   void bone_section(BitReader& r);

@@ -24,7 +24,7 @@ struct Gof {
   SkinnedGof gof;
 
   explicit Gof(const SkinnedGofRecipe& recipe)
-      : units(recipe.num_adaptive_factors ? high_header(9, 1) : main_header(9, 1), kGrid),
+      : units(recipe.is_high() ? high_header(9, 21) : main_header(9, 1), kGrid),
         parsed(units.gof(recipe.payload())) {
     if (parsed) gof = units.parser().finish();
   }
@@ -167,6 +167,26 @@ TEST(ParseSkinnedGofRanges, BonesTakeAllPivotsFlagsAndOrders) {
     }
     if (b.origin_flag) {
       EXPECT_EQ(b.origin_order, static_cast<int>(order));
+    }
+  }
+}
+
+// Only the High profile has them, and only with levels do tracks say which order they have.
+TEST(ParseSkinnedGofRanges, TracksTakeAllOrders) {
+  for (std::uint32_t levels = 0; levels <= 7; ++levels) {
+    for (std::uint32_t between = 0; between <= 2; ++between) {
+      SkinnedGofRecipe recipe;
+      recipe.num_gof_frames_minus1 = 20;
+      recipe.track_levels = levels;
+      recipe.bones[0].rotation_flag = recipe.bones[0].origin_flag = true;
+      recipe.bones[0].rotation_between = between;
+      recipe.bones[0].origin_between = 2 - between;
+      const Gof parsed(recipe);
+      ASSERT_TRUE(parsed.parsed) << levels;
+      EXPECT_EQ(parsed.gof.track_levels, static_cast<int>(levels));
+      const Bone& bone = parsed.gof.bones[0];
+      EXPECT_EQ(bone.rotation_between, levels > 0 ? static_cast<int>(between) : 0);
+      EXPECT_EQ(bone.origin_between, levels > 0 ? static_cast<int>(2 - between) : 0);
     }
   }
 }

@@ -88,8 +88,14 @@ void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
     trajectory.temporal_weight[static_cast<std::size_t>(k)] =
         static_cast<std::int16_t>(static_cast<int>(weight) - kTemporalWeightOffset);
   }
-  trajectory.residual = parse_track(section_, state_.models.temporal, state_.trajectory_mean,
-                                    "trajectory_residual");
+  if (gof_.track_levels > 0) {
+    trajectory.temporal_between =
+        section_.truncated_unary(state_.models.temporal_between, "temporal_between");
+  }
+  trajectory.residual =
+      parse_track(section_, state_.models.trajectory, state_.trajectory_mean,
+                  track_order(gof_.num_frames, gof_.track_levels, trajectory.temporal_between),
+                  "trajectory_residual");
 }
 
 // 9.8.1 StartSlice( )

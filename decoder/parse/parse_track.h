@@ -13,18 +13,20 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: running means, kept from track to track. One residual of three
-// coordinates per frame.
-inline std::vector<Vec3i> parse_track(SectionReader& section, ResidualModels& models,
+// frame_mean [num_gof_frames]: running means, kept from track to track. models: of level 0,
+// and of the others if `order` has any. One residual of three coordinates per frame.
+inline std::vector<Vec3i> parse_track(SectionReader& section, std::span<ResidualModels> models,
                                       std::span<std::uint32_t> frame_mean,
-                                      const char* element) {
+                                      std::span<const TrackPlace> order, const char* element) {
   std::vector<Vec3i> residuals(frame_mean.size());
   if (section.failed()) return residuals;
   TrackContext context(frame_mean);
-  for (std::uint32_t f = 0; f < residuals.size(); ++f) {
+  for (const TrackPlace& at : order) {
     for (std::size_t c = 0; c < 3; ++c) {
-      residuals[f][c] = section.residual(models, context.expected(f, c), element);
-      context.update(f, c, residuals[f][c]);
+      std::int32_t& residual = residuals[at.frame][c];
+      residual =
+          section.residual(models[models_of_level(at.level)], context.expected(at, c), element);
+      context.update(at, c, residual);
     }
   }
   return residuals;

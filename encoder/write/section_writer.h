@@ -22,9 +22,9 @@ class SectionWriter {
   void residual(ResidualModels& models, std::uint32_t expected, std::int32_t value) {
     write_residual(re_, models, expected, value);
   }
-  void track(ResidualModels& models, std::span<std::uint32_t> frame_mean,
-             std::span<const Vec3i> residuals) {
-    write_track(re_, models, frame_mean, residuals);
+  void track(std::span<ResidualModels> models, std::span<std::uint32_t> frame_mean,
+             std::span<const TrackPlace> order, std::span<const Vec3i> residuals) {
+    write_track(re_, models, frame_mean, order, residuals);
   }
   // 9.5.4 ae_header( field )
   void header_value(ResidualModels& models, std::uint32_t& mean, int value, int previous) {

@@ -87,8 +87,9 @@ void ClusterSectionWriter::cluster_idx(const ClusterPrediction& prediction,
 // 6.5.4 seed_tracks( )
 void ClusterSectionWriter::seed_tracks() {
   frame_mean_.assign(gof_.num_frames, 0);
+  const std::vector<TrackPlace> order = track_order(gof_.num_frames, 0, 0);
   for (const SeedTrack& track : gof_.seed_tracks) {
-    section_.track(models_.seed, frame_mean_, track.residual);
+    section_.track({&models_.seed, 1}, frame_mean_, order, track.residual);
   }
 }
 

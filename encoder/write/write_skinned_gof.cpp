@@ -17,11 +17,32 @@ namespace {
 
 enum class Unit : std::uint8_t { kGof, kModel, kTracks };
 
+// What the tracks of a GOF share; a skinned model has none.
+struct TrackFrames {
+  TrackFrames() = default;
+  explicit TrackFrames(const SkinnedGof& gof)
+      : count(gof.num_frames), levels(gof.track_levels) {}
+
+  std::uint32_t count = 0;
+  int levels = 0;
+
+  void write_between(SectionWriter& section, std::array<BitModel, kMaxBetween>& models,
+                     int between) const {
+    if (levels > 0) section.truncated_unary(models, between);
+  }
+  std::vector<TrackPlace> order(int between) const {
+    return track_order(count, levels, between);
+  }
+};
+
 // 6.11.2 Bone
 class BoneWriter {
  public:
-  BoneWriter(SectionWriter& section, std::uint32_t num_frames)
-      : section_(section), rotation_mean_(num_frames, 0), origin_mean_(num_frames, 0) {}
+  BoneWriter(SectionWriter& section, const TrackFrames& frames)
+      : section_(section),
+        frames_(frames),
+        rotation_mean_(frames.count, 0),
+        origin_mean_(frames.count, 0) {}
 
   // bone( b )
   void bone(const Bone& bone, std::size_t b, int position_bits) {
@@ -40,17 +61,22 @@ class BoneWriter {
     if (bone.rotation_flag) {
       section_.bypass(8, bone.rotation_step_idx);
       section_.truncated_unary(models_.rotation_order, bone.rotation_order - 1);
-      section_.track(models_.rotation, rotation_mean_, bone.rotation_residual);
+      frames_.write_between(section_, models_.rotation_between, bone.rotation_between);
+      section_.track(models_.rotation, rotation_mean_, frames_.order(bone.rotation_between),
+                     bone.rotation_residual);
     }
     if (bone.origin_flag) {
       section_.bypass(8, bone.origin_step_idx);
       section_.truncated_unary(models_.origin_order, bone.origin_order);
-      section_.track(models_.origin, origin_mean_, bone.origin_residual);
+      frames_.write_between(section_, models_.origin_between, bone.origin_between);
+      section_.track(models_.origin, origin_mean_, frames_.order(bone.origin_between),
+                     bone.origin_residual);
     }
   }
 
  private:
   SectionWriter& section_;
+  TrackFrames frames_;
   BoneModels models_;
   std::vector<std::uint32_t> rotation_mean_;
   std::vector<std::uint32_t> origin_mean_;
@@ -58,9 +84,9 @@ class BoneWriter {
 
 // 6.11.1 bone_section( ), 6.13.1 track_section( )
 std::vector<std::uint8_t> write_bone_section(const SkinnedModel& model, Unit unit,
-                                             std::uint32_t num_frames, int position_bits) {
+                                             const TrackFrames& frames, int position_bits) {
   SectionWriter section;
-  BoneWriter writer(section, num_frames);
+  BoneWriter writer(section, frames);
   for (std::size_t b = 0; b < model.bones.size(); ++b) {
     if (unit != Unit::kTracks) writer.bone(model.bones[b], b, position_bits);
     if (unit != Unit::kModel) writer.tracks(model.bones[b]);
@@ -73,8 +99,13 @@ class SliceWriter {
  public:
   // shared: the skinned model of a GOF of tracks.
   SliceWriter(const SkinnedModel& gof, const CodedMesh& mesh, Unit unit,
-              std::uint32_t num_frames, const SkinnedModel* shared = nullptr)
-      : gof_(gof), mesh_(mesh), unit_(unit), shared_(shared), trajectory_mean_(num_frames, 0) {}
+              const TrackFrames& frames, const SkinnedModel* shared = nullptr)
+      : gof_(gof),
+        mesh_(mesh),
+        unit_(unit),
+        frames_(frames),
+        shared_(shared),
+        trajectory_mean_(frames.count, 0) {}
 
   std::vector<std::vector<std::uint8_t>> write_all();
 
@@ -103,6 +134,7 @@ class SliceWriter {
   const SkinnedModel& gof_;
   const CodedMesh& mesh_;
   Unit unit_;
+  TrackFrames frames_;
   const SkinnedModel* shared_;
   SliceModels models_;
   Trajectory previous_;
@@ -119,7 +151,9 @@ void SliceWriter::trajectory(SectionWriter& section, const Trajectory& trajector
     const int weight = trajectory.temporal_weight[static_cast<std::size_t>(k)];
     section.bypass(9, static_cast<std::uint32_t>(weight + kTemporalWeightOffset));
   }
-  section.track(models_.temporal, trajectory_mean_, trajectory.residual);
+  frames_.write_between(section, models_.temporal_between, trajectory.temporal_between);
+  section.track(models_.trajectory, trajectory_mean_,
+                frames_.order(trajectory.temporal_between), trajectory.residual);
 }
 
 // 6.12.1 group_components( )
@@ -257,6 +291,10 @@ std::vector<std::vector<std::uint8_t>> SliceWriter::write_all() {
   return slices;
 }
 
+void write_track_levels(BitWriter& w, const TrackFrames& frames) {
+  w.u(3, static_cast<std::uint32_t>(frames.levels));
+}
+
 // 6.11 rig_header( )
 void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t profile_idc) {
   w.ue(static_cast<std::uint32_t>(model.bones.size()) - 1);
@@ -283,11 +321,13 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
                                      const SequenceHeader& header) {
   BitWriter w;
+  const TrackFrames frames(gof);
   write_gof_header(w, gof, header.profile_idc);
+  if (header.profile_idc >= kProfileHigh) write_track_levels(w, frames);
   write_rig_header(w, gof, header.profile_idc);
   w.byte_alignment();
-  w.append(write_bone_section(gof, Unit::kGof, gof.num_frames, header.position_bits));
-  return {w.take(), SliceWriter(gof, mesh, Unit::kGof, gof.num_frames).write_all()};
+  w.append(write_bone_section(gof, Unit::kGof, frames, header.position_bits));
+  return {w.take(), SliceWriter(gof, mesh, Unit::kGof, frames).write_all()};
 }
 
 SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
@@ -296,20 +336,21 @@ SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t 
   w.u(3, model_idx);
   write_rig_header(w, model, header.profile_idc);
   w.byte_alignment();
-  w.append(write_bone_section(model, Unit::kModel, 0, header.position_bits));
-  return {w.take(), SliceWriter(model, mesh, Unit::kModel, 0).write_all()};
+  w.append(write_bone_section(model, Unit::kModel, {}, header.position_bits));
+  return {w.take(), SliceWriter(model, mesh, Unit::kModel, {}).write_all()};
 }
 
 SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
                                 const SequenceHeader& header) {
   BitWriter w;
+  const TrackFrames frames(gof);
   write_gof_header(w, gof, header.profile_idc);
   w.u(3, gof.model_idx);
+  write_track_levels(w, frames);
   w.ue(gof.num_local_groups);
   w.byte_alignment();
-  w.append(write_bone_section(gof, Unit::kTracks, gof.num_frames, header.position_bits));
-  return {w.take(),
-          SliceWriter(gof, mesh, Unit::kTracks, gof.num_frames, gof.model.get()).write_all()};
+  w.append(write_bone_section(gof, Unit::kTracks, frames, header.position_bits));
+  return {w.take(), SliceWriter(gof, mesh, Unit::kTracks, frames, gof.model.get()).write_all()};
 }
 
 }  // namespace rlpc

@@ -11,16 +11,18 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: running means over the tracks, updated. Coder: as in
-// write_residual().
+// frame_mean [num_gof_frames]: running means over the tracks, updated. models: of level 0, and
+// of the others if `order` has any. Coder: as in write_residual().
 template <class Coder>
-void write_track(Coder& re, ResidualModels& models, std::span<std::uint32_t> frame_mean,
+void write_track(Coder& re, std::span<ResidualModels> models,
+                 std::span<std::uint32_t> frame_mean, std::span<const TrackPlace> order,
                  std::span<const Vec3i> residuals) {
   TrackContext context(frame_mean);
-  for (std::uint32_t f = 0; f < residuals.size(); ++f) {
+  for (const TrackPlace& at : order) {
     for (std::size_t c = 0; c < 3; ++c) {
-      write_residual(re, models, context.expected(f, c), residuals[f][c]);
-      context.update(f, c, residuals[f][c]);
+      const std::int32_t residual = residuals[at.frame][c];
+      write_residual(re, models[models_of_level(at.level)], context.expected(at, c), residual);
+      context.update(at, c, residual);
     }
   }
 }

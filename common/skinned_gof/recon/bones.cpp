@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "common/components/series_predictor.h"
 #include "common/kernels/component_sum.h"
 
 namespace rlpc {
@@ -11,13 +10,34 @@ namespace {
 
 constexpr int kScaledBits = 28;  // FloorLog2 of the largest coordinate after scaling
 constexpr int kResidualBits = 31;
-constexpr int kOriginBits = 31;
 
-// Coordinate c of a series whose values before frame f are known.
-template <class Series>
-std::int64_t predict_coordinate(const Series& series, std::size_t c, int order) {
-  return predict_series([&](std::uint32_t f) { return series[f][c]; },
-                        static_cast<std::uint32_t>(series.size()), order);
+// Rotations relative to the parent, [num_frames].
+std::vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_frames,
+                                        int track_levels) {
+  std::vector<Quaternion> relative(num_frames, kNoRotation);
+  if (!bone.rotation_flag) return relative;
+  const auto known = [&](std::uint32_t f) -> const Quaternion& { return relative[f]; };
+  const std::int64_t step = step_of(bone.rotation_step_idx);
+  for (const TrackPlace& at : track_order(num_frames, track_levels, bone.rotation_between)) {
+    const Quaternion predicted = predict_rotation(known, at, bone.rotation_order);
+    relative[at.frame] = rotation_from(predicted, bone.rotation_residual[at.frame], step);
+  }
+  return relative;
+}
+
+// Offsets of the origin, [num_frames].
+std::vector<Vec3l> recon_offsets(const Bone& bone, std::uint32_t num_frames, int track_levels) {
+  std::vector<Vec3l> offset(num_frames);
+  if (!bone.origin_flag) return offset;
+  const std::int64_t step = step_of(bone.origin_step_idx);
+  for (const TrackPlace& at : track_order(num_frames, track_levels, bone.origin_between)) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto known = [&](std::uint32_t f) { return offset[f][c]; };
+      offset[at.frame][c] = offset_from(predict_offset(known, at, bone.origin_order),
+                                        bone.origin_residual[at.frame][c], step);
+    }
+  }
+  return offset;
 }
 
 }  // namespace
@@ -78,84 +98,50 @@ Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point) 
   return moved;
 }
 
-BoneTracker::BoneTracker(const Bone& bone, const BoneMotion* parent)
-    : bone_(bone), parent_(parent) {
-  for (std::size_t c = 0; c < 3; ++c) motion_.pivot[c] = bone.pivot[c];
-}
-
-Quaternion BoneTracker::predicted_rotation() const {
-  if (!bone_.rotation_flag || relative_.empty()) return kNoRotation;
-  Quaternion sums{};
-  for (std::size_t c = 0; c < 4; ++c) {
-    sums[c] = predict_coordinate(relative_, c, bone_.rotation_order);
-  }
-  return normalize_quaternion(sums);
-}
-
-// The position of the pivot if it moves with the parent in the next frame.
-Vec3l BoneTracker::anchor() const {
-  if (parent_ == nullptr) return motion_.pivot;
-  return moved_point(parent_->poses[motion_.poses.size()], parent_->pivot, motion_.pivot);
-}
-
-Vec3l BoneTracker::predicted_offset() const {
-  Vec3l offset{};
-  if (!bone_.origin_flag) return offset;
-  for (std::size_t c = 0; c < 3; ++c) {
-    offset[c] = predict_coordinate(offset_, c, bone_.origin_order);
-  }
-  return offset;
-}
-
-Vec3l BoneTracker::predicted_origin() const {
-  Vec3l origin = anchor();
-  const Vec3l offset = predicted_offset();
-  for (std::size_t c = 0; c < 3; ++c) origin[c] += offset[c];
-  return origin;
-}
-
 // 8.12.2 Motion of a bone
-void BoneTracker::add(const Vec3i& rotation_residual, const Vec3i& origin_residual) {
-  BonePose pose;
-  Quaternion relative = predicted_rotation();
-  if (bone_.rotation_flag) {
-    Quaternion turn = kNoRotation;
-    for (std::size_t c = 0; c < 3; ++c) {
-      turn[c + 1] =
-          clip_signed(kResidualBits, rotation_residual[c] * step_of(bone_.rotation_step_idx));
-    }
-    relative = rotation_after(relative, turn);
-  }
-  pose.rotation = relative;
-  if (parent_ != nullptr) {
-    pose.rotation = rotation_after(parent_->poses[motion_.poses.size()].rotation, relative);
-  }
-  pose.axes = axes_of(pose.rotation);
-  Vec3l offset = predicted_offset();
-  const Vec3l point = anchor();
+Quaternion rotation_from(const Quaternion& predicted, const Vec3i& residual,
+                         std::int64_t step) {
+  Quaternion turn = kNoRotation;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (bone_.origin_flag) {
-      offset[c] = clip_signed(kOriginBits,
-                              offset[c] + origin_residual[c] * step_of(bone_.origin_step_idx));
-    }
-    pose.origin[c] = clip_signed(kOriginBits, point[c] + offset[c]);
+    turn[c + 1] = clip_signed(kResidualBits, residual[c] * step);
   }
-  relative_.push_back(relative);
-  offset_.push_back(offset);
-  motion_.poses.push_back(pose);
+  return rotation_after(predicted, turn);
 }
 
-std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames) {
-  std::vector<BoneMotion> motions;
-  motions.reserve(bones.size());  // trackers point to those of parents
-  for (const Bone& bone : bones) {
-    BoneTracker tracker(
-        bone, bone.parent < 0 ? nullptr : &motions[static_cast<std::size_t>(bone.parent)]);
-    for (std::uint32_t f = 0; f < num_frames; ++f) {
-      tracker.add(bone.rotation_flag ? bone.rotation_residual[f] : Vec3i{},
-                  bone.origin_flag ? bone.origin_residual[f] : Vec3i{});
+Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f) {
+  const Vec3l pivot{bone.pivot[0], bone.pivot[1], bone.pivot[2]};
+  return parent == nullptr ? pivot : moved_point(parent->poses[f], parent->pivot, pivot);
+}
+
+BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
+                     std::span<const Quaternion> relative, std::span<const Vec3l> offset) {
+  BoneMotion motion;
+  motion.pivot = {bone.pivot[0], bone.pivot[1], bone.pivot[2]};
+  motion.poses.resize(relative.size());
+  for (std::uint32_t f = 0; f < relative.size(); ++f) {
+    BonePose& pose = motion.poses[f];
+    pose.rotation = relative[f];
+    if (parent != nullptr) {
+      pose.rotation = rotation_after(parent->poses[f].rotation, relative[f]);
     }
-    motions.push_back(tracker.motion());
+    pose.axes = axes_of(pose.rotation);
+    const Vec3l place = carried_pivot(bone, parent, f);
+    for (std::size_t c = 0; c < 3; ++c) {
+      pose.origin[c] = clip_signed(kOriginBits, place[c] + offset[f][c]);
+    }
+  }
+  return motion;
+}
+
+std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
+                                    int track_levels) {
+  std::vector<BoneMotion> motions;
+  motions.reserve(bones.size());  // children refer to their parents
+  for (const Bone& bone : bones) {
+    const auto parent = static_cast<std::size_t>(bone.parent);
+    motions.push_back(move_bone(bone, bone.parent < 0 ? nullptr : &motions[parent],
+                                recon_rotations(bone, num_frames, track_levels),
+                                recon_offsets(bone, num_frames, track_levels)));
   }
   return motions;
 }

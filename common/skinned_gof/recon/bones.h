@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "common/components/series_predictor.h"
+#include "common/components/track_order.h"
 #include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
@@ -17,6 +19,8 @@ namespace rlpc {
 using Quaternion = std::array<std::int64_t, 4>;
 inline constexpr Quaternion kNoRotation{std::int64_t{1} << kQuaternionFractionBits, 0, 0, 0};
 
+inline constexpr int kOriginBits = 31;  // offsets and origins are clipped to this width
+
 // 8.12.1 StepOf( idx ), idx <= kMaxStepIdx; below 2^30.
 std::int64_t step_of(std::uint32_t idx);
 
@@ -25,6 +29,10 @@ std::int64_t step_of(std::uint32_t idx);
 Quaternion normalize_quaternion(Quaternion q);
 // 8.12.4 RotationAfter( p, q ): q followed by p, a unit quaternion; |coordinates of q| <= 2^30.
 Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
+// 8.12.4 TurnedTowards( p, q ): whether that is -q rather than q.
+constexpr bool is_opposite(const Quaternion& p, const Quaternion& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0;
+}
 // 8.12.4 AxesOf( q ): the images of the x, y and z axis.
 std::array<Vec3l, 3> axes_of(const Quaternion& q);
 
@@ -43,34 +51,58 @@ struct BoneMotion {
 // 8.12.3 Moved point; |point| < 2^31.
 Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point);
 
-// 8.12.2 Motion of a bone, frame by frame: the decoder adds the residuals of the stream, the
-// encoder derives them from the predictions.
-class BoneTracker {
- public:
-  // parent: the complete motion of the parent; null for a root.
-  BoneTracker(const Bone& bone, const BoneMotion* parent);
+// 8.12.2 Motion of a bone: the rotation relative to the parent, and the offset of the origin,
+// as predicted at a place of a track of which the values at earlier places are known.
+// relative(f) returns a rotation, offset(f) a coordinate.
+template <class Relative>
+Quaternion predict_rotation(const Relative& relative, const TrackPlace& at, int order) {
+  if (at.frame == 0) return kNoRotation;
+  Quaternion sums{};
+  if (at.neighbours > 0) {
+    const Quaternion& before = relative(at.frame - at.stride);
+    for (std::size_t c = 0; c < 4; ++c) {
+      sums[c] = sum_of_neighbours(
+          [&](std::uint32_t f) {
+            const Quaternion& q = relative(f);
+            return is_opposite(before, q) ? -q[c] : q[c];
+          },
+          at);
+    }
+  } else {
+    for (std::size_t c = 0; c < 4; ++c) {
+      sums[c] = predict_series([&](std::uint32_t i) { return relative(i * at.stride)[c]; },
+                               at.frame / at.stride, order);
+    }
+  }
+  return normalize_quaternion(sums);
+}
+template <class Offset>
+std::int64_t predict_offset(const Offset& offset, const TrackPlace& at, int order) {
+  if (at.neighbours > 0) {
+    return round2(sum_of_neighbours(offset, at), at.neighbours == 2 ? 1 : 4);
+  }
+  return predict_series([&](std::uint32_t i) { return offset(i * at.stride); },
+                        at.frame / at.stride, order);
+}
 
-  // Prediction for the next frame: the rotation relative to the parent, and the origin that
-  // follows from the parent and the previous offset.
-  Quaternion predicted_rotation() const;
-  Vec3l predicted_origin() const;
-  // Adds the next frame; residuals that the flags of the bone exclude are ignored.
-  void add(const Vec3i& rotation_residual, const Vec3i& origin_residual);
+// The rotation and the coordinate of an offset that follow from a residual.
+Quaternion rotation_from(const Quaternion& predicted, const Vec3i& residual, std::int64_t step);
+constexpr std::int64_t offset_from(std::int64_t predicted, std::int32_t residual,
+                                   std::int64_t step) {
+  return clip_signed(kOriginBits, predicted + residual * step);
+}
 
-  const BoneMotion& motion() const { return motion_; }
+// The motion of a bone from its rotations relative to the parent and the offsets of its origin,
+// [num_gof_frames]. parent: null for a root.
+BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
+                     std::span<const Quaternion> relative, std::span<const Vec3l> offset);
 
- private:
-  Vec3l anchor() const;
-  Vec3l predicted_offset() const;
-
-  const Bone& bone_;
-  const BoneMotion* parent_;
-  BoneMotion motion_;
-  std::vector<Quaternion> relative_;
-  std::vector<Vec3l> offset_;
-};
+// The place in frame f to which the parent moves the pivot of a bone: its origin without an
+// offset.
+Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f);
 
 // Reconstructs all bones of a GOF.
-std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames);
+std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
+                                    int track_levels);
 
 }  // namespace rlpc

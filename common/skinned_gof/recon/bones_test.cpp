@@ -356,7 +356,7 @@ TEST(RandomBones, MoveAsInFloatingPoint) {
     Random random(seed);
     std::vector<Bone> bones;
     for (std::size_t b = 0; b < 6; ++b) bones.push_back(random_bone(random, b));
-    const std::vector<BoneMotion> motions = recon_bones(bones, kFrames);
+    const std::vector<BoneMotion> motions = recon_bones(bones, kFrames, 0);
     ASSERT_EQ(motions.size(), bones.size());
     std::vector<RealBone> exact;
     exact.reserve(bones.size());
@@ -389,9 +389,9 @@ TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
   Random random(7);
   Bone still;
   still.pivot = {5, -6, 7};
-  BoneTracker alone(still, nullptr);
-  for (int f = 0; f < 3; ++f) alone.add({9, 9, 9}, {9, 9, 9});
-  for (const BonePose& pose : alone.motion().poses) {
+  still.rotation_residual = still.origin_residual = TrackResiduals(kFrames, Vec3i{9, 9, 9});
+  const BoneMotion alone = recon_bones(std::vector<Bone>{still}, kFrames, 0)[0];
+  for (const BonePose& pose : alone.poses) {
     EXPECT_EQ(pose.rotation, kNoRotation);
     EXPECT_EQ(pose.origin, (Vec3l{5, -6, 7}));
   }
@@ -399,7 +399,7 @@ TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
   parent.rotation_flag = parent.origin_flag = true;
   still.parent = 0;
   const std::vector<BoneMotion> motions =
-      recon_bones(std::vector<Bone>{parent, still}, kFrames);
+      recon_bones(std::vector<Bone>{parent, still}, kFrames, 0);
   for (std::uint32_t f = 0; f < kFrames; ++f) {
     const BonePose& pose = motions[1].poses[f];
     EXPECT_EQ(pose.origin, moved_point(motions[0].poses[f], motions[0].pivot, {5, -6, 7}));
@@ -408,21 +408,43 @@ TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
   }
 }
 
+// Where the residual of a frame is zero, the motion is as predicted from the frames that come
+// before it in the order of the track.
 TEST(Bones, ZeroResidualsReproduceThePredictions) {
   Random random(8);
-  for (std::size_t i = 0; i < 50; ++i) {
+  for (int i = 0; i < 150; ++i) {
     Bone bone = random_bone(random, 0);
     bone.rotation_flag = bone.origin_flag = true;
-    BoneTracker tracker(bone, nullptr);
-    for (std::uint32_t f = 0; f < kFrames; ++f) {
-      const Quaternion rotation = tracker.predicted_rotation();
-      const Vec3l origin = tracker.predicted_origin();
-      BoneTracker next = tracker;
-      next.add({}, {});
-      EXPECT_EQ(next.motion().poses[f].rotation, rotation_after(rotation, kNoRotation));
-      EXPECT_EQ(next.motion().poses[f].origin, origin);
-      tracker.add(bone.rotation_residual[f], bone.origin_residual[f]);
+    bone.rotation_between = bone.origin_between = i % 3;
+    const int levels = i / 3 % 5;
+    const std::vector<TrackPlace> order = track_order(kFrames, levels, i % 3);
+    const TrackPlace& at = order[random.below(kFrames)];
+    bone.rotation_residual[at.frame] = bone.origin_residual[at.frame] = {};
+    const BoneMotion motion = recon_bones(std::vector<Bone>{bone}, kFrames, levels)[0];
+    const auto rotation = [&](std::uint32_t f) { return motion.poses[f].rotation; };
+    const Quaternion predicted = predict_rotation(rotation, at, bone.rotation_order);
+    EXPECT_EQ(motion.poses[at.frame].rotation, rotation_after(predicted, kNoRotation));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto offset = [&](std::uint32_t f) {
+        return motion.poses[f].origin[c] - bone.pivot[c];
+      };
+      EXPECT_EQ(offset(at.frame), predict_offset(offset, at, bone.origin_order));
     }
+  }
+}
+
+// Half a circle before and after, with either sign: the rotation between is a quarter turn.
+TEST(Bones, RotationsBetweenAreMeans) {
+  constexpr std::int64_t root = 759'250'126;  // of a half, rounded up
+  const TrackPlace at{.frame = 1, .stride = 1, .level = 1, .neighbours = 2};
+  for (const std::int64_t sign : {1, -1}) {
+    const std::array<Quaternion, 3> known{kNoRotation, Quaternion{}, {0, sign * kOneI, 0, 0}};
+    const Quaternion mean = predict_rotation([&](std::uint32_t f) { return known[f]; }, at, 1);
+    EXPECT_EQ(mean, (Quaternion{root, sign * root, 0, 0}));
+    const std::array<Quaternion, 3> opposite{
+        kNoRotation, Quaternion{}, {-root, -sign * root, 0, 0}};
+    EXPECT_EQ(predict_rotation([&](std::uint32_t f) { return opposite[f]; }, at, 1),
+              normalize_quaternion({kOneI + root, sign * root, 0, 0}));
   }
 }
 
@@ -433,13 +455,12 @@ TEST(Bones, TheLargestRotationIsAQuarterTurn) {
     Bone bone;
     bone.rotation_flag = true;
     bone.rotation_step_idx = kMaxStepIdx;
-    BoneTracker tracker(bone, nullptr);
-    tracker.add({sign * kMost, 0, 0}, {});
-    const auto& axes = tracker.motion().poses[0].axes;
+    bone.rotation_residual = {{sign * kMost, 0, 0}, {sign * kMost, 0, 0}};  // from there on
+    const BoneMotion motion = recon_bones(std::vector<Bone>{bone}, 2, 0)[0];
+    const auto& axes = motion.poses[0].axes;
     EXPECT_LE(std::abs(axes[1][2] - sign * kOneI), 16);
     EXPECT_LE(std::abs(axes[1][1]), 16);
-    tracker.add({sign * kMost, 0, 0}, {});  // from there on
-    EXPECT_LE(std::abs(tracker.motion().poses[1].axes[1][1] + kOneI), 16);
+    EXPECT_LE(std::abs(motion.poses[1].axes[1][1] + kOneI), 16);
   }
 }
 
@@ -462,7 +483,7 @@ TEST(Bones, OriginsAreClippedToTheirRange) {
       }
     }
     bool reached = false;
-    for (const BoneMotion& motion : recon_bones(bones, 40)) {
+    for (const BoneMotion& motion : recon_bones(bones, 40, 0)) {
       for (const BonePose& pose : motion.poses) {
         EXPECT_NEAR(length_of(pose.rotation), kOne, 8.0);
         for (const std::int64_t x : pose.origin) {

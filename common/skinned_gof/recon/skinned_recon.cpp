@@ -3,52 +3,22 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/components/series_predictor.h"
 #include "common/int_math.h"
 
 namespace rlpc {
-namespace {
-
-constexpr int kTemporalWeightFractionBits = 6;
-
-}  // namespace
 
 // 8.14.2 Trajectories
-Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values) {
-  Vec3l prediction{};
-  const auto f = static_cast<std::uint32_t>(values.size());
-  int order = trajectory.temporal_predictor;
-  if (order > kMaxPredictorOrder) {
-    const auto count = static_cast<std::size_t>(order - kMaxPredictorOrder);
-    if (f >= count) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        std::int64_t sum = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-          sum += std::int64_t{trajectory.temporal_weight[k]} * values[f - 1 - k][c];
-        }
-        prediction[c] = round2(sum, kTemporalWeightFractionBits);
-      }
-      return prediction;
-    }
-    order = 1;
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    prediction[c] =
-        predict_series([&](std::uint32_t g) { return std::int64_t{values[g][c]}; }, f, order);
-  }
-  return prediction;
-}
-
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory) {
-  std::vector<Vec3i> values;
-  values.reserve(trajectory.residual.size());
-  for (const Vec3i& residual : trajectory.residual) {
-    const Vec3l prediction = predict_trajectory(trajectory, values);
-    Vec3i value{};
+std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels) {
+  const auto num_frames = static_cast<std::uint32_t>(trajectory.residual.size());
+  std::vector<Vec3i> values(num_frames);
+  for (const TrackPlace& at :
+       track_order(num_frames, track_levels, trajectory.temporal_between)) {
     for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = clip_signed(kTemporalIndexBits, prediction[c] + residual[c]);
+      const auto known = [&](std::uint32_t f) { return std::int64_t{values[f][c]}; };
+      values[at.frame][c] =
+          clip_signed(kTemporalIndexBits, predict_trajectory(trajectory, known, at) +
+                                              trajectory.residual[at.frame][c]);
     }
-    values.push_back(value);
   }
   return values;
 }
@@ -68,11 +38,11 @@ Vec3l skinned_point(const Influences& influences, int weight_bits,
 namespace {
 
 // 8.14.2 Trajectories, and 8.5.2 for each coordinate: the temporal factor, [3 * num_frames].
-TemporalFactor temporal_factor(const Trajectory& trajectory) {
+TemporalFactor temporal_factor(const Trajectory& trajectory, int track_levels) {
   if (!trajectory.trajectory_flag) return {};
   TemporalFactor factor{{}, trajectory.temporal_bits};
   factor.values.reserve(3 * trajectory.residual.size());
-  for (const Vec3i& value : recon_trajectory(trajectory)) {
+  for (const Vec3i& value : recon_trajectory(trajectory, track_levels)) {
     for (const std::int32_t x : value) {
       factor.values.push_back(
           scale_temporal(x, trajectory.scale_idx, trajectory.temporal_bits));
@@ -94,9 +64,11 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
       widths_{gof.weight_bits, gof.fraction_bits, model->position_bits()},
       loops_(loops),
       model_(std::move(model)),
-      bones_(recon_bones(gof.bones, gof.num_frames)) {
+      bones_(recon_bones(gof.bones, gof.num_frames, gof.track_levels)) {
   std::vector<TemporalFactor> temporal;
-  for (const Trajectory& t : gof.trajectories) temporal.push_back(temporal_factor(t));
+  for (const Trajectory& t : gof.trajectories) {
+    temporal.push_back(temporal_factor(t, gof.track_levels));
+  }
   const auto add_sum = [&](std::shared_ptr<const SpatialFactors> spatial,
                            std::span<const TemporalFactor> of_spatial) {
     sums_.emplace_back(std::move(spatial), of_spatial, 3 * std::size_t{num_frames_}, loops);

@@ -13,14 +13,13 @@
 #include "common/mesh/coded_mesh.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/model_recon.h"
+#include "common/skinned_gof/recon/trajectory_prediction.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
 
-// 8.14.2 PredictTrajectory( series, f ), from the values of the preceding frames.
-Vec3l predict_trajectory(const Trajectory& trajectory, std::span<const Vec3i> values);
 // 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory);
+std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels);
 
 // 8.14.3 Positions: the weighted mean of a point moved by its bones; 4 fractional bits, |point|
 // < 2^31. The plain twin of the computation of SkinnedRecon for many vertices.

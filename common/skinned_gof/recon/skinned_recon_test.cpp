@@ -24,7 +24,7 @@ class TextRecon {
       : from_(from),
         gof_(from.gof),
         mesh_(from.coded_mesh()),
-        bones_(recon_bones(gof_.bones, gof_.num_frames)) {
+        bones_(recon_bones(gof_.bones, gof_.num_frames, gof_.track_levels)) {
     for (std::size_t l = 0; l < kRestFactors + gof_.trajectories.size(); ++l) {
       if (l == kRestFactors && gof_.prediction == Prediction::kLayers) make_weights();
       if (gof_.weights.num_adaptive_factors > 0) start_factor(l);
@@ -46,8 +46,8 @@ class TextRecon {
       const Trajectory& t = gof_.trajectories[l];
       const std::int64_t spatial = factors[kRestFactors + l][v]
                                    << std::max(kSpatialNormBits - t.spatial_bits, 0);
-      displacement +=
-          spatial * scale_temporal(recon_trajectory(t)[f][c], t.scale_idx, t.temporal_bits);
+      displacement += spatial * scale_temporal(recon_trajectory(t, gof_.track_levels)[f][c],
+                                               t.scale_idx, t.temporal_bits);
     }
     const std::int64_t place = round2(sum, gof_.weight_bits) +
                                clip_signed(31, round2(displacement, gof_.fraction_bits));
@@ -289,19 +289,30 @@ TEST(SkinnedRecon, PredictsVerticesOfAbsentLayers) {
   EXPECT_GT(absent, 100);
 }
 
+// The prediction of what follows `values`.
+Vec3l predicted(const Trajectory& t, std::span<const Vec3i> values) {
+  Vec3l prediction{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    prediction[c] =
+        predict_trajectory(t, [&](std::uint32_t f) { return std::int64_t{values[f][c]}; },
+                           {.frame = static_cast<std::uint32_t>(values.size())});
+  }
+  return prediction;
+}
+
 TEST(Trajectories, FollowTheOrdersOfSeries) {
   Trajectory t;
   const std::vector<Vec3i> values{{1, 10, -5}, {4, 20, -7}, {9, 10, 0}, {16, 40, 3}};
   t.temporal_predictor = 0;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{0, 0, 0}));
+  EXPECT_EQ(predicted(t, values), (Vec3l{0, 0, 0}));
   t.temporal_predictor = 1;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{16, 40, 3}));
+  EXPECT_EQ(predicted(t, values), (Vec3l{16, 40, 3}));
   t.temporal_predictor = 2;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{23, 70, 6}));
+  EXPECT_EQ(predicted(t, values), (Vec3l{23, 70, 6}));
   t.temporal_predictor = 3;  // 25 continues the squares
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 110, 2}));
+  EXPECT_EQ(predicted(t, values), (Vec3l{25, 110, 2}));
   t.temporal_predictor = 4;  // 4 * 40 - 6 * 10 + 4 * 20 - 10
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{25, 170, -11}));
+  EXPECT_EQ(predicted(t, values), (Vec3l{25, 170, -11}));
 }
 
 TEST(Trajectories, FollowTheirWeights) {
@@ -309,14 +320,37 @@ TEST(Trajectories, FollowTheirWeights) {
   t.temporal_weight = {96, -40, 16};  // 3/2, -5/8, 1/4
   const std::vector<Vec3i> values{{100, 0, 3}, {-7, 3, 1}, {11, -1, 2}};
   t.temporal_predictor = 5;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{17, -1, 3}));  // 16.5, -1.5, 3
+  EXPECT_EQ(predicted(t, values), (Vec3l{17, -1, 3}));  // 16.5, -1.5, 3
   t.temporal_predictor = 6;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{21, -3, 2}));  // 20.875, -3.375, 2.375
+  EXPECT_EQ(predicted(t, values), (Vec3l{21, -3, 2}));  // 20.875, -3.375, 2.375
   t.temporal_predictor = 7;
-  EXPECT_EQ(predict_trajectory(t, values), (Vec3l{46, -3, 3}));  // 45.875, -3.375, 3.125
+  EXPECT_EQ(predicted(t, values), (Vec3l{46, -3, 3}));  // 45.875, -3.375, 3.125
   // With too few predecessors, the previous value is the prediction.
-  EXPECT_EQ(predict_trajectory(t, std::span(values).first(2)), (Vec3l{-7, 3, 1}));
-  EXPECT_EQ(predict_trajectory(t, {}), (Vec3l{0, 0, 0}));
+  EXPECT_EQ(predicted(t, std::span(values).first(2)), (Vec3l{-7, 3, 1}));
+  EXPECT_EQ(predicted(t, {}), (Vec3l{0, 0, 0}));
+}
+
+// Level 0 has every fourth frame, predicted with the stride 4; the frames between follow from
+// both sides, as far as there are any.
+TEST(Trajectories, AreReconstructedLevelByLevel) {
+  Trajectory t;
+  t.temporal_predictor = 5;
+  t.temporal_weight = {128, 0, 0};  // twice
+  t.temporal_between = 1;
+  t.residual.assign(11, {});
+  t.residual[0] = {10, -10, 1};
+  t.residual[2] = {1, 0, 0};
+  const std::vector<Vec3i> two = recon_trajectory(t, 2);
+  const std::vector<std::int32_t> x{10, 13, 16, 18, 20, 25, 30, 35, 40, 60, 80};
+  for (std::size_t f = 0; f < x.size(); ++f) EXPECT_EQ(two[f][0], x[f]) << f;
+  EXPECT_EQ(two[8], (Vec3i{40, -40, 4}));
+  t.temporal_between = 2;
+  const std::vector<Vec3i> four = recon_trajectory(t, 2);
+  EXPECT_EQ(four[1], two[1]);                                 // too near the beginning
+  EXPECT_EQ(four[3][0], (9 * (16 + 20) - 10 - 30 + 8) / 16);  // 17.75
+  EXPECT_EQ(four[7][0], (9 * (30 + 40) - 20 - 80 + 8) / 16);
+  t.temporal_between = 0;  // sequential, with the stride 1
+  EXPECT_EQ(recon_trajectory(t, 2)[3][0], 82);
 }
 
 TEST(Trajectories, AreClippedToTheirRange) {
@@ -325,11 +359,11 @@ TEST(Trajectories, AreClippedToTheirRange) {
   t.temporal_predictor = 7;
   t.temporal_weight = {255, 255, -256};
   t.residual.assign(12, {(1 << 28) - 1, -(1 << 28) + 1, 0});
-  for (const Vec3i& value : recon_trajectory(t))
+  for (const Vec3i& value : recon_trajectory(t, 0))
     EXPECT_EQ(value, (Vec3i{kHalf - 1, -kHalf, 0}));
   t.temporal_predictor = 1;
   t.residual = {{5, 0, -kHalf}, {-3, 7, -1}, {0, 0, 2}};
-  EXPECT_EQ(recon_trajectory(t),
+  EXPECT_EQ(recon_trajectory(t, 0),
             (std::vector<Vec3i>{{5, 0, -kHalf}, {2, 7, -kHalf}, {2, 7, 2 - kHalf}}));
 }
 

@@ -11,7 +11,6 @@
 #include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
-#include "encoder/skinned_gof/quantise/track_coding.h"
 
 namespace rlpc {
 namespace {
@@ -88,6 +87,17 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
   return motions;
 }
 
+}  // namespace
+
+TrackOptions track_options(const SkinnedSettings& settings) {
+  return {.refine = settings.temporal_weights,
+          .nearest = settings.rounding == Rounding::kNearest,
+          .track_levels = settings.track_levels,
+          .fast = settings.rounding == Rounding::kDeadZone};
+}
+
+namespace {
+
 class SkinnedAnalyser {
  public:
   SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
@@ -110,6 +120,7 @@ class SkinnedAnalyser {
       SkinnedGof& gof = found_.gofs.emplace_back();
       gof.first_frame = frames_.first_frame + span.first;
       gof.num_frames = span.count;
+      gof.track_levels = settings_.track_levels;
     }
     code_bones();
     for (const auto& weights : rig_.weights) {
@@ -236,7 +247,7 @@ class SkinnedAnalyser {
       Bone& coded = found_.gofs[g].bones.emplace_back(bone);
       const BoneMotion part =
           code_bone(wanted.subspan(first, count), bone.parent < 0 ? nullptr : &parent,
-                    settings_.rounding == Rounding::kNearest, rotations[g], origins[g], coded);
+                    track_options(settings_), rotations[g], origins[g], coded);
       motion.pivot = part.pivot;
       motion.poses.insert(motion.poses.end(), part.poses.begin(), part.poses.end());
     }

@@ -13,6 +13,7 @@
 #include "encoder/gof/gof_frames.h"
 #include "encoder/math/principal_components.h"
 #include "encoder/skinned_gof/fit/rig.h"
+#include "encoder/skinned_gof/quantise/track_coding.h"
 
 namespace rlpc {
 
@@ -30,6 +31,7 @@ struct SkinnedSettings {
   int outer_scale = kOuterRing;
   std::uint32_t num_adaptive_factors = 0;  // maximum (8.15)
   bool layer_steps = true;                 // finer steps in coarser layers
+  int track_levels = 0;                    // of hierarchical tracks; 0: there are none
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
@@ -47,6 +49,8 @@ struct SkinnedSettings {
   // outer ring adds curvature to the prediction.
   static constexpr int kOuterRing = 3;
 };
+
+TrackOptions track_options(const SkinnedSettings& settings);
 
 struct SkinnedAnalysis {
   SkinnedModel model;  // without trajectories and geometry weights; bones without motion

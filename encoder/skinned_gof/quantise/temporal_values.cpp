@@ -83,7 +83,8 @@ class TemporalCoder {
     std::vector<Vec3i>& indices = values.indices.emplace_back();
     for (std::size_t g = 0; g < trajectories.size(); ++g) {
       if (trajectories[g].trajectory_flag) {
-        const std::vector<Vec3i> part = recon_trajectory(trajectories[g]);
+        const std::vector<Vec3i> part =
+            recon_trajectory(trajectories[g], settings_.track_levels);
         indices.insert(indices.end(), part.begin(), part.end());
       } else {
         indices.resize(indices.size() + analysis_.gofs[g].num_frames);
@@ -108,10 +109,8 @@ class TemporalCoder {
       const auto of_gof = wanted.first(analysis_.gofs[g].num_frames);
       wanted = wanted.subspan(of_gof.size());
       TrackState after = states[g];
-      TrackCost cost = code_trajectory(of_gof, unit,
-                                       {.refine = settings_.temporal_weights,
-                                        .nearest = settings_.rounding == Rounding::kNearest},
-                                       after, trajectories[g]);
+      TrackCost cost =
+          code_trajectory(of_gof, unit, track_options(settings_), after, trajectories[g]);
       TrackCost left_out;
       for (const auto& value : of_gof) {
         for (const double x : value) left_out.error += x * x / (unit * unit);

@@ -6,13 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "common/cluster_gof/cluster_gof.h"
-#include "common/cluster_gof/cluster_models.h"
-#include "common/skinned_gof/recon/skinned_recon.h"
-#include "encoder/gof/lagrangian.h"
+#include "common/components/track_order.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
+#include "encoder/skinned_gof/quantise/residual_search.h"
+#include "encoder/skinned_gof/quantise/track_series.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 
@@ -22,27 +21,37 @@ namespace {
 constexpr double kWeightScale = 64.0;  // fixed: of temporal_weight
 constexpr double kMaxWeight = 255.0;   // fixed: format
 constexpr int kWeightBits = 9;         // fixed: format
-// Lower bound of the real part that the vector part of a residual rotation is divided by.
-constexpr double kMinRealPart = 0.1;  // fixed: turns of nearly half a circle
+// tuned (off: 1): Codings of a track that the search for residuals tries to improve, cheapest
+// first. It changes their order of cost little.
+constexpr std::size_t kSearched = 2;
+// tuned (off: 1): Survivors of the search. More find little more, and take time in proportion.
+constexpr std::size_t kSurvivors = 4;
+// tuned (off: 1): Survivors with the fast preset, which has less time.
+constexpr std::size_t kSurvivorsFast = 2;
+// tuned (off: 1): Survivors are alike if this many latest values agree, for each level of the
+// track. Older values hardly tell what a choice costs later.
+constexpr std::size_t kMemory = 3;
 
-// Least-squares weights for predicting each value from the `count` values before it.
-bool fit_weights(std::span<const std::array<double, 3>> values, double step, int count,
+using Values = std::span<const std::array<double, 3>>;
+// Least-squares weights for predicting each value of level 0 from the `count` values before it
+// there, which are `stride` frames apart. values: in steps.
+bool fit_weights(Values values, std::size_t stride, int count,
                  std::array<std::int16_t, kMaxTemporalWeights>& weights) {
   SmallSystem<kMaxTemporalWeights> m;  // normal equations
   const auto n = static_cast<std::size_t>(count);
-  for (std::size_t f = n; f < values.size(); ++f) {
+  for (std::size_t f = n * stride; f < values.size(); f += stride) {
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < n; ++k) {
-          m.a[i][k] += values[f - 1 - i][c] * values[f - 1 - k][c];
+          m.a[i][k] += values[f - (1 + i) * stride][c] * values[f - (1 + k) * stride][c];
         }
-        m.b[i] += values[f - 1 - i][c] * values[f][c];
+        m.b[i] += values[f - (1 + i) * stride][c] * values[f][c];
       }
     }
   }
   // Prediction is from decoded values, whose quantisation errors act as regularisation.
   for (std::size_t i = 0; i < n; ++i) {
-    m.a[i][i] += 3.0 * step * step / 12.0 * static_cast<double>(values.size());
+    m.a[i][i] += 3.0 / 12.0 * static_cast<double>(values.size() / stride);
   }
   const auto solution = solve_small(m, n);
   if (!solution.is_unique) return false;
@@ -53,126 +62,209 @@ bool fit_weights(std::span<const std::array<double, 3>> values, double step, int
   return true;
 }
 
-// Chooses the residuals of a track, frame by frame.
-class ResidualChoice {
- public:
-  ResidualChoice(const TrackState& before, bool nearest)
-      : state_(before), context_(state_.mean), nearest_(nearest) {}
-  ResidualChoice(const ResidualChoice&) = delete;  // the context refers to the state
-  ResidualChoice& operator=(const ResidualChoice&) = delete;
+int most_between(const TrackOptions& options) {
+  return options.track_levels > 0 ? kMaxBetween : 0;
+}
 
-  // The residuals of the next frame; wanted: in steps.
-  Vec3i next(const std::array<double, 3>& wanted) {
-    Vec3i residual{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t expected = context_.expected(frame_, c);
-      residual[c] = nearest_ ? rounded_residual(wanted[c], 0.5)
-                             : cheaper_residual(state_.models, expected, wanted[c]);
-      const double error = wanted[c] - residual[c];
-      error_ += error * error;
-      write_residual(bits_, state_.models, expected, residual[c]);
-      context_.update(frame_, c, residual[c]);
-    }
-    ++frame_;
-    return residual;
-  }
-  TrackCost cost() const { return {bits_.bits(), error_}; }
-  TrackState take_state() { return std::move(state_); }
-
- private:
-  TrackState state_;
-  TrackContext context_;
-  bool nearest_;
-  std::uint32_t frame_ = 0;
-  BitCost bits_;
-  double error_ = 0.0;
+// A track with its residuals.
+template <class Value>
+struct CodedTrack {
+  TrackResiduals residuals;
+  std::array<std::vector<Value>, 3> values;  // [coordinate][frame]; coupled: only the first
+  TrackCost cost;
+  TrackState after;
 };
 
-// The residuals with a given predictor; none, early, if they cost at least as much as `other`.
-std::optional<TrackResiduals> residuals_of(std::span<const std::array<double, 3>> values,
-                                           double step, const Trajectory& trajectory,
-                                           const TrackCost& other, ResidualChoice& choice) {
-  TrackResiduals residuals;
-  std::vector<Vec3i> coded;
-  coded.reserve(values.size());
-  for (const auto& value : values) {
-    if (lagrangian_cost(choice.cost()) >= lagrangian_cost(other)) return std::nullopt;
-    const Vec3l prediction = predict_trajectory(trajectory, coded);
-    std::array<double, 3> wanted{};
+// A way to code a track: its order, and what precedes it.
+struct TrackTask {
+  std::vector<TrackPlace> order;
+  const TrackState* before;
+  double header_bits;
+};
+
+// Codes the track in closed loop; none, early, if it costs at least `limit`. choose(wanted,
+// models, expected, at, c) returns a residual.
+template <class Series, class Choose>
+std::optional<CodedTrack<typename Series::Value>> code_track(const Series& series,
+                                                             const TrackTask& task,
+                                                             double limit,
+                                                             const Choose& choose) {
+  using Value = typename Series::Value;
+  const std::size_t num_frames = task.order.size();
+  CodedTrack<Value> coded{TrackResiduals(num_frames), {}, {}, *task.before};
+  for (std::size_t c = 0; c < (Series::kCoupled ? 1 : 3); ++c) {
+    coded.values[c].resize(num_frames);
+  }
+  BitCost bits;
+  TrackContext context(coded.after.mean);
+  for (const TrackPlace& at : task.order) {
+    ResidualModels& models = coded.after.models[models_of_level(at.level)];
+    Vec3i& residual = coded.residuals[at.frame];
+    typename Series::Predicted predicted;
     for (std::size_t c = 0; c < 3; ++c) {
-      wanted[c] = value[c] / step - static_cast<double>(prediction[c]);
-    }
-    const Vec3i residual = choice.next(wanted);
-    Vec3i now{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      now[c] = clip_signed(kTemporalIndexBits, prediction[c] + residual[c]);
-    }
-    residuals.push_back(residual);
-    coded.push_back(now);
-  }
-  return residuals;
-}
-
-using QuaternionD = std::array<double, 4>;
-
-QuaternionD product(const QuaternionD& p, const QuaternionD& q) {
-  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-          p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-          p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-          p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
-}
-
-QuaternionD inverse(const Quaternion& q) {
-  const double one = exact_exp2(-kQuaternionFractionBits);
-  return {static_cast<double>(q[0]) * one, -static_cast<double>(q[1]) * one,
-          -static_cast<double>(q[2]) * one, -static_cast<double>(q[3]) * one};
-}
-
-// The residual rotation from the predicted to the wanted rotation, in steps.
-std::array<double, 3> rotation_residual(const QuaternionD& relative,
-                                        const Quaternion& predicted, double step) {
-  QuaternionD turn = product(inverse(predicted), relative);
-  if (turn[0] < 0.0) {
-    for (double& x : turn) x = -x;
-  }
-  const double real = std::max(turn[0], kMinRealPart);
-  std::array<double, 3> residual{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    residual[c] = turn[c + 1] / real * exact_exp2(kQuaternionFractionBits) / step;
-  }
-  return residual;
-}
-
-// Codes a bone with its current orders.
-BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, Bone& bone,
-                      ResidualChoice& rotations, ResidualChoice& origins) {
-  BoneTracker tracker(bone, parent);
-  bone.rotation_residual.clear();
-  bone.origin_residual.clear();
-  const auto rotation_step = static_cast<double>(step_of(bone.rotation_step_idx));
-  const auto origin_step = static_cast<double>(step_of(bone.origin_step_idx));
-  for (std::size_t f = 0; f < wanted.size(); ++f) {
-    Vec3i rotation{};
-    if (bone.rotation_flag) {
-      QuaternionD relative = wanted[f].rotation;
-      if (parent != nullptr) relative = product(inverse(parent->poses[f].rotation), relative);
-      rotation = rotations.next(
-          rotation_residual(relative, tracker.predicted_rotation(), rotation_step));
-      bone.rotation_residual.push_back(rotation);
-    }
-    Vec3i origin{};
-    if (bone.origin_flag) {
-      const Vec3l predicted = tracker.predicted_origin();
-      std::array<double, 3> steps{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        steps[c] = (wanted[f].origin[c] - static_cast<double>(predicted[c])) / origin_step;
+      std::vector<Value>& values = coded.values[Series::kCoupled ? 0 : c];
+      if (c == 0 || !Series::kCoupled) {
+        predicted =
+            series.predict([&](std::uint32_t f) -> const Value& { return values[f]; }, at, c);
       }
-      origin = origins.next(steps);
-      bone.origin_residual.push_back(origin);
+      const double wanted = predicted.wanted[c];
+      const std::uint32_t expected = context.expected(at, c);
+      residual[c] = choose(wanted, models, expected, at, c);
+      const double error = wanted - residual[c];
+      coded.cost.error += error * error;
+      write_residual(bits, models, expected, residual[c]);
+      context.update(at, c, residual[c]);
+      if (c == 2 || !Series::kCoupled) {
+        values[at.frame] = series.value(predicted, residual, at, c);
+      }
     }
-    tracker.add(rotation, origin);
+    coded.cost.bits = task.header_bits + bits.bits();
+    if (lagrangian_cost(coded.cost) >= limit) return std::nullopt;
   }
-  return tracker.motion();
+  return coded;
+}
+
+// Each residual by itself.
+template <class Series>
+auto code_greedily(const Series& series, const TrackTask& task, double limit, bool nearest) {
+  return code_track(series, task, limit,
+                    [nearest](double wanted, ResidualModels& models, std::uint32_t expected,
+                              const TrackPlace& /*at*/, std::size_t /*c*/) {
+                      return nearest ? rounded_residual(wanted, 0.5)
+                                     : cheaper_residual(models, expected, wanted);
+                    });
+}
+
+// Replaces the residuals by those that a search finds, if they cost less.
+template <class Series>
+void search_residuals(const Series& series, const TrackTask& task, bool fast,
+                      CodedTrack<typename Series::Value>& coded) {
+  const auto levels = static_cast<std::size_t>(task.order.back().level) + 1;
+  const std::vector<TrackPlace> order = search_order(task.order);
+  ResidualSearch<Series> search(series, order, *task.before,
+                                {fast ? kSurvivorsFast : kSurvivors, kMemory * levels});
+  TrackResiduals residuals = coded.residuals;
+  for (std::size_t c = 0; c < 3; ++c) search.improve(c, residuals);
+  auto found = code_track(
+      series, task, lagrangian_cost(coded.cost),
+      [&residuals](double /*wanted*/, ResidualModels& /*models*/, std::uint32_t /*expected*/,
+                   const TrackPlace& at, std::size_t c) { return residuals[at.frame][c]; });
+  if (found) coded = std::move(*found);
+}
+
+// A way to code a track: a trajectory or bone with the elements that specify it.
+template <class Header>
+struct Way {
+  Header header;
+  int between;
+  double bits;  // of those elements, except for `between`
+};
+
+// Codes the bins of `between`, if the GOF has hierarchical tracks.
+template <class Coder, class Models>
+void write_between(Coder& coder, Models& models, int between, int track_levels) {
+  for (int i = 0; i < kMaxBetween && track_levels > 0; ++i) {
+    coder.bin(models[static_cast<std::size_t>(i)], i < between);
+    if (i == between) break;
+  }
+}
+
+// Codes a track in the cheapest of several ways; sets `header` and advances the state.
+//
+//   wanted  [num_frames], as Series wants it
+template <class Series, class Wanted, class Header>
+CodedTrack<typename Series::Value> code_best(Wanted wanted, std::span<const Way<Header>> ways,
+                                             const TrackOptions& options, TrackState& state,
+                                             Header& header) {
+  struct Candidate {
+    const Way<Header>* way;
+    TrackTask task;
+    CodedTrack<typename Series::Value> coded;
+    double cost() const { return lagrangian_cost(coded.cost); }
+  };
+  std::vector<Candidate> best;  // the cheapest first
+  const std::size_t count = options.fast ? 1 : kSearched;
+  for (const Way<Header>& way : ways) {
+    BitEstimate between;
+    write_between(between, state.between, way.between, options.track_levels);
+    TrackTask task{track_order(static_cast<std::uint32_t>(wanted.size()), options.track_levels,
+                               way.between),
+                   &state, way.bits + between.bits()};
+    const double limit =
+        best.size() < count ? std::numeric_limits<double>::infinity() : best.back().cost();
+    auto coded = code_greedily(Series(wanted, way.header), task, limit, options.nearest);
+    if (!coded) continue;
+    if (best.size() == count) best.pop_back();
+    Candidate candidate{&way, std::move(task), std::move(*coded)};
+    const auto place = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
+      return candidate.cost() < other.cost();
+    });
+    best.insert(place, std::move(candidate));
+  }
+  for (Candidate& candidate : best) {
+    if (options.nearest) break;
+    search_residuals(Series(wanted, candidate.way->header), candidate.task, options.fast,
+                     candidate.coded);
+  }
+  Candidate& chosen = *std::min_element(
+      best.begin(), best.end(),
+      [](const Candidate& a, const Candidate& b) { return a.cost() < b.cost(); });
+  header = chosen.way->header;
+  state = std::move(chosen.coded.after);
+  BitCost unused;  // writing adapts the models
+  write_between(unused, state.between, chosen.way->between, options.track_levels);
+  return std::move(chosen.coded);
+}
+
+std::vector<Quaternion> code_rotations(std::span<const WantedPose> wanted,
+                                       const BoneMotion* parent, const TrackOptions& options,
+                                       TrackState& state, Bone& bone) {
+  std::vector<QuaternionD> relative(wanted.size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    relative[f] = wanted[f].rotation;
+    if (parent == nullptr) continue;
+    relative[f] = product(inverse(parent->poses[f].rotation), relative[f]);
+  }
+  std::vector<Way<Bone>> ways;
+  for (int between = 0; between <= most_between(options); ++between) {
+    for (int order = 1; order <= kMaxPredictorOrder; ++order) {
+      Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
+      way.header.rotation_order = order;
+      way.header.rotation_between = between;
+    }
+  }
+  auto coded =
+      code_best<RotationSeries>(std::span<const QuaternionD>(relative),
+                                std::span<const Way<Bone>>(ways), options, state, bone);
+  bone.rotation_residual = std::move(coded.residuals);
+  return std::move(coded.values[0]);
+}
+
+std::vector<Vec3l> code_offsets(std::span<const WantedPose> wanted, const BoneMotion* parent,
+                                const TrackOptions& options, TrackState& state, Bone& bone) {
+  std::vector<std::array<double, 3>> offsets(wanted.size());
+  for (std::uint32_t f = 0; f < wanted.size(); ++f) {
+    const Vec3l carried = carried_pivot(bone, parent, f);
+    for (std::size_t c = 0; c < 3; ++c) {
+      offsets[f][c] = wanted[f].origin[c] - static_cast<double>(carried[c]);
+    }
+  }
+  std::vector<Way<Bone>> ways;
+  for (int between = 0; between <= most_between(options); ++between) {
+    for (int order = 0; order <= kMaxPredictorOrder; ++order) {
+      Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
+      way.header.origin_order = order;
+      way.header.origin_between = between;
+    }
+  }
+  auto coded = code_best<OffsetSeries>(Values(offsets), std::span<const Way<Bone>>(ways),
+                                       options, state, bone);
+  bone.origin_residual = std::move(coded.residuals);
+  std::vector<Vec3l> decoded(wanted.size());
+  for (std::size_t f = 0; f < decoded.size(); ++f) {
+    for (std::size_t c = 0; c < 3; ++c) decoded[f][c] = coded.values[c][f];
+  }
+  return decoded;
 }
 
 }  // namespace
@@ -180,55 +272,40 @@ BoneMotion track_bone(std::span<const WantedPose> wanted, const BoneMotion* pare
 TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double step,
                           const TrackOptions& options, TrackState& state,
                           Trajectory& trajectory) {
-  TrackState best_state = state;
-  TrackCost best{0.0, std::numeric_limits<double>::infinity()};
-  Trajectory tried = trajectory;
-  const int last = options.refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
-  for (tried.temporal_predictor = 1; tried.temporal_predictor <= last;
-       ++tried.temporal_predictor) {
-    const int count = tried.temporal_predictor - kMaxPredictorOrder;
-    if (count > 0 && !fit_weights(values, step, count, tried.temporal_weight)) continue;
-    ResidualChoice choice(state, options.nearest);
-    auto residuals = residuals_of(values, step, tried, best, choice);
-    if (!residuals) continue;
-    tried.residual = std::move(*residuals);
-    TrackCost cost = choice.cost();
-    if (count > 0) cost.bits += kWeightBits * count;
-    if (lagrangian_cost(cost) >= lagrangian_cost(best)) continue;
-    best = cost;
-    trajectory = tried;
-    best_state = choice.take_state();
+  std::vector<std::array<double, 3>> steps(values.begin(), values.end());
+  for (auto& value : steps) {
+    for (double& x : value) x /= step;
   }
-  state = std::move(best_state);
-  return best;
+  std::vector<Way<Trajectory>> ways;
+  const int last = options.refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
+  for (int between = 0; between <= most_between(options); ++between) {
+    const std::size_t stride = between > 0 ? std::size_t{1} << options.track_levels : 1;
+    for (int predictor = 1; predictor <= last; ++predictor) {
+      Way<Trajectory> way{trajectory, between, 0.0};
+      way.header.temporal_predictor = predictor;
+      way.header.temporal_between = between;
+      const int count = predictor - kMaxPredictorOrder;
+      if (count > 0) {
+        if (!fit_weights(steps, stride, count, way.header.temporal_weight)) continue;
+        way.bits = kWeightBits * count;
+      }
+      ways.push_back(std::move(way));
+    }
+  }
+  auto coded = code_best<TrajectorySeries>(
+      Values(steps), std::span<const Way<Trajectory>>(ways), options, state, trajectory);
+  trajectory.residual = std::move(coded.residuals);
+  return coded.cost;
 }
 
-BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
-                     TrackState& rotations, TrackState& origins, Bone& bone) {
-  // The two orders are independent up to rounding: choose that of rotations, then that of
-  // origins.
-  const auto choose = [&](int& order, int first, bool of_rotations) {
-    double best = std::numeric_limits<double>::infinity();
-    int best_order = first;
-    for (order = first; order <= kMaxPredictorOrder; ++order) {
-      ResidualChoice rotation(rotations, nearest);
-      ResidualChoice origin(origins, nearest);
-      track_bone(wanted, parent, bone, rotation, origin);
-      const double now = lagrangian_cost((of_rotations ? rotation : origin).cost());
-      if (now >= best) continue;
-      best = now;
-      best_order = order;
-    }
-    order = best_order;
-  };
-  if (bone.rotation_flag) choose(bone.rotation_order, 1, true);
-  if (bone.origin_flag) choose(bone.origin_order, 0, false);
-  ResidualChoice rotation(rotations, nearest);
-  ResidualChoice origin(origins, nearest);
-  BoneMotion motion = track_bone(wanted, parent, bone, rotation, origin);
-  rotations = rotation.take_state();
-  origins = origin.take_state();
-  return motion;
+BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
+                     const TrackOptions& options, TrackState& rotations, TrackState& origins,
+                     Bone& bone) {
+  std::vector<Quaternion> relative(wanted.size(), kNoRotation);
+  std::vector<Vec3l> offset(wanted.size());
+  if (bone.rotation_flag) relative = code_rotations(wanted, parent, options, rotations, bone);
+  if (bone.origin_flag) offset = code_offsets(wanted, parent, options, origins, bone);
+  return move_bone(bone, parent, relative, offset);
 }
 
 }  // namespace rlpc

@@ -6,34 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "common/bitstream/residual_models.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/skinned_gof.h"
-#include "encoder/gof/lagrangian.h"
+#include "encoder/skinned_gof/quantise/track_state.h"
 
 namespace rlpc {
-
-// Models and means shared by the tracks of one type (9.8.1, 9.8.2): the state before the next
-// track.
-struct TrackState {
-  explicit TrackState(std::uint32_t num_frames) : mean(num_frames, 0) {}
-  ResidualModels models;
-  std::vector<std::uint32_t> mean;
-};
-
-struct TrackCost {
-  double bits = 0.0;
-  double error = 0.0;  // sum of squared errors of all values, in squared steps
-};
-
-// D + lambda R, in squared steps.
-inline double lagrangian_cost(const TrackCost& cost) {
-  return cost.error + kLambda * cost.bits;
-}
 
 struct TrackOptions {
   bool refine = true;    // also try transmitted weights, fitted to the series
   bool nearest = false;  // round residuals to nearest; else errors are below one step
+  int track_levels = 0;  // of the GOF; above 0, hierarchical orders are tried, too
+  bool fast = false;     // fewer predictors, and fewer survivors in the search for residuals
 };
 
 // Codes a trajectory: sets predictor, weights and residuals, advances the state, and returns
@@ -52,9 +35,9 @@ struct WantedPose {
 };
 
 // Codes a bone whose flags, pivot, parent and steps are given: sets orders and residuals,
-// advances the states, and returns the motion that a decoder recovers. nearest: as in
-// TrackOptions.
-BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent, bool nearest,
-                     TrackState& rotations, TrackState& origins, Bone& bone);
+// advances the states, and returns the motion that a decoder recovers.
+BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
+                     const TrackOptions& options, TrackState& rotations, TrackState& origins,
+                     Bone& bone);
 
 }  // namespace rlpc

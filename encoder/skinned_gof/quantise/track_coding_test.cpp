@@ -42,17 +42,22 @@ Values rough() {
   });
 }
 
-std::size_t bytes_of(const TrackResiduals& residuals) {
+std::vector<TrackPlace> order_of(int track_levels, int between) {
+  return track_order(kFrames, track_levels, between);
+}
+
+std::size_t bytes_of(const TrackResiduals& residuals,
+                     const std::vector<TrackPlace>& order = order_of(0, 0)) {
   SectionWriter section;
-  ResidualModels models;
+  TrackModels models;
   std::vector<std::uint32_t> means(residuals.size(), 0);
-  section.track(models, means, residuals);
+  section.track(models, means, order, residuals);
   return section.finish().size();
 }
 
-void expect_close(const Values& values, double most, double step,
-                  const Trajectory& trajectory) {
-  const std::vector<Vec3i> decoded = recon_trajectory(trajectory);
+void expect_close(const Values& values, double most, double step, const Trajectory& trajectory,
+                  int track_levels) {
+  const std::vector<Vec3i> decoded = recon_trajectory(trajectory, track_levels);
   ASSERT_EQ(decoded.size(), values.size());
   for (std::size_t f = 0; f < values.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -67,14 +72,17 @@ TEST(CodedTrajectories, AreWithinAStep) {
     for (const double step : {0.01, 0.7, 3.0, 1000.0}) {
       for (const auto& [refine, nearest] :
            {std::pair(false, false), {true, false}, {true, true}}) {
-        Trajectory trajectory;
-        TrackState state(kFrames);
-        code_trajectory(values, step, {.refine = refine, .nearest = nearest}, state,
-                        trajectory);
-        EXPECT_GE(trajectory.temporal_predictor, 0);
-        EXPECT_LE(trajectory.temporal_predictor,
-                  refine ? kMaxTemporalPredictor : kMaxPredictorOrder);
-        expect_close(values, nearest ? 0.5 * step : step, step, trajectory);
+        for (const int track_levels : {0, 1, 3, kMaxTrackLevels}) {
+          Trajectory trajectory;
+          TrackState state(kFrames);
+          code_trajectory(values, step,
+                          {.refine = refine, .nearest = nearest, .track_levels = track_levels},
+                          state, trajectory);
+          EXPECT_GE(trajectory.temporal_predictor, 0);
+          EXPECT_LE(trajectory.temporal_predictor,
+                    refine ? kMaxTemporalPredictor : kMaxPredictorOrder);
+          expect_close(values, nearest ? 0.5 * step : step, step, trajectory, track_levels);
+        }
       }
     }
   }
@@ -119,11 +127,13 @@ TEST(CodedTrajectories, ReportTheirCost) {
     for (const double step : {0.01, 3.0, 100.0, 1000.0}) {
       Trajectory trajectory;
       TrackState state(kFrames);
-      const TrackCost cost =
-          code_trajectory(values, step, {.refine = false}, state, trajectory);
-      const double written = 8.0 * static_cast<double>(bytes_of(trajectory.residual));
+      const TrackCost cost = code_trajectory(values, step, {.refine = false, .track_levels = 2},
+                                             state, trajectory);
+      const double written =
+          8.0 * static_cast<double>(
+                    bytes_of(trajectory.residual, order_of(2, trajectory.temporal_between)));
       EXPECT_NEAR(cost.bits, written, 16.0 + 0.01 * written) << step;
-      const std::vector<Vec3i> decoded = recon_trajectory(trajectory);
+      const std::vector<Vec3i> decoded = recon_trajectory(trajectory, 2);
       double error = 0.0;
       for (std::size_t f = 0; f < kFrames; ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -143,15 +153,38 @@ TEST(CodedTrajectories, LeaveTheStateOfTheChosenPredictor) {
   const TrackCost cost = code_trajectory(rough(), 1.0, {.refine = false}, state, trajectory);
   TrackState again(kFrames);
   BitCost first;
-  write_track(first, again.models, again.mean, trajectory.residual);
+  write_track(first, again.models, again.mean, order_of(0, 0), trajectory.residual);
   EXPECT_EQ(first.bits(), cost.bits);
   EXPECT_EQ(state.mean, again.mean);
   const TrackResiduals next(kFrames, Vec3i{9, -90, 900});
   BitCost after;
   BitCost after_again;
-  write_track(after, state.models, state.mean, next);
-  write_track(after_again, again.models, again.mean, next);
+  write_track(after, state.models, state.mean, order_of(0, 0), next);
+  write_track(after_again, again.models, again.mean, order_of(0, 0), next);
   EXPECT_EQ(after.bits(), after_again.bits());
+}
+
+// The frames between are interpolated where that is cheaper, and only then.
+TEST(CodedTrajectories, AreHierarchicalIfThatIsCheaper) {
+  const auto cost = [](const Values& values, int track_levels, int& between) {
+    Trajectory trajectory;
+    TrackState state(kFrames);
+    const TrackCost of =
+        code_trajectory(values, 3.0, {.track_levels = track_levels}, state, trajectory);
+    between = trajectory.temporal_between;
+    return lagrangian_cost(of);
+  };
+  const Values wave = values_of([](double f) {
+    return std::array<double, 3>{25.0 * std::sin(0.4 * f), 20.0 * std::cos(0.37 * f),
+                                 9.0 * std::sin(0.3 * f)};
+  });
+  int between = 0;
+  const double sequential = cost(wave, 0, between);
+  EXPECT_EQ(between, 0);
+  EXPECT_LT(cost(wave, 1, between), 0.95 * sequential);
+  EXPECT_GT(between, 0);
+  cost(rough(), 1, between);
+  EXPECT_EQ(between, 0);
 }
 
 constexpr double kPi = 3.14159265358979;
@@ -218,12 +251,12 @@ TEST(CodedBones, FollowTheWantedPoses) {
     const auto wanted = steady_poses(0.1 * (b + 1));
     Bone bone = free_bone();
     bone.parent = b - 1;
-    motions.push_back(
-        code_bone(wanted, b == 0 ? nullptr : &motions.back(), false, rotations, origins, bone));
+    motions.push_back(code_bone(wanted, b == 0 ? nullptr : &motions.back(), {.track_levels = 1},
+                                rotations, origins, bone));
     bones.push_back(bone);
     expect_close(wanted, motions.back());
   }
-  const std::vector<BoneMotion> decoded = recon_bones(bones, kFrames);
+  const std::vector<BoneMotion> decoded = recon_bones(bones, kFrames, 1);
   for (std::size_t b = 0; b < 3; ++b) expect_equal(decoded[b], motions[b]);
 }
 
@@ -236,14 +269,14 @@ TEST(CodedBones, IgnoreTheSignOfQuaternions) {
   TrackState rotations(kFrames);
   TrackState origins(kFrames);
   Bone bone = free_bone();
-  expect_close(wanted, code_bone(wanted, nullptr, false, rotations, origins, bone));
+  expect_close(wanted, code_bone(wanted, nullptr, {}, rotations, origins, bone));
 }
 
 TEST(CodedBones, CostLittleInSteadyMotion) {
   TrackState rotations(kFrames);
   TrackState origins(kFrames);
   Bone bone = free_bone();
-  code_bone(steady_poses(0.05), nullptr, false, rotations, origins, bone);
+  code_bone(steady_poses(0.05), nullptr, {}, rotations, origins, bone);
   EXPECT_GE(bone.origin_order, 2);
   EXPECT_GE(bone.rotation_order, 2);
   EXPECT_LT(bytes_of(bone.origin_residual), 35U);
@@ -255,8 +288,7 @@ TEST(CodedBones, HaveNoResidualsWithoutFlags) {
   TrackState origins(kFrames);
   Bone bone;
   bone.pivot = {7, 8, 9};
-  const BoneMotion motion =
-      code_bone(steady_poses(0.1), nullptr, false, rotations, origins, bone);
+  const BoneMotion motion = code_bone(steady_poses(0.1), nullptr, {}, rotations, origins, bone);
   EXPECT_TRUE(bone.rotation_residual.empty());
   EXPECT_TRUE(bone.origin_residual.empty());
   for (const BonePose& pose : motion.poses) {

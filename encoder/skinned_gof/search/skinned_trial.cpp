@@ -11,6 +11,13 @@
 #include "encoder/write/write_skinned_gof.h"
 
 namespace rlpc {
+namespace {
+
+// tuned (off: 0): Levels of hierarchical tracks besides level 0, with the High profile. Each
+// level more doubles the distance over which level 0 is predicted.
+constexpr int kTrackLevels = 1;
+
+}  // namespace
 
 SkinnedSettings usual_settings(const EncoderSettings& settings) {
   const MainTools& tools = settings.main;
@@ -22,6 +29,7 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   if (!tools.outer_ring) usual.outer_scale = 0;
   usual.layer_steps = tools.layer_steps;
   if (settings.profile == Profile::kHigh) {
+    usual.track_levels = kTrackLevels;
     usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
   }
   if (settings.preset == Preset::kFast) usual.rounding = Rounding::kDeadZone;
