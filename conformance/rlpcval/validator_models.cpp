@@ -48,7 +48,7 @@ void StreamValidator::model(const UnitHeader& unit, const Payload& payload) {
     kept = {};
     kept.lost = true;  // until it has been read
   }
-  if (!header.section_readable || !lead_.has_connectivity || !lead_.header->positions) {
+  if (!header.section_readable || !lead_.context.meshes || !lead_.header->positions) {
     report_.complete = false;
     return;
   }
