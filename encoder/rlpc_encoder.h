@@ -57,6 +57,10 @@ struct BaselineTools {
   SeedMode seed_mode = SeedMode::kAuto;
 };
 
+// How rest positions may be coded: as the other values, in an order of their own (8.18), or
+// that with counterparts. Each includes those before it.
+enum class RestTools : std::uint8_t { kPrediction, kOrder, kCounterparts };
+
 // Parameters of the Main and High profiles. Each tool can be disabled, for comparison.
 struct MainTools {
   std::uint32_t bones = 0;               // maximum per GOF, up to 1024; 0: chosen
@@ -68,7 +72,8 @@ struct MainTools {
   bool temporal_weights = true;  // transmitted weights besides the four fixed predictors
   // High profile: trajectories whose factors adapt the weights of prediction; none: all.
   std::optional<std::uint32_t> adaptive_factors;
-  bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009, (18), (19)
+  std::optional<RestTools> rest;  // High profile: at most; none: kCounterparts
+  bool cobra_steps = false;       // temporal steps of Vasa and Skala 2009, (18), (19)
   // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools
   // above; if any member of this structure differs from its default, all GOFs are skinned.
   bool clusters = true;

@@ -6,10 +6,11 @@
 namespace rlpc {
 
 CodedMesh::CodedMesh(Prediction prediction, const Topology& topology,
-                     const VertexLayers& layers)
+                     const VertexLayers& layers, const RestOrder* rest_order)
     : prediction_(prediction),
       topology_(topology),
       layers_(layers),
+      rest_order_(rest_order),
       index_(topology.earlier_neighbours.size()) {
   std::iota(index_.begin(), index_.end(), 0U);
   layer_first_.assign(num_layers() + 1, 0);

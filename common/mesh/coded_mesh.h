@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/mesh/rest_order.h"
 #include "common/mesh/topology.h"
 #include "common/mesh/vertex_layers.h"
 
@@ -16,8 +17,10 @@ enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, k
 
 class CodedMesh {
  public:
-  // Both must outlive it. `layers` is ignored unless prediction is kLayers.
-  CodedMesh(Prediction prediction, const Topology& topology, const VertexLayers& layers);
+  // All must outlive it. `layers` is ignored unless prediction is kLayers; rest_order: null
+  // below the High profile.
+  CodedMesh(Prediction prediction, const Topology& topology, const VertexLayers& layers,
+            const RestOrder* rest_order = nullptr);
 
   Prediction prediction() const { return prediction_; }
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(index_.size()); }
@@ -30,6 +33,9 @@ class CodedMesh {
     return topology_.parallelograms[v];
   }
 
+  // 8.18: of the High profile alone.
+  const RestOrder& rest_order() const { return *rest_order_; }
+
   std::uint32_t num_layers() const;
   std::uint32_t layer_of(std::uint32_t v) const;
   // 8.10.1 Vertices of a layer group: of the layers first to end - 1, in the order.
@@ -40,6 +46,7 @@ class CodedMesh {
   Prediction prediction_;
   const Topology& topology_;
   const VertexLayers& layers_;
+  const RestOrder* rest_order_;
   std::vector<std::uint32_t> index_;        // 0, 1, 2, ...
   std::vector<std::uint32_t> layer_first_;  // [num_layers + 1], index in the order
 };

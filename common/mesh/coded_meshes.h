@@ -1,12 +1,14 @@
 // 8.10 Prediction along the mesh, for each prediction_idc.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "common/mesh/coded_mesh.h"
+#include "common/mesh/rest_order.h"
 #include "common/mesh/topology.h"
 #include "common/mesh/vertex_layers.h"
 
@@ -15,13 +17,18 @@ namespace rlpc {
 class CodedMeshes {
  public:
   // triangles: in decoded order, read during the call. The topology must outlive it.
-  CodedMeshes(const Topology& topology, std::span<const Triangle> triangles)
+  // has_rest_order: of the High profile.
+  CodedMeshes(const Topology& topology, std::span<const Triangle> triangles,
+              bool has_rest_order = true)
       : layers_(make_layers(static_cast<std::uint32_t>(topology.earlier_neighbours.size()),
-                            triangles)),
-        meshes_{CodedMesh(Prediction::kNone, topology, layers_),
-                CodedMesh(Prediction::kParallelogram, topology, layers_),
-                CodedMesh(Prediction::kParallelograms, topology, layers_),
-                CodedMesh(Prediction::kLayers, topology, layers_)} {}
+                            triangles)) {
+    if (has_rest_order) rest_order_.emplace(topology, triangles);
+    for (const auto prediction : {Prediction::kNone, Prediction::kParallelogram,
+                                  Prediction::kParallelograms, Prediction::kLayers}) {
+      meshes_.emplace_back(prediction, topology, layers_,
+                           rest_order_ ? &*rest_order_ : nullptr);
+    }
+  }
   CodedMeshes(const CodedMeshes&) = delete;
   CodedMeshes& operator=(const CodedMeshes&) = delete;
 
@@ -31,7 +38,8 @@ class CodedMeshes {
 
  private:
   VertexLayers layers_;
-  std::array<CodedMesh, 4> meshes_;
+  std::optional<RestOrder> rest_order_;
+  std::vector<CodedMesh> meshes_;
 };
 
 }  // namespace rlpc

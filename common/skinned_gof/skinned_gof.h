@@ -22,6 +22,7 @@ inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
 inline constexpr std::uint32_t kMaxComponentGroups = 255;
 inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
 inline constexpr int kMaxWeightBits = 7;
+inline constexpr int kRestWeightBits = 6;  // of rest_edge_weight and rest_ring_weight
 inline constexpr std::uint32_t kMaxStepIdx = 239;
 inline constexpr int kMaxLayerStep = 16;  // sixteenths of the step of a factor
 inline constexpr int kMaxInfluences = 8;
@@ -83,6 +84,28 @@ struct Trajectory {
   bool operator==(const Trajectory&) const = default;
 };
 
+// 6.11 rest_of_rig( ): how rest positions are coded in the High profile.
+struct RestSettings {
+  bool order_flag = false;  // in an order of their own; the others are of this order
+  int edge_weight = 0;      // sixteenths
+  int ring_weight = 0;      // sixteenths
+  bool axes_flag = false;
+  bool counterparts_flag = false;
+
+  bool operator==(const RestSettings&) const = default;
+};
+
+// 6.12.4: the counterpart of a vertex, as coded.
+struct Counterpart {
+  bool flag = false;      // counterpart_flag: the inherited one
+  bool new_flag = false;  // new_counterpart_flag: that of the elements below
+  bool mirrored = false;
+  std::uint8_t hinge = 0;
+  std::uint32_t idx = 0;
+
+  bool operator==(const Counterpart&) const = default;
+};
+
 // 6.13: what has vertices in a skinned GOF. In a skinned model, bones and trajectories are
 // without motion. Values of absent slices are zero; reconstruction then predicts the influences
 // (8.14.1).
@@ -92,6 +115,7 @@ struct SkinnedModel {
   std::uint32_t rest_step = 1;  // 1/16 grid units
   Prediction prediction = Prediction::kLayers;
   WeightSettings weights;
+  RestSettings rest;
   std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
   std::vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
   std::vector<Bone> bones;
@@ -102,6 +126,8 @@ struct SkinnedModel {
   std::vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
   std::vector<Trajectory> trajectories;
   std::vector<Influences> influences;  // [num_vertices]
+  // [num_vertices] if there are counterparts, otherwise empty
+  std::vector<Counterpart> counterparts;
   // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
   std::vector<std::vector<std::int32_t>> vertex_residual;
   bool is_cut = false;  // slices were dropped on request (SliceCut)

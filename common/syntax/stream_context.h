@@ -23,7 +23,8 @@ struct StreamContext {
   // To be called once the header is set. triangles: in decoded order, read during the call.
   void set_connectivity(std::span<const Triangle> triangles) {
     topology = make_topology(header.num_vertices, triangles);
-    if (header.has_skinned_gofs()) meshes.emplace(topology, triangles);
+    if (!header.has_skinned_gofs()) return;
+    meshes.emplace(topology, triangles, header.profile_idc >= kProfileHigh);
   }
 };
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/bitstream/residual_models.h"
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/counterparts.h"
 #include "common/skinned_gof/influences.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
@@ -21,6 +23,7 @@ struct SkinnedGofSizes {
   std::uint32_t max_bones = 6;
   std::uint32_t max_groups = 4;
   std::uint32_t max_components = 4;  // per group
+  bool rest_order = true;            // in some
 };
 
 class RandomSkinnedGof {
@@ -31,6 +34,7 @@ class RandomSkinnedGof {
     const CodedMesh mesh = coded_mesh();
     make_layers_of_gof(mesh);
     for (std::uint32_t b = 0; b < gof.bones.size(); ++b) make_bone(b);
+    if (sizes.rest_order) make_rest();
     make_slices(mesh, sizes);
     make_influences(mesh);
   }
@@ -39,9 +43,10 @@ class RandomSkinnedGof {
   std::vector<Triangle> triangles;
   Topology topology;
   VertexLayers layers;
+  std::optional<RestOrder> rest_order;
   SkinnedGof gof;
 
-  CodedMesh coded_mesh() const { return {gof.prediction, topology, layers}; }
+  CodedMesh coded_mesh() const { return {gof.prediction, topology, layers, &*rest_order}; }
 
  private:
   static constexpr int kResidualBits = 28;  // maximum width of a magnitude
@@ -91,6 +96,7 @@ class RandomSkinnedGof {
       triangles.push_back({below(n), below(n), below(n)});
     topology = make_topology(n, triangles);
     layers = rlpc::make_layers(n, triangles);
+    rest_order.emplace(topology, triangles);
     header.num_vertices = n;
     header.num_triangles = static_cast<std::uint32_t>(triangles.size());
   }
@@ -151,6 +157,36 @@ class RandomSkinnedGof {
     }
   }
 
+  void make_rest() {
+    if (header.profile_idc < kProfileHigh || coin()) return;
+    gof.rest.order_flag = true;
+    gof.rest.edge_weight = between(0, 63);
+    gof.rest.ring_weight = between(0, 63);
+    gof.rest.axes_flag = coin();
+    gof.rest.counterparts_flag = coin();
+  }
+
+  // What is legal at each vertex, if its slice is present.
+  void make_counterparts() {
+    gof.counterparts.resize(header.num_vertices);
+    if (gof.slice_layers[0] == 0) return;
+    Counterparts counterparts(*rest_order);
+    for (const std::uint32_t v : rest_order->order()) {
+      Counterpart& choice = gof.counterparts[v];
+      const auto num_hinges = static_cast<std::uint32_t>(rest_order->hinges(v).size());
+      counterparts.start(v);
+      choice.flag = counterparts.is_inherited() && random() % 4 != 0;
+      if (!choice.flag && num_hinges > 0 && counterparts.num_listed() > 0 && coin()) {
+        choice.new_flag = true;
+        choice.mirrored = coin();
+        choice.hinge = static_cast<std::uint8_t>(below(num_hinges));
+        choice.idx = below(static_cast<std::uint32_t>(counterparts.num_listed()));
+        counterparts.set_new(choice);
+      }
+      counterparts.finish(choice.flag || choice.new_flag);
+    }
+  }
+
   Trajectory make_trajectory() {
     Trajectory t;
     t.scale_idx = between(0, kMaxScaleIdx);
@@ -182,13 +218,16 @@ class RandomSkinnedGof {
       }
       if (group == 0 || present > 0) add_residuals(mesh, group, present);
     }
+    if (gof.rest.counterparts_flag) make_counterparts();
   }
 
   void add_residuals(const CodedMesh& mesh, std::uint32_t group, std::uint32_t present) {
     const std::size_t size = gof.group_end[group] - (group > 0 ? gof.group_end[group - 1] : 0);
     std::vector<std::int32_t> residuals(size * mesh.num_vertices());
     const int bits = between(0, kResidualBits);
-    for (const std::uint32_t v : mesh.vertices_of_layers(0, layers_of(present))) {
+    const bool all = group == 0 && gof.rest.order_flag && present > 0;
+    const std::uint32_t end = all ? mesh.num_layers() : layers_of(present);
+    for (const std::uint32_t v : mesh.vertices_of_layers(0, end)) {
       for (std::size_t k = 0; k < size; ++k) residuals[v * size + k] = residual(bits);
     }
     gof.vertex_residual.push_back(std::move(residuals));

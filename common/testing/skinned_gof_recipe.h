@@ -43,7 +43,13 @@ struct SkinnedGofRecipe {
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
   std::uint32_t outer_scale = 0;
-  std::optional<std::uint32_t> num_adaptive_factors;  // of the High profile
+  // Of the High profile: set in all GOFs of it.
+  std::optional<std::uint32_t> num_adaptive_factors;
+  bool rest_order_flag = false;
+  std::uint32_t rest_edge_weight = 0;
+  std::uint32_t rest_ring_weight = 0;
+  bool rest_axes_flag = false;
+  bool rest_counterparts_flag = false;
   std::uint32_t num_layer_groups_minus1 = 0;
   std::vector<std::uint32_t> layer_group_layers_minus1;
   std::vector<std::uint32_t> layer_step_minus1;
@@ -56,7 +62,7 @@ struct SkinnedGofRecipe {
     w.ue(num_gof_frames_minus1);
     w.u(is_high() ? 2 : 1, 1);  // gof_kind or, in the Main profile, bones_flag
     if (is_high()) w.u(3, track_levels.value_or(0));
-    rig_header(w);
+    rig_header(w, is_high());
     w.byte_alignment();
     w.append(bone_section(true, true));
     return w.take();
@@ -64,7 +70,7 @@ struct SkinnedGofRecipe {
   std::vector<std::uint8_t> model_payload(std::uint32_t model_idx) const {
     BitWriter w;
     w.u(3, model_idx);
-    rig_header(w);
+    rig_header(w, true);
     w.byte_alignment();
     w.append(bone_section(true, false));
     return w.take();
@@ -86,7 +92,7 @@ struct SkinnedGofRecipe {
   bool is_high() const { return track_levels || num_adaptive_factors; }
 
  private:
-  void rig_header(BitWriter& w) const {
+  void rig_header(BitWriter& w, bool of_high) const {
     w.ue(static_cast<std::uint32_t>(bones.size()) - 1);
     w.u(5, fraction_bits);
     w.u(3, weight_bits);
@@ -97,10 +103,17 @@ struct SkinnedGofRecipe {
       w.u(4, damping_log2);
       w.u(4, outer_weight);
       w.u(4, outer_scale);
-      if (is_high()) w.ue(num_adaptive_factors.value_or(0));
+      if (of_high) w.ue(num_adaptive_factors.value_or(0));
       w.ue(num_layer_groups_minus1);
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
+    }
+    if (of_high) w.flag(rest_order_flag);
+    if (rest_order_flag) {
+      w.u(6, rest_edge_weight);
+      w.u(6, rest_ring_weight);
+      w.flag(rest_axes_flag);
+      w.flag(rest_counterparts_flag);
     }
   }
   std::vector<std::uint8_t> bone_section(bool has_vertices, bool has_tracks) const {

@@ -72,6 +72,8 @@ class SplitSkinnedGof {
     tracks.num_component_groups = model->num_component_groups;
     tracks.num_local_groups = gof.num_component_groups - model->num_component_groups;
     tracks.rest_step = 1;
+    tracks.rest = {};
+    tracks.counterparts.clear();
     tracks.influences.clear();
     tracks.group_end = {model->group_end.back()};
     tracks.vertex_residual = {{}};

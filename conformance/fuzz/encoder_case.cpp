@@ -134,7 +134,7 @@ EncoderSettings CaseMaker::read_settings() {
   s.hash_mode = static_cast<HashMode>(o.hash_mode % 3);
   s.metadata = case_.metadata;
 
-  const auto bytes = input_.take(13);
+  const auto bytes = input_.take(14);
   FuzzInput tools(bytes.data(), bytes.size());
   const auto number = [&](std::uint32_t below) { return tools.number(1) % below; };
   BaselineTools b;
@@ -162,6 +162,7 @@ EncoderSettings CaseMaker::read_settings() {
   m.temporal_weights = (more & 8) == 0;
   m.cobra_steps = (more & 16) != 0;
   m.clusters = (more & 32) == 0;
+  if ((more & 64) != 0) m.rest = static_cast<RestTools>(tools.number(1) % 3);
   m.component_groups = number(6);
   m.layer_groups = number(6);
   // The tools of the other profile are refused, so most cases do not set them.

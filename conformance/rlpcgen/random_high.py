@@ -27,6 +27,31 @@ class HighSource(random_main.MainSource):
     def _num_adaptive_factors(self, ns, indices, arguments):
         return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
 
+    def _rest_order_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(60))
+
+    def _rest_edge_weight(self, ns, indices, arguments):
+        return self.near(0, 63)
+
+    _rest_ring_weight = _rest_edge_weight
+
+    def _rest_axes_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(50))
+
+    _rest_counterparts_flag = _counterpart_mirrored_flag = _rest_axes_flag
+    _counterpart_flag = _new_counterpart_flag = _rest_axes_flag
+
+    def _counterpart_hinge(self, ns, indices, arguments):
+        listed = 0
+        for v in ns["RestOrder"]:  # to the current vertex
+            if listed == len(ns["HingeList"]) and ns["RestHinges"][v]:
+                return self.numbers.between(0, len(ns["RestHinges"][v]) - 1)
+            listed += len(ns["RestHinges"][v])
+        raise AssertionError("no vertex has hinges that are not listed")
+
+    def _counterpart_idx(self, ns, indices, arguments):
+        return self.numbers.between(0, len(ns["HingeList"]) - 1)
+
     def _gof_kind(self, ns, indices, arguments):
         if _kept(ns) and self.numbers.chance(self.plan.tracks_percent):
             return 2

@@ -261,6 +261,12 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-RNG-02", "9.3.2", "A section begins with four bytes of 255.",
      "A carry of the range encoder was lost, or the section was overwritten.",
      "Propagate carries into the bytes already written."},
+    {"R-RST-01", "7.12.4",
+     "A vertex has a new counterpart through a hinge that does not exist.",
+     "Hinges were numbered in another order, or those of vertices that are still to come are "
+     "in "
+     "the list.",
+     "Compare the order of the vertices and the hinges of each (8.18.2) with another decoder."},
     {"R-SLI-01", "7.12",
      "A slice belongs to a component group or a layer group that does not exist.",
      "The groups were counted differently from the GOF unit: 0 is for influences and rest "

@@ -97,6 +97,7 @@ TEST(ValidatorModels, ReportsTooManyAdaptiveValues) {
     w.ue(adaptive);
     w.ue(0);
     w.u(4, 15);
+    w.flag(false);  // rest_order_flag
     w.byte_alignment();
     const Bytes payload = w.take();
     ValidationReport report;

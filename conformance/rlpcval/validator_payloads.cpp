@@ -32,7 +32,9 @@ std::string hex(std::uint32_t value) {
 
 // Keeps what the rest of the stream is read with, up to the caller's limits.
 std::uint64_t memory_of(const SequenceHeader& h) {
-  const std::uint64_t of_vertex = h.has_skinned_gofs() ? 400 : 100;
+  const std::uint64_t of_layers = h.has_skinned_gofs() ? 300 : 0;
+  const std::uint64_t of_rest_order = h.profile_idc >= kProfileHigh ? 200 : 0;
+  const std::uint64_t of_vertex = 100 + of_layers + of_rest_order;
   return std::uint64_t{h.num_vertices} * of_vertex + std::uint64_t{h.num_triangles} * 120;
 }
 

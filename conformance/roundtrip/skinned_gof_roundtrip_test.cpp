@@ -276,9 +276,10 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
       for (std::uint32_t j = 0; j < kept[group]; ++j) end += from.gof.layer_group_size[j];
       for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
         const bool is_there = mesh.layer_of(v) < end;
+        const bool is_coded = group == 0 && cut.rest.order_flag ? kept[0] > 0 : is_there;
         for (std::size_t k = 0; k < size; ++k) {
           ASSERT_EQ(cut.vertex_residual[group][v * size + k],
-                    is_there ? from.gof.vertex_residual[group][v * size + k] : 0);
+                    is_coded ? from.gof.vertex_residual[group][v * size + k] : 0);
         }
         if (group == 0 && is_there) {
           EXPECT_TRUE(std::equal(cut.influences[v].begin(), cut.influences[v].end(),

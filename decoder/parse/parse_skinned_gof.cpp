@@ -13,6 +13,8 @@ namespace {
 
 // Bytes per factor: as a residual with its magnitude, as a value, and laid out for the sums.
 constexpr std::uint64_t kBytesPerFactor = 18;
+// Bytes per vertex of counterparts, and of the hinges that they are chosen from.
+constexpr std::uint64_t kBytesPerCounterpart = 64;
 
 // 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
 static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level) {
@@ -129,10 +131,24 @@ void SkinnedGofParser::layers(BitReader& r) {
   }
 }
 
+// 6.11 rest_of_rig( )
+void SkinnedGofParser::rest(BitReader& r) {
+  if (header_.profile_idc < kProfileHigh) return;
+  RestSettings& rest = gof_.rest;
+  rest.order_flag = r.flag("rest_order_flag");
+  if (!rest.order_flag) return;
+  rest.edge_weight = static_cast<int>(r.u(kRestWeightBits, "rest_edge_weight"));
+  rest.ring_weight = static_cast<int>(r.u(kRestWeightBits, "rest_ring_weight"));
+  rest.axes_flag = r.flag("rest_axes_flag");
+  rest.counterparts_flag = r.flag("rest_counterparts_flag");
+}
+
 // NumFactors and the memory for it, before a section is parsed that adds to it.
 void SkinnedGofParser::check_factors(SectionReader& section, const char* element) const {
+  const std::uint64_t of_vertex =
+      sizeof(Influences) + (gof_.rest.order_flag ? kBytesPerCounterpart : 0);
   const std::uint64_t needed_bytes = (num_factors_ + uncounted_factors_) * kBytesPerFactor +
-                                     sizeof(Influences) * std::uint64_t{header_.num_vertices};
+                                     of_vertex * std::uint64_t{header_.num_vertices};
   if (section.failed()) return;
   if (num_factors_ > header_.level().max_gof_factors) {
     section.fail("R-LVL-05", element);
@@ -197,6 +213,7 @@ void SkinnedGofParser::rig_header(BitReader& r) {
   if (r.error()) return;
   mesh_ = &meshes_[gof_.prediction];
   layers(r);
+  rest(r);
   if (!r.error()) gof_.bones.resize(num_bones);
 }
 
@@ -215,6 +232,7 @@ Result<bool> SkinnedGofParser::rig(BitReader& r) {
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
   gof_.influences.assign(header_.num_vertices, {});
   gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
+  if (gof_.rest.counterparts_flag) gof_.counterparts.resize(header_.num_vertices);
   return true;
 }
 

@@ -65,6 +65,7 @@ class SkinnedGofParser {
   void rig_header(BitReader& r);
   void track_levels(BitReader& r);
   void layers(BitReader& r);
+  void rest(BitReader& r);
   void load_model();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);

@@ -147,6 +147,29 @@ TEST(ParseSkinnedGofRanges, AdaptiveFactorsAreThoseOfTheHighProfile) {
   EXPECT_EQ(parsed.gof.weights.num_adaptive_factors, 0U);
 }
 
+// 6.11 rest_of_rig( ): with any prediction.
+TEST(ParseSkinnedGofRanges, RestPositionsHaveAnOrderOfTheirOwnInTheHighProfile) {
+  for (const std::uint32_t weight : {0U, 16U, 63U}) {
+    SkinnedGofRecipe recipe;
+    recipe.num_adaptive_factors = 0;
+    EXPECT_FALSE(Gof(recipe).gof.rest.order_flag);
+    recipe.rest_order_flag = true;
+    recipe.rest_edge_weight = weight;
+    recipe.rest_ring_weight = 63 - weight;
+    recipe.rest_axes_flag = weight == 16;
+    recipe.rest_counterparts_flag = weight == 63;
+    const Gof parsed(recipe);
+    ASSERT_TRUE(parsed.parsed);
+    const RestSettings& rest = parsed.gof.rest;
+    EXPECT_TRUE(rest.order_flag);
+    EXPECT_EQ(rest.edge_weight, static_cast<int>(weight));
+    EXPECT_EQ(rest.ring_weight, static_cast<int>(63 - weight));
+    EXPECT_EQ(rest.axes_flag, weight == 16);
+    EXPECT_EQ(rest.counterparts_flag, weight == 63);
+    EXPECT_EQ(parsed.gof.counterparts.size(), weight == 63 ? 9U : 0U);
+  }
+}
+
 TEST(ParseSkinnedGofRanges, BonesTakeAllPivotsFlagsAndOrders) {
   for (std::uint32_t order = 0; order <= 4; ++order) {
     SkinnedGofRecipe recipe;

@@ -5,6 +5,7 @@
 
 #include "common/int_math.h"
 #include "decoder/parse/parse_component_header.h"
+#include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/parse_track.h"
 
 namespace rlpc {
@@ -180,9 +181,12 @@ void SkinnedGofParser::SliceParser::parse() {
        parser_.mesh_->vertices_of_layers(first, first + gof_.layer_group_size[layers_])) {
     if (group_ == 0) influences(v, prediction);
     if (failed()) return;
-    spatial_residuals(v);
+    if (group_ > 0 || !gof_.rest.order_flag) spatial_residuals(v);
     section_.check_overrun("vertex_residual");
     if (failed()) return;
+  }
+  if (gof_.rest.order_flag && group_ == 0 && layers_ == 0) {
+    parse_rest_residuals(section_, parser_.mesh_->rest_order(), *state_.vertex_models, gof_);
   }
   section_.finish();
   if (failed()) return;

@@ -72,9 +72,11 @@ Result<bool> StreamReader::check_limits() const {
   if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
   if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
   if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
-  // Connectivity, topology, in the Main profile layers, and frames, as this decoder holds
-  // them.
-  const std::uint64_t of_vertex = (header.has_skinned_gofs() ? 400 : 100) + 12 * kFramesHeld;
+  // Connectivity, topology, in the Main profile layers, in the High profile the order of rest
+  // positions, and frames, as this decoder holds them.
+  const std::uint64_t of_layers = header.has_skinned_gofs() ? 300 : 0;
+  const std::uint64_t of_rest_order = header.profile_idc >= kProfileHigh ? 200 : 0;
+  const std::uint64_t of_vertex = 100 + of_layers + of_rest_order + 12 * kFramesHeld;
   const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
                               std::uint64_t{header.num_triangles} * 120;
   if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", fixed);

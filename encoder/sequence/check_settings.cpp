@@ -32,8 +32,8 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
-               temporal_weights, adaptive_factors, cobra_steps, clusters, component_groups,
-               layer_groups] = tools;
+               temporal_weights, adaptive_factors, rest, cobra_steps, clusters,
+               component_groups, layer_groups] = tools;
   const MainTools defaults;
   return {{"--bones", bones != defaults.bones},
           {"--prediction", prediction != defaults.prediction},
@@ -43,6 +43,7 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"--no-layer-steps", layer_steps != defaults.layer_steps},
           {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
           {"--adaptive-factors", adaptive_factors != defaults.adaptive_factors},
+          {"--rest", rest != defaults.rest},
           {"--basis-steps", cobra_steps != defaults.cobra_steps},
           {"--no-clusters", clusters != defaults.clusters},
           {"--component-groups", component_groups != defaults.component_groups},

@@ -9,8 +9,9 @@ namespace {
 class SkinnedGofKind : public GofEncoder {
  public:
   SkinnedGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
-      : context_{mesh.header, settings, mesh.triangles,
-                 CodedMeshes(mesh.topology, mesh.triangles)} {}
+      : context_{
+            mesh.header, settings, mesh.triangles,
+            CodedMeshes(mesh.topology, mesh.triangles, settings.profile == Profile::kHigh)} {}
 
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
     return std::make_unique<SkinnedGofCoder>(context_, frames);

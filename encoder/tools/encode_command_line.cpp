@@ -281,6 +281,16 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       ->check(CLI::Range(std::uint32_t{0}, kLevels.back().max_components))
       ->option_text("N")
       ->group(tools);
+  add_choice<std::optional<RestTools>>(
+      app, "--rest", t.rest,
+      {{"auto", std::nullopt},
+       {"prediction", RestTools::kPrediction},
+       {"order", RestTools::kOrder},
+       {"counterparts", RestTools::kCounterparts}},
+      "Coding of rest positions, High profile: auto (default, all of these), prediction (as "
+      "other values), order (also in an order of their own), counterparts (also from parts of "
+      "the same shape)")
+      ->group(tools);
   add_number("--component-groups", t.component_groups, 255,
              "Cut points among trajectories, at most one each (default: by size)");
   add_number("--layer-groups", t.layer_groups, 255,

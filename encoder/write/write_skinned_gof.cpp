@@ -11,6 +11,7 @@
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/write/section_writer.h"
 #include "encoder/write/write_gof_header.h"
+#include "encoder/write/write_rest.h"
 
 namespace rlpc {
 namespace {
@@ -130,6 +131,7 @@ class SliceWriter {
   void trajectory(SectionWriter& section, const Trajectory& trajectory);
   void influences(SectionWriter& section, std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(SectionWriter& section, std::uint32_t v, std::uint32_t group);
+  void rest_residuals(SectionWriter& section);
 
   const SkinnedModel& gof_;
   const CodedMesh& mesh_;
@@ -243,6 +245,17 @@ void SliceWriter::spatial_residuals(SectionWriter& section, std::uint32_t v,
   }
 }
 
+// 6.12.4 rest_residuals( v ), of all vertices
+void SliceWriter::rest_residuals(SectionWriter& section) {
+  RestWriter writer(mesh_.rest_order(), *vertex_models_);
+  for (const std::uint32_t v : mesh_.rest_order().order()) {
+    const std::int32_t* const residual = &gof_.vertex_residual[0][v * kRestFactors];
+    writer.start(v);
+    if (gof_.rest.counterparts_flag) writer.counterpart(section, gof_.counterparts[v]);
+    writer.finish(section, {residual[0], residual[1], residual[2]});
+  }
+}
+
 std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t layers) {
   BitWriter w;
   w.ue(group);
@@ -268,8 +281,9 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   for (const std::uint32_t v :
        mesh_.vertices_of_layers(first, first + gof_.layer_group_size[layers])) {
     if (group == 0) influences(section, v, prediction);
-    spatial_residuals(section, v, group);
+    if (group > 0 || !gof_.rest.order_flag) spatial_residuals(section, v, group);
   }
+  if (gof_.rest.order_flag && group == 0 && layers == 0) rest_residuals(section);
   if (layers == 0) models_of_group_ = std::make_unique<VertexModels>(*vertex_models_);
   w.append(section.finish());
   return w.take();
@@ -295,6 +309,16 @@ void write_track_levels(BitWriter& w, const TrackFrames& frames) {
   w.u(3, static_cast<std::uint32_t>(frames.levels));
 }
 
+// 6.11 rest_of_rig( )
+void write_rest_of_rig(BitWriter& w, const RestSettings& rest) {
+  w.flag(rest.order_flag);
+  if (!rest.order_flag) return;
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.edge_weight));
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.ring_weight));
+  w.flag(rest.axes_flag);
+  w.flag(rest.counterparts_flag);
+}
+
 // 6.11 rig_header( )
 void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t profile_idc) {
   w.ue(static_cast<std::uint32_t>(model.bones.size()) - 1);
@@ -314,6 +338,7 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
     }
     for (const std::uint8_t step : model.layer_step) w.u(4, step - 1U);
   }
+  if (profile_idc >= kProfileHigh) write_rest_of_rig(w, model.rest);
 }
 
 }  // namespace

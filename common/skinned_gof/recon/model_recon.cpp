@@ -5,6 +5,7 @@
 
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
+#include "common/skinned_gof/recon/rest_recon.h"
 
 namespace rlpc {
 
@@ -68,7 +69,9 @@ std::vector<Influences> complete_influences(const CodedMesh& mesh, const Skinned
 ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
                        bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
-  const auto rest = recon_values(mesh, model, 0, position_bits, {mesh, true, nullptr});
+  const auto rest = model.rest.order_flag
+                        ? recon_rest(mesh.rest_order(), model, position_bits)
+                        : recon_values(mesh, model, 0, position_bits, {mesh, true, nullptr});
   add_influences(model, rest);
   if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
   factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/skinned_gof/recon/rest_recon.h"
 #include "common/testing/filter_of_text_test.h"
 #include "common/testing/random_skinned_gof.h"
 
@@ -25,7 +26,8 @@ class TextRecon {
         gof_(from.gof),
         mesh_(from.coded_mesh()),
         bones_(recon_bones(gof_.bones, gof_.num_frames, gof_.track_levels)) {
-    for (std::size_t l = 0; l < kRestFactors + gof_.trajectories.size(); ++l) {
+    if (gof_.rest.order_flag) take_rest();
+    for (std::size_t l = factors.size(); l < kRestFactors + gof_.trajectories.size(); ++l) {
       if (l == kRestFactors && gof_.prediction == Prediction::kLayers) make_weights();
       if (gof_.weights.num_adaptive_factors > 0) start_factor(l);
       factors.push_back(reconstruct(l));
@@ -55,6 +57,15 @@ class TextRecon {
   }
 
  private:
+  // 8.18: against the text only where specdec decodes the same streams.
+  void take_rest() {
+    const auto values = recon_rest(mesh_.rest_order(), gof_, from_.header.position_bits);
+    factors.resize(kRestFactors);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      factors[i % kRestFactors].push_back(values[i]);
+    }
+  }
+
   void make_weights() {
     std::array<std::vector<std::int32_t>, 3> rest;
     for (std::size_t c = 0; c < 3; ++c) rest[c].assign(factors[c].begin(), factors[c].end());
@@ -181,10 +192,12 @@ class TextRecon {
 TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   std::array<int, 4> predictions{};
   int absent = 0;
+  int in_order = 0;
   for (unsigned seed = 1; seed <= 600; ++seed) {
     SCOPED_TRACE(seed);
     const RandomSkinnedGof from(seed, {});
     ++predictions[static_cast<std::size_t>(from.gof.prediction)];
+    if (from.gof.rest.order_flag) ++in_order;
     if (from.gof.slice_layers.back() < from.gof.layer_group_size.size()) ++absent;
     const TextRecon text(from);
     const CodedMesh mesh = from.coded_mesh();
@@ -202,12 +215,14 @@ TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   }
   for (const int count : predictions) EXPECT_GT(count, 50);
   EXPECT_GT(absent, 100);
+  EXPECT_GT(in_order, 100);
 }
 
 TEST(RecoveredValues, OfRestPositionsAreAsSpecified) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomSkinnedGof from(seed, {.max_vertices = 120, .max_frames = 1});
+    const RandomSkinnedGof from(seed,
+                                {.max_vertices = 120, .max_frames = 1, .rest_order = false});
     const TextRecon text(from);
     const CodedMesh mesh = from.coded_mesh();
     const auto values =
@@ -242,7 +257,8 @@ TEST(ValuePredictions, UseTheLatestParallelogramOrTheMeanOfAll) {
 
 // A mesh at rest with one bone that does not move.
 RandomSkinnedGof still(unsigned seed) {
-  RandomSkinnedGof from(seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0});
+  RandomSkinnedGof from(
+      seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0, .rest_order = false});
   from.header.position_bits = 16;
   from.gof.bones[0] = Bone{};
   return from;

@@ -11,6 +11,7 @@
 #include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
+#include "encoder/skinned_gof/quantise/rest_coding.h"
 
 namespace rlpc {
 namespace {
@@ -294,14 +295,10 @@ class SkinnedAnalyser {
     return rest.is_unique ? rest.x : rig_.rest[v];
   }
 
-  void code_rest() {
+  // Residuals by layers, of the wanted positions; gives the values as decoded.
+  std::vector<std::int32_t> code_rest_in_layers(std::span<const Point> wanted) {
     SkinnedModel& model = found_.model;
-    const double rest_step =
-        step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
-    model.rest_step = static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
-    const std::uint32_t n = frames_.num_vertices;
-    std::vector<std::int32_t> values(kRestFactors * std::size_t{n});
+    std::vector<std::int32_t> values(kRestFactors * wanted.size());
     model.vertex_residual.emplace_back(values.size());
     const ValuePrediction prediction(mesh_, true, nullptr);
     std::array<std::int64_t, kRestFactors> predicted{};
@@ -309,10 +306,10 @@ class SkinnedAnalyser {
       prediction.predict(v, values, predicted);
       const int layer_step = model.layer_step[mesh_.layer_of(v)];
       const double unit = static_cast<double>(model.rest_step) * layer_step / kMaxLayerStep;
-      const Point rest = fit_rest(v);
       for (std::size_t c = 0; c < 3; ++c) {
         constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
-        const double steps = (rest[c] * kPointScale - static_cast<double>(predicted[c])) / unit;
+        const double steps =
+            (wanted[v][c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
             static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
         model.vertex_residual[0][v * kRestFactors + c] = residual;
@@ -321,6 +318,44 @@ class SkinnedAnalyser {
                         predicted[c] + rest_difference(model, residual, layer_step));
       }
     }
+    return values;
+  }
+
+  // Replaces residuals by those in an order of their own (8.18) if these cost less.
+  void code_rest_in_order_of_its_own(std::span<const Point> wanted,
+                                     std::vector<std::int32_t>& values) {
+    SkinnedModel& model = found_.model;
+    const double limit = exact_exp2(rest_bits(position_bits_) - 1);
+    std::vector<std::int32_t> rounded;
+    for (const Point& x : wanted) {
+      for (const double of_axis : x) {
+        rounded.push_back(static_cast<std::int32_t>(
+            round_to_int(std::clamp(of_axis * kPointScale, -limit, limit - 1.0))));
+      }
+    }
+    CodedRest coded = code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
+                                         settings_.rest == RestTools::kCounterparts);
+    if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, model.rest_step,
+                                           model.vertex_residual[0], values))) {
+      return;
+    }
+    model.rest = coded.settings;
+    model.vertex_residual[0] = std::move(coded.residual);
+    model.counterparts = std::move(coded.counterparts);
+    values = std::move(coded.values);
+  }
+
+  void code_rest() {
+    SkinnedModel& model = found_.model;
+    const double rest_step =
+        step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
+    model.rest_step = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
+    const std::uint32_t n = frames_.num_vertices;
+    std::vector<Point> wanted;
+    for (std::uint32_t v = 0; v < n; ++v) wanted.push_back(fit_rest(v));
+    std::vector<std::int32_t> values = code_rest_in_layers(wanted);
+    if (settings_.rest != RestTools::kPrediction) code_rest_in_order_of_its_own(wanted, values);
     for (std::size_t c = 0; c < 3; ++c) {
       found_.rest[c].resize(n);
       for (std::uint32_t v = 0; v < n; ++v) found_.rest[c][v] = values[v * kRestFactors + c];

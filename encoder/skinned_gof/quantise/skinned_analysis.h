@@ -12,6 +12,7 @@
 #include "common/skinned_gof/skinned_gof.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/math/principal_components.h"
+#include "encoder/rlpc_encoder.h"
 #include "encoder/skinned_gof/fit/rig.h"
 #include "encoder/skinned_gof/quantise/track_coding.h"
 
@@ -29,9 +30,10 @@ struct SkinnedSettings {
   int damping_log2 = kDampingLog2;
   int outer_weight = kOuterRing;
   int outer_scale = kOuterRing;
-  std::uint32_t num_adaptive_factors = 0;  // maximum (8.15)
-  bool layer_steps = true;                 // finer steps in coarser layers
-  int track_levels = 0;                    // of hierarchical tracks; 0: there are none
+  std::uint32_t num_adaptive_factors = 0;   // maximum (8.15)
+  RestTools rest = RestTools::kPrediction;  // at most
+  bool layer_steps = true;                  // finer steps in coarser layers
+  int track_levels = 0;                     // of hierarchical tracks; 0: there are none
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion

@@ -30,6 +30,7 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   usual.layer_steps = tools.layer_steps;
   if (settings.profile == Profile::kHigh) {
     usual.track_levels = kTrackLevels;
+    usual.rest = tools.rest.value_or(RestTools::kCounterparts);
     usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
   }
   if (settings.preset == Preset::kFast) usual.rounding = Rounding::kDeadZone;
