@@ -20,7 +20,8 @@ _GOFS = _MESH | {"common/syntax", "common/components"} | _of_kinds("common/{}")
 _RECON = {"common/kernels", "common/mesh_prediction"} | _of_kinds("common/{}/recon")
 _PARSE = {"decoder/parse", "decoder/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
-_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/write"}
+_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/parallel",
+                            "encoder/write"}
 
 ROOMS = {
     # Integers only, shared by readers and writers of streams.
@@ -61,7 +62,8 @@ ROOMS = {
     # Floating point, decisions, structures to bits.
     "encoder": {"common/mesh", "common/skinned_gof", "common/syntax", "encoder/input",
                 "encoder/metrics"},
-    "encoder/math": set(),
+    "encoder/parallel": set(),
+    "encoder/math": {"encoder/parallel"},
     "encoder/metrics": {"common/mesh", "encoder/math"},
     "encoder/write": _GOFS | {"encoder/math/det_math.h"},
     "encoder/gof": _ENCODER,

@@ -1,0 +1,147 @@
+#include "encoder/parallel/for_each.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+
+class Threads::Pool {
+ public:
+  explicit Pool(std::uint32_t count) : outer_(std::exchange(current_, this)) {
+    others_.reserve(count - 1);
+    try {
+      while (others_.size() + 1 < count) others_.emplace_back([this] { help(); });
+    } catch (const std::exception&) {  // with the threads that there are
+    }
+  }
+  ~Pool() {
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& other : others_) other.join();
+    current_ = outer_;
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  static Pool* current() { return current_; }
+  bool has_others() const { return !others_.empty(); }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& pass) {
+    Loop loop{.pass = pass, .count = count, .depth = depth_ + 1};
+    std::unique_lock lock(mutex_);
+    loops_.push_back(&loop);
+    changed_.notify_all();
+    while (loop.is_open()) run_pass(loop, lock);
+    // Others are in passes of this loop: helps those that are no further out than it, so that
+    // the thread is never within two passes of a depth.
+    while (loop.running > 0) {
+      Loop* const inner = innermost(loop.depth);
+      if (inner != nullptr) {
+        run_pass(*inner, lock);
+      } else {
+        changed_.wait(lock);
+      }
+    }
+    if (loop.failure) std::rethrow_exception(loop.failure);
+  }
+
+ private:
+  struct Loop {
+    const std::function<void(std::size_t)>& pass;
+    std::size_t count = 0;
+    std::size_t depth = 0;  // 1: not within a pass of another loop
+    std::size_t next = 0;
+    std::size_t running = 0;  // passes that are not done
+    std::exception_ptr failure = {};
+
+    bool is_open() const { return next < count; }
+  };
+
+  Loop* innermost(std::size_t least_depth) const {
+    Loop* found = nullptr;
+    for (Loop* const loop : loops_) {
+      if (loop->depth < least_depth) continue;
+      if (found == nullptr || loop->depth > found->depth) found = loop;
+    }
+    return found;
+  }
+
+  // Runs the next pass of a loop that is open, without the lock.
+  void run_pass(Loop& loop, std::unique_lock<std::mutex>& lock) {
+    const std::size_t i = loop.next++;
+    if (!loop.is_open()) std::erase(loops_, &loop);
+    ++loop.running;
+    lock.unlock();
+    const std::size_t before = std::exchange(depth_, loop.depth);
+    std::exception_ptr failure;
+    try {
+      loop.pass(i);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    depth_ = before;
+    lock.lock();
+    if (failure && !loop.failure) loop.failure = std::move(failure);
+    if (loop.failure && loop.is_open()) {
+      loop.next = loop.count;
+      std::erase(loops_, &loop);
+    }
+    if (--loop.running == 0 && !loop.is_open()) changed_.notify_all();
+  }
+
+  void help() {
+    current_ = this;
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      Loop* const loop = innermost(0);
+      if (loop != nullptr) {
+        run_pass(*loop, lock);
+      } else if (ends_) {
+        return;
+      } else {
+        changed_.wait(lock);
+      }
+    }
+  }
+
+  static thread_local Pool* current_;
+  static thread_local std::size_t depth_;  // of the pass that the thread is in
+
+  Pool* outer_;
+  std::mutex mutex_;
+  std::condition_variable changed_;  // a loop began, or its last pass is done; or ends_
+  std::vector<Loop*> loops_;         // those that are open
+  bool ends_ = false;
+  std::vector<std::thread> others_;
+};
+
+thread_local Threads::Pool* Threads::Pool::current_ = nullptr;
+thread_local std::size_t Threads::Pool::depth_ = 0;
+
+Threads::Threads(std::uint32_t count) : pool_(std::make_unique<Pool>(count)) {}
+Threads::~Threads() = default;
+
+void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
+  Threads::Pool* const pool = Threads::Pool::current();
+  if (pool == nullptr || count < 2 || !pool->has_others()) {
+    for (std::size_t i = 0; i < count; ++i) pass(i);
+  } else {
+    pool->run(count, pass);
+  }
+}
+
+void for_ranges(std::size_t count, std::size_t together,
+                const std::function<void(std::size_t first, std::size_t end)>& range) {
+  for_each((count + together - 1) / together,
+           [&](std::size_t i) { range(i * together, std::min((i + 1) * together, count)); });
+}
+
+}  // namespace rlpc
