@@ -101,6 +101,8 @@ struct Target {
   double value = 0.1;  // above zero and finite
 };
 
+inline constexpr std::uint32_t kMaxEncoderThreads = 256;  // fixed: a guard
+
 struct EncoderSettings {
   static constexpr std::uint32_t kWholeSequence = std::numeric_limits<std::uint32_t>::max();
 
@@ -120,6 +122,10 @@ struct EncoderSettings {
   // Encodings that may need more memory fail before they start. The estimate is for animations
   // that compress badly, and includes the memory held by the source.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
+  // Threads, including the caller's; the stream does not depend on it. Each needs memory for a
+  // GOF: fewer are used where that would exceed max_memory_bytes. Clamped to 1 to
+  // kMaxEncoderThreads.
+  std::uint32_t threads = 1;
 };
 
 // Bits of the stream by purpose.
@@ -150,12 +156,13 @@ struct EncodeReport {
 // Receives the next bytes of the stream. False stops the encoder, for example if the disk is
 // full.
 using ByteSink = std::function<bool(std::span<const std::uint8_t>)>;
-// Called occasionally with the fraction done, 0 to 1, to show progress.
+// Called occasionally with the fraction done, 0 to 1, to show progress; by any thread, one at a
+// time.
 using Progress = std::function<void(double)>;
 
-// Encodes a whole sequence. Errors: those of the source; an animation that no level allows;
-// contradictory settings, or settings of the other profile; too much memory; a sink that
-// failed.
+// Encodes a whole sequence. Any thread may read from the source, one at a time. Errors: those
+// of the source; an animation that no level allows; contradictory settings, or settings of the
+// other profile; too much memory; a sink that failed.
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress = {});
 

@@ -34,6 +34,8 @@ class BadInput(ToolsTest):
         for threads in (0, 257, -1, "all"):
             self.fails(64, ("--threads", "1 to 256"), "rlpcdec", "in.rlpc", "--verify",
                        "--threads", threads)
+            self.fails(64, ("--threads", "1 to 256"), "rlpcenc", "in.obj", "-o", "out.rlpc",
+                       "--threads", threads)
 
     def accepted(self, *arguments):
         """Encodes, decodes and compares; returns the report."""

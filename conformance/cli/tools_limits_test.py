@@ -10,7 +10,7 @@ import struct
 import subprocess
 import threading
 
-from tools_testing import Result, Tools, ToolsTest, main, write_pc2
+from tools_testing import INPUTS, NAMES, Result, Tools, ToolsTest, main, write_pc2
 
 MIB = 1 << 20
 SIGNATURE = b"\x89RLPC\r\n\x1a"
@@ -181,6 +181,36 @@ class Expansion(ToolsTest):
                    "--max-output", 1200043)
         self.assertEqual(self.path("out.rlpd").stat().st_size, 1200044)
         self.ok("rlpcdec", self.stream, "-o", self.path("out.pc2"))  # without a limit
+
+
+class Threads(MeasuredTest):
+    """The stream does not depend on the number of threads."""
+
+    def streams(self, counts, *arguments):
+        for threads in counts:
+            self.ok("rlpcenc", *arguments, "-o", self.path(f"{threads}.rlpc"), "-q", "--threads",
+                    threads)
+        return {self.path(f"{threads}.rlpc").read_bytes() for threads in counts}
+
+    def test_any_number_gives_the_same_bytes(self):
+        for name in NAMES:
+            inputs = INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2"
+            for options in (("--preset", "fast", "--gof", 16), ("--preset", "medium"),
+                            ("--preset", "medium", "--gof", 8, "--hash", "frame"),
+                            ("--preset", "medium", "--profile", "high", "--gof", 16),
+                            ("--preset", "medium", "--profile", "baseline")):
+                found = self.streams((1, 2, 3), *inputs, "--kg", 0.3, *options)
+                self.assertEqual(len(found), 1, f"{name} {options}")
+
+    def test_fewer_where_memory_is_short(self):
+        mesh, cache = self.path("m.obj"), self.path("m.pc2")
+        mesh.write_text("".join(f"v {v} 0 0\n" for v in range(1000)))
+        write_pc2(cache, [[(v * f % 71) * 0.1 for v in range(3000)] for f in range(400)])
+        inputs = mesh, "--points", cache, "--gof", 50, "--preset", "fast"
+        self.assertEqual(len(self.streams((1, 8), *inputs)), 1)
+        self.takes(60 * MIB, 0, "", "rlpcenc", *inputs, "--max-memory", "60MB", "--threads", 8,
+                   "-o", self.path("8.rlpc"))
+        self.assertEqual(self.path("8.rlpc").read_bytes(), self.path("1.rlpc").read_bytes())
 
 
 class EncoderMemory(MeasuredTest):

@@ -422,6 +422,12 @@ static void test_encoder_arguments(void) {
   options.max_memory_bytes = 1 << 20;
   CHECK(create_with(&format, &options, text) == RLPC_LIMIT_EXCEEDED);
   CHECK_TEXT(text, "the limit is 1 MiB");
+  for (uint32_t threads = 0; threads <= 257; threads += 257) {
+    options = small_gofs();
+    options.threads = threads;
+    CHECK(create_with(&format, &options, text) == RLPC_BAD_ARGUMENT);
+    CHECK_TEXT(text, "is not in the range of 1 to 256");
+  }
   options = small_gofs();
   options.profile = RLPC_BASELINE;
   options.preset = RLPC_FAST;

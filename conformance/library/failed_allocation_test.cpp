@@ -44,6 +44,7 @@ class FailedAllocation : public testing::TestWithParam<Case> {
     options_.gof_frames = kGofFrames;
     options_.keep_order = 1;
     options_.hash_mode = RLPC_HASH_FRAME;
+    options_.threads = GetParam().threads;
     options_.metadata = "{\"title\":\"strip\"}";
     stream_.reserve(1 << 16);
   }
@@ -154,7 +155,9 @@ INSTANTIATE_TEST_SUITE_P(Library, EncoderWithoutMemory,
                          testing::Values(Case{RLPC_BASELINE, RLPC_FAST, false, 1},
                                          Case{RLPC_BASELINE, RLPC_MEDIUM, true, 1},
                                          Case{RLPC_MAIN, RLPC_MEDIUM, false, 1},
-                                         Case{RLPC_MAIN, RLPC_FAST, true, 1}),
+                                         Case{RLPC_MAIN, RLPC_MEDIUM, false, 2},
+                                         Case{RLPC_MAIN, RLPC_FAST, true, 1},
+                                         Case{RLPC_MAIN, RLPC_FAST, true, 2}),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Library, DecoderWithoutMemory,
                          testing::Values(Case{RLPC_BASELINE, RLPC_FAST, false, 1},

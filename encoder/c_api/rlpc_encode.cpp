@@ -36,6 +36,7 @@ rlpc_encode_options default_options() {
   options.hash_mode = RLPC_HASH_GOF;
   options.least_level = 1;
   options.max_memory_bytes = defaults.max_memory_bytes;
+  options.threads = defaults.threads;
   return options;
 }
 
@@ -108,6 +109,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   settings.keep_order = options.keep_order != 0;
   if (options.metadata != nullptr) settings.metadata = options.metadata;
   settings.max_memory_bytes = options.max_memory_bytes;
+  settings.threads = options.threads;
   return settings;
 }
 
@@ -139,6 +141,12 @@ rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
   const auto settings = settings_of(options);
   if (!settings) {
     return handle.error.break_handle(RLPC_BAD_ARGUMENT, "an option has an unknown value");
+  }
+  if (options.threads < 1 || options.threads > kMaxEncoderThreads) {
+    return handle.error.break_handle(RLPC_BAD_ARGUMENT,
+                                     "threads: " + std::to_string(options.threads) +
+                                         " is not in the range of 1 to " +
+                                         std::to_string(kMaxEncoderThreads));
   }
   auto encoder =
       FrameEncoder::create(format_of(format, options.least_level), *settings, sink_of(handle));

@@ -89,6 +89,7 @@ typedef struct rlpc_encode_options {
   size_t place_bytes;
   // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB.
   uint64_t max_memory_bytes;
+  uint32_t threads;  // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {

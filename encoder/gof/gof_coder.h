@@ -14,7 +14,7 @@
 namespace rlpc {
 
 // Writes the positions [num_vertices][3] of frame f of a span exactly as a decoder outputs
-// them.
+// them. Several threads may call it at once.
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
 
 // tuned (off: 1): An analysis made for one step is used for all steps within this factor. A

@@ -9,6 +9,7 @@
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
 #include "encoder/gof/gof_span.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 
@@ -27,22 +28,28 @@ struct GofFrames {
 };
 
 // Sum of squared distances between the frames and the decoded positions. decode(f, positions)
-// writes the positions of frame f, [num_vertices][3].
+// writes the positions of frame f, [num_vertices][3]; any thread may call it.
 template <typename Decode>
 double squared_error(const GofFrames& frames, const Decode& decode) {
+  constexpr std::size_t kTogether = 8;  // fixed: frames of a pass
   const std::size_t values = std::size_t{frames.num_vertices} * 3;
-  std::vector<std::int32_t> positions(values);
-  double sum = 0.0;
-  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
-    decode(f, std::span<std::int32_t>(positions));
-    const double* original = frames.at(f, 0);
-    double frame_sum = 0.0;
-    for (std::size_t i = 0; i < values; ++i) {
-      const double d = positions[i] - original[i];
-      frame_sum += d * d;
+  std::vector<double> sums(frames.num_frames);
+  for_ranges(frames.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
+    std::vector<std::int32_t> positions(values);
+    for (std::size_t f = first; f < end; ++f) {
+      const auto frame = static_cast<std::uint32_t>(f);
+      decode(frame, std::span<std::int32_t>(positions));
+      const double* original = frames.at(frame, 0);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < values; ++i) {
+        const double d = positions[i] - original[i];
+        sum += d * d;
+      }
+      sums[f] = sum;
     }
-    sum += frame_sum;
-  }
+  });
+  double sum = 0.0;
+  for (const double of_frame : sums) sum += of_frame;
   return sum;
 }
 

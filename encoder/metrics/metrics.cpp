@@ -103,13 +103,30 @@ double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
 
 void MetricsAccumulator::add_motion(std::span<const float> original, FrameMetrics& frame) {
   frame.moved_vertices = 0;
-  for (std::uint32_t v = 0; num_frames_ > 0 && v < num_vertices_; ++v) {
+  const bool is_first = previous_.empty();
+  for (std::uint32_t v = 0; !is_first && v < num_vertices_; ++v) {
     const double squared = squared_distance(original, previous_, v);
     max_squared_displacement_ = std::max(max_squared_displacement_, squared);
     if (squared > 0) ++frame.moved_vertices;
   }
-  if (num_frames_ == 0) frame.moved_vertices = num_vertices_;
+  if (is_first) frame.moved_vertices = num_vertices_;
   previous_.assign(original.begin(), original.end());
+}
+
+void MetricsAccumulator::append(const MetricsAccumulator& next) {
+  assert(next.num_frames_ > 0 && next.frames_.size() == next.num_frames_);
+  const bool is_first = num_frames_ == 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    box_min_[c] = is_first ? next.box_min_[c] : std::min(box_min_[c], next.box_min_[c]);
+    box_max_[c] = is_first ? next.box_max_[c] : std::max(box_max_[c], next.box_max_[c]);
+  }
+  max_squared_displacement_ =
+      std::max(max_squared_displacement_, next.max_squared_displacement_);
+  for (const FrameMetrics& frame : next.frames_) {
+    add_to_totals(frame);
+    if (keep_ == kFrames) frames_.push_back(frame);
+  }
+  previous_ = next.previous_;
 }
 
 Metrics MetricsAccumulator::result() const {

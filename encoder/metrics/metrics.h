@@ -51,8 +51,17 @@ class MetricsAccumulator {
   explicit MetricsAccumulator(std::uint32_t num_vertices,  // at least 1
                               Keep keep = kFrames);
 
+  // Before the first frame: the original of the frame before it, which is not counted.
+  void follow(std::span<const float> original) {
+    previous_.assign(original.begin(), original.end());
+  }
+  std::span<const float> last_original() const { return previous_; }
   // Adds the next frame; both have 3 * num_vertices finite values in the same vertex order.
   void add_frame(std::span<const float> original, std::span<const float> decoded);
+
+  // Adds the frames of `next`, at least one, which keeps frames and follows the last one here.
+  // The result is bit-exactly that of adding them here.
+  void append(const MetricsAccumulator& next);
 
   // The metrics of all frames so far, at least one.
   Metrics result() const;

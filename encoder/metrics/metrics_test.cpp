@@ -59,6 +59,39 @@ TEST(Metrics, FollowThePapers) {
   EXPECT_DOUBLE_EQ(m.mean_psnr_db, (m.frames[0].psnr_db + m.frames[1].psnr_db) / 2);
 }
 
+TEST(Metrics, AppendPartsAsIfAddedInOrder) {
+  const std::vector<std::vector<float>> originals{
+      {0, 0, 0, 2, 0, 0}, {0, 0, 0, 2, 4, 0}, {1, 0, 0.1F, 2, 4, 0}, {1, 0, 7, -2, 4, 0.3F}};
+  for (const auto keep : {MetricsAccumulator::kFrames, MetricsAccumulator::kTotals}) {
+    MetricsAccumulator whole(2, keep);
+    MetricsAccumulator appended(2, keep);
+    for (std::size_t f = 0; f < originals.size(); ++f) {
+      std::vector<float> decoded = originals[f];
+      decoded[f] += 0.1F * static_cast<float>(f);
+      whole.add_frame(originals[f], decoded);
+      MetricsAccumulator part(2);
+      part.follow(appended.last_original());
+      part.add_frame(originals[f], decoded);
+      appended.append(part);
+    }
+    const Metrics a = whole.result();
+    const Metrics b = appended.result();
+    EXPECT_EQ(a.kg_error_percent, b.kg_error_percent);
+    EXPECT_EQ(a.rms_error, b.rms_error);
+    EXPECT_EQ(a.max_error, b.max_error);
+    EXPECT_EQ(a.max_error_frame, b.max_error_frame);
+    EXPECT_EQ(a.diagonal, b.diagonal);
+    EXPECT_EQ(a.max_displacement, b.max_displacement);
+    EXPECT_EQ(a.mean_psnr_db, b.mean_psnr_db);
+    ASSERT_EQ(a.frames.size(), b.frames.size());
+    for (std::size_t f = 0; f < a.frames.size(); ++f) {
+      EXPECT_EQ(a.frames[f].squared_error, b.frames[f].squared_error);
+      EXPECT_EQ(a.frames[f].moved_vertices, b.frames[f].moved_vertices);
+      EXPECT_EQ(a.frames[f].psnr_db, b.frames[f].psnr_db);
+    }
+  }
+}
+
 TEST(Metrics, TakeTheFirstOfEqualErrors) {
   MetricsAccumulator metrics(3);
   const std::vector<float> zero(9);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/math/det_math.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/grid_choice.h"
@@ -123,6 +125,7 @@ class FrameEncoder::Impl {
   std::optional<StreamAssembly> stream_;  // from the first GOF on
   std::optional<GofBuffer> buffer_;
   std::uint32_t num_added_ = 0;
+  std::uint32_t num_threads_ = 1;
   Coded coded_;
   std::optional<InputError> failure_;
 };
@@ -140,7 +143,9 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
   // The buffer holds frames as floats.
   const std::uint64_t buffer_bytes = 12 * std::uint64_t{header.num_vertices} * longest;
-  if (auto error = check_memory(settings_, header, longest, 0, buffer_bytes)) return error;
+  const auto threads = check_memory(settings_, header, longest, 0, buffer_bytes);
+  if (!threads) return threads.error();
+  num_threads_ = *threads;
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
   // The level must allow later GOFs to have all clusters, bones and components of the settings.
   if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;
@@ -262,6 +267,7 @@ std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& ne
 }
 
 std::optional<InputError> FrameEncoder::Impl::encode_gof() {
+  const Threads threads(num_threads_);
   const GofSpan& span = spans_[coded_.gofs];
   const auto extent = measure_extent(*buffer_);
   if (!extent) return extent.error();
@@ -274,7 +280,9 @@ std::optional<InputError> FrameEncoder::Impl::encode_gof() {
   coded_.report.components += gof.components;
   coded_.step = best->step;
   if (auto error = keep_to_level(gof.needs)) return error;
-  const auto hash = coding_->measure(*buffer_, {0, span.count}, gof.frame, coded_.metrics);
+  std::mutex reading;
+  const auto hash =
+      coding_->measure({*buffer_, reading}, {0, span.count}, gof.frame, coded_.metrics);
   if (!hash) return hash.error();
   const bool written = (coded_.gofs > 0 || stream_->write_lead(coding_->header(), sink_)) &&
                        stream_->write_gof(gof.gofs.front(), sink_);

@@ -1,8 +1,31 @@
 #include "encoder/sequence/gof_batch.h"
 
+#include <algorithm>
+#include <atomic>
 #include <utility>
 
+#include "encoder/parallel/for_each.h"
+
 namespace rlpc {
+namespace {
+
+// Calls pass(g), which returns an error or none, for all g < count on several threads. Returns
+// the error of the lowest g, as if the calls had been in order.
+std::optional<InputError> for_each_gof(
+    std::size_t count, const std::function<std::optional<InputError>(std::size_t)>& pass) {
+  std::vector<std::optional<InputError>> errors(count);
+  std::atomic<std::size_t> failed = count;  // the lowest so far
+  for_each(count, [&](std::size_t g) {
+    if (g > failed) return;
+    errors[g] = pass(g);
+    if (!errors[g]) return;
+    for (std::size_t now = failed; g < now && !failed.compare_exchange_weak(now, g);) {
+    }
+  });
+  return failed < count ? errors[failed] : std::nullopt;
+}
+
+}  // namespace
 
 GofBatch::GofBatch(const SequenceCoding& coding, FrameSource& source,
                    const std::vector<GofSpan>& spans, const Options& options)
@@ -26,6 +49,7 @@ bool GofBatch::use_last_resort() {
 std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analysis_step) {
   const bool needed = !gof.coder || gof.coder->needs_frames(step, analysis_step);
   if (needed && gof.frames.xyz.empty()) {
+    const std::lock_guard lock(reading_);
     auto frames = coding_.read_frames(source_, gof.span);
     if (!frames) return frames.error();
     gof.frames = std::move(*frames);
@@ -37,12 +61,13 @@ std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analys
 
 std::optional<InputError> GofBatch::analyse(double analysis_step) {
   if (!options_.keep_analyses) return std::nullopt;
-  for (Gof& gof : gofs_) {
+  return for_each_gof(gofs_.size(), [&](std::size_t g) -> std::optional<InputError> {
+    Gof& gof = gofs_[g];
     if (auto error = prepare(gof, analysis_step, analysis_step)) return error;
     gof.coder->analyse(analysis_step);
     gof.frames = {};
-  }
-  return std::nullopt;
+    return std::nullopt;
+  });
 }
 
 std::function<double(double step)> GofBatch::expected_error() const {
@@ -58,36 +83,47 @@ std::function<double(double step)> GofBatch::expected_error() const {
   };
 }
 
-InputResult<CodedGof> GofBatch::encode(Gof& gof, double step, double analysis_step,
-                                       MetricsAccumulator& metrics) {
+InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
+                                                    double analysis_step) {
   if (auto error = prepare(gof, step, analysis_step)) return *error;
   const EncodedGof encoded = gof.coder->encode(step, analysis_step);
   if (!options_.keep_analyses) gof.coder->release_analysis();
   if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
     gof.frames = {};
   }
-  auto hash_units = coding_.measure(source_, gof.span, encoded.frame, metrics);
+  MetricsAccumulator metrics(coding_.header().num_vertices);
+  auto hash_units = coding_.measure({source_, reading_}, gof.span, encoded.frame, metrics);
   if (!hash_units) return hash_units.error();
   std::vector<GofBytes> gofs = write_gof_units(encoded, gof.span);
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
-  return CodedGof{std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
-                  options_.keep_decoded ? encoded.frame : nullptr};
+  return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
+                      encoded.components, options_.keep_decoded ? encoded.frame : nullptr},
+                     std::move(metrics)};
 }
 
 InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,
                                          const Progress& progress) {
+  std::vector<std::optional<MeasuredGof>> measured(gofs_.size());
+  std::mutex counting;
+  std::size_t done = 0;
+  const auto encode_one = [&](std::size_t g) -> std::optional<InputError> {
+    auto one = encode(gofs_[g], step, analysis_step);
+    if (!one) return one.error();
+    measured[g] = std::move(*one);
+    const std::lock_guard lock(counting);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(gofs_.size()));
+    return std::nullopt;
+  };
+  if (auto error = for_each_gof(gofs_.size(), encode_one)) return *error;
   BatchTrial trial;
   MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
-  for (Gof& gof : gofs_) {
-    auto coded = encode(gof, step, analysis_step, metrics);
-    if (!coded) return coded.error();
-    for (const GofBytes& of_gof : coded->gofs) trial.gof_bytes += of_gof.size();
-    trial.gofs.push_back(std::move(*coded));
-    if (progress) {
-      progress(static_cast<double>(trial.gofs.size()) / static_cast<double>(gofs_.size()));
-    }
+  for (std::optional<MeasuredGof>& of_span : measured) {
+    for (const GofBytes& gof : of_span->coded.gofs) trial.gof_bytes += gof.size();
+    metrics.append(of_span->metrics);
+    trial.gofs.push_back(std::move(of_span->coded));
   }
   trial.metrics = metrics.result();
   return trial;

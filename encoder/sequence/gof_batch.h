@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -55,7 +56,7 @@ class GofBatch {
   // Estimates the squared error of all GOFs at a step from their last analyses; empty if any
   // GOF has no estimate.
   std::function<double(double step)> expected_error() const;
-  // Called after each GOF with the fraction done.
+  // Called after each GOF with the fraction done; by any thread, one at a time.
   using Progress = std::function<void(double)>;
   // Steps as in GofCoder::encode(). Errors: those of the source.
   InputResult<BatchTrial> encode(double step, double analysis_step, const Progress& progress);
@@ -67,12 +68,17 @@ class GofBatch {
     std::unique_ptr<GofCoder> coder;
   };
 
+  struct MeasuredGof {
+    CodedGof coded;
+    MetricsAccumulator metrics;
+  };
+
   std::optional<InputError> prepare(Gof& gof, double step, double analysis_step);
-  InputResult<CodedGof> encode(Gof& gof, double step, double analysis_step,
-                               MetricsAccumulator& metrics);
+  InputResult<MeasuredGof> encode(Gof& gof, double step, double analysis_step);
 
   const SequenceCoding& coding_;
   FrameSource& source_;
+  std::mutex reading_;  // held while a thread reads from the source
   Options options_;
   std::vector<Gof> gofs_;
   bool is_last_resort_ = false;

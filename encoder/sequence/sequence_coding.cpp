@@ -10,6 +10,7 @@
 #include "encoder/cluster_gof/cluster_gof_kind.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/choices/gof_kinds.h"
 
 namespace rlpc {
@@ -39,20 +40,25 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
   return std::max(longest, static_cast<std::uint32_t>(frames));
 }
 
-std::optional<InputError> check_memory(const EncoderSettings& settings,
-                                       const SequenceHeader& header, std::uint32_t longest_gof,
-                                       std::uint32_t kept_frames, std::uint64_t source_bytes) {
+InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
+                                        const SequenceHeader& header, std::uint32_t longest_gof,
+                                        std::uint32_t kept_frames, std::uint64_t source_bytes) {
   // Measured with random motion: 70 bytes per position of a kept analysis. Real motion
   // needs 10.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  const std::uint64_t of_vertex =
-      kOfVertex + kBytesOfPosition * longest_gof + kKept * kept_frames;
+  // Each thread has a GOF of its own, or a candidate for one.
+  const std::uint64_t of_thread = header.num_vertices * kBytesOfPosition * longest_gof;
+  const std::uint64_t of_vertex = kOfVertex + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle;
-  if (needed <= settings.max_memory_bytes) return std::nullopt;
+                               header.num_triangles * kOfTriangle + of_thread;
+  if (needed <= settings.max_memory_bytes) {
+    const std::uint64_t others = (settings.max_memory_bytes - needed) / of_thread;
+    const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, others + 1));
+  }
   return InputError{"encoding may need " + std::to_string((needed >> 20) + 1) +
                         " MiB of memory; the limit is " + size_text(settings.max_memory_bytes) +
                         " (--max-memory). A shorter --gof needs less",
@@ -96,27 +102,58 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
 }
 
-InputResult<std::vector<Bytes>> SequenceCoding::measure(FrameSource& source,
+// Measures `some` frames of a span; `before`: the original of the frame before them, empty if
+// there is none.
+InputResult<std::vector<SequenceCoding::MeasuredFrame>> SequenceCoding::measure_frames(
+    const SharedSource& source, const GofSpan& span, const GofSpan& some,
+    const DecodeFrame& decode, std::span<const float> before) const {
+  const std::size_t values = std::size_t{header_.num_vertices} * 3;
+  std::vector<MeasuredFrame> frames(some.count,
+                                    {{}, {}, MetricsAccumulator(header_.num_vertices)});
+  for (std::uint32_t i = 0; i < some.count; ++i) {
+    frames[i].original.resize(values);
+    if (auto error = source.read_frame(span.first + some.first + i, frames[i].original)) {
+      return *error;
+    }
+  }
+  for_each(some.count, [&](std::size_t i) {
+    MeasuredFrame& frame = frames[i];
+    frame.positions.resize(values);
+    decode(some.first + static_cast<std::uint32_t>(i), frame.positions);
+    std::vector<float> decoded(values);
+    to_input(frame.positions, decoded);
+    frame.metrics.follow(i > 0 ? frames[i - 1].original : before);
+    frame.metrics.add_frame(frame.original, decoded);
+  });
+  return frames;
+}
+
+InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& source,
                                                         const GofSpan& span,
                                                         const DecodeFrame& decode,
                                                         MetricsAccumulator& metrics) const {
-  const std::size_t values = std::size_t{header_.num_vertices} * 3;
-  std::vector<std::int32_t> positions(values);
-  std::vector<float> original(values);
-  std::vector<float> decoded(values);
+  constexpr std::uint32_t kTogether = 16;  // fixed: memory
+  std::vector<float> before(metrics.last_original().begin(), metrics.last_original().end());
+  if (before.empty() && span.first > 0) {
+    before.resize(std::size_t{header_.num_vertices} * 3);
+    if (auto error = source.read_frame(span.first - 1, before)) return *error;
+  }
   std::vector<Bytes> hash_units;
   for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
     std::vector<std::uint32_t> crc;
-    for (std::uint32_t f = gof.first; f < gof.first + gof.count; ++f) {
-      decode(f, positions);
-      if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
-        crc.push_back(crc32_of_positions(positions));
-      } else {
-        crc.back() = crc32_of_positions(positions, crc.back());
+    for (std::uint32_t done = 0; done < gof.count; done += kTogether) {
+      const GofSpan some{gof.first + done, std::min(kTogether, gof.count - done)};
+      auto frames = measure_frames(source, span, some, decode, before);
+      if (!frames) return frames.error();
+      for (const MeasuredFrame& frame : *frames) {
+        if (settings_.hash_mode == HashMode::kFrame || crc.empty()) {
+          crc.push_back(crc32_of_positions(frame.positions));
+        } else {
+          crc.back() = crc32_of_positions(frame.positions, crc.back());
+        }
+        metrics.append(frame.metrics);
       }
-      if (auto error = source.read_frame(span.first + f, original)) return *error;
-      to_input(positions, decoded);
-      metrics.add_frame(original, decoded);
+      before = std::move(frames->back().original);
     }
     hash_units.emplace_back();
     if (settings_.hash_mode == HashMode::kNone) continue;

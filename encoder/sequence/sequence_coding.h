@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,11 +34,23 @@ std::uint32_t longest_gof(const EncoderSettings& settings);
 // many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header);
 
-// Error: encoding may need more memory than the settings allow. kept_frames: number of frames
-// whose analyses stay in memory; source_bytes: memory held by the source.
-std::optional<InputError> check_memory(const EncoderSettings& settings,
-                                       const SequenceHeader& header, std::uint32_t longest_gof,
-                                       std::uint32_t kept_frames, std::uint64_t source_bytes);
+// The threads of the settings, or as many as their memory limit suffices for. Error: one may
+// need more. kept_frames: number of frames whose analyses stay in memory; source_bytes: memory
+// held by the source.
+InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
+                                        const SequenceHeader& header, std::uint32_t longest_gof,
+                                        std::uint32_t kept_frames, std::uint64_t source_bytes);
+
+// A source that several threads read from, one at a time.
+struct SharedSource {
+  FrameSource& source;
+  std::mutex& reading;
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) const {
+    const std::lock_guard lock(reading);
+    return source.read_frame(frame, xyz);
+  }
+};
 
 class SequenceCoding {
  public:
@@ -60,13 +73,24 @@ class SequenceCoding {
   bool has_last_resort() const { return last_resort_ != nullptr; }
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
-  // Decodes the span as a decoder would and adds its errors against the source to the metrics.
-  // Returns the hash unit of each GOF; empty if hashes are off. Errors: those of the source.
-  InputResult<std::vector<Bytes>> measure(FrameSource& source, const GofSpan& span,
+  // Decodes the span as a decoder would and adds its errors against the source to the metrics;
+  // if these have no frames so far, they follow the frame before the span. Returns the hash
+  // unit of each GOF; empty if hashes are off. Errors: those of the source.
+  InputResult<std::vector<Bytes>> measure(const SharedSource& source, const GofSpan& span,
                                           const DecodeFrame& decode,
                                           MetricsAccumulator& metrics) const;
 
  private:
+  struct MeasuredFrame {
+    std::vector<std::int32_t> positions;
+    std::vector<float> original;
+    MetricsAccumulator metrics;
+  };
+  InputResult<std::vector<MeasuredFrame>> measure_frames(const SharedSource& source,
+                                                         const GofSpan& span,
+                                                         const GofSpan& some,
+                                                         const DecodeFrame& decode,
+                                                         std::span<const float> before) const;
   void to_input(std::span<const std::int32_t> positions, std::span<float> decoded) const;
 
   SequenceHeader header_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "encoder/math/det_math.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"
@@ -47,6 +48,7 @@ class SequenceEncoder {
   FrameSource& source_;
   const EncoderSettings& settings_;
   const Progress& progress_;
+  std::optional<Threads> threads_;
   Extent extent_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
@@ -63,9 +65,9 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.frame_rate = source_.frame_rate();
   const std::uint32_t kept = keeps_analyses(header) ? header.num_frames : 0;
   const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
-  if (auto error = check_memory(settings_, header, largest, kept, source_.memory_bytes())) {
-    return error;
-  }
+  const auto threads = check_memory(settings_, header, largest, kept, source_.memory_bytes());
+  if (!threads) return threads.error();
+  threads_.emplace(*threads);
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;

@@ -1,8 +1,10 @@
 #include "encoder/tools/encode_command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <thread>
 #include <vector>
 
 #include "common/tools/command_line.h"
@@ -184,6 +186,13 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
                  "Refuse input that may need more, for example 500MB (default: 32GB)")
       ->transform(CLI::AsSizeValue(false))
       ->option_text("SIZE")
+      ->group(kMore);
+  o.settings.threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxEncoderThreads);
+  app.add_option("--threads", o.settings.threads,
+                 "1 to 256, fewer if memory is short; the stream does not depend on it "
+                 "(default: one per processor)")
+      ->check(CLI::Range(std::uint32_t{1}, kMaxEncoderThreads))
+      ->option_text("N")
       ->group(kMore);
 }
 
