@@ -23,8 +23,14 @@ using Square = Eigen::MatrixXd;
 constexpr std::size_t kWide = 600;
 constexpr std::size_t kFewPart = 4;
 
-// Eigen's blocking, and so the order of its sums, depends on the cache sizes: fixes them.
-void fix_eigen_blocking() { Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20); }
+// Eigen's blocking, and so the order of its sums, depends on the cache sizes: fixes them. Once,
+// as several threads read them.
+void fix_eigen_blocking() {
+  [[maybe_unused]] static const bool is_fixed = [] {
+    Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+    return true;
+  }();
+}
 
 // The sign of an eigenvector is arbitrary: makes its largest element positive.
 void fix_sign(std::vector<double>& v) {
