@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/gof/lagrangian.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"
@@ -214,19 +215,20 @@ double BoneFit::translation_error() const {
 // Fits weights and rest positions of all vertices to the bones.
 void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
                            Rig& rig) const {
-  constexpr std::uint32_t kTogether = 256;  // fixed: memory
+  constexpr std::size_t kTogether = 64;  // fixed: vertices of a pass
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
   const double per_influence = kInfluenceBits * lambda(options_.step) * part;
-  std::vector<Vec3d> positions;
-  SkinSums sums(positions, solver.motions());
-  for (std::uint32_t first = 0; first < frames_.num_vertices; first += kTogether) {
-    const std::uint32_t end = std::min(first + kTogether, frames_.num_vertices);
-    positions.clear();
-    for (std::uint32_t v = first; v < end; ++v) append_trajectory(v, positions);
+  const SkinSums sums_of_motions({}, solver.motions());
+  for_ranges(frames_.num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
+    std::vector<Vec3d> positions;
+    for (std::size_t v = first; v < end; ++v) {
+      append_trajectory(static_cast<std::uint32_t>(v), positions);
+    }
+    SkinSums sums = sums_of_motions;
     sums.set_positions(positions);
-    for (std::uint32_t v = first; v < end; ++v) {
+    for (std::size_t v = first; v < end; ++v) {
       const std::size_t i = v - first;
-      const auto place = sample_.place_of(v);
+      const auto place = sample_.place_of(static_cast<std::uint32_t>(v));
       Vec3d rest = place ? solver.rest(*place) : sums.single_rest(i);
       BoneWeights best;
       for (int round = 0; round < kRounds; ++round) {
@@ -240,27 +242,28 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
       rig.weights[v] = std::move(best.weights);
       rig.rest[v] = {rest(0), rest(1), rest(2)};
     }
-  }
+  });
 }
 
 // Fits the bone motions of all frames. Each frame starts from the motions in the last sampled
 // frame up to it.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
-  constexpr std::uint32_t kTogether = 64;  // fixed: memory
+  constexpr std::size_t kTogether = 16;  // fixed: frames of a pass
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
-  std::vector<Motion> now(n);
-  std::size_t nearest = 0;
-  for (std::uint32_t first = 0; first < frames_.num_frames; first += kTogether) {
-    const std::uint32_t end = std::min(first + kTogether, frames_.num_frames);
+  for_ranges(frames_.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
     PoseTargets targets(n, end - first);
     std::vector<Vec3d> trajectory(end - first);
     for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
-      for (std::uint32_t f = first; f < end; ++f) trajectory[f - first] = centred(f, v);
+      for (std::size_t f = first; f < end; ++f) {
+        trajectory[f - first] = centred(static_cast<std::uint32_t>(f), v);
+      }
       targets.add(rest_of(rig, v), rig.weights[v], trajectory);
     }
-    for (std::uint32_t f = first; f < end; ++f) {
+    std::vector<Motion> now(n);
+    std::size_t nearest = 0;
+    for (std::size_t f = first; f < end; ++f) {
       while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
       const std::vector<Motion> wanted = targets.of_frame(f - first);
       for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
@@ -271,7 +274,7 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
         result[b][f].col(3) += centre_[f];
       }
     }
-  }
+  });
   return result;
 }
 

@@ -1,13 +1,21 @@
 #include "encoder/skinned_gof/fit/bone_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
+#include "common/skinned_gof/skinned_gof.h"
+#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
 namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 64;  // fixed: vertices or patches of a pass
+
+}  // namespace
 
 BoneSolver::BoneSolver(const BoneSample& sample, std::size_t max_influences)
     : sample_(sample),
@@ -67,16 +75,19 @@ std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertice
 }
 
 void BoneSolver::find_patch_errors() {
-  for (const auto& patch : sample_.patches) {
-    const std::vector<Motion> motion = motion_of(patch);
-    double error = 0.0;
-    for (const std::uint32_t v : patch) {
-      for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-        error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+  patch_error_.assign(sample_.patches.size(), 0.0);
+  for_ranges(sample_.patches.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const std::vector<Motion> motion = motion_of(sample_.patches[i]);
+      double error = 0.0;
+      for (const std::uint32_t v : sample_.patches[i]) {
+        for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+          error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+        }
       }
+      patch_error_[i] = error;
     }
-    patch_error_.push_back(error);
-  }
+  });
 }
 
 // Adds at most `count` bones; returns how many were added.
@@ -149,7 +160,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   std::optional<SkinSums> sums;
   bool changed = true;
   for (int i = 0; i < kRounds && changed; ++i) {
-    for (std::size_t t = 0; t < cores.size(); ++t) motions[t] = motion_of(cores[t]);
+    for_each(cores.size(), [&](std::size_t t) { motions[t] = motion_of(cores[t]); });
     if (sums) {
       sums->set_motions(motions);
     } else {
@@ -202,34 +213,35 @@ BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
   return best;
 }
 
-void BoneSolver::choose_candidates(const SkinSums& sums) {
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    std::vector<std::size_t>& list = candidates_[v];
-    list.clear();
-    for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
-    for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
-      if (list.size() == SkinSums::kMaxCandidates) break;
-      if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
-    }
+void BoneSolver::choose_candidates(std::size_t v, const SkinSums& sums) {
+  std::vector<std::size_t>& list = candidates_[v];
+  list.clear();
+  for (const RigWeight& w : weights_[v].weights) list.push_back(w.bone);
+  for (const std::size_t bone : sums.closest_bones(v, rest_[v], SkinSums::kMaxCandidates)) {
+    if (list.size() == SkinSums::kMaxCandidates) break;
+    if (std::find(list.begin(), list.end(), bone) == list.end()) list.push_back(bone);
+  }
+}
+
+void BoneSolver::fit_weights(std::size_t v, const SkinSums& sums) {
+  gram_[v] = sums.gram(v, candidates_[v], rest_[v]);
+  weights_[v] = sparse_weights(gram_[v], SkinSums::kMaxCandidates, candidates_[v].size(),
+                               max_influences_, 0.0);
+  for (RigWeight& w : weights_[v].weights) {
+    w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
   }
 }
 
 void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
-  if (new_candidates) choose_candidates(sums);
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const auto fit = [&] {
-      gram_[v] = sums.gram(v, candidates_[v], rest_[v]);
-      weights_[v] = sparse_weights(gram_[v], SkinSums::kMaxCandidates, candidates_[v].size(),
-                                   max_influences_, 0.0);
-      for (RigWeight& w : weights_[v].weights) {
-        w.bone = static_cast<std::uint32_t>(candidates_[v][w.bone]);
-      }
-    };
-    fit();
-    if (!refines_rest_) continue;
-    rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
-    fit();
-  }
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      if (new_candidates) choose_candidates(v, sums);
+      fit_weights(v, sums);
+      if (!refines_rest_) continue;
+      rest_[v] = sums.fit_rest(v, rest_[v], weights_[v].weights);
+      fit_weights(v, sums);
+    }
+  });
 }
 
 void BoneSolver::improve(int rounds, SkinSums& sums) {
@@ -251,43 +263,59 @@ void BoneSolver::improve_motions() {
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
-  PoseTargets targets(n, sample_.num_frames);
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    targets.add(rest_[v], weights_[v].weights, sample_.trajectory(v));
+  constexpr std::size_t kFrames = 16;  // fixed: of a pass
+  for_ranges(sample_.num_frames, kFrames, [&](std::size_t first, std::size_t end) {
+    PoseTargets targets(n, end - first);
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      targets.add(rest_[v], weights_[v].weights,
+                  sample_.trajectory(v).subspan(first, end - first));
+    }
+    std::vector<Motion> frame(n);
+    for (std::size_t f = first; f < end; ++f) {
+      const std::vector<Motion> wanted = targets.of_frame(f - first);
+      for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
+      // Twice: bones that share vertices follow each other.
+      refine_poses(moments, wanted, frame);
+      refine_poses(moments, wanted, frame);
+      for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
+    }
+  });
+}
+
+// The increase of the squared error of a vertex if it can no longer follow a bone.
+double BoneSolver::loss_without(std::size_t v, std::uint32_t bone) const {
+  const std::size_t count = candidates_[v].size();
+  if (count < 2) return 0.0;
+  // Remove the bone from the Gram matrix: the last candidate takes its row and column.
+  SkinSums::Gram gram = gram_[v];
+  const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), bone);
+  const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
+  constexpr std::size_t kStride = SkinSums::kMaxCandidates;
+  for (std::size_t i = 0; i < count; ++i) {
+    gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
   }
-  std::vector<Motion> frame(n);
-  for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-    const std::vector<Motion> wanted = targets.of_frame(f);
-    for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
-    // Twice: bones that share vertices follow each other.
-    refine_poses(moments, wanted, frame);
-    refine_poses(moments, wanted, frame);
-    for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
+  for (std::size_t i = 0; i < count; ++i) {
+    gram[i * kStride + gone] = gram[i * kStride + count - 1];
   }
+  const double without = sparse_weights(gram, kStride, count - 1, max_influences_, 0.0).error;
+  return std::max(without - weights_[v].error, 0.0);
 }
 
 // [bone], the increase of the squared error if the bone is removed.
 std::vector<double> BoneSolver::losses() const {
+  std::vector<std::array<double, kMaxExtraBones>> of_vertex(rest_.size());
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      const std::vector<RigWeight>& weights = weights_[v].weights;
+      for (std::size_t i = 0; i < weights.size(); ++i) {
+        of_vertex[v][i] = loss_without(v, weights[i].bone);
+      }
+    }
+  });
   std::vector<double> loss(motions_.size(), 0.0);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const std::size_t count = candidates_[v].size();
-    if (count < 2) continue;
-    for (const RigWeight& w : weights_[v].weights) {
-      // Remove the bone from the Gram matrix: the last candidate takes its row and column.
-      SkinSums::Gram gram = gram_[v];
-      const auto at = std::find(candidates_[v].begin(), candidates_[v].end(), w.bone);
-      const auto gone = static_cast<std::size_t>(at - candidates_[v].begin());
-      constexpr std::size_t kStride = SkinSums::kMaxCandidates;
-      for (std::size_t i = 0; i < count; ++i) {
-        gram[gone * kStride + i] = gram[(count - 1) * kStride + i];
-      }
-      for (std::size_t i = 0; i < count; ++i) {
-        gram[i * kStride + gone] = gram[i * kStride + count - 1];
-      }
-      const double without =
-          sparse_weights(gram, kStride, count - 1, max_influences_, 0.0).error;
-      loss[w.bone] += std::max(without - weights_[v].error, 0.0);
-    }
+    const std::vector<RigWeight>& weights = weights_[v].weights;
+    for (std::size_t i = 0; i < weights.size(); ++i) loss[weights[i].bone] += of_vertex[v][i];
   }
   return loss;
 }

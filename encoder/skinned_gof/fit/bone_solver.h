@@ -89,9 +89,11 @@ class BoneSolver {
 
   void improve(int rounds, SkinSums& sums);
   void improve_motions();
-  void choose_candidates(const SkinSums& sums);
+  void choose_candidates(std::size_t v, const SkinSums& sums);
+  void fit_weights(std::size_t v, const SkinSums& sums);
   void fit_all_weights(bool new_candidates, const SkinSums& sums);
 
+  double loss_without(std::size_t v, std::uint32_t bone) const;
   std::vector<double> losses() const;
   void remove_bone(std::size_t bone, SkinSums& sums);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -20,6 +21,15 @@ constexpr std::uint32_t kSearchInfluences = 2;
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
 // fixed: those of kFewBones, so that slow finds what medium finds, and numbers around them.
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
+
+// The first of the cheapest; the first of all exists.
+SkinnedTrial cheapest(std::vector<BestTrial> trials) {
+  BestTrial best;
+  for (BestTrial& trial : trials) {
+    if (trial) best = cheaper(std::move(best), std::move(*trial));
+  }
+  return std::move(*best);
+}
 
 // A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
@@ -138,44 +148,68 @@ BoneSearch::Estimates BoneSearch::estimates() const {
 
 SkinnedTrial BoneSearch::search() const {
   if (context_.settings.main.bones > 0) return std::move(*try_requested());
-  BestTrial best = try_one_bone();
-  if (context_.settings.preset == Preset::kSlow) {
-    for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-      BoneFit full = fit(influences);
-      if (!grow(full, kManyBones.front())) break;
-      best = try_counts(std::move(best), full, influences, kManyBones, kManyBones.back());
+  return context_.settings.preset == Preset::kSlow ? search_all() : search_likely();
+}
+
+// All numbers of bones.
+SkinnedTrial BoneSearch::search_all() const {
+  std::vector<BestTrial> trials(1 + search_influences_);
+  for_each(trials.size(), [&](std::size_t i) {
+    const auto influences = static_cast<std::uint32_t>(i);
+    if (influences == 0) {
+      trials[0] = try_one_bone();
+      return;
     }
-    return std::move(*best);
-  }
-  const double without = best->cost;
-  const Estimates expected = estimates();
-  for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-    const Estimate& estimated = expected.of_influences[influences - 1];
-    if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) continue;
-    best = try_estimated(std::move(best), influences, estimated, without);
-  }
-  return std::move(*best);
+    BoneFit full = fit(influences);
+    if (!grow(full, kManyBones.front())) return;
+    trials[i] = try_counts(full, influences, kManyBones, kManyBones.back());
+  });
+  // Where bones are not worth adding, more influences are not tried.
+  trials.erase(
+      std::find_if(trials.begin(), trials.end(), [](const BestTrial& trial) { return !trial; }),
+      trials.end());
+  return cheapest(std::move(trials));
+}
+
+// The numbers of bones that are expected to cost least.
+SkinnedTrial BoneSearch::search_likely() const {
+  std::vector<BestTrial> trials(1 + search_influences_);
+  Estimates expected;
+  for_each(2, [&](std::size_t i) {
+    if (i == 0) {
+      expected = estimates();
+    } else {
+      trials[0] = try_one_bone();
+    }
+  });
+  const double without = trials[0]->cost;
+  for_each(search_influences_, [&](std::size_t i) {
+    const Estimate& estimated = expected.of_influences[i];
+    if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) return;
+    trials[i + 1] = try_estimated(static_cast<std::uint32_t>(i + 1), estimated, without);
+  });
+  return cheapest(std::move(trials));
 }
 
 // About as many bones as are likely the best, unless the sample was too small to tell.
-BestTrial BoneSearch::try_estimated(BestTrial best, std::uint32_t influences,
-                                    const Estimate& estimate, double without) const {
+BestTrial BoneSearch::try_estimated(std::uint32_t influences, const Estimate& estimate,
+                                    double without) const {
   BoneFit full = fit(influences);
   std::size_t first = 0;
   do {
-    if (!grow(full, kFewBones[first])) return best;
+    if (!grow(full, kFewBones[first])) return std::nullopt;
     const double correction = full.expected_cost() / estimate.costs[first];
-    if (correction * estimate.cost >= without) return best;
+    if (correction * estimate.cost >= without) return std::nullopt;
   } while (2 * kFewBones[first] < estimate.count && ++first < estimate.costs.size());
-  return try_counts(std::move(best), full, influences, std::span(kFewBones).subspan(first),
-                    estimate.count);
+  return try_counts(full, influences, std::span(kFewBones).subspan(first), estimate.count);
 }
 
 // Encodes with each of `counts` bones, ascending; `full` already has the first number. Stops
 // once the cost rises at or beyond the number that is likely the best.
-BestTrial BoneSearch::try_counts(BestTrial best, BoneFit& full, std::uint32_t influences,
+BestTrial BoneSearch::try_counts(BoneFit& full, std::uint32_t influences,
                                  std::span<const std::uint32_t> counts,
                                  std::uint32_t likely) const {
+  BestTrial best;
   double expected = kNone;
   double before = kNone;
   for (const std::uint32_t count : counts) {

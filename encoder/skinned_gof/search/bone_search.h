@@ -51,9 +51,11 @@ class BoneSearch {
   Estimates estimates() const;
   SkinnedTrial try_one_bone() const;
   BestTrial try_requested() const;
-  BestTrial try_estimated(BestTrial best, std::uint32_t influences, const Estimate& estimate,
+  SkinnedTrial search_all() const;
+  SkinnedTrial search_likely() const;
+  BestTrial try_estimated(std::uint32_t influences, const Estimate& estimate,
                           double without) const;
-  BestTrial try_counts(BestTrial best, BoneFit& full, std::uint32_t influences,
+  BestTrial try_counts(BoneFit& full, std::uint32_t influences,
                        std::span<const std::uint32_t> counts, std::uint32_t likely) const;
 
   const SkinnedContext& context_;
