@@ -33,8 +33,7 @@ SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double le
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = top[i] / top[k];
       if (factor == 0.0) continue;
-      double* row = &factors_[i * n];
-      for (std::size_t j = i; j < n; ++j) row[j] -= factor * top[j];
+      subtract_multiple(factor, {top + i, n - i}, {&factors_[i * n + i], n - i});
     }
   }
 }

@@ -45,6 +45,33 @@ class SparseBlend {
     return {1, {best}, {1.0}, at(best, best)};
   }
 
+  // Bit-exactly solve() of two candidates, the usual case, in a fraction of the time.
+  Blend pair(std::size_t first, std::size_t second) const {
+    Blend blend{2, {first, second}, {}, 0.0};
+    const double own = at(first, first) + regular_;
+    const double both = at(first, second);
+    const double factor = both / own;
+    const double left = at(second, second) + regular_ - factor * both;
+    const double x = (1.0 - factor) / left;
+    const double y = (1.0 - both * x) / own;
+    if (!(own > 0.0 && left > 0.0 && x + y > 0.0)) {
+      solve(blend);
+      return blend;
+    }
+    const double u = x / (x + y);
+    const double w = y / (x + y);
+    if (std::min(w, u) > 0.0) {
+      blend.weight = {w, u};
+      blend.error = w * w * at(first, first) + w * u * both + u * w * both +
+                    u * u * at(second, second);
+    } else {
+      const std::size_t kept = u < w ? first : second;
+      blend = {1, {kept}, {1.0}, at(kept, kept)};
+    }
+    blend.error = std::max(blend.error, 0.0);
+    return blend;
+  }
+
   // Optimal weights of the chosen candidates, after removing those with negative weights.
   void solve(Blend& blend) const {
     for (;;) {
@@ -103,8 +130,12 @@ BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std
     for (std::size_t j = 0; j < count; ++j) {
       if (current.has(j)) continue;
       Blend blend = current;
-      blend.chosen[blend.size++] = j;
-      problem.solve(blend);
+      if (current.size == 1) {
+        blend = problem.pair(current.chosen[0], j);
+      } else {
+        blend.chosen[blend.size++] = j;
+        problem.solve(blend);
+      }
       if (blend.has(j) && (best.size == 0 || blend.error < best.error)) best = blend;
     }
     constexpr double kWorthwhile = 1.0 - 1e-9;  // fixed: rounding

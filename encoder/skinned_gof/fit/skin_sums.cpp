@@ -192,11 +192,14 @@ Vec3d SkinSums::single_rest(std::size_t vertex) const {
 std::vector<std::size_t> SkinSums::closest_bones(std::size_t vertex, const Vec3d& rest,
                                                  std::size_t count) const {
   std::vector<std::pair<double, std::size_t>> order;
+  order.reserve(num_bones_);
   for (std::size_t b = 0; b < num_bones_; ++b) {
     order.emplace_back(rigid_error(vertex, b, rest), b);
   }
-  std::sort(order.begin(), order.end());
-  order.resize(std::min(order.size(), count));
+  count = std::min(order.size(), count);
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                    order.end());
+  order.resize(count);
   std::vector<std::size_t> bones;
   bones.reserve(order.size());
   for (const auto& [error, bone] : order) bones.push_back(bone);
