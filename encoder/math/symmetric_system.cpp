@@ -31,8 +31,8 @@ SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double le
       continue;
     }
     for (std::size_t i = k + 1; i < n; ++i) {
+      if (top[i] == 0.0) continue;
       const double factor = top[i] / top[k];
-      if (factor == 0.0) continue;
       subtract_multiple(factor, {top + i, n - i}, {&factors_[i * n + i], n - i});
     }
   }
@@ -43,14 +43,13 @@ void SymmetricSystem::solve(std::span<double> b, std::size_t width) const {
     const double* top = &factors_[k * n_];
     if (top[k] == 0.0) continue;
     for (std::size_t i = k + 1; i < n_; ++i) {
-      const double factor = top[i] / top[k];
-      if (factor != 0.0) subtract_row(b, width, factor, k, i);
+      if (top[i] != 0.0) subtract_row(b, width, top[i] / top[k], k, i);
     }
   }
   for (std::size_t k = n_; k-- > 0;) {
     const double* top = &factors_[k * n_];
     for (std::size_t j = k + 1; j < n_ && top[k] != 0.0; ++j) {
-      subtract_row(b, width, top[j], j, k);
+      if (top[j] != 0.0) subtract_row(b, width, top[j], j, k);
     }
     for (double& x : b.subspan(k * width, width)) x = top[k] == 0.0 ? 0.0 : x / top[k];
   }

@@ -16,14 +16,21 @@ Column4 homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 }  // namespace
 
 SkinMoments::SkinMoments(std::size_t num_bones)
-    : num_bones_(num_bones), block_(num_bones * num_bones, Eigen::Matrix4d::Zero()) {}
+    : num_bones_(num_bones),
+      block_(num_bones * num_bones, Eigen::Matrix4d::Zero()),
+      sharing_(num_bones) {}
 
 void SkinMoments::add(const Vec3d& rest, std::span<const RigWeight> weights) {
   const Column4 p = homogeneous(rest);
   const Eigen::Matrix4d products = p * p.transpose();
   for (const RigWeight& a : weights) {
     for (const RigWeight& b : weights) {
-      block_[a.bone * num_bones_ + b.bone] += a.weight * b.weight * products;
+      Eigen::Matrix4d& block = block_[a.bone * num_bones_ + b.bone];
+      const bool is_shared = block(3, 3) > 0.0;
+      block += a.weight * b.weight * products;
+      if (is_shared || !(block(3, 3) > 0.0)) continue;
+      auto& list = sharing_[b.bone];
+      list.insert(std::lower_bound(list.begin(), list.end(), a.bone), a.bone);
     }
   }
 }
@@ -69,9 +76,8 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
     const double mass = moments.mass(b);
     if (!(mass > 0.0)) continue;
     Motion rest = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all other bones
-    for (std::size_t c = 0; c < motions.size(); ++c) {
-      const Eigen::Matrix4d& m = moments.block(c, b);
-      if (c != b && m(3, 3) > 0.0) rest -= motions[c] * m;
+    for (const std::size_t c : moments.sharing(b)) {
+      if (c != b) rest -= motions[c] * moments.block(c, b);
     }
     const Vec3d sum = moments.block(b, b).block<3, 1>(0, 3);
     const Eigen::Matrix3d h = rest.leftCols<3>() - rest.col(3) * sum.transpose() / mass;
@@ -121,10 +127,8 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
   for (std::size_t b = 0; b < n; ++b) {
     Motion residual = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all bones
     const Eigen::Matrix3d rb = motions[b].leftCols<3>();
-    for (std::size_t c = 0; c < n; ++c) {
-      const Eigen::Matrix4d& m = moments.block(c, b);
-      if (!(m(3, 3) > 0.0)) continue;
-      residual -= motions[c] * m;
+    for (const std::size_t c : moments.sharing(b)) {
+      residual -= motions[c] * moments.block(c, b);
       if (c < b) continue;
       const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
       for (std::size_t i = 0; i < 6; ++i) {

@@ -19,6 +19,8 @@ class SkinMoments {
   void add(const Vec3d& rest, std::span<const RigWeight> weights);
 
   std::size_t num_bones() const { return num_bones_; }
+  // The bones with which a bone shares vertices, itself included, ascending.
+  const std::vector<std::size_t>& sharing(std::size_t bone) const { return sharing_[bone]; }
   const Eigen::Matrix4d& block(std::size_t a, std::size_t b) const {
     return block_[a * num_bones_ + b];
   }
@@ -29,6 +31,7 @@ class SkinMoments {
  private:
   std::size_t num_bones_;
   std::vector<Eigen::Matrix4d> block_;
+  std::vector<std::vector<std::size_t>> sharing_;  // [bone]
 };
 
 // Sums over the vertices of w_b x (p, 1)^T, for all bones in some frames; x is the position of

@@ -152,37 +152,35 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   std::vector<PatchMotion> result;
   if (patches.empty()) return result;
   std::vector<std::vector<std::uint32_t>> cores;
-  BoneMotions motions(patches.size());
   for (const std::size_t patch : patches) {
     cores.push_back(sample_.patches[patch]);
     result.push_back({patch, {}, std::vector<double>(sample_.num_vertices())});
   }
-  std::optional<SkinSums> sums;
-  bool changed = true;
-  for (int i = 0; i < kRounds && changed; ++i) {
-    for_each(cores.size(), [&](std::size_t t) { motions[t] = motion_of(cores[t]); });
-    if (sums) {
-      sums->set_motions(motions);
-    } else {
-      sums.emplace(sample_.positions, motions);
-    }
-    changed = false;
-    for (std::size_t t = 0; t < cores.size(); ++t) {
+  std::vector<std::size_t> open(patches.size());  // those whose core has changed
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  for (int i = 0; i < kRounds && !open.empty(); ++i) {
+    BoneMotions motions(open.size());
+    for_each(open.size(), [&](std::size_t k) { motions[k] = motion_of(cores[open[k]]); });
+    const SkinSums sums(sample_.positions, motions);
+    std::vector<std::size_t> changed;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const std::size_t t = open[k];
       const auto& patch = sample_.patches[patches[t]];
       const double tolerance = std::max(
           kClose * patch_error_[patches[t]] / static_cast<double>(patch.size()), negligible_);
       std::vector<std::uint32_t> close;
       for (std::uint32_t v = 0; v < sample_.num_vertices(); ++v) {
-        const double alone = sums->rigid_error(v, t, rest_[v]);
+        const double alone = sums.rigid_error(v, k, rest_[v]);
         result[t].error[v] = alone;
         if (alone < tolerance) close.push_back(v);
       }
+      result[t].motion = std::move(motions[k]);
       if (close.size() < cores[t].size() || close == cores[t]) continue;
       cores[t] = std::move(close);
-      changed = true;
+      changed.push_back(t);
     }
+    open = std::move(changed);
   }
-  for (std::size_t t = 0; t < cores.size(); ++t) result[t].motion = std::move(motions[t]);
   return result;
 }
 
@@ -358,6 +356,7 @@ std::vector<double> BoneSolver::residuals() const {
 // the error.
 bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   const BoneSolver before = *this;
+  SkinSums sums_before = sums;
   for (std::size_t i = 0; i < count && motions_.size() > 1; ++i) {
     const std::vector<double> loss = losses();
     remove_bone(
@@ -368,7 +367,7 @@ bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   improve(2 * kRounds, sums);
   if (error() < before.error()) return true;
   take(before);
-  sums.set_motions(motions_);
+  sums = std::move(sums_before);
   return false;
 }
 

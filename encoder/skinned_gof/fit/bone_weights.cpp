@@ -62,8 +62,8 @@ class SparseBlend {
     const double w = y / (x + y);
     if (std::min(w, u) > 0.0) {
       blend.weight = {w, u};
-      blend.error = w * w * at(first, first) + w * u * both + u * w * both +
-                    u * u * at(second, second);
+      blend.error =
+          w * w * at(first, first) + w * u * both + u * w * both + u * u * at(second, second);
     } else {
       const std::size_t kept = u < w ? first : second;
       blend = {1, {kept}, {1.0}, at(kept, kept)};
