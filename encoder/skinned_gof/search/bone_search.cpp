@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
@@ -212,17 +214,29 @@ BestTrial BoneSearch::try_counts(BoneFit& full, std::uint32_t influences,
   BestTrial best;
   double expected = kNone;
   double before = kNone;
-  for (const std::uint32_t count : counts) {
-    if (count != counts.front() && !grow(full, count)) break;
+  bool has_grown = true;
+  for (std::size_t i = 0; i < counts.size() && has_grown; ++i) {
     const double now = full.expected_cost();
     expected = std::min(expected, now);
-    if (now > (1.0 + kTryMargin) * expected) continue;
-    SkinnedTrial trial =
-        run(full.rig(influences == 1 ? 1 : max_influences_), {count, influences});
-    const double actual = trial.cost;
-    best = cheaper(std::move(best), std::move(trial));
-    if (actual > before && count >= likely) break;
-    before = actual;
+    std::optional<Rig> rig;
+    if (now <= (1.0 + kTryMargin) * expected) {
+      rig = full.rig(influences == 1 ? 1 : max_influences_);
+    }
+    BestTrial trial;
+    std::atomic<bool> ends = i + 1 == counts.size();
+    for_each(2, [&](std::size_t pass) {
+      if (pass == 0 && rig) {
+        trial = run(std::move(*rig), {counts[i], influences});
+        if (trial->cost > before && counts[i] >= likely) ends = true;
+      } else if (pass == 1 && !ends) {  // if threads grow ahead, perhaps for nothing
+        has_grown = grow(full, counts[i + 1]);
+      }
+    });
+    if (trial) {
+      before = trial->cost;
+      best = cheaper(std::move(best), std::move(*trial));
+    }
+    if (ends) break;
   }
   return best;
 }

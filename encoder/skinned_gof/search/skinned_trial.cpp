@@ -67,21 +67,19 @@ SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate) const {
   return {std::move(candidate), std::move(analysis), candidate_cost};
 }
 
-SkinnedTrial SkinnedTrials::with_settings(SkinnedTrial trial,
-                                          const SkinnedSettings& settings) const {
+BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
+                                       const SkinnedSettings& settings) const {
   const SkinnedSettings& before = trial.candidate.settings;
   const bool same_analysis =
       settings.prediction == before.prediction && settings.layer_steps == before.layer_steps;
+  SkinnedCandidate candidate{trial.candidate.rig, trial.candidate.counts, settings};
   if (!same_analysis) {
-    SkinnedTrial other = run({trial.candidate.rig, trial.candidate.counts, settings});
-    return other.cost < trial.cost ? std::move(other) : std::move(trial);
+    SkinnedTrial other = run(std::move(candidate));
+    return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
   }
   const double other_cost = cost(trial.analysis, settings);
-  if (other_cost < trial.cost) {
-    trial.cost = other_cost;
-    trial.candidate.settings = settings;
-  }
-  return trial;
+  if (!(other_cost < trial.cost)) return std::nullopt;
+  return SkinnedTrial{std::move(candidate), trial.analysis, other_cost};
 }
 
 namespace {

@@ -46,8 +46,8 @@ class SkinnedTrials {
   double step() const { return step_; }
   SkinnedAnalysis analyse(const SkinnedCandidate& candidate) const;
   SkinnedTrial run(SkinnedCandidate candidate) const;
-  // Tries the candidate with other settings; returns the cheaper of the two trials.
-  SkinnedTrial with_settings(SkinnedTrial trial, const SkinnedSettings& settings) const;
+  // Tries the candidate with other settings; none if that is not cheaper.
+  BestTrial with_settings(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
 
  private:
   double cost(const SkinnedAnalysis& analysis, const SkinnedSettings& settings) const;

@@ -1,6 +1,12 @@
 #include "encoder/skinned_gof/search/tool_search.h"
 
+#include <atomic>
+#include <cstddef>
+#include <functional>
 #include <utility>
+#include <vector>
+
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -10,33 +16,64 @@ namespace {
 // layers, and the time is short.
 constexpr std::uint32_t kSmallMesh = 1000;
 
-}  // namespace
+// Changes settings; false if they are so already.
+using Change = std::function<bool(SkinnedSettings&)>;
+
+template <class T>
+Change set(T SkinnedSettings::*member, T value) {
+  return [=](SkinnedSettings& settings) {
+    return std::exchange(settings.*member, value) != value;
+  };
+}
 
 // Geometry weights do not pay off if the rest positions say little about the motion.
 // Parallelograms predict small regular meshes better. If the residual of bone motion is small,
 // rest positions cost less without layers.
-SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
-                          SkinnedTrial best) {
+std::vector<Change> changes(const SkinnedContext& context, const SkinnedCandidate& candidate) {
   const MainTools& tools = context.settings.main;
-  const auto try_other = [&](auto SkinnedSettings::*member, auto value) {
-    SkinnedSettings other = best.candidate.settings;
-    if (other.*member == value) return;
-    other.*member = value;
-    best = trials.with_settings(std::move(best), other);
-  };
   const bool thorough =
       context.settings.preset == Preset::kSlow || context.header.num_vertices <= kSmallMesh;
-  if (best.candidate.settings.prediction == Prediction::kLayers) {
-    if (tools.geometry_weights) try_other(&SkinnedSettings::damping_log2, 0);
-    if (tools.layer_steps && thorough) try_other(&SkinnedSettings::layer_steps, false);
+  std::vector<Change> list;
+  if (candidate.settings.prediction == Prediction::kLayers) {
+    if (tools.geometry_weights) list.push_back(set(&SkinnedSettings::damping_log2, 0));
+    if (tools.layer_steps && thorough) {
+      list.push_back(set(&SkinnedSettings::layer_steps, false));
+    }
   }
+  const auto predict = [&](Prediction prediction) {
+    list.push_back(set(&SkinnedSettings::prediction, prediction));
+  };
   const bool any_prediction = !tools.prediction && tools.layer_groups <= 1;
-  if (any_prediction && best.candidate.rig.bones.size() > 1) {
-    try_other(&SkinnedSettings::prediction, Prediction::kNone);
-  }
+  if (any_prediction && candidate.rig.bones.size() > 1) predict(Prediction::kNone);
   if (any_prediction && thorough) {
-    try_other(&SkinnedSettings::prediction, Prediction::kParallelogram);
-    try_other(&SkinnedSettings::prediction, Prediction::kParallelograms);
+    predict(Prediction::kParallelogram);
+    predict(Prediction::kParallelograms);
+  }
+  return list;
+}
+
+}  // namespace
+
+// The result is that of trying one change after another, each on the best so far. Threads try
+// them ahead: what follows a change that wins is tried again.
+SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
+                          SkinnedTrial best) {
+  const std::vector<Change> list = changes(context, best.candidate);
+  std::size_t first = 0;
+  while (first < list.size()) {
+    std::vector<BestTrial> cheaper_by(list.size());
+    std::atomic<std::size_t> winner = list.size();  // the first so far
+    for_each(list.size() - first, [&](std::size_t i) {
+      const std::size_t k = first + i;
+      SkinnedSettings other = best.candidate.settings;
+      if (k > winner || !list[k](other)) return;
+      cheaper_by[k] = trials.with_settings(best, other);
+      for (std::size_t now = winner;
+           cheaper_by[k] && k < now && !winner.compare_exchange_weak(now, k);) {
+      }
+    });
+    first = winner;
+    if (first < list.size()) best = std::move(*cheaper_by[first++]);
   }
   return best;
 }
