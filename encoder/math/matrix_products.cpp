@@ -3,11 +3,14 @@
 #include <algorithm>
 
 #include "encoder/math/widest.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
 
 constexpr std::size_t kTogether = 4;
+// fixed: Products of fewer numbers take less time than waking another thread.
+constexpr std::size_t kWorthThreads = 1 << 18;
 
 // A linear combination of four rows, which is summed before it is added to an output. Loops
 // over outputs use two of these at a time: reading and writing the outputs in the second-level
@@ -33,14 +36,15 @@ class FourProducts {
   const double *r0_, *r1_, *r2_, *r3_;
 };
 
-RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
-                          std::span<double> result) noexcept {
+// Rows `begin` to end - 1 of the Gram matrix.
+RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width, std::size_t begin,
+                          std::size_t end, std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
   std::size_t r = 0;
   for (; r + 2 * kTogether <= num_rows; r += 2 * kTogether) {
     const double* four = &rows[r * width];
     const double* next = four + kTogether * width;
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       double* out = &result[i * width];
       const FourProducts first(four + i, width, four, width);
       const FourProducts second(next + i, width, next, width);
@@ -49,7 +53,7 @@ RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
   }
   for (; r + kTogether <= num_rows; r += kTogether) {
     const double* four = &rows[r * width];
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       double* out = &result[i * width];
       const FourProducts products(four + i, width, four, width);
       for (std::size_t j = 0; j <= i; ++j) out[j] += products[j];
@@ -57,7 +61,7 @@ RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width,
   }
   for (; r < num_rows; ++r) {
     const double* row = &rows[r * width];
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       double* out = &result[i * width];
       for (std::size_t j = 0; j <= i; ++j) out[j] += row[i] * row[j];
     }
@@ -144,26 +148,38 @@ RLPC_WIDEST void subtract(double factor, std::span<const double> from,
 
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width) {
   std::vector<double> result(width * width, 0.0);
-  add_gram(rows, width, result);
+  add_gram_matrix(rows, width, result);
   return result;
 }
 
 void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram) {
-  add_gram(rows, width, gram);
+  constexpr std::size_t kRows = 32;  // fixed: of the result, in a pass
+  if (rows.size() * width < kWorthThreads) return add_gram(rows, width, 0, width, gram);
+  for_ranges(width, kRows, [&](std::size_t begin, std::size_t end) {
+    add_gram(rows, width, begin, end, gram);
+  });
 }
 
 std::vector<double> matrix_product(std::span<const double> a, std::size_t a_width,
                                    std::span<const double> b, std::size_t b_width) {
   const std::size_t num_rows = a_width == 0 ? 0 : a.size() / a_width;
   std::vector<double> result(num_rows * b_width, 0.0);
-  add_product(a, a_width, b, b_width, result);
+  add_matrix_product(a, a_width, b, b_width, result);
   return result;
 }
 
 void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result) {
-  add_product(a, a_width, b, b_width, result);
+  constexpr std::size_t kRows = 32;  // fixed: of the result, in a pass
+  if (a_width == 0 || a.size() * b_width < kWorthThreads) {
+    return add_product(a, a_width, b, b_width, result);
+  }
+  for_ranges(a.size() / a_width, kRows, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    add_product(a.subspan(begin * a_width, count * a_width), a_width, b, b_width,
+                result.subspan(begin * b_width, count * b_width));
+  });
 }
 
 std::vector<double> ordered_product(std::span<const double> row, std::span<const double> b,

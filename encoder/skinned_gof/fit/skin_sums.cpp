@@ -8,7 +8,6 @@
 
 #include "encoder/math/matrix_products.h"
 #include "encoder/math/small_system.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -98,13 +97,7 @@ void SkinSums::set_positions(std::span<const Vec3d> positions) {
 void SkinSums::sum_along() {
   const std::size_t columns = kColumns * num_bones_;
   along_.assign(square_.size() * columns, 0.0);
-  constexpr std::size_t kTogether = 64;  // fixed: vertices of a pass
-  const std::size_t width = 3 * num_frames_;
-  for_ranges(square_.size(), kTogether, [&](std::size_t first, std::size_t end) {
-    add_matrix_product(positions_.subspan(first * width, (end - first) * width), width,
-                       by_frame_, columns,
-                       std::span(along_).subspan(first * columns, (end - first) * columns));
-  });
+  add_matrix_product(positions_, 3 * num_frames_, by_frame_, columns, along_);
 }
 
 void SkinSums::set_motions(const BoneMotions& motions) {
