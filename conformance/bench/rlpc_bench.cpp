@@ -208,7 +208,7 @@ void bench_encode(benchmark::State& state, const Animation& animation,
   for (auto _ : state) stream = encode(animation, settings);
   add_counters(state, decode(stream, false), stream.size(),
                "rlpcenc '" + animation.mesh + "' --points '" + animation.points +
-                   "' -o /dev/null -q " + options);
+                   "' -o /dev/null -q --threads 1 " + options);
 }
 
 // Sums of narrow or wide components, 16 frames of 4096 vertices at a time.

@@ -115,7 +115,7 @@ class Encoder:
         environment = {**os.environ, "RLPC_TUNED": override}
         with tempfile.TemporaryDirectory(prefix="rlpc-constants-") as folder:
             command = [self.program, case.mesh, "--points", case.mesh.with_suffix(".pc2"), "--json",
-                       "-o", pathlib.Path(folder, "a.rlpc"), *case.options]
+                       "-o", pathlib.Path(folder, "a.rlpc"), "--threads", "1", *case.options]
             log = pathlib.Path(folder, "log")
             with log.open("w") as stderr:
                 process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE,

@@ -307,5 +307,16 @@ TEST(SolvePoses, LowersTheErrorOfDegenerateBones) {
   }
 }
 
+TEST(SkinMoments, KnowWhichBonesShareVertices) {
+  SkinMoments moments(4);
+  moments.add({1, 2, 3}, std::vector<RigWeight>{{3, 0.75}, {1, 0.25}});
+  moments.add({3, 2, 1}, std::vector<RigWeight>{{1, 0.5}, {0, 0.5}});
+  moments.add({0, 0, 1}, std::vector<RigWeight>{{1, 0.5}, {3, 0.5}});
+  EXPECT_EQ(moments.sharing(0), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(moments.sharing(1), (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_EQ(moments.sharing(2), std::vector<std::size_t>{});
+  EXPECT_EQ(moments.sharing(3), (std::vector<std::size_t>{1, 3}));
+}
+
 }  // namespace
 }  // namespace rlpc
