@@ -166,7 +166,8 @@ class BadInput(ToolsTest):
                                       "--basis-steps cobra", "--no-geometry-weights",
                                       "--no-outer-ring", "--no-layer-steps",
                                       "--no-temporal-weights", "--component-groups 2",
-                                      "--layer-groups 2"))):
+                                      "--layer-groups 2")),
+                ("high", "main", ("--adaptive-factors 4", "--rest order", "--track-levels 2"))):
             for option in options:
                 self.fails(64, f"{option.split()[0]} needs --profile {profile}", "rlpcenc", mesh,
                            "-o", self.path("out.rlpc"), "--profile", other, *option.split())

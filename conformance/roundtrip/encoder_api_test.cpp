@@ -81,6 +81,18 @@ void expect_only_of(Profile profile, const char* name, const std::vector<Paramet
   }
 }
 
+TEST(Settings, OfTheHighProfileAreRefusedInTheMainProfile) {
+  for (const Parameter& p : std::vector<Parameter>{
+           {"--adaptive-factors", [](auto& s) { s.main.adaptive_factors = 4; }},
+           {"--rest", [](auto& s) { s.main.rest = RestTools::kOrder; }},
+           {"--track-levels", [](auto& s) { s.main.track_levels = 2; }}}) {
+    EXPECT_EQ(error_of([&](auto& s) { s.profile = Profile::kHigh, p.give(s); }), "");
+    EXPECT_EQ(
+        error_of([&](auto& s) { s.profile = Profile::kMain, p.give(s); }),
+        std::string(p.option) + " needs --profile high: use that, or leave out " + p.option);
+  }
+}
+
 TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
   const auto given = [](EncoderSettings& s) {
     s.target = {Target::kNone, 0.0};

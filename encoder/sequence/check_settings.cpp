@@ -32,7 +32,7 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
-               temporal_weights, adaptive_factors, rest, cobra_steps, clusters,
+               temporal_weights, adaptive_factors, rest, track_levels, cobra_steps, clusters,
                component_groups, layer_groups] = tools;
   const MainTools defaults;
   return {{"--bones", bones != defaults.bones},
@@ -42,12 +42,18 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"--no-outer-ring", outer_ring != defaults.outer_ring},
           {"--no-layer-steps", layer_steps != defaults.layer_steps},
           {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
-          {"--adaptive-factors", adaptive_factors != defaults.adaptive_factors},
-          {"--rest", rest != defaults.rest},
           {"--basis-steps", cobra_steps != defaults.cobra_steps},
           {"--no-clusters", clusters != defaults.clusters},
           {"--component-groups", component_groups != defaults.component_groups},
           {"--layer-groups", layer_groups != defaults.layer_groups}};
+}
+
+// Those that the Main profile does not have.
+std::vector<Parameter> parameters_of_high(const MainTools& tools) {
+  const MainTools defaults;
+  return {{"--adaptive-factors", tools.adaptive_factors != defaults.adaptive_factors},
+          {"--rest", tools.rest != defaults.rest},
+          {"--track-levels", tools.track_levels != defaults.track_levels}};
 }
 
 // Rejects parameters of the other profile, which would have no effect.
@@ -126,9 +132,16 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
                         : check_unused(parameters(s.main), "main")) {
     return error;
   }
+  if (s.profile != Profile::kHigh) {
+    if (auto error = check_unused(parameters_of_high(s.main), "high")) return error;
+  }
   if (auto error = check_baseline(s)) return error;
   if (auto error = check_layers(s.main)) return error;
   if (auto error = check_counts(s)) return error;
+  if (s.main.track_levels.value_or(0) > std::uint32_t{kMaxTrackLevels}) {
+    return InputError{"hierarchical tracks have at most " + std::to_string(kMaxTrackLevels) +
+                      " levels besides level 0 (--track-levels)"};
+  }
   // The most bones of a vertex none of whose bones is a candidate (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +

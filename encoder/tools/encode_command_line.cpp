@@ -300,6 +300,11 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       "other values), order (also in an order of their own), counterparts (also from parts of "
       "the same shape)")
       ->group(tools);
+  app.add_option("--track-levels", t.track_levels,
+                 "Levels of hierarchical tracks, High profile; 0: none (default: chosen)")
+      ->check(CLI::Range(0, kMaxTrackLevels))
+      ->option_text("N")
+      ->group(tools);
   add_number("--component-groups", t.component_groups, 255,
              "Cut points among trajectories, at most one each (default: by size)");
   add_number("--layer-groups", t.layer_groups, 255,

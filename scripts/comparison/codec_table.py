@@ -79,6 +79,8 @@ def paper(name, title, colour, what, options, clusters=(10, 30)):
 
 
 MAIN = Codec("main", "Main", "#111111", "RLPC, profile Main", options="--profile main")
+HIGH = Codec("high", "High", "#b2182b", "RLPC, profile High (in preparation)",
+             options="--profile high")
 COBRA = ("--prediction parallelogram --bones 1 --influences 1 --no-temporal-weights "
          "--basis-steps cobra")
 
@@ -88,6 +90,11 @@ CODECS = (
           options="--profile main --preset fast", line="dashed"),
     Codec("main-slow", "Main, slow", "#444444", "the same, --preset slow",
           options="--profile main --preset slow", line="dashed"),
+    HIGH,
+    Codec("high-fast", "High, fast", "#ef8a62", "the same, --preset fast",
+          options="--profile high --preset fast", line="dashed"),
+    Codec("high-slow", "High, slow", "#67001f", "the same, --preset slow",
+          options="--profile high --preset slow", line="dashed"),
     Codec("baseline", "Baseline", "#0072b2", "RLPC, profile Baseline",
           options="--profile baseline"),
     paper("rlpca", "RLPCA", "#56b4e9",
@@ -168,13 +175,14 @@ def own_codec(name, encode, decode, steps, number):
                  ladders=(ladder,), is_shell=True)
 
 
-def variant(name, title, colour, options):
-    return Codec(name, title, colour, f"Main with {options}", options=f"--profile main {options}")
+def variant(name, title, colour, options, profile="Main"):
+    return Codec(name, title, colour, f"{profile} with {options}",
+                 options=f"--profile {profile.lower()} {options}")
 
 
-# What Main loses without one of its tools. The encoder tries cluster GOFs only if no tool is
+# What a profile loses without one of its tools. The encoder tries cluster GOFs only if no tool is
 # disabled; so all rows are without them, and compared with the row that only disables clusters.
-ABLATIONS = (
+MAIN_ABLATIONS = (
     MAIN,
     variant("clusters", "Main, no clusters", "#000000", "--no-clusters"),
     variant("prediction-none", "no prediction over the mesh", "#0072b2", "--prediction none"),
@@ -187,6 +195,16 @@ ABLATIONS = (
     variant("bones", "one bone", "#b8a800", "--bones 1"),
     variant("basis-steps", "basis steps as COBRA", "#777777", "--basis-steps cobra"),
 )
+# The tools that High has beyond Main. Its skinned models show in short GOFs: compare --gof all,64.
+HIGH_ABLATIONS = (
+    HIGH,
+    variant("clusters", "High, no clusters", "#000000", "--no-clusters", "High"),
+    variant("adaptive-weights", "no adaptive weights", "#0072b2", "--adaptive-factors 0", "High"),
+    variant("rest", "rest positions as in Main", "#009e73", "--rest prediction", "High"),
+    variant("counterparts", "no counterparts", "#56b4e9", "--rest order", "High"),
+    variant("track-levels", "sequential tracks", "#d55e00", "--track-levels 0", "High"),
+)
+ABLATIONS = {"main": MAIN_ABLATIONS, "high": HIGH_ABLATIONS}
 
 
 class Toolbox:

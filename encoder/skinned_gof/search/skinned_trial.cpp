@@ -29,7 +29,8 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   if (!tools.outer_ring) usual.outer_scale = 0;
   usual.layer_steps = tools.layer_steps;
   if (settings.profile == Profile::kHigh) {
-    usual.track_levels = kTrackLevels;
+    usual.track_levels =
+        tools.track_levels ? static_cast<int>(*tools.track_levels) : kTrackLevels;
     usual.rest = tools.rest.value_or(RestTools::kCounterparts);
     usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
   }
