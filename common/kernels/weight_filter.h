@@ -25,9 +25,9 @@ inline constexpr int kGainBits = 14;
 struct WeightFilter {
   std::size_t size = 0;  // neighbours, ring first
   std::size_t stride = 0;
-  alignas(32) std::array<std::int32_t, kMaxFilterSize> weight;  // AdaptiveWeights[ v ]
-  alignas(32) std::array<std::int32_t, kMaxFilterSize> walk;    // RandomWalk( v, i )
-  alignas(32) std::array<std::int32_t, kMaxFilterSize * kMaxFilterSize> spread;  // rows
+  alignas(32) std::array<std::int32_t, kMaxFilterSize> weight{};  // AdaptiveWeights[ v ]
+  alignas(32) std::array<std::int32_t, kMaxFilterSize> walk{};    // RandomWalk( v, i )
+  alignas(32) std::array<std::int32_t, kMaxFilterSize * kMaxFilterSize> spread{};  // rows
 
   // 8.15.1 StartSpread( ): weights are those of `size` neighbours, the first ring_size of them
   // in the ring; shift: kSpreadShift or kLaterSpreadShift.

@@ -77,6 +77,7 @@ RLPC_AVX2 std::int64_t predict_vectors(const WeightFilter& filter,
   return round2(sum_of(sums), kAdaptiveFractionBits);
 }
 
+// NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): vectors are filled before they are read.
 template <std::size_t kVectors>
 RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
                              std::int64_t error) {
@@ -142,6 +143,7 @@ RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
     row[i] = std::clamp(row[i] + filter.walk[i], 1, kMaxSpread);
   }
 }
+// NOLINTEND(cppcoreguidelines-pro-type-member-init)
 
 }  // namespace
 

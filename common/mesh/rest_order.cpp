@@ -65,7 +65,7 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
   }
   // Of each higher vertex of the current lower one: its first two sides, and how many it has.
   struct Across {
-    std::array<std::uint32_t, 2> sides;
+    std::array<std::uint32_t, 2> sides{};
     std::uint32_t count = 0;
   };
   std::vector<Across> across(place_.size());

@@ -1,6 +1,7 @@
 #include "common/mesh_prediction/adaptive_weights.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 
 #include "common/components/component_limits.h"
@@ -16,7 +17,7 @@ class MeanOf {
  public:
   explicit MeanOf(std::size_t n)
       : half_(static_cast<std::int64_t>(n) + 2 * kBias * static_cast<std::int64_t>(n)),
-        inverse_((std::uint64_t{1} << kShift) / (2 * n) + 1) {}
+        inverse_(inverse_of(n)) {}
   // floor((2x + n) / 2n): the numerator is made positive, and is below 2^28. The inverse is too
   // large by at most 1 / 2^35, the quotient therefore by less than 2^28 / 2^35 < 1 / 2n.
   std::int32_t operator()(std::int32_t x) const {
@@ -28,6 +29,10 @@ class MeanOf {
  private:
   static constexpr int kShift = 35;
   static constexpr std::int64_t kBias = std::int64_t{1} << (kMaxSpatialBits - 1);
+  static std::uint64_t inverse_of(std::size_t n) {
+    assert(n > 1);
+    return (std::uint64_t{1} << kShift) / (2 * n) + 1;
+  }
   std::int64_t half_;
   std::uint64_t inverse_;
 };
