@@ -89,7 +89,7 @@ bool VertexAdaptation::start(std::uint32_t v, std::span<const std::int32_t> valu
 
 // 8.15.1 AdaptToRest( v )
 void VertexAdaptation::adapt_to_rest() {
-  std::array<std::array<std::int64_t, kMaxFilterSize>, 3> offset;
+  std::array<std::array<std::int64_t, kMaxFilterSize>, 3> offset{};
   Vec3l gap{};
   std::int64_t largest = 1;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -199,7 +199,8 @@ std::vector<double> CaseMaker::read_shape() {
   const std::uint32_t kind = byte() % 5;
   std::vector<double> shape(3 * std::size_t{case_.num_vertices});
   for (std::size_t i = 0; i < shape.size(); ++i) {
-    const auto v = static_cast<double>(i / 3);
+    const std::size_t vertex = i / 3;
+    const auto v = static_cast<double>(vertex);
     switch (kind) {
       case 0:  // a strip
         shape[i] = i % 3 == 0 ? 0.1 * v : i % 3 == 1 ? std::fmod(v, 2.0) : 0.0;

@@ -155,7 +155,9 @@ Distortion decode_frames(const EncoderCase& c, const OpenDecoder& decoder,
   for (std::uint32_t f = 0; f < c.num_frames; ++f) {
     const rlpc_status status = rlpc_decoder_next_floats(decoder.get(), xyz.data(), values);
     require(status == RLPC_OK, "frame " + std::to_string(f) + ": " + decoder.error_text());
-    for (std::size_t i = 0; i < values; ++i) decoded[3 * order[i / 3] + i % 3] = xyz[i];
+    for (std::size_t i = 0; i < values; ++i) {
+      decoded[3 * std::size_t{order[i / 3]} + i % 3] = xyz[i];
+    }
     distortion.add_frame(c.frames[f], decoded);
   }
   std::vector<float> again(values);

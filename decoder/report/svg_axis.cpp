@@ -51,8 +51,10 @@ std::vector<double> Axis::ticks(int most, double least_step) const {
   for (const double m : {5.0, 2.0, 1.0}) {
     if (m * unit >= rough * (1 - 1e-9)) step = m * unit;
   }
+  const double first = std::ceil(low_ / step * (1 - 1e-9));
   const double last = std::floor(high_ / step * (1 + 1e-9));
-  for (double i = std::ceil(low_ / step * (1 - 1e-9)); i <= last; ++i) add(i * step);
+  const auto count = static_cast<int>(last - first) + 1;
+  for (int i = 0; i < count; ++i) add((first + i) * step);
   return values;
 }
 
