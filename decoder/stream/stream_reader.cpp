@@ -76,7 +76,8 @@ Result<bool> StreamReader::check_limits() const {
   // positions, and frames, as this decoder holds them.
   const std::uint64_t of_layers = header.has_skinned_gofs() ? 300 : 0;
   const std::uint64_t of_rest_order = header.profile_idc >= kProfileHigh ? 200 : 0;
-  const std::uint64_t of_vertex = 100 + of_layers + of_rest_order + 12 * kFramesHeld;
+  const std::uint64_t of_vertex =
+      100 + of_layers + of_rest_order + std::uint64_t{12} * kFramesHeld;
   const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
                               std::uint64_t{header.num_triangles} * 120;
   if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", fixed);

@@ -8,7 +8,7 @@
 namespace rlpc {
 
 struct FoundClusters {
-  ClusterChoice choice;
+  ClusterChoice choice{};
   Clustering clustering;
 };
 

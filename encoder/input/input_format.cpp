@@ -62,8 +62,7 @@ std::string sibling_of(const std::string& path, InputFormat::Holds holds) {
   for (const InputFormat* const format : input_formats()) {
     if (format->holds != holds) continue;
     for (const std::string_view extension : format->extensions) {
-      const std::string sibling =
-          std::filesystem::path(path).replace_extension(extension).string();
+      std::string sibling = std::filesystem::path(path).replace_extension(extension).string();
       std::error_code ignored;
       if (sibling != path && std::filesystem::exists(sibling, ignored)) return sibling;
     }

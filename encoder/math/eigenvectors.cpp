@@ -26,7 +26,7 @@ constexpr std::size_t kFewPart = 4;
 // Eigen's blocking, and so the order of its sums, depends on the cache sizes: fixes them. Once,
 // as several threads read them.
 void fix_eigen_blocking() {
-  [[maybe_unused]] static const bool is_fixed = [] {
+  [[maybe_unused]] static const bool kIsFixed = [] {
     Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
     return true;
   }();

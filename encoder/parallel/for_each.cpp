@@ -12,7 +12,7 @@ namespace rlpc {
 
 class Threads::Pool {
  public:
-  explicit Pool(std::uint32_t count) : outer_(std::exchange(current_, this)) {
+  explicit Pool(std::uint32_t count) : outer_(std::exchange(pool_of_thread, this)) {
     others_.reserve(count - 1);
     try {
       while (others_.size() + 1 < count) others_.emplace_back([this] { help(); });
@@ -26,16 +26,16 @@ class Threads::Pool {
     }
     changed_.notify_all();
     for (std::thread& other : others_) other.join();
-    current_ = outer_;
+    pool_of_thread = outer_;
   }
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  static Pool* current() { return current_; }
+  static Pool* current() { return pool_of_thread; }
   bool has_others() const { return !others_.empty(); }
 
   void run(std::size_t count, const std::function<void(std::size_t)>& pass) {
-    Loop loop{.pass = pass, .count = count, .depth = depth_ + 1};
+    Loop loop{.pass = pass, .count = count, .depth = depth_of_thread + 1};
     std::unique_lock lock(mutex_);
     loops_.push_back(&loop);
     changed_.notify_all();
@@ -80,14 +80,14 @@ class Threads::Pool {
     if (!loop.is_open()) std::erase(loops_, &loop);
     ++loop.running;
     lock.unlock();
-    const std::size_t before = std::exchange(depth_, loop.depth);
+    const std::size_t before = std::exchange(depth_of_thread, loop.depth);
     std::exception_ptr failure;
     try {
       loop.pass(i);
     } catch (...) {
       failure = std::current_exception();
     }
-    depth_ = before;
+    depth_of_thread = before;
     lock.lock();
     if (failure && !loop.failure) loop.failure = std::move(failure);
     if (loop.failure && loop.is_open()) {
@@ -98,7 +98,7 @@ class Threads::Pool {
   }
 
   void help() {
-    current_ = this;
+    pool_of_thread = this;
     std::unique_lock lock(mutex_);
     for (;;) {
       Loop* const loop = innermost(0);
@@ -112,8 +112,8 @@ class Threads::Pool {
     }
   }
 
-  static thread_local Pool* current_;
-  static thread_local std::size_t depth_;  // of the pass that the thread is in
+  static thread_local Pool* pool_of_thread;
+  static thread_local std::size_t depth_of_thread;  // of the pass that it is in
 
   Pool* outer_;
   std::mutex mutex_;
@@ -123,8 +123,8 @@ class Threads::Pool {
   std::vector<std::thread> others_;
 };
 
-thread_local Threads::Pool* Threads::Pool::current_ = nullptr;
-thread_local std::size_t Threads::Pool::depth_ = 0;
+thread_local Threads::Pool* Threads::Pool::pool_of_thread = nullptr;
+thread_local std::size_t Threads::Pool::depth_of_thread = 0;
 
 Threads::Threads(std::uint32_t count) : pool_(std::make_unique<Pool>(count)) {}
 Threads::~Threads() = default;

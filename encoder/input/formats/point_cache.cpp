@@ -173,8 +173,8 @@ float load_value(std::span<const char> bytes, std::size_t offset, const Layout& 
 InputResult<bool> has_other_axes(InputFile& file, const Layout& layout,
                                  const std::vector<float>& mesh) {
   struct Axes {
-    std::array<std::size_t, 3> from;
-    std::array<float, 3> sign;
+    std::array<std::size_t, 3> from{};
+    std::array<float, 3> sign{};
     bool match = true;
   };
   Axes as_they_are{{0, 1, 2}, {1, 1, 1}};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;  // fixed: memory
 constexpr std::uint32_t kLeastVertices = 8;                         // fixed: that tell anything
-constexpr std::uint32_t kMostFrames = kMaxSampleValues / (3 * kLeastVertices);  // fixed: memory
+constexpr std::uint32_t kMostFrames = kMaxSampleValues / 3 / kLeastVertices;  // fixed: memory
 // tuned (off: 1): GOFs of unequal length are used only if their expected cost is lower by this
 // fraction. The estimate leaves out bones, which gain from long GOFs, so that small differences
 // mean nothing.

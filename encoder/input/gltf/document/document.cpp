@@ -53,8 +53,8 @@ bool any_named(const GltfValue& values) {
 // Contents that a stream does not carry, in the words of users.
 std::vector<std::string> dropped(const GltfValue& root) {
   struct Attribute {
-    const char* name;
-    const char* what;
+    const char* name = nullptr;
+    const char* what = nullptr;
     bool found = false;
   };
   Attribute attributes[] = {{"TEXCOORD_0", "UVs"},
