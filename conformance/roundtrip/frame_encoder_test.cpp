@@ -111,15 +111,16 @@ class EachProfile : public testing::TestWithParam<Profile> {};
 INSTANTIATE_TEST_SUITE_P(FrameEncoder, EachProfile,
                          testing::Values(Profile::kBaseline, Profile::kMain, Profile::kHigh));
 
+// With fewer vertices, the error jumps by more than 2 % from step to step.
 TEST_P(EachProfile, EveryGofMeetsTheKgError) {
-  MemoryFrames source = bending_tube(20, 60);
+  MemoryFrames source = bending_tube(40, 60);
   const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kKg, 0.5}, 20));
   EXPECT_TRUE(encoded.report.target_met);
   EXPECT_EQ(encoded.report.num_gofs, 3U);
   const Measured measured = measure(source, encoded, 20);
   for (const Metrics& gof : measured.gofs) {
     EXPECT_LE(gof.kg_error_percent, 0.5);
-    EXPECT_GE(gof.kg_error_percent, 0.97 * 0.5);  // 2 %, and jumps where an analysis changes
+    EXPECT_GE(gof.kg_error_percent, 0.98 * 0.5);
   }
   EXPECT_LE(measured.whole.kg_error_percent, 0.5);
 }
