@@ -73,7 +73,7 @@ struct MainTools {
   // High profile: trajectories whose factors adapt the weights of prediction; none: all.
   std::optional<std::uint32_t> adaptive_factors;
   std::optional<RestTools> rest;  // High profile: at most; none: kCounterparts
-  // High profile: levels of hierarchical tracks besides level 0, 0 to 7; none: chosen.
+  // High profile: levels of hierarchical tracks besides level 0, 0 to 7; none: 1.
   std::optional<std::uint32_t> track_levels;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009, (18), (19)
   // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools

@@ -301,7 +301,7 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       "the same shape)")
       ->group(tools);
   app.add_option("--track-levels", t.track_levels,
-                 "Levels of hierarchical tracks, High profile; 0: none (default: chosen)")
+                 "Levels of hierarchical tracks, High profile; 0: none (default: 1)")
       ->check(CLI::Range(0, kMaxTrackLevels))
       ->option_text("N")
       ->group(tools);
