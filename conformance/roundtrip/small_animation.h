@@ -12,6 +12,7 @@
 
 #include "common/bitstream/crc32.h"
 #include "common/syntax/stream_format.h"
+#include "common/testing/tube.h"
 #include "conformance/rlpcval/validator.h"
 #include "encoder/rlpc_encoder.h"
 
@@ -44,14 +45,7 @@ class MemoryFrames final : public FrameSource {
 inline MemoryFrames bending_tube(std::uint32_t rings, std::uint32_t num_frames) {
   FrameSource::Shape shape;
   shape.frame_rate = {24, 1};
-  for (std::uint32_t r = 0; r + 1 < rings; ++r) {
-    for (std::uint32_t i = 0; i < 5; ++i) {
-      const std::uint32_t a = 5 * r + i;
-      const std::uint32_t b = 5 * r + (i + 1) % 5;
-      shape.triangles.push_back({a, b, a + 5});
-      shape.triangles.push_back({b, b + 5, a + 5});
-    }
-  }
+  shape.triangles = tube_triangles(rings, 5);
   std::vector<std::vector<float>> frames;
   for (std::uint32_t f = 0; f < num_frames; ++f) {
     std::vector<float> xyz;

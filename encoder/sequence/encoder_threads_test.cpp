@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/testing/tube.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
@@ -24,7 +25,8 @@ class Tube final : public FrameSource {
   using Fail = std::function<std::optional<InputError>(std::uint32_t frame, int read)>;
 
   Tube(std::uint32_t num_frames, double noise)
-      : FrameSource({kSides * kRings, num_frames, {}, triangles_of_tube()}), noise_(noise) {}
+      : FrameSource({kSides * kRings, num_frames, {}, tube_triangles(kRings, kSides)}),
+        noise_(noise) {}
   explicit Tube(Fail fail) : Tube(36, 0.0) { fail_ = std::move(fail); }
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
@@ -48,19 +50,6 @@ class Tube final : public FrameSource {
   }
 
  private:
-  static std::vector<Triangle> triangles_of_tube() {
-    std::vector<Triangle> list;
-    for (std::uint32_t r = 0; r + 1 < kRings; ++r) {
-      for (std::uint32_t s = 0; s < kSides; ++s) {
-        const std::uint32_t a = r * kSides + s;
-        const std::uint32_t b = r * kSides + (s + 1) % kSides;
-        list.push_back({a, b, a + kSides});
-        list.push_back({b, b + kSides, a + kSides});
-      }
-    }
-    return list;
-  }
-
   double noise_;
   Fail fail_;
   int reads_ = 0;

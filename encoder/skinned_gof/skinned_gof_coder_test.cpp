@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/testing/tube.h"
 #include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
@@ -25,7 +26,8 @@ using Move = std::function<Point(const Point&, double)>;
 // A bumpy tube along x, in grid steps, moved by a given function.
 struct Animation {
   explicit Animation(const Move& move, std::uint32_t num_frames = 20)
-      : triangles(tube()), topology(make_topology(kVertices, triangles)) {
+      : triangles(tube_triangles(kRings, kSides)),
+        topology(make_topology(kVertices, triangles)) {
     header.num_vertices = frames.num_vertices = kVertices;
     header.position_bits = 20;
     frames.num_frames = num_frames;
@@ -39,19 +41,6 @@ struct Animation {
         frames.xyz.insert(frames.xyz.end(), p.begin(), p.end());
       }
     }
-  }
-
-  static std::vector<Triangle> tube() {
-    std::vector<Triangle> list;
-    for (std::uint32_t r = 0; r + 1 < kRings; ++r) {
-      for (std::uint32_t s = 0; s < kSides; ++s) {
-        const std::uint32_t a = r * kSides + s;
-        const std::uint32_t b = r * kSides + (s + 1) % kSides;
-        list.push_back({a, b, a + kSides});
-        list.push_back({b, b + kSides, a + kSides});
-      }
-    }
-    return list;
   }
 
   // The result keeps a reference to the settings.
