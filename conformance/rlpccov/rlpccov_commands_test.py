@@ -89,9 +89,19 @@ class Commands(rlpccov_test.FolderTest):
         self.assertEqual(code, 0)
         names = [line.split()[0] for line in output.splitlines()]
         self.assertEqual(sorted(names), ["bad", "low", "mid", "top"])
-        streams = [self.streams / f"{n}.rlpc" for n in names]
-        self.assertEqual(self.run_tool(*streams)[1].split("reach")[1],
+        self.run_tool(self.streams, "--report", self.folder)
+        smallest = self.folder / "smallest_set.txt"
+        self.assertEqual(smallest.read_text(), output)
+        of_set = self.run_tool(self.streams, "--set", smallest)[1]
+        self.assertTrue(of_set.startswith("4 streams reach "), of_set)
+        self.assertEqual(of_set.split("reach")[1],
                          self.run_tool(self.streams)[1].split("reach")[1])
+
+    def test_a_set_with_a_stream_that_is_gone_is_an_error(self):
+        (self.folder / "set.txt").write_text("low  3\ngone  1\n")
+        code, _, errors = self.run_tool(self.streams, "--set", self.folder / "set.txt")
+        self.assertEqual(code, 4)
+        self.assertIn("gone: no such stream", errors)
 
     def test_sidecars_are_compared(self):
         path = self.sidecar("low", expect="accept")
@@ -138,7 +148,7 @@ class Commands(rlpccov_test.FolderTest):
         code, _, _ = self.run_tool(self.streams, "--report", self.folder / "pages")
         self.assertEqual(code, 0)
         pages = {p.name: p.read_text() for p in (self.folder / "pages").iterdir()}
-        self.assertEqual(set(pages), {"README.md", "rules.md", "widths.md",
+        self.assertEqual(set(pages), {"README.md", "rules.md", "widths.md", "smallest_set.txt",
                                       *(p.file for p in coverage_report.PAGES)})
         self.assertIn("| R-QQQ-01 | 6 | invalid | low | bad |", pages["rules.md"])
         for n in range(9):

@@ -8,6 +8,7 @@ that is not read back as it was written is noticed at once.
 
 import ast
 import collections
+import functools
 import pathlib
 import sys
 import zlib
@@ -55,6 +56,7 @@ def _element_calls(functions):
     return changed
 
 
+@functools.lru_cache(maxsize=None)
 def writing_code(program):
     """What StreamWriter runs; made once for many streams."""
     return program.code(transform=_element_calls)

@@ -31,9 +31,11 @@ class StreamsError(Exception):
     """A recipe and its stream do not agree."""
 
 
-def recipe_paths(folder, only=None):
+def recipe_paths(folder, only=None, left_out=None):
+    """The recipes of a version whose id matches the pattern `only`, and not `left_out`."""
     paths = sorted(pathlib.Path(folder).glob("recipes/*/*.recipe"))
-    return [p for p in paths if only is None or p.match(only + ".recipe")]
+    return [p for p in paths if (only is None or p.match(only + ".recipe"))
+            and (left_out is None or not p.match(left_out + ".recipe"))]
 
 
 def _header_value(recipe, name):
@@ -135,9 +137,9 @@ def _make(path):
         return path, None, str(error)
 
 
-def make_all(folder, spec, only, jobs):
+def make_all(folder, spec, only, left_out, jobs):
     """For each recipe (path, (stream path, bytes, sidecar) or None, complaint or None)."""
-    paths = recipe_paths(folder, only)
+    paths = recipe_paths(folder, only, left_out)
     with multiprocessing.Pool(jobs, _start, (folder, spec)) as pool:
         yield from pool.imap(_make, paths)
 

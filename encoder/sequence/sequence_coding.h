@@ -24,8 +24,8 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
 // With skinned models, a seek only parses the tracks of a GOF, some milliseconds. Compared with
-// a single GOF, this length takes up to 6 % more bytes (morph-stress), half of it up to 12 %, at
-// a KG error of 0.1 %; sequences of twice the length were not at hand.
+// a single GOF, this length takes up to 6 % more bytes (morph-stress), half of it up to 12 %,
+// at a KG error of 0.1 %; sequences of twice the length were not at hand.
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
 // Maximum frames per GOF under the settings.

@@ -8,6 +8,7 @@ interpreter and the judge are plain Python.
 """
 
 import ast
+import functools
 import re
 import sys
 
@@ -32,12 +33,15 @@ _DECLARATION = re.compile(r"^[A-Za-z][\w:<>,&*\[\] ]*?[ &*](\w+)\(", re.MULTILIN
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b[ \t]*(.*)$", re.MULTILINE)
 
 
+@functools.lru_cache(maxsize=None)
 def includes(text):
     """(line, bracket, path) of every include; bracket is '"', '<', or '' for a macro."""
+    found = []
     for match in _INCLUDE.finditer(cpp_source.without_comments(text)):
         target = re.match(r'(["<])([^">]+)[">]', match.group(1))
         line = cpp_source.line_of(text, match.start())
-        yield (line, *target.groups()) if target else (line, "", match.group(1).strip())
+        found.append((line, *target.groups()) if target else (line, "", match.group(1).strip()))
+    return found
 
 
 def check_ours(root, path, included):

@@ -2,6 +2,7 @@
 for them; their reports and command lines."""
 
 import argparse
+import functools
 import pathlib
 import re
 
@@ -34,11 +35,13 @@ def _blank(text):
     return re.sub(r"[^\n]", " ", text)
 
 
+@functools.lru_cache(maxsize=None)
 def code_only(text):
     """The text with comments and the contents of literals blanked; positions are kept."""
     return _TOKEN.sub(lambda m: _blank(m.group()), text)
 
 
+@functools.lru_cache(maxsize=None)
 def comments_only(text):
     """The text with everything but comments blanked; positions are kept."""
     parts = []
@@ -50,6 +53,7 @@ def comments_only(text):
     return "".join(parts) + _blank(text[end:])
 
 
+@functools.lru_cache(maxsize=None)
 def without_comments(text):
     """The text with comments blanked, literals kept; positions are kept."""
     return _TOKEN.sub(lambda m: _blank(m.group()) if m.group("comment") else m.group(), text)
