@@ -1,4 +1,6 @@
-// Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread.
+// Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread;
+// of the High profile also with two threads and fewer adaptive factors, and how long single
+// frames take.
 //
 // It also reports multiply-adds per second: for decoding, and for the sums of 8.5.3 with each
 // loop that the machine can run, the plain loop first.
@@ -22,71 +24,19 @@
 #include <vector>
 
 #include "common/kernels/component_sum.h"
+#include "conformance/bench/bench_animation.h"
+#include "conformance/bench/high_bench.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/input/frame_source.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-struct Animation {
-  std::string name;
-  std::string mesh;
-  std::string points;
-};
-
-std::vector<Animation> animations() {
-  const std::filesystem::path source = RLPC_SOURCE_DIR;
-  std::vector<Animation> found;
-  const auto add = [&](const std::filesystem::path& folder, const char* name) {
-    const std::filesystem::path stem = folder / name;
-    const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
-    if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points))
-      found.push_back(a);
-  };
-  for (const char* name : {"elephant", "curtain", "robot_arm"}) {
-    add(source / "streams" / "inputs", name);
-  }
-  for (const char* name : {"cow", "samba"}) {
-    add(source.parent_path() / "shared" / "data" / "sequences", name);
-  }
-  return found;
-}
-
-[[noreturn]] void stop(const std::string& message) {
-  std::fprintf(stderr, "rlpc_bench: %s\n", message.c_str());
-  std::exit(1);
-}
-
-Bytes encode(const Animation& animation, const rlpc::EncoderSettings& settings) {
-  auto source = rlpc::open_frame_source({animation.mesh, animation.points, {}});
-  if (!source) stop(source.error().message);
-  Bytes stream;
-  const auto report =
-      rlpc::encode(**source, settings, [&](std::span<const std::uint8_t> bytes) {
-        stream.insert(stream.end(), bytes.begin(), bytes.end());
-        return true;
-      });
-  if (!report) stop(report.error().message);
-  return stream;
-}
-
-// Returns the number of vertex-frames.
-std::uint64_t decode(const Bytes& stream, bool verify_hashes) {
-  rlpc::DecoderOptions options;
-  options.verify_hashes = verify_hashes;
-  auto decoder = rlpc::Decoder::open(rlpc::memory_source(stream), options);
-  if (!decoder) stop("the encoded stream does not open");
-  std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
-  for (;;) {
-    const auto more = decoder->next_frame(positions);
-    if (!more) stop("the encoded stream does not decode");
-    if (!*more) break;
-    benchmark::DoNotOptimize(positions.data());
-  }
-  return std::uint64_t{decoder->header().num_vertices} * decoder->header().num_frames;
-}
+using rlpc::bench::Animation;
+using rlpc::bench::animations;
+using rlpc::bench::Bytes;
+using rlpc::bench::decode;
+using rlpc::bench::encode;
+using rlpc::bench::stop;
 
 // Multiply-adds per vertex in the sums, over all frames of a stream of the Main profile.
 class MultiplyAddCounter final : public rlpc::Trace {
@@ -188,7 +138,7 @@ void bench_decode(benchmark::State& state, const Animation& animation, double kg
   settings.target = {rlpc::Target::kKg, kg};
   const Bytes stream = encode(animation, settings);
   std::uint64_t vertex_frames = 0;
-  for (auto _ : state) vertex_frames = decode(stream, hashes);
+  for (auto _ : state) vertex_frames = decode(stream, hashes, 1);
   state.counters["multiply_adds/s"] =
       benchmark::Counter(multiply_adds(stream), benchmark::Counter::kIsIterationInvariantRate);
   const std::filesystem::path file =
@@ -206,7 +156,7 @@ void bench_encode(benchmark::State& state, const Animation& animation,
                   const rlpc::EncoderSettings& settings, const std::string& options) {
   Bytes stream;
   for (auto _ : state) stream = encode(animation, settings);
-  add_counters(state, decode(stream, false), stream.size(),
+  add_counters(state, decode(stream, false, 1), stream.size(),
                "rlpcenc '" + animation.mesh + "' --points '" + animation.points +
                    "' -o /dev/null -q --threads 1 " + options);
 }
@@ -292,7 +242,10 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 64;
   register_sums();
-  for (const Animation& animation : animations()) register_all(animation);
+  for (const Animation& animation : animations()) {
+    register_all(animation);
+    rlpc::bench::register_high(animation);
+  }
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

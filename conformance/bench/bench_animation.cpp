@@ -1,0 +1,68 @@
+#include "conformance/bench/bench_animation.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <utility>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc::bench {
+
+std::vector<Animation> animations() {
+  const std::filesystem::path source = RLPC_SOURCE_DIR;
+  std::vector<Animation> found;
+  const auto add = [&](const std::filesystem::path& folder, const char* name) {
+    const std::filesystem::path stem = folder / name;
+    const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
+    if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points))
+      found.push_back(a);
+  };
+  for (const char* name : {"elephant", "curtain", "robot_arm"}) {
+    add(source / "streams" / "inputs", name);
+  }
+  for (const char* name : {"cow", "samba"}) {
+    add(source.parent_path() / "shared" / "data" / "sequences", name);
+  }
+  return found;
+}
+
+void stop(const std::string& message) {
+  std::fprintf(stderr, "rlpc_bench: %s\n", message.c_str());
+  std::exit(1);
+}
+
+Bytes encode(const Animation& animation, const EncoderSettings& settings) {
+  auto source = open_frame_source({animation.mesh, animation.points, {}});
+  if (!source) stop(source.error().message);
+  Bytes stream;
+  const auto report = encode(**source, settings, [&](std::span<const std::uint8_t> bytes) {
+    stream.insert(stream.end(), bytes.begin(), bytes.end());
+    return true;
+  });
+  if (!report) stop(report.error().message);
+  return stream;
+}
+
+Decoder open_decoder(const Bytes& stream, bool verify_hashes, std::uint32_t threads) {
+  DecoderOptions options;
+  options.verify_hashes = verify_hashes;
+  options.threads = threads;
+  auto decoder = Decoder::open(memory_source(stream), options);
+  if (!decoder) stop("the encoded stream does not open");
+  return std::move(*decoder);
+}
+
+std::uint64_t decode(const Bytes& stream, bool verify_hashes, std::uint32_t threads) {
+  Decoder decoder = open_decoder(stream, verify_hashes, threads);
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
+  for (;;) {
+    const auto more = decoder.next_frame(positions);
+    if (!more) stop("the encoded stream does not decode");
+    if (!*more) break;
+  }
+  return std::uint64_t{decoder.header().num_vertices} * decoder.header().num_frames;
+}
+
+}  // namespace rlpc::bench
