@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "encoder/sequence/sequence_coding.h"
+
 namespace rlpc {
 namespace {
 
@@ -38,9 +40,7 @@ class StretchSource final : public FrameSource {
 
 // Frames per stretch: a multiple of the GOF length, so that the sample has GOFs of that length.
 std::uint64_t stretch_frames(std::uint64_t gof_frames) {
-  if (gof_frames == 0 || gof_frames >= kStretchFrames) {
-    return std::max(gof_frames, kStretchFrames);
-  }
+  if (gof_frames >= kStretchFrames) return gof_frames;
   return kStretchFrames / gof_frames * gof_frames;
 }
 
@@ -49,7 +49,7 @@ std::uint64_t stretch_frames(std::uint64_t gof_frames) {
 InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress) {
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
-  const std::uint64_t stretch = stretch_frames(settings.gof_frames);
+  const std::uint64_t stretch = stretch_frames(longest_gof(settings));
   if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
     auto report = encode(source, settings, discard, progress);
     if (!report) return report.error();

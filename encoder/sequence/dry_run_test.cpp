@@ -94,6 +94,18 @@ TEST(DryRun, ExtrapolatesLongerSequences) {
                    8 * static_cast<double>(expected->report.bytes) / (36 * 2400));
 }
 
+// A GOF of the default length never covers two stretches.
+TEST(DryRun, StretchesAreAsLongAsGofs) {
+  EncoderSettings settings = fast();
+  settings.profile = Profile::kHigh;
+  settings.target = {Target::kKg, 5};
+  Waves source(2100);
+  const auto expected = expect_encoding(source, settings);
+  ASSERT_TRUE(expected);
+  EXPECT_FALSE(expected->exact());
+  EXPECT_EQ(expected->frames_encoded, 2048U);
+}
+
 TEST(DryRun, EncodesASingleGofCompletely) {
   EncoderSettings settings = fast();
   settings.gof_frames = EncoderSettings::kWholeSequence;
