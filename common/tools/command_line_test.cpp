@@ -30,6 +30,7 @@ struct Program {
   int run(std::vector<std::string> words) {
     words.insert(words.begin(), "program");
     std::vector<char*> argv;
+    argv.reserve(words.size());
     for (std::string& word : words) argv.push_back(word.data());
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();

@@ -57,7 +57,8 @@ EncoderCase strip() {
   for (std::uint32_t f = 0; f < 6; ++f) {
     std::vector<float> xyz;
     for (std::uint32_t v = 0; v < 12; ++v) {
-      const auto x = static_cast<float>(v / 2);
+      const std::uint32_t column = v / 2;
+      const auto x = static_cast<float>(column);
       const auto y = static_cast<float>(v % 2);
       xyz.insert(xyz.end(), {x, y, 0.01F * static_cast<float>(f) * x * x});
     }

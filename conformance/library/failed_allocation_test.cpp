@@ -114,7 +114,7 @@ class FailedAllocation : public testing::TestWithParam<Case> {
   virtual void expect_result() = 0;
 
   const rlpc::WavingStrip strip_;
-  rlpc_encode_options options_;
+  rlpc_encode_options options_{};
   std::vector<std::uint8_t> stream_;
 };
 

@@ -46,7 +46,7 @@ class ModelAnimation : protected SlicedAnimation {
     SkinnedGof gof = make_tracks(7, kGroups, 0);
     gof.trajectories.back() = {};
     gof.trajectories.back().trajectory_flag = false;
-    add_gof(std::move(gof));
+    add_gof(gof);
     return finish(false);
   }
   // A model for each GOF, under indices in turn.

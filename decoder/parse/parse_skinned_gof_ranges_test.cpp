@@ -273,7 +273,7 @@ TEST(ParseSliceRanges, ComponentsAreAtLeastOneAndBoundedByTheLevel) {
     SliceRecipe slice(1, 0);
     slice.num_group_components_minus1(minus1);
     for (std::int32_t l = 0; l <= minus1; ++l) slice.trajectory(0, 0, 0, 0, 0, 1);
-    slices.add_residuals(slice, static_cast<std::size_t>(minus1 + 1));
+    slices.add_residuals(slice, static_cast<std::size_t>(minus1) + 1);
     return slices.parse(slice);
   };
   EXPECT_TRUE(parse(0));

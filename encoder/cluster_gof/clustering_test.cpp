@@ -135,6 +135,7 @@ TEST(MotionClusters, CollinearOrCoincidentPointsGiveNoSeeds) {
   for (const double step : {0.0, 50.0}) {
     Scene scene;
     std::vector<Point> points;
+    points.reserve(9);
     for (int i = 0; i < 9; ++i) points.push_back({step * i, 0, 0});
     scene.add_frame(points);
     MotionClusters motion(scene.frames, scene.triangles, kPositionBits);

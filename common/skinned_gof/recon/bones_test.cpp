@@ -435,16 +435,16 @@ TEST(Bones, ZeroResidualsReproduceThePredictions) {
 
 // Half a circle before and after, with either sign: the rotation between is a quarter turn.
 TEST(Bones, RotationsBetweenAreMeans) {
-  constexpr std::int64_t root = 759'250'126;  // of a half, rounded up
+  constexpr std::int64_t kRoot = 759'250'126;  // of a half, rounded up
   const TrackPlace at{.frame = 1, .stride = 1, .level = 1, .neighbours = 2};
   for (const std::int64_t sign : {1, -1}) {
     const std::array<Quaternion, 3> known{kNoRotation, Quaternion{}, {0, sign * kOneI, 0, 0}};
     const Quaternion mean = predict_rotation([&](std::uint32_t f) { return known[f]; }, at, 1);
-    EXPECT_EQ(mean, (Quaternion{root, sign * root, 0, 0}));
+    EXPECT_EQ(mean, (Quaternion{kRoot, sign * kRoot, 0, 0}));
     const std::array<Quaternion, 3> opposite{
-        kNoRotation, Quaternion{}, {-root, -sign * root, 0, 0}};
+        kNoRotation, Quaternion{}, {-kRoot, -sign * kRoot, 0, 0}};
     EXPECT_EQ(predict_rotation([&](std::uint32_t f) { return opposite[f]; }, at, 1),
-              normalize_quaternion({kOneI + root, sign * root, 0, 0}));
+              normalize_quaternion({kOneI + kRoot, sign * kRoot, 0, 0}));
   }
 }
 

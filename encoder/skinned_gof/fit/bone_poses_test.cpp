@@ -225,6 +225,7 @@ TEST(SolvePoses, IsAGaussNewtonStep) {
     Skin skin = beam(3, random);
     for (const Vec3d& p : skin.rest) skin.wanted.push_back(p + 0.1 * random.point());
     std::vector<Motion> motions;
+    motions.reserve(3);
     for (int b = 0; b < 3; ++b) motions.push_back(random.motion(0.2));
     const std::vector<Motion> expected = step_by_differences(skin, motions);
     const double length = distance(expected, motions);

@@ -38,7 +38,7 @@ double agreement(const Eigen::Matrix3d& r, const Eigen::Matrix3d& h) {
 // Kabsch's method: singular vectors of h, the last one negated if they make a reflection.
 double best_agreement(const Eigen::Matrix3d& h) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3d s = svd.singularValues();
+  const Vec3d& s = svd.singularValues();
   const double det = (svd.matrixU() * svd.matrixV().transpose()).determinant();
   return s(0) + s(1) + (det < 0.0 ? -s(2) : s(2));
 }
@@ -101,6 +101,7 @@ TEST(NearestRotation, HasTheSmallestAngleForCollinearPoints) {
 TEST(NearestRotation, MaximisesTheTrace) {
   RandomPoints random(1);
   std::vector<Eigen::Matrix3d> rotations;
+  rotations.reserve(3000);
   for (int i = 0; i < 3000; ++i) rotations.push_back(random.rotation());
   int reflections = 0;
   for (int i = 0; i < 100; ++i) {

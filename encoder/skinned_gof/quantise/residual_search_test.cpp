@@ -122,7 +122,7 @@ TEST(ResidualSearch, FindsNearlyTheBestRoundings) {
     }
     sum_best += best;
     sum_nearest += cost_of_rounding(
-        [&](std::size_t f) { return static_cast<std::int32_t>(values[f][0] + 0.5); });
+        [&](std::size_t f) { return static_cast<std::int32_t>(std::lround(values[f][0])); });
     const TrajectorySeries series(values, t);
     const std::vector<TrackPlace> order = track_order(kFrames, 0, 0);
     ResidualSearch<TrajectorySeries> search(series, order, before, {4, 3});

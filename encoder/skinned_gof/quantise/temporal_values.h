@@ -26,7 +26,7 @@ struct TemporalValues {
 };
 
 struct TemporalLimits {
-  std::size_t max_trajectories;
+  std::size_t max_trajectories = 0;
   int least_eighths = -1000;  // finest product of steps that fits the format
 };
 
