@@ -8,8 +8,9 @@
 //   }
 //   const auto report = encoder->finish();
 //
-// GOFs have equal length, at most settings.gof_frames (128 by default). Each is encoded when
-// its last frame has been added, and its bytes are passed to the sink at once. Memory is that
+// GOFs have equal length, at most settings.gof_frames (by default 128, or 256 in the High
+// profile). Each is encoded when its last frame has been added, and its bytes are passed to
+// the sink at once. Memory is that
 // of the mesh, one GOF and its analysis, plus 16 bytes per GOF for the index, whatever the
 // length of the sequence.
 //

@@ -297,14 +297,16 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
 
 void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Only the component groups with up to K trajectories of a skinned GOF")
+                 "Of each skinned GOF, only the leading component groups with at "
+                 "most K trajectories in total")
       ->check(CLI::Range(0U, rlpc::SliceCut::kAll - 1))
       ->option_text("K")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kLess);
   app.add_option("--max-layers", o.decoder.cut.max_layers,
-                 "Only the layer groups with up to L vertex layers, the coarsest")
+                 "Only the coarsest layer groups with at most L vertex layers in "
+                 "total")
       ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
       ->option_text("L")
       ->excludes(outputs.verify)

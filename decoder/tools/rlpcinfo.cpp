@@ -32,9 +32,10 @@ constexpr const char* kExamples = R"(Examples
 
 constexpr const char* kDetails =
     R"(--extract writes the stream without the slices of finer detail (not Baseline),
-without re-encoding. Of each skinned GOF and skinned model, it keeps component
-groups with up to K trajectories (0: only bones and rest shape), and the layer
-groups with up to L vertex layers, the coarsest (always at least the first).
+without re-encoding. Of each skinned GOF and skinned model, it keeps the leading
+component groups with at most K trajectories in total (0: only bones and rest
+shape), and the coarsest layer groups with at most L vertex layers in total
+(always at least the first).
 Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
 
 --trace prints bit position, name and value of every syntax element.

@@ -53,9 +53,9 @@ decoded vertices, divided by the RMS distance of the vertices from the centre of
 their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
 length, a mean normal deviation of about one degree.
 
---dry-run encodes animations of up to 1024 frames (or eight times --gof, if that
-is more) and reports the exact size. Of longer ones it encodes eight sections
-and reports an estimate ("about").
+--dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
+more) and reports the exact size. Of longer ones it encodes eight sections and
+reports an estimate ("about").
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";
@@ -272,7 +272,7 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
                    "Quantiser steps of temporal factors: equal (distortion, default), cobra")
       ->group(tools);
   add_off_switch(app, "--no-geometry-weights", t.geometry_weights,
-                 "Predict from plain means of 1-rings")
+                 "Predict with plain weights, which do not depend on the rest shape")
       ->group(tools);
   add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
       ->group(tools);

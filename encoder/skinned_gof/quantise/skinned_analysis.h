@@ -44,8 +44,9 @@ struct SkinnedSettings {
   // tuned: Bits of a quantised influence of a bone. Finer weights cost bits at every vertex;
   // coarser ones leave errors where bones meet.
   static constexpr int kWeightBits = 6;
-  // tuned (off: 0): Damping of the geometry weights (8.11), as a power of two. It keeps weights
-  // moderate where a vertex lies nearly in line with its neighbours.
+  // tuned (off: 0): Binary logarithm of the divisor that gives the damping of the geometry
+  // weights (8.11): the larger, the less damping; 0 switches these weights off. Damping keeps
+  // weights moderate where a vertex lies nearly in line with its neighbours.
   static constexpr int kDampingLog2 = 8;
   // tuned (off: 0): Weight and scale of the outer ring in the geometry weights (8.11). The
   // outer ring adds curvature to the prediction.
