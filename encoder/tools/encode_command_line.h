@@ -6,7 +6,7 @@
 
 #include "encoder/tools/encode_options.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): of a library
 class App;
 }
 

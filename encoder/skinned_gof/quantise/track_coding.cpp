@@ -50,8 +50,9 @@ bool fit_weights(Values values, std::size_t stride, int count,
     }
   }
   // Prediction is from decoded values, whose quantisation errors act as regularisation.
+  const std::size_t num_places = values.size() / stride;
   for (std::size_t i = 0; i < n; ++i) {
-    m.a[i][i] += 3.0 / 12.0 * static_cast<double>(values.size() / stride);
+    m.a[i][i] += 3.0 / 12.0 * static_cast<double>(num_places);
   }
   const auto solution = solve_small(m, n);
   if (!solution.is_unique) return false;
