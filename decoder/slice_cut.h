@@ -11,15 +11,18 @@ namespace rlpc {
 // Component groups and layer groups are kept or dropped as a whole: each GOF keeps the leading
 // groups with at most max_components trajectories in total, and the coarsest with at most
 // max_layers vertex layers. The first layer group is always kept, as are influences and rest
-// positions.
+// positions. Of the temporal layers, the first max_temporal_layers are kept.
 struct SliceCut {
   static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t max_components = kAll;
   std::uint32_t max_layers = kAll;
+  std::uint32_t max_temporal_layers = kAll;  // at least 1
 
   static constexpr const char* kNoSlices =
       "a stream of the Baseline profile has no slices, and cannot be cut";
-  bool cuts() const { return max_components != kAll || max_layers != kAll; }
+  bool cuts() const {
+    return max_components != kAll || max_layers != kAll || max_temporal_layers != kAll;
+  }
 };
 
 // layer_group_size: layers of each group, at least one group.

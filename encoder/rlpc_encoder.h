@@ -75,6 +75,9 @@ struct MainTools {
   std::optional<RestTools> rest;  // High profile: at most; none: kCounterparts
   // High profile: levels of hierarchical tracks besides level 0, 0 to 7; none: 1.
   std::optional<std::uint32_t> track_levels;
+  // High profile: temporal layers of each GOF, 1 to 8, to which a stream can be cut; at most
+  // one more than there are track_levels, which are as many as that takes if they are none.
+  std::uint32_t temporal_layers = 1;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009, (18), (19)
   // Code GOFs as clusters if that costs less. Cluster GOFs have no slices and none of the tools
   // above; if any member of this structure differs from its default, all GOFs are skinned.
@@ -140,6 +143,13 @@ struct PartBits {
   std::uint64_t metadata = 0;
 };
 
+// A stream without the slices of its higher temporal layers, as rlpcinfo --extract writes it.
+struct TemporalCut {
+  std::uint32_t layers = 1;  // that are left
+  std::uint64_t bytes = 0;
+  double kg_error_percent = 0.0;
+};
+
 struct EncodeReport {
   SequenceHeader header;
   Metrics metrics;  // of the decoded float32 positions, in input vertex order
@@ -152,6 +162,7 @@ struct EncodeReport {
   double step = 0.0;                        // quantiser step, units; 0 with qu and qc
   std::uint32_t trials = 0;                 // encodings during the search for the target
   bool target_met = true;                   // the target is not exceeded
+  std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };
 

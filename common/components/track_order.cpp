@@ -1,5 +1,6 @@
 #include "common/components/track_order.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace rlpc {
@@ -23,6 +24,15 @@ std::vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, 
     }
   }
   return order;
+}
+
+std::vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer) {
+  assert(frames.temporal_layers >= 1 && frames.temporal_layers <= frames.levels + 1);
+  const int below = frames.levels - (frames.temporal_layers - 1);  // highest level of layer 0
+  std::vector<TrackPlace> places = track_order(frames.count, frames.levels, between);
+  std::erase_if(places,
+                [&](const TrackPlace& at) { return std::max(at.level - below, 0) != layer; });
+  return places;
 }
 
 }  // namespace rlpc

@@ -1,6 +1,7 @@
 // 8.17.1 Order of a track: the order in which the values of a track are coded. A sequential
 // track goes from frame to frame. A hierarchical one has levels: level 0 is every
 // 2^track_levels-th frame; each further level halves the distance.
+// 8.17.3 Temporal layers: the highest levels can be sent apart.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,16 @@ struct TrackPlace {
 
 // 8.17.1 TrackOrder( between )
 std::vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between);
+
+// What the tracks of a GOF have in common; a skinned model has none.
+struct TrackFrames {
+  std::uint32_t count = 0;  // num_gof_frames
+  int levels = 0;           // track_levels
+  int temporal_layers = 1;  // 1 to levels + 1
+};
+
+// 8.17.3 PlacesOfLayer( between, layer )
+std::vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer);
 
 // 8.17.2 Prediction at a place: a coordinate of the sum of the neighbours that it has.
 // series(f) returns the value at frame f; |values| < 2^32.

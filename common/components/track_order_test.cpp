@@ -53,6 +53,46 @@ TEST(TrackOrder, IsThatOfPrediction) {
   }
 }
 
+std::vector<std::uint32_t> frames_of_layer(const TrackFrames& frames, int between, int layer) {
+  std::vector<std::uint32_t> list;
+  for (const TrackPlace& at : places_of_layer(frames, between, layer)) list.push_back(at.frame);
+  return list;
+}
+
+TEST(PlacesOfLayer, AreThoseOfTheHighestLevels) {
+  using Frames = std::vector<std::uint32_t>;
+  const TrackFrames two{11, 2, 2};
+  EXPECT_EQ(frames_of_layer(two, 1, 0), (Frames{0, 4, 8, 2, 6, 10}));
+  EXPECT_EQ(frames_of_layer(two, 1, 1), (Frames{1, 3, 5, 7, 9}));
+  const TrackFrames three{11, 2, 3};
+  EXPECT_EQ(frames_of_layer(three, 2, 0), (Frames{0, 4, 8}));
+  EXPECT_EQ(frames_of_layer(three, 2, 1), (Frames{2, 6, 10}));
+  EXPECT_EQ(frames_of_layer(three, 2, 2), (Frames{1, 3, 5, 7, 9}));
+}
+
+TEST(PlacesOfLayer, OfASequentialTrackAreAllInTheFirst) {
+  EXPECT_EQ(places_of_layer({11, 2, 3}, 0, 0).size(), 11U);
+  EXPECT_TRUE(places_of_layer({11, 2, 3}, 0, 1).empty());
+  EXPECT_TRUE(places_of_layer({11, 2, 3}, 0, 2).empty());
+}
+
+// Together, layer by layer, they are the order of the track.
+TEST(PlacesOfLayer, FollowTheOrderOfTheTrack) {
+  for (int levels = 0; levels <= kMaxTrackLevels; ++levels) {
+    for (int layers = 1; layers <= levels + 1; ++layers) {
+      std::vector<std::uint32_t> all;
+      for (int layer = 0; layer < layers; ++layer) {
+        for (const std::uint32_t f : frames_of_layer({150, levels, layers}, 2, layer)) {
+          all.push_back(f);
+        }
+      }
+      std::vector<std::uint32_t> order;
+      for (const TrackPlace& at : track_order(150, levels, 2)) order.push_back(at.frame);
+      EXPECT_EQ(all, order) << levels << " " << layers;
+    }
+  }
+}
+
 TEST(SumOfNeighbours, WeightsTwoOrFour) {
   const std::vector<std::int64_t> values{5, 0, 100, 0, 200, 0, 7};
   const auto series = [&](std::uint32_t f) { return values[f]; };

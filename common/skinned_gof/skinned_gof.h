@@ -138,7 +138,11 @@ struct SkinnedModel {
 struct SkinnedGof : GofHeader, SkinnedModel {
   SkinnedGof() { kind = GofKind::kSkinned; }
 
-  int track_levels = 0;  // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
+  int track_levels = 0;         // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
+  int num_temporal_layers = 1;  // 1 to track_levels + 1
+  // [group], the temporal layers besides the first of which it has a slice; empty if there are
+  // none in the GOF. Residuals of absent slices are zero.
+  std::vector<std::uint32_t> temporal_layers;
   // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
   // vertices is then there. The settings, bones and leading trajectories of the GOF are those
   // of the model, with their motion; slice_layers counts the component groups of both; and
@@ -150,6 +154,10 @@ struct SkinnedGof : GofHeader, SkinnedModel {
 
   bool operator==(const SkinnedGof&) const = default;
 };
+
+inline TrackFrames track_frames(const SkinnedGof& gof) {
+  return {gof.num_frames, gof.track_levels, gof.num_temporal_layers};
+}
 
 // Width of rest positions, including 4 fractional bits.
 constexpr int rest_bits(int position_bits) { return position_bits + 5; }

@@ -24,6 +24,7 @@ struct SliceEntry {
   std::uint32_t layer_group_idx = 0;
   std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
   std::uint64_t bytes = 0;             // size of the unit
+  std::uint32_t temporal_layer_idx = 0;
 };
 
 struct AccessUnit {

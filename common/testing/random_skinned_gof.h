@@ -24,6 +24,7 @@ struct SkinnedGofSizes {
   std::uint32_t max_groups = 4;
   std::uint32_t max_components = 4;  // per group
   bool rest_order = true;            // in some
+  bool temporal_layers = true;       // in some
 };
 
 class RandomSkinnedGof {
@@ -36,6 +37,7 @@ class RandomSkinnedGof {
     for (std::uint32_t b = 0; b < gof.bones.size(); ++b) make_bone(b);
     if (sizes.rest_order) make_rest();
     make_slices(mesh, sizes);
+    if (gof.num_temporal_layers > 1) drop_temporal_layers();
     make_influences(mesh);
   }
 
@@ -115,6 +117,8 @@ class RandomSkinnedGof {
     if (coin()) header.profile_idc = kProfileHigh;
     if (header.profile_idc == kProfileHigh && coin()) {
       gof.track_levels = between(0, kMaxTrackLevels);
+      if (coin() && sizes.temporal_layers)
+        gof.num_temporal_layers = 1 + between(0, gof.track_levels);
     }
   }
 
@@ -154,6 +158,36 @@ class RandomSkinnedGof {
       bone.origin_order = between(0, kMaxPredictorOrder);
       bone.origin_between = order_of_track();
       bone.origin_residual = track();
+    }
+  }
+
+  // Each component group has at most as many temporal layers as the one before, and none
+  // without its trajectories.
+  void drop_temporal_layers() {
+    auto present = static_cast<std::uint32_t>(gof.num_temporal_layers) - 1;
+    for (const std::uint32_t of_group : gof.slice_layers) {
+      const bool is_first = gof.temporal_layers.empty();
+      if (random() % 4 == 0) present = below(present + 1);
+      if (!is_first && of_group == 0) present = 0;
+      gof.temporal_layers.push_back(present);
+    }
+    for (Bone& bone : gof.bones) {
+      drop_residuals(bone.rotation_residual, bone.rotation_between, gof.temporal_layers[0]);
+      drop_residuals(bone.origin_residual, bone.origin_between, gof.temporal_layers[0]);
+    }
+    for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
+      for (std::size_t l = gof.group_end[group - 1]; l < gof.group_end[group]; ++l) {
+        Trajectory& t = gof.trajectories[l - kRestFactors];
+        drop_residuals(t.residual, t.temporal_between, gof.temporal_layers[group]);
+      }
+    }
+  }
+  void drop_residuals(TrackResiduals& residuals, int between, std::uint32_t present) const {
+    if (residuals.empty()) return;
+    for (int layer = static_cast<int>(present) + 1; layer < gof.num_temporal_layers; ++layer) {
+      for (const TrackPlace& at : places_of_layer(track_frames(gof), between, layer)) {
+        residuals[at.frame] = {};
+      }
     }
   }
 

@@ -39,6 +39,7 @@ struct SkinnedGofRecipe {
   std::uint32_t rest_step_minus1 = 0;
   std::uint32_t num_component_groups = 0;
   std::optional<std::uint32_t> track_levels;  // of the High profile
+  std::uint32_t num_temporal_layers_minus1 = 0;
   std::uint32_t prediction_idc = 0;
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
@@ -61,7 +62,7 @@ struct SkinnedGofRecipe {
     w.ue(0);
     w.ue(num_gof_frames_minus1);
     w.u(is_high() ? 2 : 1, 1);  // gof_kind or, in the Main profile, bones_flag
-    if (is_high()) w.u(3, track_levels.value_or(0));
+    if (is_high()) levels_of_tracks(w);
     rig_header(w, is_high());
     w.byte_alignment();
     w.append(bone_section(true, true));
@@ -82,7 +83,7 @@ struct SkinnedGofRecipe {
     w.ue(num_gof_frames_minus1);
     w.u(2, gof_kind);
     w.u(3, model_idx);
-    w.u(3, track_levels.value_or(0));
+    levels_of_tracks(w);
     w.ue(num_local_groups);
     w.byte_alignment();
     w.append(bone_section(false, true));
@@ -92,6 +93,11 @@ struct SkinnedGofRecipe {
   bool is_high() const { return track_levels || num_adaptive_factors; }
 
  private:
+  void levels_of_tracks(BitWriter& w) const {
+    w.u(3, track_levels.value_or(0));
+    if (track_levels.value_or(0) > 0) w.u(3, num_temporal_layers_minus1);
+  }
+
   void rig_header(BitWriter& w, bool of_high) const {
     w.ue(static_cast<std::uint32_t>(bones.size()) - 1);
     w.u(5, fraction_bits);

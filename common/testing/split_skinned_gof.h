@@ -100,6 +100,7 @@ class SplitSkinnedGof {
     tracks.trajectories.resize(model->group_end[kept - 1] - kRestFactors);
     for (std::size_t group = kept; group < tracks.slice_layers.size(); ++group) {
       tracks.slice_layers[group] = 0;
+      if (!tracks.temporal_layers.empty()) tracks.temporal_layers[group] = 0;
     }
   }
   // As that of RandomSkinnedGof.

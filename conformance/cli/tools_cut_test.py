@@ -43,7 +43,7 @@ def expected_groups(slices, components, first=1, total=0):
     return groups, total
 
 
-def expected_slices(gof, components, layers, models):
+def expected_slices(gof, components, layers, models, temporal):
     """The slices of a GOF or skinned model (rlpcinfo --json) that a cut keeps, counted without
     the tools."""
     if "slices" not in gof:
@@ -58,7 +58,8 @@ def expected_slices(gof, components, layers, models):
         groups, _ = expected_groups(gof["slices"], components)
     num = max([1] + [n for n in range(1, len(sizes) + 1) if sum(sizes[:n]) <= layers])
     return [s for s in gof["slices"]
-            if s["component_group_idx"] in groups | {0} and s["layer_group_idx"] < num]
+            if s["component_group_idx"] in groups | {0} and s["layer_group_idx"] < num
+            and s["temporal_layer_idx"] < temporal]
 
 
 class CutTest(ToolsTest):
@@ -76,12 +77,13 @@ class CutTest(ToolsTest):
         gofs = self.ok("rlpcinfo", path, "--json").json()["gofs"]
         return [gof for gof in gofs if "num_bones" in gof]
 
-    def rich_stream(self):
+    def rich_stream(self, profile="main", temporal_layers=1):
         """The first random stream with GOFs of several component groups and layer groups."""
-        for seed in range(100):
-            path = self.random_stream(seed)
+        for seed in range(200):
+            path = self.random_stream(seed, profile)
             for gof in self.skinned_gofs(path):
-                if len(gof["cut_to_components"]) > 2 and len(gof["cut_to_layers"]) > 1:
+                if (len(gof["cut_to_components"]) > 2 and len(gof["cut_to_layers"]) > 1
+                        and len(gof["cut_to_temporal_layers"]) >= temporal_layers):
                     return path
         raise AssertionError("no such stream")
 
@@ -93,14 +95,15 @@ class Cutting(CutTest):
     SEEDS = 40
     SPECDEC_SEEDS = 12  # seeds whose cut streams specdec decodes as well
 
-    def check(self, seed, components, layers, profile="main"):
+    def check(self, seed, components, layers, profile="main", temporal=8):
         """Cuts a random stream; returns whether slices were dropped."""
         path, cut = self.random_stream(seed, profile), self.path("cut.rlpc")
-        report = self.extract(path, f"components={components},layers={layers}", "--json").json()
+        report = self.extract(path, f"components={components},layers={layers},temporal={temporal}",
+                              "--json").json()
         info = self.ok("rlpcinfo", path, "--json").json()
         models = info.get("models", [])
         entries = models + info["gofs"]
-        stay = [expected_slices(gof, components, layers, models) for gof in entries]
+        stay = [expected_slices(gof, components, layers, models, temporal) for gof in entries]
         for gof, slices, entry in zip(report["models"] + report["gofs"], stay, entries,
                                       strict=True):
             self.assertEqual(gof["after"]["num_slices"], len(slices))
@@ -125,7 +128,8 @@ class Cutting(CutTest):
         self.assertEqual(verdict, "conforming", f"seed {seed}")
         self.ok("rlpcdec", cut, "-o", self.path("cut.rlpd"))
         done = self.ok("rlpcdec", path, "-o", self.path("whole.rlpd"), "--max-components",
-                       components, "--max-layers", layers, "--json").json()
+                       components, "--max-layers", layers, "--max-temporal-layers", temporal,
+                       "--json").json()
         self.assertEqual(done["cut"], report["cut"])
         kinds = [code for code, _ in before]
         hashed = kinds.count(GOF) == kinds.count(GOF_HASH)
@@ -145,7 +149,7 @@ class Cutting(CutTest):
         for seed in range(self.SEEDS):
             numbers = random.Random(seed)
             cut = self.check(seed, numbers.choice([0, 0, 1, 2, 3, 5, 1000]),
-                             numbers.choice([1, 2, 9]), profile)
+                             numbers.choice([1, 2, 9]), profile, numbers.choice([1, 2, 3, 8]))
             cuts += cut
             if cut and seed < self.SPECDEC_SEEDS:
                 subprocess.run([sys.executable, ROOT / "conformance/specdec/specdec.py", "decode",
@@ -168,20 +172,35 @@ class Cutting(CutTest):
                 self.assertEqual(one[len(one) - size:], whole[start:start + size])
 
     def test_what_rlpcinfo_says_beforehand_is_what_comes_out(self):
-        path = self.rich_stream()
+        self.check_what_is_said(self.rich_stream())
+
+    def test_what_rlpcinfo_says_of_temporal_layers_is_what_comes_out(self):
+        path = self.rich_stream("high", 3)
+        self.check_what_is_said(path)
+        said = self.ok("rlpcinfo", path, "--gofs").out.decode()
+        for gof in self.skinned_gofs(path):
+            sizes = [cut["bytes"] for cut in gof["cut_to_temporal_layers"]]
+            for layer in range(1, len(sizes)):
+                self.assertRegex(said, rf"temporal layer {layer} +{sizes[layer] - sizes[layer - 1]} "
+                                       rf".* {sizes[layer]}\n")
+        self.assertRegex(self.extract(path, "temporal=2").out.decode(),
+                         r"2 of [3-8] temporal layers")
+
+    def check_what_is_said(self, path):
         info = self.ok("rlpcinfo", path, "--json").json()
         # The largest number of layers that some GOF must keep.
         least = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
                     for gof in info["gofs"] if "num_bones" in gof)
-        for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers")):
+        for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers"),
+                          ("temporal", "cut_to_temporal_layers")):
             for g, gof in enumerate(info["gofs"]):
                 for choice in gof.get(key, []):
-                    if name == "layers" and choice[name] == 0:
+                    size = choice["temporal_layers" if name == "temporal" else name]
+                    if name == "layers" and size == 0:
                         continue  # no slices are kept
-                    report = self.extract(path, f"{name}={choice[name]}", "--json").json()
+                    report = self.extract(path, f"{name}={size}", "--json").json()
                     self.assertEqual(report["gofs"][g]["after"]["bytes"], choice["bytes"])
-                    self.assertEqual(report["request_met"],
-                                     name == "components" or choice[name] >= least)
+                    self.assertEqual(report["request_met"], name != "layers" or size >= least)
         said = self.ok("rlpcinfo", path, "--gofs").out.decode()
         self.assertIn("GOF to here", said)
         for gof in self.skinned_gofs(path):
@@ -218,7 +237,7 @@ class Cutting(CutTest):
 
     def test_what_is_cut_cannot_be_verified(self):
         path = self.rich_stream()
-        for cut in ("--max-components", "--max-layers"):
+        for cut in ("--max-components", "--max-layers", "--max-temporal-layers"):
             self.fails(64, "--verify excludes " + cut, "rlpcdec", path, "--verify", cut, 1)
 
     def test_cluster_gofs_stay_whole(self):
@@ -249,14 +268,16 @@ class CuttingErrors(CutTest):
         for cut in ("", "components", "components=", "components=-1", "components=x", "layers=0",
                     "components=1,components=2", "layers=1,layers=1", "components=1,", ",layers=1",
                     "components=1 layers=2", "components=4294967295", "components=99999999999",
-                    "layers=1.5", "slices=2", "components=+1", "Components=1"):
+                    "layers=1.5", "slices=2", "components=+1", "Components=1", "temporal=0",
+                    "temporal=1,temporal=1", "temporal="):
             self.fails(64, "components=K", "rlpcinfo", path, "-o", out, "--extract", cut)
         self.fails(64, "", "rlpcinfo", path, "--extract", "layers=1")
         self.fails(64, "", "rlpcinfo", path, "-o", out)
         for option in ("--gofs", "--trace"):
             self.fails(64, "", "rlpcinfo", path, "--extract", "layers=1", "-o", out, option)
         for options in (["--max-layers", 0], ["--max-layers", "x"], ["--max-components", -1],
-                        ["--max-components", "1,2"], ["--max-layers", 4294967296]):
+                        ["--max-components", "1,2"], ["--max-layers", 4294967296],
+                        ["--max-temporal-layers", 0]):
             self.fails(64, "", "rlpcdec", path, "--verify", *options)
         self.assertEqual(self.files(), ["in.rlpc"])
 

@@ -167,7 +167,8 @@ class BadInput(ToolsTest):
                                       "--no-outer-ring", "--no-layer-steps",
                                       "--no-temporal-weights", "--component-groups 2",
                                       "--layer-groups 2")),
-                ("high", "main", ("--adaptive-factors 4", "--rest order", "--track-levels 2"))):
+                ("high", "main", ("--adaptive-factors 4", "--rest order", "--track-levels 2",
+                                  "--temporal-layers 2"))):
             for option in options:
                 self.fails(64, f"{option.split()[0]} needs --profile {profile}", "rlpcenc", mesh,
                            "-o", self.path("out.rlpc"), "--profile", other, *option.split())

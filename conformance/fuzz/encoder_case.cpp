@@ -163,6 +163,7 @@ EncoderSettings CaseMaker::read_settings() {
   m.cobra_steps = (more & 16) != 0;
   m.clusters = (more & 32) == 0;
   if ((more & 64) != 0) m.rest = static_cast<RestTools>(tools.number(1) % 3);
+  if ((more & 128) != 0 && s.profile == Profile::kHigh) m.temporal_layers = 2 + more % 3;
   m.component_groups = number(6);
   m.layer_groups = number(6);
   // The tools of the other profile are refused, so most cases do not set them.

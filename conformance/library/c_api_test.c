@@ -246,6 +246,7 @@ static void test_options(const buffer* stream) {
   rlpc_decode_options_init(&options, sizeof options);
   CHECK(options.struct_size == sizeof options && options.threads == 1);
   CHECK(options.verify_hashes == 1 && options.max_components == RLPC_ALL);
+  CHECK(options.max_layers == RLPC_ALL && options.max_temporal_layers == RLPC_ALL);
 
   options.threads = 3;
   CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
@@ -485,6 +486,45 @@ static void test_encoder_frames(void) {
   rlpc_encoder_close(encoder);
 }
 
+// Temporal layers: the report of a cut, and a decoder that makes it.
+static void test_temporal_layers(void) {
+  static buffer stream;
+  const rlpc_frame_format format = strip_format();
+  rlpc_encode_options options = small_gofs();
+  CHECK(options.temporal_layers == 1);
+  options.profile = RLPC_HIGH;
+  options.temporal_layers = 3;
+  rlpc_encoder* encoder;
+  memset(&stream, 0, sizeof stream);
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);
+  CHECK(add_frames(encoder) == RLPC_OK);
+  rlpc_encode_report report;
+  CHECK(rlpc_encoder_finish(encoder, &report, sizeof report) == RLPC_OK);
+  rlpc_encoder_close(encoder);
+  CHECK(report.temporal_cut_bytes[0] > 0);
+  CHECK(report.temporal_cut_bytes[0] < report.temporal_cut_bytes[1]);
+  CHECK(report.temporal_cut_bytes[1] < report.num_bytes && report.temporal_cut_bytes[2] == 0);
+  CHECK(report.temporal_cut_kg_error_percent[0] >= report.temporal_cut_kg_error_percent[1]);
+  CHECK(report.temporal_cut_kg_error_percent[1] >= report.kg_error_percent);
+
+  rlpc_decode_options decoding;
+  rlpc_decode_options_init(&decoding, sizeof decoding);
+  decoding.max_temporal_layers = 1;
+  rlpc_decoder* decoder;
+  CHECK(rlpc_decoder_open_memory(stream.bytes, stream.size, &decoding, &decoder) == RLPC_OK);
+  int32_t positions[VALUES];
+  for (unsigned f = 0; f < FRAMES; ++f) {
+    CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES) == RLPC_OK);
+  }
+  CHECK(rlpc_decoder_next_positions(decoder, positions, VALUES) == RLPC_END);
+  rlpc_decoder_close(decoder);
+
+  options.temporal_layers = RLPC_MAX_TEMPORAL_LAYERS + 1;
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_BAD_INPUT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "temporal layers");
+  rlpc_encoder_close(encoder);
+}
+
 static void test_texts(void) {
   for (int i = RLPC_OK; i <= RLPC_INTERNAL_ERROR; ++i) {
     CHECK(strcmp(rlpc_status_text(i), "unknown status") != 0);
@@ -502,6 +542,7 @@ int main(void) {
   test_null_decoders(&stream);
   test_encoder_arguments();
   test_encoder_frames();
+  test_temporal_layers();
   test_texts();
   if (failures == 0) puts("the library does what its headers say");
   return failures == 0 ? 0 : 1;

@@ -21,6 +21,8 @@ class HighPlan(random_main.MainPlan):
 class HighSource(random_main.MainSource):
     """Values of the elements that the Main profile does not have, too."""
 
+    temporal_layer = 0  # of the slice
+
     def _profile_idc(self, ns, indices, arguments):
         return 2
 
@@ -68,6 +70,12 @@ class HighSource(random_main.MainSource):
     def _track_levels(self, ns, indices, arguments):
         return self.numbers.pick([0, 1, 2, 3, self.numbers.between(0, 7)])
 
+    def _num_temporal_layers_minus1(self, ns, indices, arguments):
+        return self.near(0, ns["track_levels"])
+
+    def _temporal_layer_idx(self, ns, indices, arguments):
+        return self.temporal_layer
+
     def _rotation_between(self, ns, indices, arguments):
         return self.numbers.between(0, 2)
 
@@ -101,6 +109,18 @@ class HighSequence(random_main.MainSequence):
             self._tracks()
         else:
             super()._slices()
+        self._temporal_layers()
+
+    def _temporal_layers(self):
+        """The slices of the temporal layers but the first, some of them cut off."""
+        ns = self._writer.ns
+        for layer in range(1, ns["num_temporal_layers_minus1"] + 1):
+            self._writer.source.temporal_layer = layer
+            for group, present in enumerate(list(ns["TemporalLayers"])):
+                if present != layer or self._n.chance(self._plan.cut_percent):
+                    break
+                self._slice(group, 0)
+        self._writer.source.temporal_layer = 0
 
     def _tracks(self):
         ns = self._writer.ns

@@ -212,6 +212,9 @@ def inferred(writer, name, indices):
 
 def _next_group(ns):
     """The component group of the next slice, if none is left out: all layer groups of one first."""
+    layer = ns["temporal_layer_idx"]
+    if layer > 0:
+        return sum(present > layer for present in ns["TemporalLayers"])
     group = ns["LastGroup"]
     if ns["HasVertices"] == 0 and group <= ns["num_component_groups"]:
         return group + 1  # its only slice has been written, or it is 0

@@ -149,6 +149,7 @@ class StreamWriter:
         self.ns.update(ae=self._ae, bypass=self._bypass, byte_alignment=self._byte_alignment,
                        CheckOverrun=lambda: None, EndSection=self._end_section,
                        CheckHash=self._collect_hash)
+        self._watch_tracks()
         self.ns["StartReading"]()
         self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
                        HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
@@ -334,6 +335,30 @@ class StreamWriter:
         except (IndexError, KeyError, NameError, TypeError, ValueError) as error:
             if not self.broken:
                 raise WriteError(f"unit of code {code}: {error!r}") from error
+
+    def _watch_tracks(self):
+        """Once a requirement is broken, tracks are reconstructed as soon as they are written.
+
+        What cannot be reconstructed, such as a width below zero, ends the payload, as it did in
+        the versions in which parsing reconstructed tracks: released recipes depend on that.
+        """
+        ns = self.ns
+        bone_tracks, trajectory = ns["bone_tracks"], ns["trajectory"]
+
+        def written_bone(b):
+            bone_tracks(b)
+            if self.broken:
+                ns.update(BoneRotation=[], BoneAxes=[], BoneOrigin=[])
+                for earlier in range(b + 1):
+                    ns["ReconstructBone"](earlier)
+
+        def written_trajectory():
+            trajectory()
+            if self.broken:
+                ns["Trajectories"] = []
+                ns["ReconstructTrajectory"](len(ns["TrajectoryTracks"]) - 1)
+
+        ns.update(bone_tracks=written_bone, trajectory=written_trajectory)
 
     def _can_run(self, code):
         """Whether the unit is one that the version knows, and that can be read here."""

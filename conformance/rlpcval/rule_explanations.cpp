@@ -268,15 +268,17 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "the list.",
      "Compare the order of the vertices and the hinges of each (8.18.2) with another decoder."},
     {"R-SLI-01", "7.12",
-     "A slice belongs to a component group or a layer group that does not exist.",
+     "A slice belongs to a component group, layer group or temporal layer that does not exist.",
      "The groups were counted differently from the GOF unit: 0 is for influences and rest "
-     "positions, component groups count from 1, layer groups from 0.",
-     "Compare num_component_groups and num_layer_groups_minus1 of the GOF unit."},
+     "positions, component groups count from 1, layer groups and temporal layers from 0.",
+     "Compare num_component_groups, num_layer_groups_minus1 and num_temporal_layers_minus1 of "
+     "the GOF unit."},
     {"R-SLI-02", "7.12", "A slice is out of place, or one that it needs is missing.",
      "A slice was dropped, repeated or moved, but others that depend on it were kept.",
-     "All layer groups of component group 0 come first, then those of group 1, and so on. To "
-     "cut a stream, drop with a slice those of higher layer groups of its component "
-     "group, and those of higher component groups in its layer group."},
+     "All layer groups of component group 0 come first, then those of group 1, and so on; the "
+     "component groups of temporal layer 1 follow, then those of the next. To cut a stream, "
+     "drop with a slice those of higher layer groups and temporal layers of its component "
+     "group, and those of higher component groups in its layer group and temporal layer."},
     {"R-SLI-03", "7.12.1",
      "A component group has no trajectories, or the GOF more than its level allows.",
      "An empty group was written, or the number of trajectories was never compared with the "
@@ -300,6 +302,10 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The minor version of the stream is not known, or is not that of its profile.",
      "The stream uses a later minor version, or the encoder always writes its own version.",
      "Write the lowest version that has the tools in use, or validate with a later version."},
+    {"R-TRK-01", "7.11", "There are more temporal layers than levels of tracks.",
+     "num_temporal_layers_minus1 was written without regard to track_levels, or without "
+     "subtracting 1.",
+     "Each temporal layer but the first is one level: there are at most track_levels + 1."},
     {"R-UNT-01", "7.2", "The stream ends where another unit must follow.",
      "The file was cut off between units, or the end_of_sequence unit was not written.",
      "End every stream with an end_of_sequence unit."},

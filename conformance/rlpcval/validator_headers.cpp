@@ -215,6 +215,15 @@ bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num
   return check_alignment(r) && good;
 }
 
+// 6.11 levels_of_tracks( ). False if there are more temporal layers than levels.
+bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
+  const std::int64_t levels = r.u(3, "track_levels");
+  if (levels == 0) return true;
+  const std::int64_t layers = r.u(3, "num_temporal_layers_minus1") + 1;
+  temporal_layers = static_cast<std::uint32_t>(layers);
+  return r.require(layers <= levels + 1, "R-TRK-01", at_most(levels));
+}
+
 // 6.13.1 tracks_of_gof( )
 bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& gof) {
   const auto model_idx = static_cast<std::size_t>(r.u(3, "model_idx"));
@@ -224,7 +233,8 @@ bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& go
           "the stream has no skinned model " + std::to_string(model_idx) + " up to here")) {
     return false;
   }
-  (void)r.u(3, "track_levels");
+  std::uint32_t temporal_layers = 1;
+  const bool good_layers = check_levels(r, temporal_layers);
   const std::int64_t groups = r.ue("num_local_groups");
   if (!kept.model || !r.readable()) return false;
   gof.model_suspect = kept.suspect;
@@ -234,9 +244,20 @@ bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& go
                                   at_most(kMaxComponentGroups));
   if (good) {
     gof.slices = SliceCounts{of_model + static_cast<std::uint32_t>(groups),
-                             static_cast<std::uint32_t>(kept.model->layer_group_size.size())};
+                             static_cast<std::uint32_t>(kept.model->layer_group_size.size()),
+                             temporal_layers};
   }
-  return check_alignment(r) && good;
+  return check_alignment(r) && good && good_layers;
+}
+
+// 6.11 bones_of_gof( )
+bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
+                 GofHeaderCheck& gof) {
+  std::uint32_t temporal_layers = 1;
+  const bool good = header.profile_idc < kProfileHigh || check_levels(r, temporal_layers);
+  const bool good_rig = check_rig(r, header, num_layers, gof.slices);
+  if (gof.slices) gof.slices->temporal_layers = temporal_layers;
+  return good && good_rig;
 }
 
 // Nothing if it could not be read, or is of a later version.
@@ -267,8 +288,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
       gof.section_readable = check_clusters(r, header);
       break;
     case GofKind::kSkinned:
-      if (header.profile_idc >= kProfileHigh) (void)r.u(3, "track_levels");
-      gof.section_readable = check_rig(r, header, num_layers, gof.slices);
+      gof.section_readable = check_bones(r, header, num_layers, gof);
       break;
     case GofKind::kTracks:
       gof.section_readable = check_tracks(r, models, gof);
@@ -290,10 +310,19 @@ ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& head
 
 // 6.12 slice_unit( )
 bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
+  bool good = true;
+  std::int64_t temporal_layer = 0;
+  if (slices.temporal_layers > 1) {
+    temporal_layer = r.u(3, "temporal_layer_idx");
+    good =
+        r.require(temporal_layer < slices.temporal_layers, "R-SLI-01",
+                  "the GOF has " + std::to_string(slices.temporal_layers) + " temporal layers");
+  }
   const std::int64_t group = r.ue("component_group_idx");
-  bool good =
+  good &=
       r.require(group <= slices.component_groups, "R-SLI-01",
                 "the GOF has " + std::to_string(slices.component_groups) + " component groups");
+  if (temporal_layer > 0) return good && r.readable();
   const std::int64_t layers = r.ue("layer_group_idx");
   good &= r.require(layers < slices.layer_groups, "R-SLI-01",
                     "the GOF has " + std::to_string(slices.layer_groups) + " layer groups");

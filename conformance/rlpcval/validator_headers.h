@@ -27,6 +27,7 @@ HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor)
 struct SliceCounts {
   std::uint32_t component_groups = 0;  // and the influences, which are not factors
   std::uint32_t layer_groups = 1;
+  std::uint32_t temporal_layers = 1;
 };
 
 struct GofHeaderCheck {

@@ -85,12 +85,29 @@ TEST(Settings, OfTheHighProfileAreRefusedInTheMainProfile) {
   for (const Parameter& p : std::vector<Parameter>{
            {"--adaptive-factors", [](auto& s) { s.main.adaptive_factors = 4; }},
            {"--rest", [](auto& s) { s.main.rest = RestTools::kOrder; }},
-           {"--track-levels", [](auto& s) { s.main.track_levels = 2; }}}) {
+           {"--track-levels", [](auto& s) { s.main.track_levels = 2; }},
+           {"--temporal-layers", [](auto& s) { s.main.temporal_layers = 2; }}}) {
     EXPECT_EQ(error_of([&](auto& s) { s.profile = Profile::kHigh, p.give(s); }), "");
     EXPECT_EQ(
         error_of([&](auto& s) { s.profile = Profile::kMain, p.give(s); }),
         std::string(p.option) + " needs --profile high: use that, or leave out " + p.option);
   }
+}
+
+TEST(Settings, TemporalLayersNeedLevels) {
+  const auto error = [](std::optional<std::uint32_t> levels, std::uint32_t layers) {
+    return error_of([&](auto& s) {
+      s.profile = Profile::kHigh;
+      s.main.track_levels = levels;
+      s.main.temporal_layers = layers;
+    });
+  };
+  EXPECT_EQ(error({}, 8), "");
+  EXPECT_EQ(error(2, 3), "");
+  EXPECT_EQ(error(0, 1), "");
+  EXPECT_NE(error({}, 9).find("1 to 8 temporal layers"), std::string::npos);
+  EXPECT_NE(error(2, 4).find("1 to 3 temporal layers"), std::string::npos);
+  EXPECT_NE(error({}, 0).find("(--temporal-layers)"), std::string::npos);
 }
 
 TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {

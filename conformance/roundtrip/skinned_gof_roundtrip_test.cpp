@@ -243,7 +243,7 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
   int illegal = 0;
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
-    const RandomSkinnedGof from(seed, {});
+    const RandomSkinnedGof from(seed, {.temporal_layers = false});
     const SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
     std::vector<std::uint32_t> kept(from.gof.slice_layers.size(), 0);
@@ -293,6 +293,71 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
   }
   EXPECT_GT(legal, 200);
   EXPECT_GT(illegal, 200);
+}
+
+// The residuals of a track that belong to the first `layers` temporal layers besides the first.
+TrackResiduals with_layers(const SkinnedGof& gof, const TrackResiduals& residuals, int between,
+                           std::uint32_t layers) {
+  TrackResiduals left(residuals.size());
+  for (int layer = 0; layer <= static_cast<int>(layers) && !left.empty(); ++layer) {
+    for (const TrackPlace& at : places_of_layer(track_frames(gof), between, layer)) {
+      left[at.frame] = residuals[at.frame];
+    }
+  }
+  return left;
+}
+
+// 8.14.1: slices of temporal layers may be left out as long as the lower layers of each one's
+// component group, and the same layer of the group before, stay.
+TEST(SkinnedGofParser, TemporalLayersCanBeLeftOutWhereNothingNeedsThem) {
+  int legal = 0;
+  int illegal = 0;
+  for (unsigned seed = 1; seed <= 6000; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomSkinnedGof from(seed, {.max_vertices = 12, .max_frames = 20});
+    if (from.gof.num_temporal_layers == 1) continue;
+    const SkinnedGofPayloads payloads = payloads_of(from);
+    std::mt19937 random(seed);
+    Reading reading(from);
+    ASSERT_FALSE(reading.gof(payloads.first));
+    std::vector<std::uint32_t> kept(from.gof.temporal_layers.size(), 0);
+    bool is_legal = true;
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < payloads.slices.size() && is_legal; ++i) {
+      const std::uint32_t layer = payloads.temporal_layer_idx[i];
+      group = layer > 0 && payloads.temporal_layer_idx[i - 1] == layer ? group + 1 : 0;
+      if (layer > 0 && random() % 6 == 0) continue;
+      if (layer > 0) {
+        is_legal = kept[group] + 1 == layer && (group == 0 || kept[group - 1] >= layer);
+        kept[group] = layer;
+      }
+      const auto error = reading.slice(payloads.slices[i]);
+      ASSERT_EQ(is_legal, !error) << text_of(error);
+      if (error) {
+        EXPECT_EQ(std::string(error->rule), "R-SLI-02");
+      }
+    }
+    ++(is_legal ? legal : illegal);
+    if (!is_legal) continue;
+    const SkinnedGof cut = reading.finish();
+    EXPECT_EQ(cut.temporal_layers, kept);
+    for (std::size_t b = 0; b < cut.bones.size(); ++b) {
+      const Bone& bone = from.gof.bones[b];
+      EXPECT_EQ(cut.bones[b].rotation_residual,
+                with_layers(cut, bone.rotation_residual, bone.rotation_between, kept[0]));
+      EXPECT_EQ(cut.bones[b].origin_residual,
+                with_layers(cut, bone.origin_residual, bone.origin_between, kept[0]));
+    }
+    for (std::size_t g = 1; g < cut.group_end.size(); ++g) {
+      for (std::size_t l = cut.group_end[g - 1]; l < cut.group_end[g]; ++l) {
+        const Trajectory& t = from.gof.trajectories[l - kRestFactors];
+        EXPECT_EQ(cut.trajectories[l - kRestFactors].residual,
+                  with_layers(cut, t.residual, t.temporal_between, kept[g]));
+      }
+    }
+  }
+  EXPECT_GT(legal, 100);
+  EXPECT_GT(illegal, 100);
 }
 
 TEST(SkinnedGofParser, RefusesSlicesInAnotherOrder) {

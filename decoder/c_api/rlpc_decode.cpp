@@ -82,6 +82,7 @@ rlpc_decode_options default_options() {
   options.threads = usual.threads;
   options.max_components = SliceCut::kAll;
   options.max_layers = SliceCut::kAll;
+  options.max_temporal_layers = SliceCut::kAll;
   return options;
 }
 
@@ -91,7 +92,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
                     given.max_memory_bytes};
   options.verify_hashes = given.verify_hashes != 0;
   options.threads = given.threads;
-  options.cut = {given.max_components, given.max_layers};
+  options.cut = {given.max_components, given.max_layers, given.max_temporal_layers};
   return options;
 }
 

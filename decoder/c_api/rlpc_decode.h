@@ -59,6 +59,9 @@ typedef struct rlpc_decode_options {
   // handle is closed. Null: allocated by the library.
   void* place;
   size_t place_bytes;
+  // High profile: only the first temporal layers, 1 or more; all frames are there. RLPC_ALL:
+  // all.
+  uint32_t max_temporal_layers;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {

@@ -154,8 +154,9 @@ void ClusterSectionParser::seed_tracks() {
   const std::vector<TrackPlace> order = track_order(gof_.num_frames, 0, 0);
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
-    track.residual =
-        parse_track(section_, {&models_.seed, 1}, frame_mean_, order, "seed_residual");
+    track.residual.assign(gof_.num_frames, {});
+    parse_track(section_, {&models_.seed, 1}, frame_mean_, order, track.residual,
+                "seed_residual");
     section_.check_overrun("seed_residual");
   }
 }

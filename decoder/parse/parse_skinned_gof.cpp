@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "decoder/parse/bone_parser.h"
 #include "decoder/parse/parse_slice.h"
-#include "decoder/parse/parse_track.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
@@ -22,74 +22,6 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
              3 * std::uint64_t{level.max_vertices} <=
          level.max_gof_factors;
 }));
-
-// 6.11.2 Bone
-class BoneParser {
- public:
-  BoneParser(SectionReader& section, const SequenceHeader& header, const SkinnedGof& gof)
-      : section_(section),
-        header_(header),
-        gof_(gof),
-        rotation_mean_(gof.num_frames, 0),
-        origin_mean_(gof.num_frames, 0) {}
-
-  // bone( b )
-  Bone bone(std::uint32_t b) {
-    Bone bone;
-    if (b > 0) {
-      const std::uint32_t parent_plus1 = section_.bypass(ceil_log2(b + 1), "bone_parent_plus1");
-      if (parent_plus1 > b) section_.fail("R-BON-04", "bone_parent_plus1");
-      bone.parent = static_cast<std::int32_t>(std::min(parent_plus1, b)) - 1;
-    }
-    for (std::int32_t& x : bone.pivot) {
-      const std::uint32_t value = section_.bypass(header_.position_bits + 5, "bone_pivot");
-      x = static_cast<std::int32_t>(value) - (1 << (header_.position_bits + 4));
-    }
-    bone.rotation_flag = section_.bin(models_.rotation_flag, "rotation_flag");
-    bone.origin_flag = section_.bin(models_.origin_flag, "origin_flag");
-    return bone;
-  }
-
-  // bone_tracks( b )
-  void tracks(Bone& bone) {
-    if (bone.rotation_flag) {
-      bone.rotation_step_idx = step_idx("rotation_step_idx");
-      bone.rotation_order =
-          section_.truncated_unary(models_.rotation_order, "rotation_order_minus1") + 1;
-      bone.rotation_between = between(models_.rotation_between, "rotation_between");
-      bone.rotation_residual = parse_track(section_, models_.rotation, rotation_mean_,
-                                           order(bone.rotation_between), "rotation_residual");
-    }
-    if (bone.origin_flag) {
-      bone.origin_step_idx = step_idx("origin_step_idx");
-      bone.origin_order = section_.truncated_unary(models_.origin_order, "origin_order");
-      bone.origin_between = between(models_.origin_between, "origin_between");
-      bone.origin_residual = parse_track(section_, models_.origin, origin_mean_,
-                                         order(bone.origin_between), "origin_residual");
-    }
-  }
-
- private:
-  std::uint32_t step_idx(const char* element) {
-    const std::uint32_t idx = section_.bypass(8, element);
-    if (idx > kMaxStepIdx) section_.fail("R-BON-05", element);
-    return std::min(idx, kMaxStepIdx);
-  }
-
-  int between(std::array<BitModel, kMaxBetween>& models, const char* element) {
-    return gof_.track_levels > 0 ? section_.truncated_unary(models, element) : 0;
-  }
-  std::vector<TrackPlace> order(int between) const {
-    return track_order(gof_.num_frames, gof_.track_levels, between);
-  }
-
-  SectionReader& section_;
-  const SequenceHeader& header_;
-  const SkinnedGof& gof_;
-  BoneModels models_;
-  std::vector<std::uint32_t> rotation_mean_;
-  std::vector<std::uint32_t> origin_mean_;
-};
 
 }  // namespace
 
@@ -169,7 +101,7 @@ void SkinnedGofParser::bone_section(BitReader& r) {
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
     gof_.bones[b] = parser.bone(b);
     if (has_tracks) parser.tracks(gof_.bones[b]);
-    section.check_overrun(has_tracks ? "origin_residual" : "origin_flag");
+    parser.check_overrun(has_tracks);
   }
   section.finish();
 }
@@ -183,7 +115,7 @@ void SkinnedGofParser::track_section(BitReader& r) {
   BoneParser parser(section, header_, gof_);
   for (Bone& bone : gof_.bones) {
     parser.tracks(bone);
-    section.check_overrun("origin_residual");
+    parser.check_overrun();
     if (section.failed()) return;
   }
   section.finish();
@@ -196,6 +128,7 @@ void SkinnedGofParser::SliceState::start(std::uint32_t num_frames, std::uint32_t
   trajectory_mean.assign(num_frames, 0);
   contexts.reset();
   last_group = 0;
+  last_temporal_layer = 0;
 }
 
 // 6.11 rig_header( )
@@ -230,14 +163,26 @@ Result<bool> SkinnedGofParser::rig(BitReader& r) {
   kept_.end_component_group = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
   kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
+  start_temporal_layers();
   gof_.influences.assign(header_.num_vertices, {});
   gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
   if (gof_.rest.counterparts_flag) gof_.counterparts.resize(header_.num_vertices);
   return true;
 }
 
-void SkinnedGofParser::track_levels(BitReader& r) {
+// 6.11 levels_of_tracks( )
+void SkinnedGofParser::levels_of_tracks(BitReader& r) {
   gof_.track_levels = static_cast<int>(r.u(3, "track_levels"));
+  if (gof_.track_levels == 0) return;
+  gof_.num_temporal_layers = static_cast<int>(r.u(3, "num_temporal_layers_minus1",
+                                                  {0, gof_.track_levels}, "R-TRK-01")) +
+                             1;
+}
+
+// 8.14.1 StartTemporalLayers( )
+void SkinnedGofParser::start_temporal_layers() {
+  if (gof_.num_temporal_layers > 1) gof_.temporal_layers.assign(gof_.slice_layers.size(), 0);
+  kept_.end_temporal_layer = cut_.max_temporal_layers;
 }
 
 // 6.11 bones_of_gof( )
@@ -248,7 +193,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
   unit_ = Unit::kGof;
   num_factors_ = 0;
   uncounted_factors_ = models.num_factors(kMaxModels);
-  if (header_.profile_idc >= kProfileHigh) track_levels(r);
+  if (header_.profile_idc >= kProfileHigh) levels_of_tracks(r);
   return rig(r);
 }
 
@@ -275,7 +220,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   if (!r.error() && !gof_.model) r.fail(Errc::kUnsupported, "R-MOD-01", "model_idx", at);
   if (r.error()) return *r.error();
   load_model();
-  track_levels(r);
+  levels_of_tracks(r);
   gof_.num_local_groups = r.ue(
       "num_local_groups", {0, kMaxComponentGroups - gof_.num_component_groups}, "R-BON-02");
   r.byte_alignment();
@@ -290,6 +235,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   state_.start(gof_.num_frames, gof_.num_component_groups + 1);
   gof_.slice_layers.assign(std::size_t{num_groups} + 1, 0);
   gof_.slice_layers[0] = gof_.model->slice_layers[0];
+  start_temporal_layers();
   gof_.vertex_residual.emplace_back();
   // Groups that the cut leaves of the skinned model; of a complete one, local groups follow.
   const bool is_complete = gof_.model->group_end.size() == gof_.num_component_groups + 1;
@@ -321,7 +267,15 @@ std::shared_ptr<const SkinnedModel> SkinnedGofParser::finish_model() {
 }
 
 // 8.14.1 MayFollow( group, index )
-bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) const {
+bool SkinnedGofParser::may_follow(const SliceEntry& slice) const {
+  const std::uint32_t group = slice.component_group_idx;
+  const std::uint32_t layers = slice.layer_group_idx;
+  const std::uint32_t temporal = slice.temporal_layer_idx;
+  if (temporal < state_.last_temporal_layer) return false;
+  if (temporal > 0) {
+    return temporal_layers(group) == temporal &&
+           (group == 0 || temporal_layers(group - 1) > temporal);
+  }
   if (group < state_.last_group || layers != gof_.slice_layers[group]) return false;
   if (has_only_tracks(group) &&
       (group == 0 || layers > 0 || gof_.model->slice_layers[group] == 0)) {
@@ -330,35 +284,54 @@ bool SkinnedGofParser::may_follow(std::uint32_t group, std::uint32_t layers) con
   return group == 0 || gof_.slice_layers[group - 1] > layers;
 }
 
-// 6.12 slice_unit( )
-Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
-  const std::uint32_t group =
+// TemporalLayers[ group ] of 8.14.1.
+std::uint32_t SkinnedGofParser::temporal_layers(std::uint32_t group) const {
+  const bool has_first = group == 0 || gof_.slice_layers[group] > 0;
+  return has_first ? 1 + gof_.temporal_layers[group] : 0;
+}
+
+// 6.12 slice_unit( ), to its section
+SliceEntry SkinnedGofParser::slice_header(BitReader& r) const {
+  SliceEntry slice;
+  if (gof_.num_temporal_layers > 1) {
+    slice.temporal_layer_idx =
+        r.u(3, "temporal_layer_idx", {0, gof_.num_temporal_layers - 1}, "R-SLI-01");
+  }
+  slice.component_group_idx =
       r.ue("component_group_idx", {0, gof_.num_component_groups + gof_.num_local_groups},
            "R-SLI-01");
-  const std::uint32_t layers =
-      r.ue("layer_group_idx", {0, static_cast<std::int64_t>(gof_.layer_group_size.size()) - 1},
-           "R-SLI-01");
+  if (slice.temporal_layer_idx == 0) {
+    const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
+    slice.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-SLI-01");
+  }
+  return slice;
+}
+
+// 6.12 slice_unit( )
+Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
+  SliceEntry slice = slice_header(r);
   if (r.error()) return *r.error();
   last_slice_.reset();
-  if (!kept_.has(group, layers)) {
+  if (!kept_.has(slice)) {
     gof_.is_cut = true;
     return true;
   }
-  if (!may_follow(group, layers)) {
+  if (!may_follow(slice)) {
     r.fail(Errc::kInvalid, "R-SLI-02", "slice_unit", unit_bit_pos);
   }
   r.byte_alignment();
   if (r.error()) return *r.error();
   const std::size_t trajectories_before = gof_.trajectories.size();
-  SliceParser(*this, r, group, layers).parse();
+  SliceParser(*this, r, slice).parse();
   if (r.error()) return *r.error();
   // The number of trajectories in a group is known only from its slice.
-  if (group >= kept_.end_component_group) {
+  if (slice.component_group_idx >= kept_.end_component_group) {
     gof_.is_cut = true;
     return true;
   }
   const std::size_t count = gof_.trajectories.size() - trajectories_before;
-  last_slice_ = SliceEntry{group, layers, static_cast<std::uint32_t>(count), 0};
+  slice.num_trajectories = static_cast<std::uint32_t>(count);
+  last_slice_ = slice;
   return true;
 }
 

@@ -63,7 +63,8 @@ class SkinnedGofParser {
 
   Result<bool> rig(BitReader& r);
   void rig_header(BitReader& r);
-  void track_levels(BitReader& r);
+  void levels_of_tracks(BitReader& r);
+  void start_temporal_layers();
   void layers(BitReader& r);
   void rest(BitReader& r);
   void load_model();
@@ -74,11 +75,18 @@ class SkinnedGofParser {
   bool has_only_tracks(std::uint32_t group) const {
     return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
   }
+  // The trajectories of a component group of the GOF or of its skinned model, from 1 on.
+  FactorGroup tracks_of(std::uint32_t group) const {
+    return has_only_tracks(group) ? factor_group(*gof_.model, group)
+                                  : factor_group(gof_, own_group(group));
+  }
   // Index of a component group among those that have vertices here.
   std::size_t own_group(std::uint32_t group) const {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
-  bool may_follow(std::uint32_t group, std::uint32_t layers) const;
+  std::uint32_t temporal_layers(std::uint32_t group) const;
+  SliceEntry slice_header(BitReader& r) const;
+  bool may_follow(const SliceEntry& slice) const;
 
   const SequenceHeader& header_;
   const CodedMeshes& meshes_;
@@ -101,14 +109,18 @@ class SkinnedGofParser {
     std::unique_ptr<VertexModels> models_of_group;
     std::optional<VertexContexts> contexts;  // of the current group
     std::uint32_t last_group = 0;
+    std::uint32_t last_temporal_layer = 0;
   };
   SliceState state_;
   // Groups from these on are dropped.
   struct CutGroups {
     std::uint32_t end_component_group = 0;
     std::uint32_t end_layer_group = 0;
-    bool has(std::uint32_t group, std::uint32_t layers) const {
-      return group < end_component_group && layers < end_layer_group;
+    std::uint32_t end_temporal_layer = 0;
+    bool has(const SliceEntry& slice) const {
+      return slice.component_group_idx < end_component_group &&
+             slice.layer_group_idx < end_layer_group &&
+             slice.temporal_layer_idx < end_temporal_layer;
     }
   };
   CutGroups kept_;

@@ -214,6 +214,26 @@ TEST(ParseSkinnedGofRanges, TracksTakeAllOrders) {
   }
 }
 
+TEST(ParseSkinnedGofRanges, TemporalLayersAreAtMostOneMoreThanLevels) {
+  for (std::uint32_t levels = 0; levels <= 7; ++levels) {
+    for (std::uint32_t layers_minus1 = 0; layers_minus1 <= 7; ++layers_minus1) {
+      SkinnedGofRecipe recipe;
+      recipe.num_gof_frames_minus1 = 20;
+      recipe.track_levels = levels;
+      recipe.num_temporal_layers_minus1 = layers_minus1;
+      const Gof parsed(recipe);
+      if (levels == 0 || layers_minus1 <= levels) {
+        ASSERT_TRUE(parsed.parsed) << levels << " " << layers_minus1;
+        EXPECT_EQ(parsed.gof.num_temporal_layers,
+                  levels == 0 ? 1 : static_cast<int>(layers_minus1) + 1);
+      } else {
+        ASSERT_FALSE(parsed.parsed) << levels << " " << layers_minus1;
+        EXPECT_EQ(std::string(parsed.parsed.error().rule), "R-TRK-01");
+      }
+    }
+  }
+}
+
 // Slices of a mesh without triangles. Vertices of one layer; bones beyond the first are extra.
 class Slices {
  public:

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "decoder/parse/bone_parser.h"
 #include "decoder/parse/parse_component_header.h"
 #include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/parse_track.h"
@@ -93,10 +94,42 @@ void SkinnedGofParser::SliceParser::trajectory(Trajectory& trajectory) {
     trajectory.temporal_between =
         section_.truncated_unary(state_.models.temporal_between, "temporal_between");
   }
-  trajectory.residual =
-      parse_track(section_, state_.models.trajectory, state_.trajectory_mean,
-                  track_order(gof_.num_frames, gof_.track_levels, trajectory.temporal_between),
-                  "trajectory_residual");
+  trajectory.residual.assign(gof_.num_frames, {});
+  trajectory_residuals(trajectory);
+}
+
+// 6.12.1 trajectory_residuals( layer )
+void SkinnedGofParser::SliceParser::trajectory_residuals(Trajectory& trajectory) {
+  parse_track(section_, state_.models.trajectory, state_.trajectory_mean,
+              places_of_layer(track_frames(gof_), trajectory.temporal_between,
+                              static_cast<int>(temporal_layer_)),
+              trajectory.residual, "trajectory_residual");
+}
+
+// 6.12.5 temporal_slice( )
+void SkinnedGofParser::SliceParser::temporal_slice() {
+  if (group_ == 0) {
+    // 9.8.1 StartTemporalLayer( )
+    state_.models.trajectory = {};
+    std::fill(state_.trajectory_mean.begin(), state_.trajectory_mean.end(), 0);
+    BoneParser parser(section_, parser_.header_, gof_);
+    for (Bone& bone : gof_.bones) {
+      parser.layer(bone, static_cast<int>(temporal_layer_));
+      parser.check_overrun();
+      if (failed()) return;
+    }
+  } else {
+    const FactorGroup of_group = parser_.tracks_of(group_);
+    for (std::size_t l = of_group.first; l < of_group.end && !failed(); ++l) {
+      Trajectory& trajectory = gof_.trajectories[l - kRestFactors];
+      if (trajectory.trajectory_flag) trajectory_residuals(trajectory);
+      section_.check_overrun("trajectory_residual");
+    }
+  }
+  section_.finish();
+  // 9.8.1 EndTemporalSlice( )
+  gof_.temporal_layers[group_] = temporal_layer_;
+  state_.last_temporal_layer = temporal_layer_;
 }
 
 // 9.8.1 StartSlice( )
@@ -163,6 +196,7 @@ void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
 }
 
 void SkinnedGofParser::SliceParser::parse() {
+  if (temporal_layer_ > 0) return temporal_slice();
   if (parser_.has_only_tracks(group_)) {
     tracks_of_group();
     section_.finish();

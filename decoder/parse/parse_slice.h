@@ -12,13 +12,14 @@ namespace rlpc {
 
 class SkinnedGofParser::SliceParser {
  public:
-  SliceParser(SkinnedGofParser& parser, BitReader& r, std::uint32_t group, std::uint32_t layers)
+  SliceParser(SkinnedGofParser& parser, BitReader& r, const SliceEntry& slice)
       : parser_(parser),
         gof_(parser.gof_),
         state_(parser.state_),
         section_(r, "slice_section"),
-        group_(group),
-        layers_(layers) {}
+        group_(slice.component_group_idx),
+        layers_(slice.layer_group_idx),
+        temporal_layer_(slice.temporal_layer_idx) {}
 
   void parse();
 
@@ -29,6 +30,8 @@ class SkinnedGofParser::SliceParser {
   void tracks_of_group();
   void group_components();
   void trajectory(Trajectory& trajectory);
+  void trajectory_residuals(Trajectory& trajectory);
+  void temporal_slice();
   void start();
   void influences(std::uint32_t v, InfluencePrediction& prediction);
   void spatial_residuals(std::uint32_t v);
@@ -39,6 +42,7 @@ class SkinnedGofParser::SliceParser {
   SectionReader section_;
   std::uint32_t group_;
   std::uint32_t layers_;
+  std::uint32_t temporal_layer_;
 };
 
 }  // namespace rlpc

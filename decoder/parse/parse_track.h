@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/components/track_models.h"
 #include "common/mesh/mesh.h"
@@ -14,12 +13,12 @@
 namespace rlpc {
 
 // frame_mean [num_gof_frames]: running means, kept from track to track. models: of level 0,
-// and of the others if `order` has any. One residual of three coordinates per frame.
-inline std::vector<Vec3i> parse_track(SectionReader& section, std::span<ResidualModels> models,
-                                      std::span<std::uint32_t> frame_mean,
-                                      std::span<const TrackPlace> order, const char* element) {
-  std::vector<Vec3i> residuals(frame_mean.size());
-  if (section.failed()) return residuals;
+// and of the others if `order` has any. residuals [num_gof_frames]: set at the places of
+// `order`.
+inline void parse_track(SectionReader& section, std::span<ResidualModels> models,
+                        std::span<std::uint32_t> frame_mean, std::span<const TrackPlace> order,
+                        std::span<Vec3i> residuals, const char* element) {
+  if (section.failed()) return;
   TrackContext context(frame_mean);
   for (const TrackPlace& at : order) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -29,7 +28,6 @@ inline std::vector<Vec3i> parse_track(SectionReader& section, std::span<Residual
       context.update(at, c, residual);
     }
   }
-  return residuals;
 }
 
 }  // namespace rlpc

@@ -48,8 +48,23 @@ std::uint64_t sum(const PartSizes& bits) {
   return total;
 }
 
+// A row per temporal layer but the first: its slices together.
+std::string temporal_layer_rows(const SlicedSummary& summary) {
+  std::string html;
+  for (std::uint32_t layer = 1; layer < summary.num_temporal_layers(); ++layer) {
+    const std::uint64_t with =
+        summary.totals({SliceCut::kAll, SliceCut::kAll, layer + 1}).bytes;
+    const std::uint64_t without = summary.totals({SliceCut::kAll, SliceCut::kAll, layer}).bytes;
+    html += "<tr>" + cell("temporal layer " + std::to_string(layer)) +
+            cell(grouped_text(with - without));
+    for (std::size_t i = 1; i < summary.layer_group_size.size(); ++i) html += cell("");
+    html += cell(grouped_text(with)) + "</tr>\n";
+  }
+  return html;
+}
+
 // A row per component group, a column per layer group, and the size of the GOF or skinned model
-// when cut after each of them.
+// when cut after each of them; and a row per temporal layer.
 template <class Summary>
 std::string slice_table(const Summary& summary, const std::string& to_here) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
@@ -60,13 +75,15 @@ std::string slice_table(const Summary& summary, const std::string& to_here) {
   html += "<th>" + to_here + "</th></tr></thead>\n";
   // From 1 in a GOF that uses a skinned model.
   std::uint32_t group = summary.slices.front().component_group_idx;
-  for (auto slice = summary.slices.begin(); slice != summary.slices.end(); ++group) {
+  const auto end = std::find_if(summary.slices.begin(), summary.slices.end(),
+                                [](const SliceEntry& s) { return s.temporal_layer_idx > 0; });
+  for (auto slice = summary.slices.begin(); slice != end; ++group) {
     html += "<tr>";
     html += cell(group == 0 ? "influences, rest positions"
                             : "group " + std::to_string(group) +
                                   ", trajectories: " + std::to_string(slice->num_trajectories));
     for (std::size_t layers = 0; layers < columns; ++layers) {
-      const bool present = slice != summary.slices.end() && slice->component_group_idx == group;
+      const bool present = slice != end && slice->component_group_idx == group;
       html += cell(present ? grouped_text(slice->bytes) : "");
       if (present) ++slice;
     }
@@ -76,7 +93,7 @@ std::string slice_table(const Summary& summary, const std::string& to_here) {
   for (std::uint32_t layers = 0; layers < columns; ++layers) {
     html += cell(grouped_text(summary.totals({SliceCut::kAll, layers + 1}).bytes));
   }
-  return html + cell("") + "</tr>\n</table></div>\n";
+  return html + cell("") + "</tr>\n" + temporal_layer_rows(summary) + "</table></div>\n";
 }
 
 std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>& series) {

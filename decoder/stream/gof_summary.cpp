@@ -1,5 +1,6 @@
 #include "decoder/stream/gof_summary.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
@@ -20,6 +21,11 @@ void add_kind(const ClusterGof& gof, GofSummary& summary) {
                       static_cast<std::uint32_t>(num_components)}};
 }
 
+GofFigure temporal_layers_of(const SkinnedGof& gof) {
+  return {"num_temporal_layers", "temporal layer", "temporal layers",
+          static_cast<std::uint32_t>(gof.num_temporal_layers), true};
+}
+
 // What has vertices in a GOF of bones or skinned model.
 void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
   summary.layer_group_size = rig.layer_group_size;
@@ -34,12 +40,17 @@ void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
 }
 
 void add_kind(const SkinnedGof& gof, GofSummary& summary) {
-  if (!gof.model) return add_rig(gof, summary);
+  if (!gof.model) {
+    add_rig(gof, summary);
+    summary.figures.push_back(temporal_layers_of(gof));
+    return;
+  }
   summary.layer_group_size = gof.layer_group_size;
   summary.figures = {
       {"num_trajectories", "trajectory", "trajectories", size_of(gof.trajectories)},
       {"num_local_groups", nullptr, nullptr, gof.num_local_groups},
-      {"num_slices", "slice", "slices", size_of(summary.slices)}};
+      {"num_slices", "slice", "slices", size_of(summary.slices)},
+      temporal_layers_of(gof)};
 }
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:
@@ -106,6 +117,14 @@ std::uint32_t SlicedSummary::figure(std::string_view key) const {
   return 0;
 }
 
+std::uint32_t SlicedSummary::num_groups() const {
+  std::uint32_t groups = 0;
+  for (const SliceEntry& slice : slices) {
+    groups = std::max(groups, slice.component_group_idx + 1);
+  }
+  return groups;
+}
+
 SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
   SliceTotals totals;
   totals.bytes = bytes;
@@ -114,7 +133,9 @@ SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
     totals.num_slices += 1;
     totals.num_trajectories += slice.num_trajectories;
     totals.bytes += slice.bytes;
-    if (slice.component_group_idx == 0) {
+    totals.num_temporal_layers =
+        std::max(totals.num_temporal_layers, slice.temporal_layer_idx + 1);
+    if (slice.component_group_idx == 0 && slice.temporal_layer_idx == 0) {
       totals.num_layers += layer_group_size[slice.layer_group_idx];
     }
   }
@@ -141,8 +162,9 @@ SliceTotals GofSummary::totals(const SliceGroups& groups) const {
 SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
   std::uint64_t trajectories = 0;
+  if (model) groups = model->groups_that_stay(cut);
+  groups.temporal_layers = cut.max_temporal_layers;
   if (model) {
-    groups = model->groups_that_stay(cut);
     if (groups.component_groups <= model->num_component_groups) return groups;
     trajectories = model->totals(groups).num_trajectories;
   }

@@ -18,13 +18,15 @@
 namespace rlpc {
 
 // The leading component groups of a GOF or skinned model, including that of the rest positions,
-// and its leading layer groups.
+// its leading layer groups, and its first temporal layers.
 struct SliceGroups {
   std::uint32_t component_groups = SliceCut::kAll;
   std::uint32_t layer_groups = SliceCut::kAll;
+  std::uint32_t temporal_layers = SliceCut::kAll;
 
   bool have(const SliceEntry& slice) const {
-    return slice.component_group_idx < component_groups && slice.layer_group_idx < layer_groups;
+    return slice.component_group_idx < component_groups &&
+           slice.layer_group_idx < layer_groups && slice.temporal_layer_idx < temporal_layers;
   }
 };
 
@@ -33,16 +35,18 @@ struct SliceTotals {
   std::size_t num_slices = 0;
   std::uint32_t num_trajectories = 0;
   std::uint32_t num_layers = 0;  // layers with residuals of rest positions
-  std::uint64_t bytes = 0;       // of the GOF or skinned model unit and of slice units
+  std::uint32_t num_temporal_layers = 1;
+  std::uint64_t bytes = 0;  // of the GOF or skinned model unit and of slice units
 };
 
 // A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
-// JSON.
+// JSON. only_many: shown in JSON, and elsewhere if it is greater than 1.
 struct GofFigure {
   const char* key;  // in JSON
   const char* one;
   const char* many;
   std::uint32_t value;
+  bool only_many = false;
 };
 
 // A GOF or skinned model.
@@ -59,8 +63,10 @@ struct SlicedSummary {
   std::vector<SliceEntry> slices;
 
   // Component groups up to the last that has a slice, including that of the rest positions.
-  std::uint32_t num_groups() const {
-    return slices.empty() ? 0 : slices.back().component_group_idx + 1;
+  std::uint32_t num_groups() const;
+  // Temporal layers up to the last that has a slice.
+  std::uint32_t num_temporal_layers() const {
+    return slices.empty() ? 1 : slices.back().temporal_layer_idx + 1;
   }
   SliceTotals totals(const SliceGroups& groups) const;
 };

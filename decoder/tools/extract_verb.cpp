@@ -53,6 +53,7 @@ std::string name_of(const ModelSummary& model) {
 nlohmann::ordered_json json_of(const SliceTotals& totals) {
   return {{"num_trajectories", totals.num_trajectories},
           {"num_layers", totals.num_layers},
+          {"num_temporal_layers", totals.num_temporal_layers},
           {"num_slices", totals.num_slices},
           {"bytes", totals.bytes}};
 }
@@ -90,14 +91,21 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
+// Of a GOF with temporal layers.
+std::string temporal_text(const SliceTotals& before, const SliceTotals& after) {
+  if (before.num_temporal_layers == 1) return {};
+  return std::to_string(after.num_temporal_layers) + " of " +
+         std::to_string(before.num_temporal_layers) + " temporal layers, ";
+}
+
 // What stays of a GOF or skinned model with vertices.
 void print_cut(const ExtractOptions& o, const std::string& name, const SliceTotals& before,
                const SliceTotals& after) {
-  std::printf("  %s: %u of %u trajectories, %u of %u layers, %zu of %zu slices, %" PRIu64
+  std::printf("  %s: %u of %u trajectories, %u of %u layers, %s%zu of %zu slices, %" PRIu64
               " of %" PRIu64 " bytes\n",
               name.c_str(), after.num_trajectories, before.num_trajectories, after.num_layers,
-              before.num_layers, after.num_slices, before.num_slices, after.bytes,
-              before.bytes);
+              before.num_layers, temporal_text(before, after).c_str(), after.num_slices,
+              before.num_slices, after.bytes, before.bytes);
   if (after.num_trajectories == 0 && before.num_trajectories > 0 && o.cut.max_components > 0) {
     std::printf(
         "    no group has %u trajectories or fewer: only bones and rest shape are kept\n",
@@ -127,11 +135,11 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
       std::printf("  %s: %s GOF, %" PRIu64 " bytes, kept whole\n", name.c_str(),
                   kind_name(gof.kind), gof.bytes);
     } else if (gof.model) {
-      std::printf("  %s, tracks of %s: %u of %u trajectories, %zu of %zu slices, %" PRIu64
+      std::printf("  %s, tracks of %s: %u of %u trajectories, %s%zu of %zu slices, %" PRIu64
                   " of %" PRIu64 " bytes\n",
                   name.c_str(), name_of(*gof.model).c_str(), after.num_trajectories,
-                  before.num_trajectories, after.num_slices, before.num_slices, after.bytes,
-                  before.bytes);
+                  before.num_trajectories, temporal_text(before, after).c_str(),
+                  after.num_slices, before.num_slices, after.bytes, before.bytes);
     } else {
       print_cut(o, name, before, after);
     }
@@ -156,6 +164,8 @@ std::optional<SliceCut> parse_slice_cut(const std::string& text) {
       cut.max_components = *count;
     } else if (name == "layers" && cut.max_layers == SliceCut::kAll && *count > 0) {
       cut.max_layers = *count;
+    } else if (name == "temporal" && cut.max_temporal_layers == SliceCut::kAll && *count > 0) {
+      cut.max_temporal_layers = *count;
     } else {
       return std::nullopt;
     }

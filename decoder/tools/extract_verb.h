@@ -8,7 +8,8 @@
 
 namespace rlpc {
 
-// "components=K", "layers=L" or both with a comma between them: K is 0 or more, L 1 or more.
+// "components=K", "layers=L", "temporal=N", or several of them with commas between them: K is 0
+// or more, L and N are 1 or more.
 std::optional<SliceCut> parse_slice_cut(const std::string& text);
 
 struct ExtractOptions {

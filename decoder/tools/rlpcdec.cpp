@@ -51,8 +51,8 @@ is needed: rlpd or glb; of a single frame also obj or ply.
 a network. scripts/player builds the player that it needs.
 
 Fewer components or layers are faster to decode (not Baseline). The result is
-that of decoding after rlpcinfo --extract components=K,layers=L. Cluster GOFs
-have no slices: they are decoded whole.
+that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
+Cluster GOFs have no slices: they are decoded whole.
 
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
@@ -309,6 +309,13 @@ void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
                  "total")
       ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
       ->option_text("L")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kLess);
+  app.add_option("--max-temporal-layers", o.decoder.cut.max_temporal_layers,
+                 "Only the first N temporal layers; the frames between are interpolated")
+      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
+      ->option_text("N")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kLess);

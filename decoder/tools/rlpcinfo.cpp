@@ -36,6 +36,7 @@ without re-encoding. Of each skinned GOF and skinned model, it keeps the leading
 component groups with at most K trajectories in total (0: only bones and rest
 shape), and the coarsest layer groups with at most L vertex layers in total
 (always at least the first).
+Of the temporal layers of a GOF, it keeps the first N; all frames are left.
 Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
 
 --trace prints bit position, name and value of every syntax element.
@@ -120,7 +121,7 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
       ->option_text("SIZE")
       ->group(report);
   auto* extract = app.add_option("--extract", o.extract, "Keep only coarser slices")
-                      ->option_text("components=K,layers=L")
+                      ->option_text("components=K,layers=L,temporal=N")
                       ->group(cut);
   auto* output = app.add_option("-o,--output", o.output,
                                 "With --extract: stream to write; - for standard output")
@@ -154,9 +155,8 @@ int main(int argc, char** argv) try {
   const auto cut = rlpc::parse_slice_cut(options.extract);
   if (!cut) {
     return complain(
-        "--extract: expected components=K, layers=L, or both; K is at least 0 and L at least "
-        "1, "
-        "at most 4294967294; got `" +
+        "--extract: expected components=K, layers=L, temporal=N, or several of them; K is at "
+        "least 0, L and N at least 1, at most 4294967294; got `" +
             options.extract + "`",
         rlpc::kExitUsage);
   }

@@ -26,6 +26,7 @@ void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   for (const SliceEntry& slice : summary.slices) {
     slices.push_back({{"component_group_idx", slice.component_group_idx},
                       {"layer_group_idx", slice.layer_group_idx},
+                      {"temporal_layer_idx", slice.temporal_layer_idx},
                       {"num_trajectories", slice.num_trajectories},
                       {"bytes", slice.bytes}});
   }
@@ -46,6 +47,15 @@ void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   json["cut_to_layers"] = std::move(layers);
 }
 
+// The sizes of a GOF when cut to fewer temporal layers.
+void add_temporal_layers(const GofSummary& gof, nlohmann::ordered_json& json) {
+  for (std::uint32_t layers = 1; layers <= gof.num_temporal_layers(); ++layers) {
+    const SliceTotals cut = gof.totals({SliceCut::kAll, SliceCut::kAll, layers});
+    json["cut_to_temporal_layers"].push_back(
+        {{"temporal_layers", layers}, {"bytes", cut.bytes}});
+  }
+}
+
 nlohmann::ordered_json json_of(const GofSummary& gof) {
   nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
                                  {"num_frames", gof.num_frames}};
@@ -53,6 +63,7 @@ nlohmann::ordered_json json_of(const GofSummary& gof) {
   for (const GofFigure& figure : gof.figures) json[figure.key] = figure.value;
   if (has_slices(gof.kind)) {
     add_slices(gof, json);
+    add_temporal_layers(gof, json);
   } else {
     json["bytes"] = gof.bytes;
   }
@@ -116,10 +127,18 @@ std::string listed(const std::vector<std::string>& parts) {
   return text;
 }
 
+bool is_shown(const Summaries& list, std::size_t place) {
+  if (list[0]->figures[place].many == nullptr) return false;
+  return std::any_of(list.begin(), list.end(), [&](const SlicedSummary* summary) {
+    const GofFigure& figure = summary->figures[place];
+    return !figure.only_many || figure.value > 1;
+  });
+}
+
 void print_figures(const std::string& name, const Summaries& list) {
   std::vector<std::string> ranges;
   for (std::size_t i = 0; i < list[0]->figures.size(); ++i) {
-    if (list[0]->figures[i].many != nullptr) ranges.push_back(range_over(list, i));
+    if (is_shown(list, i)) ranges.push_back(range_over(list, i));
   }
   std::printf("  %s: %zu, with %s each\n", name.c_str(), list.size(), listed(ranges).c_str());
 }
@@ -145,8 +164,19 @@ void print_kinds(const StreamSummary& stream) {
   }
 }
 
+// A row per temporal layer but the first: its slices together.
+void print_temporal_layers(const SlicedSummary& summary) {
+  for (std::uint32_t layer = 1; layer < summary.num_temporal_layers(); ++layer) {
+    const SliceTotals with = summary.totals({SliceCut::kAll, SliceCut::kAll, layer + 1});
+    const SliceTotals without = summary.totals({SliceCut::kAll, SliceCut::kAll, layer});
+    std::printf("  temporal layer %-25u %9" PRIu64, layer, with.bytes - without.bytes);
+    for (std::size_t i = 1; i < summary.layer_group_size.size(); ++i) std::printf(" %9s", "");
+    std::printf(" %12" PRIu64 "\n", with.bytes);
+  }
+}
+
 // A row per component group, a column per layer group, and the size of the GOF or skinned model
-// when cut after each of them.
+// when cut after each of them; and a row per temporal layer.
 template <class Summary>
 void print_slices(const Summary& summary, const char* to_here) {
   std::printf("  %-40s", "layers");
@@ -155,7 +185,7 @@ void print_slices(const Summary& summary, const char* to_here) {
   auto slice = summary.slices.begin();
   for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
     const SliceTotals cut = summary.totals({group + 1, SliceCut::kAll});
-    const bool has_rest = slice->component_group_idx == 0;
+    const bool has_rest = slice->component_group_idx == 0 && slice->temporal_layer_idx == 0;
     if (group == 0 && !has_rest) continue;  // a GOF that uses a skinned model
     const std::string name =
         group == 0 ? "influences, rest positions"
@@ -163,7 +193,9 @@ void print_slices(const Summary& summary, const char* to_here) {
                          ", trajectories: " + std::to_string(slice->num_trajectories);
     std::printf("  %-40s", name.c_str());
     for (std::uint32_t layers = 0; layers < summary.layer_group_size.size(); ++layers) {
-      const bool present = slice != summary.slices.end() && slice->component_group_idx == group;
+      const bool present = slice != summary.slices.end() &&
+                           slice->component_group_idx == group &&
+                           slice->temporal_layer_idx == 0;
       std::printf(" %9s", present ? std::to_string(slice->bytes).c_str() : "");
       if (present) ++slice;
     }
@@ -174,12 +206,13 @@ void print_slices(const Summary& summary, const char* to_here) {
     std::printf(" %9" PRIu64, summary.totals({SliceCut::kAll, layers + 1}).bytes);
   }
   std::printf("\n");
+  print_temporal_layers(summary);
 }
 
 std::vector<std::string> figures_of(const SlicedSummary& summary) {
   std::vector<std::string> figures;
   for (const GofFigure& figure : summary.figures) {
-    if (figure.many == nullptr) continue;
+    if (figure.many == nullptr || (figure.only_many && figure.value <= 1)) continue;
     figures.push_back(counted(figure.value, {figure.one, figure.many}));
   }
   return figures;

@@ -37,6 +37,7 @@ rlpc_encode_options default_options() {
   options.least_level = 1;
   options.max_memory_bytes = defaults.max_memory_bytes;
   options.threads = defaults.threads;
+  options.temporal_layers = defaults.main.temporal_layers;
   return options;
 }
 
@@ -110,6 +111,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   if (options.metadata != nullptr) settings.metadata = options.metadata;
   settings.max_memory_bytes = options.max_memory_bytes;
   settings.threads = options.threads;
+  settings.main.temporal_layers = options.temporal_layers;
   return settings;
 }
 
@@ -176,6 +178,11 @@ void give_report(const EncodeReport& report, rlpc_encode_report* theirs,
   ours.num_gofs = report.num_gofs;
   ours.level = report.header.level_idc;
   ours.target_met = report.target_met ? 1 : 0;
+  static_assert(RLPC_MAX_TEMPORAL_LAYERS == kMaxTrackLevels + 1);
+  for (std::size_t i = 0; i < report.temporal_cuts.size(); ++i) {
+    ours.temporal_cut_bytes[i] = report.temporal_cuts[i].bytes;
+    ours.temporal_cut_kg_error_percent[i] = report.temporal_cuts[i].kg_error_percent;
+  }
   give_struct(ours, theirs, struct_size);
 }
 

@@ -36,6 +36,8 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef struct rlpc_encoder rlpc_encoder;
 
+#define RLPC_MAX_TEMPORAL_LAYERS 8
+
 // Properties of the sequence that must be known before the first frame.
 typedef struct rlpc_frame_format {
   size_t struct_size;             // rlpc_frame_format_init sets it
@@ -89,7 +91,11 @@ typedef struct rlpc_encode_options {
   size_t place_bytes;
   // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB.
   uint64_t max_memory_bytes;
-  uint32_t threads;  // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it
+  uint32_t threads;   // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it
+  uint32_t reserved;  // was padding of earlier versions; not read
+  // High profile: temporal layers, 1 to RLPC_MAX_TEMPORAL_LAYERS, to which the stream can be
+  // cut; default 1, with which it cannot.
+  uint32_t temporal_layers;
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
@@ -102,6 +108,10 @@ typedef struct rlpc_encode_report {
   uint32_t num_gofs;
   uint32_t level;
   uint32_t target_met;  // 1: met in every GOF
+  // Of the stream when cut to its first 1, 2, ... temporal layers, one fewer than it has;
+  // further values are 0.
+  uint64_t temporal_cut_bytes[RLPC_MAX_TEMPORAL_LAYERS - 1];
+  double temporal_cut_kg_error_percent[RLPC_MAX_TEMPORAL_LAYERS - 1];
 } rlpc_encode_report;
 
 // Receives the next bytes of the stream. Returns 0 on success.

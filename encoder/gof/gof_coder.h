@@ -16,6 +16,9 @@ namespace rlpc {
 // Writes the positions [num_vertices][3] of frame f of a span exactly as a decoder outputs
 // them. Several threads may call it at once.
 using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> positions)>;
+// Makes the function that decodes a span of which only the first temporal layers are left, at
+// least 1.
+using DecodeCut = std::function<DecodeFrame(int layers)>;
 
 // tuned (off: 1): An analysis made for one step is used for all steps within this factor. A
 // narrower range means more analyses, and more jumps of the error.
@@ -29,11 +32,13 @@ struct EncodedGof {
   struct Unit {
     UnitType type;
     std::vector<std::uint8_t> payload;
+    std::uint32_t temporal_layer_idx = 0;  // of a slice
   };
   // In the order of the stream: a skinned model and its slices, if the GOFs use one; then each
   // GOF unit, with its slices.
   std::vector<Unit> units;
   DecodeFrame frame;
+  DecodeCut cut;                      // empty: there is one temporal layer
   std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
   std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
   std::uint32_t clusters = 0;         // clusters of all GOFs, or bones

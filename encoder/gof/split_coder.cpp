@@ -12,6 +12,20 @@ GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof) {
   return part;
 }
 
+namespace {
+
+// The frames of all parts, one after the other.
+DecodeFrame frames_of_all(const std::vector<GofSpan>& gofs, std::vector<DecodeFrame> decoders) {
+  return [gofs, decoders = std::move(decoders)](std::uint32_t f,
+                                                std::span<std::int32_t> positions) {
+    std::size_t g = 0;
+    while (f >= gofs[g].first + gofs[g].count) ++g;
+    decoders[g](f - gofs[g].first, positions);
+  };
+}
+
+}  // namespace
+
 SplitCoder::SplitCoder(const GofFrames& frames, const MakeCoder& make) : frames_(frames) {
   for (std::uint32_t g = 0; g < frames.num_gofs; ++g) {
     parts_.push_back(std::make_unique<Part>());
@@ -28,6 +42,7 @@ bool SplitCoder::needs_frames(double step, double analysis_step) const {
 EncodedGof SplitCoder::encode(double step, double analysis_step) {
   EncodedGof all;
   std::vector<DecodeFrame> decoders;
+  std::vector<DecodeCut> cuts;
   const std::vector<GofSpan> gofs = frames_.gofs();
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     Part& part = *parts_[g];
@@ -37,6 +52,7 @@ EncodedGof SplitCoder::encode(double step, double analysis_step) {
     EncodedGof encoded = part.coder->encode(step, analysis_step);
     part.frames.xyz = {};
     for (auto& unit : encoded.units) all.units.push_back(std::move(unit));
+    if (encoded.cut) cuts.push_back(std::move(encoded.cut));
     decoders.push_back(std::move(encoded.frame));
     all.num_factors = std::max(all.num_factors, encoded.num_factors);
     all.adaptive_values = std::max(all.adaptive_values, encoded.adaptive_values);
@@ -45,12 +61,14 @@ EncodedGof SplitCoder::encode(double step, double analysis_step) {
     all.components += encoded.components;
     all.max_components = std::max(all.max_components, encoded.max_components);
   }
-  all.frame = [gofs, decoders = std::move(decoders)](std::uint32_t f,
-                                                     std::span<std::int32_t> positions) {
-    std::size_t g = 0;
-    while (f >= gofs[g].first + gofs[g].count) ++g;
-    decoders[g](f - gofs[g].first, positions);
-  };
+  if (cuts.size() == gofs.size()) {
+    all.cut = [gofs, cuts = std::move(cuts)](int layers) {
+      std::vector<DecodeFrame> of_parts;
+      for (const DecodeCut& cut : cuts) of_parts.push_back(cut(layers));
+      return frames_of_all(gofs, std::move(of_parts));
+    };
+  }
+  all.frame = frames_of_all(gofs, std::move(decoders));
   return all;
 }
 

@@ -32,8 +32,8 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
 
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
-               temporal_weights, adaptive_factors, rest, track_levels, cobra_steps, clusters,
-               component_groups, layer_groups] = tools;
+               temporal_weights, adaptive_factors, rest, track_levels, temporal_layers,
+               cobra_steps, clusters, component_groups, layer_groups] = tools;
   const MainTools defaults;
   return {{"--bones", bones != defaults.bones},
           {"--prediction", prediction != defaults.prediction},
@@ -53,7 +53,8 @@ std::vector<Parameter> parameters_of_high(const MainTools& tools) {
   const MainTools defaults;
   return {{"--adaptive-factors", tools.adaptive_factors != defaults.adaptive_factors},
           {"--rest", tools.rest != defaults.rest},
-          {"--track-levels", tools.track_levels != defaults.track_levels}};
+          {"--track-levels", tools.track_levels != defaults.track_levels},
+          {"--temporal-layers", tools.temporal_layers != defaults.temporal_layers}};
 }
 
 // Rejects parameters of the other profile, which would have no effect.
@@ -141,6 +142,12 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.main.track_levels.value_or(0) > std::uint32_t{kMaxTrackLevels}) {
     return InputError{"hierarchical tracks have at most " + std::to_string(kMaxTrackLevels) +
                       " levels besides level 0 (--track-levels)"};
+  }
+  const std::uint32_t most_layers = s.main.track_levels.value_or(kMaxTrackLevels) + 1;
+  if (s.main.temporal_layers < 1 || s.main.temporal_layers > most_layers) {
+    return InputError{"with " + std::to_string(most_layers - 1) +
+                      " track levels, there are 1 to " + std::to_string(most_layers) +
+                      " temporal layers (--temporal-layers)"};
   }
   // The most bones of a vertex none of whose bones is a candidate (6.12.2).
   if (s.main.influences > kMaxExtraBones) {

@@ -60,6 +60,7 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
   if (!encoded) return encoded.error();
   EncodeReport& report = *encoded;
   const double scale = static_cast<double>(source.num_frames()) / sample.num_frames();
+  const std::uint64_t encoded_bytes = report.bytes;
   const std::uint64_t once = 8 * report.bytes - report.bits.gofs -
                              report.bits.hashes;  // independent of the number of frames
   for (std::uint64_t* bits : {&report.bits.gofs, &report.bits.hashes}) {
@@ -67,6 +68,10 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
         8 * static_cast<std::uint64_t>(std::llround(static_cast<double>(*bits) / 8 * scale));
   }
   report.bytes = (once + report.bits.gofs + report.bits.hashes) / 8;
+  for (TemporalCut& cut : report.temporal_cuts) {
+    cut.bytes = report.bytes - static_cast<std::uint64_t>(std::llround(
+                                   static_cast<double>(encoded_bytes - cut.bytes) * scale));
+  }
   report.header.num_frames = source.num_frames();
   report.bpvf =
       bits_per_vertex_per_frame(report.bytes, source.num_vertices(), source.num_frames());

@@ -100,6 +100,7 @@ class FrameEncoder::Impl {
     std::size_t gofs = 0;
     double step = 0.0;  // step of the last GOF, grid steps; 0: none yet
     MetricsAccumulator metrics;
+    std::vector<MetricsAccumulator> cuts;  // to 1 temporal layer and more
     EncodeReport report;
   };
 
@@ -149,6 +150,8 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
   // The level must allow later GOFs to have all clusters, bones and components of the settings.
   if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;
+  coded_.cuts.assign(settings_.main.temporal_layers - 1,
+                     MetricsAccumulator(header.num_vertices, MetricsAccumulator::kTotals));
   coding_.emplace(header, settings_, format_.triangles);
   format_.triangles = {};
   return std::nullopt;
@@ -284,6 +287,11 @@ std::optional<InputError> FrameEncoder::Impl::encode_gof() {
   const auto hash =
       coding_->measure({*buffer_, reading}, {0, span.count}, gof.frame, coded_.metrics);
   if (!hash) return hash.error();
+  for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
+    const auto cut = coding_->measure({*buffer_, reading}, {0, span.count},
+                                      gof.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
+    if (!cut) return cut.error();
+  }
   const bool written = (coded_.gofs > 0 || stream_->write_lead(coding_->header(), sink_)) &&
                        stream_->write_gof(gof.gofs.front(), sink_);
   if (!written) return InputError{"the stream could not be written"};
@@ -302,6 +310,11 @@ InputResult<EncodeReport> FrameEncoder::Impl::finish() {
   EncodeReport& report = coded_.report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = coded_.metrics.result();
+  for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
+    report.temporal_cuts.push_back({static_cast<std::uint32_t>(i) + 1,
+                                    stream_->cut_bytes(i + 1),
+                                    coded_.cuts[i].result().kg_error_percent});
+  }
   if (settings_.baseline.qu == 0) {
     report.step = coded_.step * exact_exp2(coding_->header().grid.log2_step);
   }

@@ -98,9 +98,10 @@ InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
-  return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
-                      encoded.components, options_.keep_decoded ? encoded.frame : nullptr},
-                     std::move(metrics)};
+  return MeasuredGof{
+      {std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
+       options_.keep_decoded ? encoded.frame : nullptr, encoded.cut},
+      std::move(metrics)};
 }
 
 InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,

@@ -25,6 +25,7 @@ struct CodedGof {
   std::uint32_t clusters = 0;    // of all GOFs
   std::uint32_t components = 0;  // of all GOFs
   DecodeFrame frame;             // empty unless Options::keep_decoded
+  DecodeCut cut;                 // of GOFs with one temporal layer: empty
 };
 
 // All GOFs of a batch, encoded at one step.

@@ -179,9 +179,13 @@ std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& 
   Bytes model;
   for (const auto& unit : encoded.units) {
     const Bytes bytes = write_unit(unit.type, unit.payload);
-    if (unit.type == UnitType::kGof) gofs.push_back({0, std::exchange(model, {}), {}, {}});
+    if (unit.type == UnitType::kGof) gofs.push_back({0, std::exchange(model, {}), {}, {}, {}});
     Bytes& out = gofs.empty() ? model : gofs.back().units;
     out.insert(out.end(), bytes.begin(), bytes.end());
+    if (unit.temporal_layer_idx == 0) continue;
+    std::vector<std::uint64_t>& of_layer = gofs.back().layer_bytes;
+    of_layer.resize(unit.temporal_layer_idx);  // they are in ascending order
+    of_layer.back() += bytes.size();
   }
   const std::vector<GofSpan> parts = equal_spans(span.count, span.num_gofs);
   for (std::size_t g = 0; g < gofs.size(); ++g) gofs[g].num_frames = parts[g].count;

@@ -1,5 +1,6 @@
 // Implements encode() of encoder/rlpc_encoder.h: encodes a whole sequence to its target.
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -44,6 +45,7 @@ class SequenceEncoder {
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
   void show_progress(std::uint32_t trial, double done) const;
   InputResult<EncodeReport> write(TargetResult best, const ByteSink& sink);
+  std::optional<InputError> measure_cuts(const BatchTrial& trial, EncodeReport& report);
 
   FrameSource& source_;
   const EncoderSettings& settings_;
@@ -63,7 +65,9 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header.num_frames = source_.num_frames();
   header.frame_rate = source_.frame_rate();
-  const std::uint32_t kept = keeps_analyses(header) ? header.num_frames : 0;
+  // What the cuts are measured from is smaller than an analysis.
+  const bool keeps = keeps_analyses(header) || settings_.main.temporal_layers > 1;
+  const std::uint32_t kept = keeps ? header.num_frames : 0;
   const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
   const auto threads = check_memory(settings_, header, largest, kept, source_.memory_bytes());
   if (!threads) return threads.error();
@@ -177,11 +181,30 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   ok = ok && stream_->write_end(sink);
   if (!ok) return InputError{"the stream could not be written"};
   stream_->describe(header, coding_->connectivity(), report);
+  if (auto error = measure_cuts(best.trial, report)) return *error;
   report.metrics = std::move(best.trial.metrics);
   if (settings_.baseline.qu == 0) report.step = best.step * exact_exp2(header.grid.log2_step);
   report.trials = trials_;
   report.target_met = best.met;
   return report;
+}
+
+// Once, for the stream that was written.
+std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
+                                                        EncodeReport& report) {
+  const SequenceHeader& header = coding_->header();
+  std::mutex reading;
+  for (std::uint32_t layers = 1; layers < settings_.main.temporal_layers; ++layers) {
+    MetricsAccumulator metrics(header.num_vertices, MetricsAccumulator::kTotals);
+    for (std::size_t g = 0; g < spans_.size(); ++g) {
+      const DecodeFrame frame = trial.gofs[g].cut(static_cast<int>(layers));
+      const auto measured = coding_->measure({source_, reading}, spans_[g], frame, metrics);
+      if (!measured) return measured.error();
+    }
+    report.temporal_cuts.push_back(
+        {layers, stream_->cut_bytes(layers), metrics.result().kg_error_percent});
+  }
+  return std::nullopt;
 }
 
 InputResult<EncodeReport> SequenceEncoder::run(const ByteSink& sink) {

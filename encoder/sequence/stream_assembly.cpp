@@ -37,10 +37,13 @@ bool StreamAssembly::has_index(const GofIndexEntries& index) {
   return index.gofs.size() >= kMinIndexedGofs && index.fits();
 }
 
+Bytes StreamAssembly::index_unit(const GofIndexEntries& index) const {
+  if (!has_index(index)) return {};
+  return write_unit(UnitType::kGofIndex, write_gof_index(index, profile_idc_));
+}
+
 std::uint64_t StreamAssembly::index_bytes(std::vector<GofEntry> gofs) const {
-  const GofIndexEntries index{lead_bytes_, std::move(gofs), {}};
-  if (!has_index(index)) return 0;
-  return write_unit(UnitType::kGofIndex, write_gof_index(index, profile_idc_)).size();
+  return index_unit({lead_bytes_, std::move(gofs), {}}).size();
 }
 
 bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& sink) {
@@ -64,18 +67,39 @@ bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
     index_.gofs.back().bytes = offset - gof_offset_;
   }
   gof_offset_ = offset;
+  layer_bytes_.push_back(gof.layer_bytes);
   index_.gofs.push_back({gof.num_frames, gof.units.size() + gof.hash_unit.size()});
   return put(gof.model, sink) && put(gof.units, sink) && put(gof.hash_unit, sink);
 }
 
 bool StreamAssembly::write_end(const ByteSink& sink) {
-  std::uint32_t index_distance = 0;
-  if (has_index(index_)) {
-    const Bytes unit = write_unit(UnitType::kGofIndex, write_gof_index(index_, profile_idc_));
-    index_distance = static_cast<std::uint32_t>(unit.size());
-    if (!put(unit, sink)) return false;
+  const Bytes index = index_unit(index_);
+  index_unit_bytes_ = index.size();
+  const auto index_distance = static_cast<std::uint32_t>(index.size());
+  return put(index, sink) &&
+         put(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(index_distance)), sink);
+}
+
+// As SubStreamExtractor writes it: hashes keep their size, and offsets in the index shrink.
+std::uint64_t StreamAssembly::cut_bytes(std::size_t layers) const {
+  GofIndexEntries index = index_;
+  std::uint64_t removed = 0;
+  auto model = index.models.begin();
+  std::uint64_t offset = index_.first_gof_offset;  // of the GOF, in the whole stream
+  for (std::size_t g = 0; g < index.gofs.size(); ++g) {
+    // A skinned model comes before the first GOF that uses it.
+    for (; model != index.models.end() && model->offset < offset; ++model) {
+      model->offset -= removed;
+    }
+    std::uint64_t of_gof = 0;
+    for (std::size_t layer = layers; layer <= layer_bytes_[g].size(); ++layer) {
+      of_gof += layer_bytes_[g][layer - 1];
+    }
+    offset += index.gofs[g].bytes;
+    index.gofs[g].bytes -= of_gof;
+    removed += of_gof;
   }
-  return put(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(index_distance)), sink);
+  return written_ - removed - index_unit_bytes_ + index_unit(index).size();
 }
 
 void StreamAssembly::describe(const SequenceHeader& header,

@@ -17,6 +17,9 @@ struct GofBytes {
   Bytes model;      // the skinned model that comes before it, and its slices; empty: none
   Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
+  // Bytes of the slices of each temporal layer besides the first; they are at the end of
+  // `units`.
+  std::vector<std::uint64_t> layer_bytes;
 
   std::uint64_t size() const { return model.size() + units.size() + hash_unit.size(); }
 };
@@ -38,6 +41,9 @@ class StreamAssembly {
   bool write_gof(const GofBytes& gof, const ByteSink& sink);
   bool write_end(const ByteSink& sink);
 
+  // Size of the stream with only the first temporal layers, at least 1, once all units are
+  // written.
+  std::uint64_t cut_bytes(std::size_t layers) const;
   // Sets header, bytes, bpvf, bits, num_gofs and input_vertex of the report, once all units are
   // written.
   void describe(const SequenceHeader& header, const ConnectivityCode& connectivity,
@@ -46,6 +52,8 @@ class StreamAssembly {
  private:
   // With few GOFs an index saves nothing; in very large streams its offsets would not fit.
   static bool has_index(const GofIndexEntries& index);
+  // Empty if there is to be no index.
+  Bytes index_unit(const GofIndexEntries& index) const;
   bool put(std::span<const std::uint8_t> bytes, const ByteSink& sink);
 
   std::uint32_t profile_idc_;
@@ -58,6 +66,8 @@ class StreamAssembly {
   std::uint64_t hash_bytes_ = 0;
   std::uint64_t written_ = 0;
   GofIndexEntries index_;
+  std::vector<std::vector<std::uint64_t>> layer_bytes_;  // [GOF], of GofBytes
+  std::uint64_t index_unit_bytes_ = 0;
   std::uint64_t gof_offset_ = 0;  // of the last GOF unit
 };
 

@@ -305,6 +305,11 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       ->check(CLI::Range(0, kMaxTrackLevels))
       ->option_text("N")
       ->group(tools);
+  app.add_option("--temporal-layers", t.temporal_layers,
+                 "Temporal layers that a stream can be cut to, High profile (default: 1)")
+      ->check(CLI::Range(1, kMaxTrackLevels + 1))
+      ->option_text("N")
+      ->group(tools);
   add_number("--component-groups", t.component_groups, 255,
              "Cut points among trajectories, at most one each (default: by size)");
   add_number("--layer-groups", t.layer_groups, 255,

@@ -67,6 +67,11 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
       {"step", r.step},
       {"trials", r.trials},
       {"target_met", r.target_met}};
+  for (const TemporalCut& cut : r.temporal_cuts) {
+    json["temporal_cuts"].push_back({{"temporal_layers", cut.layers},
+                                     {"bytes", cut.bytes},
+                                     {"kg_error_percent", cut.kg_error_percent}});
+  }
   return json;
 }
 

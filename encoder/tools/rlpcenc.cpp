@@ -50,6 +50,11 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
+  for (const TemporalCut& cut : r.temporal_cuts) {
+    std::printf("  cut to %u temporal layer%s: %llu bytes, KG error %.4g %%\n", cut.layers,
+                s(cut.layers), static_cast<unsigned long long>(cut.bytes),
+                cut.kg_error_percent);
+  }
   if (!o.verbose) return;
   const char* const bones = o.settings.profile == Profile::kBaseline ? ""
                             : r.clusters == 1                        ? "bone or "

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "common/bitstream/bit_writer.h"
 #include "common/int_math.h"
 #include "common/skinned_gof/influences.h"
 #include "common/skinned_gof/slice_models.h"
+#include "encoder/write/bone_writer.h"
 #include "encoder/write/section_writer.h"
 #include "encoder/write/write_gof_header.h"
 #include "encoder/write/write_rest.h"
@@ -17,71 +19,6 @@ namespace rlpc {
 namespace {
 
 enum class Unit : std::uint8_t { kGof, kModel, kTracks };
-
-// What the tracks of a GOF share; a skinned model has none.
-struct TrackFrames {
-  TrackFrames() = default;
-  explicit TrackFrames(const SkinnedGof& gof)
-      : count(gof.num_frames), levels(gof.track_levels) {}
-
-  std::uint32_t count = 0;
-  int levels = 0;
-
-  void write_between(SectionWriter& section, std::array<BitModel, kMaxBetween>& models,
-                     int between) const {
-    if (levels > 0) section.truncated_unary(models, between);
-  }
-  std::vector<TrackPlace> order(int between) const {
-    return track_order(count, levels, between);
-  }
-};
-
-// 6.11.2 Bone
-class BoneWriter {
- public:
-  BoneWriter(SectionWriter& section, const TrackFrames& frames)
-      : section_(section),
-        frames_(frames),
-        rotation_mean_(frames.count, 0),
-        origin_mean_(frames.count, 0) {}
-
-  // bone( b )
-  void bone(const Bone& bone, std::size_t b, int position_bits) {
-    assert(bone.parent < static_cast<std::int32_t>(b));
-    if (b > 0) section_.bypass(ceil_log2(b + 1), static_cast<std::uint32_t>(bone.parent + 1));
-    for (const std::int32_t x : bone.pivot) {
-      section_.bypass(rest_bits(position_bits),
-                      static_cast<std::uint32_t>(x + (1 << (rest_bits(position_bits) - 1))));
-    }
-    section_.bin(models_.rotation_flag, bone.rotation_flag);
-    section_.bin(models_.origin_flag, bone.origin_flag);
-  }
-
-  // bone_tracks( b )
-  void tracks(const Bone& bone) {
-    if (bone.rotation_flag) {
-      section_.bypass(8, bone.rotation_step_idx);
-      section_.truncated_unary(models_.rotation_order, bone.rotation_order - 1);
-      frames_.write_between(section_, models_.rotation_between, bone.rotation_between);
-      section_.track(models_.rotation, rotation_mean_, frames_.order(bone.rotation_between),
-                     bone.rotation_residual);
-    }
-    if (bone.origin_flag) {
-      section_.bypass(8, bone.origin_step_idx);
-      section_.truncated_unary(models_.origin_order, bone.origin_order);
-      frames_.write_between(section_, models_.origin_between, bone.origin_between);
-      section_.track(models_.origin, origin_mean_, frames_.order(bone.origin_between),
-                     bone.origin_residual);
-    }
-  }
-
- private:
-  SectionWriter& section_;
-  TrackFrames frames_;
-  BoneModels models_;
-  std::vector<std::uint32_t> rotation_mean_;
-  std::vector<std::uint32_t> origin_mean_;
-};
 
 // 6.11.1 bone_section( ), 6.13.1 track_section( )
 std::vector<std::uint8_t> write_bone_section(const SkinnedModel& model, Unit unit,
@@ -108,7 +45,9 @@ class SliceWriter {
         shared_(shared),
         trajectory_mean_(frames.count, 0) {}
 
-  std::vector<std::vector<std::uint8_t>> write_all();
+  // first: of the unit before the slices. temporal_layers: as in SkinnedGof.
+  SkinnedGofPayloads write_all(std::vector<std::uint8_t> first,
+                               std::span<const std::uint32_t> temporal_layers = {});
 
  private:
   std::uint32_t first_own_group() const {
@@ -121,7 +60,15 @@ class SliceWriter {
   std::size_t own_group(std::uint32_t group) const {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
+  // The trajectories of a component group of the GOF or of its skinned model, from 1 on.
+  FactorGroup tracks_of(std::uint32_t group) const {
+    return shared_ != nullptr && group < first_own_group() ? factor_group(*shared_, group)
+                                                           : factors(group);
+  }
   std::vector<std::uint8_t> write(std::uint32_t group, std::uint32_t layers);
+  std::vector<std::uint8_t> temporal_slice(std::uint32_t group, int temporal_layer);
+  void trajectory_residuals(SectionWriter& section, const Trajectory& trajectory,
+                            int temporal_layer);
   void tracks_of_group(SectionWriter& section, std::uint32_t group);
   void group_components(SectionWriter& section, std::uint32_t group);
   void header_value(SectionWriter& section, HeaderField field, int value, int previous) {
@@ -153,9 +100,40 @@ void SliceWriter::trajectory(SectionWriter& section, const Trajectory& trajector
     const int weight = trajectory.temporal_weight[static_cast<std::size_t>(k)];
     section.bypass(9, static_cast<std::uint32_t>(weight + kTemporalWeightOffset));
   }
-  frames_.write_between(section, models_.temporal_between, trajectory.temporal_between);
+  write_between(section, frames_, models_.temporal_between, trajectory.temporal_between);
+  trajectory_residuals(section, trajectory, 0);
+}
+
+// 6.12.1 trajectory_residuals( layer )
+void SliceWriter::trajectory_residuals(SectionWriter& section, const Trajectory& trajectory,
+                                       int temporal_layer) {
   section.track(models_.trajectory, trajectory_mean_,
-                frames_.order(trajectory.temporal_between), trajectory.residual);
+                places_of_layer(frames_, trajectory.temporal_between, temporal_layer),
+                trajectory.residual);
+}
+
+// 6.12.5 temporal_slice( )
+std::vector<std::uint8_t> SliceWriter::temporal_slice(std::uint32_t group, int temporal_layer) {
+  BitWriter w;
+  w.u(3, static_cast<std::uint32_t>(temporal_layer));
+  w.ue(group);
+  w.byte_alignment();
+  SectionWriter section;
+  if (group == 0) {
+    // 9.8.1 StartTemporalLayer( )
+    models_.trajectory = {};
+    std::fill(trajectory_mean_.begin(), trajectory_mean_.end(), 0);
+    BoneWriter writer(section, frames_);
+    for (const Bone& bone : gof_.bones) writer.layer(bone, temporal_layer);
+  } else {
+    const FactorGroup of_group = tracks_of(group);
+    for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+      const Trajectory& trajectory = gof_.trajectories[l - kRestFactors];
+      if (trajectory.trajectory_flag) trajectory_residuals(section, trajectory, temporal_layer);
+    }
+  }
+  w.append(section.finish());
+  return w.take();
 }
 
 // 6.12.1 group_components( )
@@ -258,6 +236,7 @@ void SliceWriter::rest_residuals(SectionWriter& section) {
 
 std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t layers) {
   BitWriter w;
+  if (frames_.temporal_layers > 1) w.u(3, 0);  // temporal_layer_idx
   w.ue(group);
   w.ue(layers);
   w.byte_alignment();
@@ -291,22 +270,33 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
 
 // Of a GOF of tracks, slice_layers says of the groups of the skinned model only whether they
 // have a slice.
-std::vector<std::vector<std::uint8_t>> SliceWriter::write_all() {
-  std::vector<std::vector<std::uint8_t>> slices;
+SkinnedGofPayloads SliceWriter::write_all(std::vector<std::uint8_t> first,
+                                          std::span<const std::uint32_t> temporal_layers) {
+  SkinnedGofPayloads payloads{std::move(first), {}, {}};
   for (std::uint32_t group = 0; group < gof_.slice_layers.size(); ++group) {
     const bool has_only_tracks = unit_ == Unit::kTracks && group < first_own_group();
     if (has_only_tracks && group == 0) continue;
     const std::uint32_t most = has_only_tracks ? 1 : gof_.slice_layers[group];
     for (std::uint32_t layers = 0; layers < std::min(most, gof_.slice_layers[group]);
          ++layers) {
-      slices.push_back(write(group, layers));
+      payloads.slices.push_back(write(group, layers));
     }
   }
-  return slices;
+  payloads.temporal_layer_idx.resize(payloads.slices.size());
+  for (int layer = 1; layer < frames_.temporal_layers; ++layer) {
+    for (std::uint32_t group = 0; group < temporal_layers.size(); ++group) {
+      if (static_cast<int>(temporal_layers[group]) < layer) break;
+      payloads.slices.push_back(temporal_slice(group, layer));
+      payloads.temporal_layer_idx.push_back(static_cast<std::uint32_t>(layer));
+    }
+  }
+  return payloads;
 }
 
-void write_track_levels(BitWriter& w, const TrackFrames& frames) {
+// 6.11 levels_of_tracks( )
+void write_levels_of_tracks(BitWriter& w, const TrackFrames& frames) {
   w.u(3, static_cast<std::uint32_t>(frames.levels));
+  if (frames.levels > 0) w.u(3, static_cast<std::uint32_t>(frames.temporal_layers - 1));
 }
 
 // 6.11 rest_of_rig( )
@@ -346,13 +336,13 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
                                      const SequenceHeader& header) {
   BitWriter w;
-  const TrackFrames frames(gof);
+  const TrackFrames frames = track_frames(gof);
   write_gof_header(w, gof, header.profile_idc);
-  if (header.profile_idc >= kProfileHigh) write_track_levels(w, frames);
+  if (header.profile_idc >= kProfileHigh) write_levels_of_tracks(w, frames);
   write_rig_header(w, gof, header.profile_idc);
   w.byte_alignment();
   w.append(write_bone_section(gof, Unit::kGof, frames, header.position_bits));
-  return {w.take(), SliceWriter(gof, mesh, Unit::kGof, frames).write_all()};
+  return SliceWriter(gof, mesh, Unit::kGof, frames).write_all(w.take(), gof.temporal_layers);
 }
 
 SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
@@ -362,20 +352,21 @@ SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t 
   write_rig_header(w, model, header.profile_idc);
   w.byte_alignment();
   w.append(write_bone_section(model, Unit::kModel, {}, header.position_bits));
-  return {w.take(), SliceWriter(model, mesh, Unit::kModel, {}).write_all()};
+  return SliceWriter(model, mesh, Unit::kModel, {}).write_all(w.take());
 }
 
 SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
                                 const SequenceHeader& header) {
   BitWriter w;
-  const TrackFrames frames(gof);
+  const TrackFrames frames = track_frames(gof);
   write_gof_header(w, gof, header.profile_idc);
   w.u(3, gof.model_idx);
-  write_track_levels(w, frames);
+  write_levels_of_tracks(w, frames);
   w.ue(gof.num_local_groups);
   w.byte_alignment();
   w.append(write_bone_section(gof, Unit::kTracks, frames, header.position_bits));
-  return {w.take(), SliceWriter(gof, mesh, Unit::kTracks, frames, gof.model.get()).write_all()};
+  return SliceWriter(gof, mesh, Unit::kTracks, frames, gof.model.get())
+      .write_all(w.take(), gof.temporal_layers);
 }
 
 }  // namespace rlpc

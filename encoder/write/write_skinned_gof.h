@@ -14,9 +14,10 @@ namespace rlpc {
 struct SkinnedGofPayloads {
   std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> slices;
+  std::vector<std::uint32_t> temporal_layer_idx;  // [slice]
 };
-// The functions below write the slices that slice_layers lists. All values must be legal, which
-// is asserted.
+// The functions below write the slices that slice_layers and temporal_layers list. All values
+// must be legal, which is asserted.
 //
 // 6.11 bones_of_gof( )
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,

@@ -94,6 +94,7 @@ TrackOptions track_options(const SkinnedSettings& settings) {
   return {.refine = settings.temporal_weights,
           .nearest = settings.rounding == Rounding::kNearest,
           .track_levels = settings.track_levels,
+          .only_levels = settings.temporal_layers > 1,
           .fast = settings.rounding == Rounding::kDeadZone};
 }
 

@@ -34,6 +34,7 @@ struct SkinnedSettings {
   RestTools rest = RestTools::kPrediction;  // at most
   bool layer_steps = true;                  // finer steps in coarser layers
   int track_levels = 0;                     // of hierarchical tracks; 0: there are none
+  int temporal_layers = 1;                  // of a GOF; at most track_levels + 1
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion

@@ -63,6 +63,7 @@ bool fit_weights(Values values, std::size_t stride, int count,
   return true;
 }
 
+int least_between(const TrackOptions& options) { return options.only_levels ? 1 : 0; }
 int most_between(const TrackOptions& options) {
   return options.track_levels > 0 ? kMaxBetween : 0;
 }
@@ -227,7 +228,7 @@ std::vector<Quaternion> code_rotations(std::span<const WantedPose> wanted,
     relative[f] = product(inverse(parent->poses[f].rotation), relative[f]);
   }
   std::vector<Way<Bone>> ways;
-  for (int between = 0; between <= most_between(options); ++between) {
+  for (int between = least_between(options); between <= most_between(options); ++between) {
     for (int order = 1; order <= kMaxPredictorOrder; ++order) {
       Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
       way.header.rotation_order = order;
@@ -251,7 +252,7 @@ std::vector<Vec3l> code_offsets(std::span<const WantedPose> wanted, const BoneMo
     }
   }
   std::vector<Way<Bone>> ways;
-  for (int between = 0; between <= most_between(options); ++between) {
+  for (int between = least_between(options); between <= most_between(options); ++between) {
     for (int order = 0; order <= kMaxPredictorOrder; ++order) {
       Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
       way.header.origin_order = order;
@@ -279,7 +280,7 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
   }
   std::vector<Way<Trajectory>> ways;
   const int last = options.refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
-  for (int between = 0; between <= most_between(options); ++between) {
+  for (int between = least_between(options); between <= most_between(options); ++between) {
     const std::size_t stride = between > 0 ? std::size_t{1} << options.track_levels : 1;
     for (int predictor = 1; predictor <= last; ++predictor) {
       Way<Trajectory> way{trajectory, between, 0.0};

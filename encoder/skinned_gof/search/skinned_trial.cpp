@@ -8,6 +8,7 @@
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
+#include "encoder/skinned_gof/search/temporal_cut.h"
 #include "encoder/write/write_skinned_gof.h"
 
 namespace rlpc {
@@ -31,6 +32,10 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   if (settings.profile == Profile::kHigh) {
     usual.track_levels =
         tools.track_levels ? static_cast<int>(*tools.track_levels) : kTrackLevels;
+    usual.temporal_layers = static_cast<int>(tools.temporal_layers);
+    if (!tools.track_levels) {
+      usual.track_levels = std::max(usual.track_levels, usual.temporal_layers - 1);
+    }
     usual.rest = tools.rest.value_or(RestTools::kCounterparts);
     usual.num_adaptive_factors = tools.adaptive_factors.value_or(kLevels.back().max_components);
   }
@@ -87,25 +92,45 @@ namespace {
 
 void add_units(SkinnedGofPayloads payloads, UnitType first, EncodedGof& encoded) {
   encoded.units.push_back({first, std::move(payloads.first)});
-  for (auto& slice : payloads.slices) {
-    encoded.units.push_back({UnitType::kSlice, std::move(slice)});
+  for (std::size_t i = 0; i < payloads.slices.size(); ++i) {
+    encoded.units.push_back(
+        {UnitType::kSlice, std::move(payloads.slices[i]), payloads.temporal_layer_idx[i]});
   }
 }
 
-// A GOF with vertices of its own.
-DecodeFrame encode_alone(const CodedMesh& mesh, const SequenceHeader& header, CodedSpan coded,
-                         EncodedGof& encoded) {
-  const SkinnedGof gof = merge_into_gof(std::move(coded));
-  add_units(write_skinned_gof(gof, mesh, header), UnitType::kGof, encoded);
-  const auto recon = std::make_shared<SkinnedRecon>(mesh, gof, header.position_bits);
-  return [recon](std::uint32_t f, std::span<std::int32_t> positions) {
+DecodeFrame frames_of(std::shared_ptr<const SkinnedRecon> recon) {
+  return [recon = std::move(recon)](std::uint32_t f, std::span<std::int32_t> positions) {
     recon->frame(f, positions);
   };
 }
 
+// GOFs one after the other.
+DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
+  return [recons = std::move(recons)](std::uint32_t f, std::span<std::int32_t> positions) {
+    auto recon = recons.begin();
+    while (f >= (*recon)->num_frames()) f -= (*recon++)->num_frames();
+    (*recon)->frame(f, positions);
+  };
+}
+
+// A GOF with vertices of its own.
+DecodeFrame encode_alone(const CodedMesh& mesh, const SequenceHeader& header, CodedSpan coded,
+                         int temporal_layers, EncodedGof& encoded) {
+  auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
+  set_temporal_layers(temporal_layers, *gof);
+  add_units(write_skinned_gof(*gof, mesh, header), UnitType::kGof, encoded);
+  if (temporal_layers > 1) {
+    encoded.cut = [&mesh, gof, position_bits = header.position_bits](int layers) {
+      return frames_of(
+          std::make_shared<SkinnedRecon>(mesh, without_layers(*gof, layers), position_bits));
+    };
+  }
+  return frames_of(std::make_shared<SkinnedRecon>(mesh, *gof, header.position_bits));
+}
+
 // A skinned model and GOFs of tracks.
 DecodeFrame encode_with_model(const CodedMesh& mesh, const SequenceHeader& header,
-                              CodedSpan coded, EncodedGof& encoded) {
+                              CodedSpan coded, int temporal_layers, EncodedGof& encoded) {
   const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
   add_units(write_skinned_model(*model, kModelIdx, mesh, header), UnitType::kModel, encoded);
   const auto shared =
@@ -113,14 +138,20 @@ DecodeFrame encode_with_model(const CodedMesh& mesh, const SequenceHeader& heade
   std::vector<std::shared_ptr<const SkinnedRecon>> recons;
   for (SkinnedGof& gof : coded.gofs) {
     use_model(model, gof);
+    set_temporal_layers(temporal_layers, gof);
     add_units(write_tracks(gof, mesh, header), UnitType::kGof, encoded);
     recons.push_back(std::make_shared<SkinnedRecon>(shared, gof));
   }
-  return [recons = std::move(recons)](std::uint32_t f, std::span<std::int32_t> positions) {
-    auto recon = recons.begin();
-    while (f >= (*recon)->num_frames()) f -= (*recon++)->num_frames();
-    (*recon)->frame(f, positions);
-  };
+  if (temporal_layers > 1) {
+    encoded.cut = [shared, gofs = std::move(coded.gofs)](int layers) {
+      std::vector<std::shared_ptr<const SkinnedRecon>> cut;
+      for (const SkinnedGof& gof : gofs) {
+        cut.push_back(std::make_shared<SkinnedRecon>(shared, without_layers(gof, layers)));
+      }
+      return frames_of(std::move(cut));
+    };
+  }
+  return frames_of(std::move(recons));
 }
 
 }  // namespace
@@ -143,8 +174,10 @@ EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalys
                         (6 * num_bones + 3 * num_trajectories) * longest;
   encoded.adaptive_values = coded.model.weights.num_adaptive_factors * num_vertices;
   encoded.frame = coded.gofs.size() == 1
-                      ? encode_alone(mesh, context.header, std::move(coded), encoded)
-                      : encode_with_model(mesh, context.header, std::move(coded), encoded);
+                      ? encode_alone(mesh, context.header, std::move(coded),
+                                     settings.temporal_layers, encoded)
+                      : encode_with_model(mesh, context.header, std::move(coded),
+                                          settings.temporal_layers, encoded);
   return encoded;
 }
 
