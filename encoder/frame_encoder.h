@@ -9,20 +9,21 @@
 //   const auto report = encoder->finish();
 //
 // GOFs have equal length, at most settings.gof_frames (by default 128, or 256 in the High
-// profile). Each is encoded when its last frame has been added, and its bytes are passed to
-// the sink at once. Memory is that
-// of the mesh, one GOF and its analysis, plus 16 bytes per GOF for the index, whatever the
-// length of the sequence.
+// profile). Each is encoded when its last frame has been added, and its bytes are passed to the
+// sink at once. In the High profile, several GOFs are held and encoded together, a *span*, so
+// that they share a skinned model: FrameFormat::max_held_frames. Memory is that of the mesh,
+// one span and its analysis, plus 16 bytes per GOF for the index, whatever the length of the
+// sequence.
 //
-// encode() meets the target over the whole sequence; here each GOF meets it separately, with
-// the same tolerance: a KG error relative to the spread of its own frames, a maximum error, or
-// a rate that includes a share, by its number of frames, of all bits outside GOFs. Thus the
-// whole stream meets the target too. If the motion varies between GOFs, this costs more than
-// encode().
+// encode() meets the target over the whole sequence; here each span (outside the High profile:
+// each GOF) meets it separately, with the same tolerance: a KG error relative to the spread of
+// its own frames, a maximum error, or a rate that includes a share, by its number of frames, of
+// all bits outside GOFs. Thus the whole stream meets the target too. If the motion varies
+// between spans, this costs more than encode().
 //
 // The level is written before the first GOF and cannot change. It is the lowest that allows the
 // mesh, the length of the GOFs, and twice the factors, clusters, components and unit size of
-// the first GOF. A later GOF that needs more is an error; FrameFormat::least_level avoids it.
+// the first span. A later one that needs more is an error; FrameFormat::least_level avoids it.
 #pragma once
 
 #include <array>
@@ -48,12 +49,16 @@ struct FrameFormat {
   std::array<float, 3> box_min{};
   std::array<float, 3> box_max{};
   std::uint32_t least_level = 1;  // lowest level that the stream may declare, 1 to 4
+  // High profile: most frames that are held before they are encoded together, but at least
+  // those of one GOF. Fewer mean that bytes come sooner, and that there are more of them. 0: as
+  // many as encode() looks at together, 2^23 positions or fewer.
+  std::uint32_t max_held_frames = 0;
 };
 
 class FrameEncoder {
  public:
   // Errors: an invalid format; settings that encode() would refuse; a mesh or length that no
-  // level allows; too much memory. Nothing is passed to the sink before the first GOF is
+  // level allows; too much memory. Nothing is passed to the sink before the first span is
   // encoded.
   static InputResult<FrameEncoder> create(FrameFormat format, EncoderSettings settings,
                                           ByteSink sink);
@@ -62,12 +67,12 @@ class FrameEncoder {
   ~FrameEncoder();
 
   // Adds the next frame: [num_vertices][3], in units. Errors: a wrong number of values; a NaN,
-  // or a coordinate outside the box; more than num_frames frames; a GOF that needs a higher
+  // or a coordinate outside the box; more than num_frames frames; a span that needs a higher
   // level; a sink that failed. Errors are sticky.
   std::optional<InputError> add_frame(std::span<const float> xyz);
   // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames; a
   // sink that failed. The metrics are those of the whole sequence, without single frames; step
-  // is that of the last GOF; target_met: in every GOF.
+  // is that of the last span; target_met: in every span.
   InputResult<EncodeReport> finish();
 
   // The number of frames added so far.

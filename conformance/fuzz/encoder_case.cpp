@@ -118,6 +118,7 @@ void CaseMaker::read_options() {
   const std::uint32_t failing = byte();
   case_.failing_write = failing < 16 ? failing : 0;
   case_.twice = has(kTwice);
+  o.max_held_frames = byte();
   case_.frame_rate = {byte() + 1, byte()};
 }
 

@@ -46,9 +46,13 @@ struct Encoded {
   EncodeReport report;
 };
 
-Encoded encode_frames(FrameSource& source, const EncoderSettings& settings) {
+// held: max_held_frames; one GOF by default.
+Encoded encode_frames(FrameSource& source, const EncoderSettings& settings,
+                      std::uint32_t held = 1) {
   Encoded out;
-  auto encoder = FrameEncoder::create(format_of(source), settings, [&](auto more) {
+  FrameFormat format = format_of(source);
+  format.max_held_frames = held;
+  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
     out.bytes.insert(out.bytes.end(), more.begin(), more.end());
     return true;
   });
@@ -167,6 +171,46 @@ TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
   settings.hash_mode = HashMode::kFrame;
   settings.metadata = R"({"title":"tube"})";
   EXPECT_EQ(encode_frames(source, settings).bytes, encode_to_memory(source, settings));
+}
+
+// So is a span, if it holds the sequence.
+TEST(FrameEncoder, OneSpanIsCodedAsByEncode) {
+  MemoryFrames source = bending_tube(8, 30);
+  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kMaxError, 0.01}, 10);
+  EXPECT_EQ(encode_frames(source, settings, 0).bytes, encode_to_memory(source, settings));
+}
+
+TEST(FrameEncoder, GofsOfASpanShareASkinnedModel) {
+  MemoryFrames source = bending_tube(20, 60);
+  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 10);
+  const Encoded apart = encode_frames(source, settings, 1);
+  const Encoded in_two = encode_frames(source, settings, 30);
+  const Encoded together = encode_frames(source, settings, 0);
+  EXPECT_EQ(apart.report.num_gofs, 6U);
+  EXPECT_EQ(in_two.report.num_gofs, 6U);
+  EXPECT_EQ(together.report.num_gofs, 6U);
+  EXPECT_LT(in_two.bytes.size(), apart.bytes.size());
+  EXPECT_LT(together.bytes.size(), in_two.bytes.size());
+  EXPECT_LE(measure(source, in_two, 10).whole.kg_error_percent, 0.5);
+}
+
+TEST(FrameEncoder, GivesTheBytesOfASpanWhenItIsFull) {
+  MemoryFrames source = bending_tube(8, 60);
+  FrameFormat format = format_of(source);
+  format.max_held_frames = 30;
+  std::size_t bytes = 0;
+  auto encoder = FrameEncoder::create(
+      format, settings_of(Profile::kHigh, {Target::kKg, 1.0}, 10), [&](auto more) {
+        bytes += more.size();
+        return true;
+      });
+  ASSERT_TRUE(encoder);
+  for (std::uint32_t f = 0; f < 60; ++f) {
+    const std::size_t before = bytes;
+    ASSERT_FALSE(encoder->add_frame(frame_of(source, f)));
+    EXPECT_EQ(bytes > before, f % 30 == 29) << f;
+  }
+  EXPECT_TRUE(encoder->finish());
 }
 
 TEST(FrameEncoder, QuantisersOfThePaperNeedNoSearch) {

@@ -115,7 +115,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   return settings;
 }
 
-FrameFormat format_of(const rlpc_frame_format& given, std::uint32_t least_level) {
+FrameFormat format_of(const rlpc_frame_format& given, const rlpc_encode_options& options) {
   FrameFormat format;
   format.num_vertices = given.num_vertices;
   format.num_frames = given.num_frames;
@@ -127,7 +127,8 @@ FrameFormat format_of(const rlpc_frame_format& given, std::uint32_t least_level)
   }
   std::copy_n(given.box_min, 3, format.box_min.begin());
   std::copy_n(given.box_max, 3, format.box_max.begin());
-  format.least_level = least_level;
+  format.least_level = options.least_level;
+  format.max_held_frames = options.max_held_frames;
   return format;
 }
 
@@ -150,8 +151,7 @@ rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
                                          " is not in the range of 1 to " +
                                          std::to_string(kMaxEncoderThreads));
   }
-  auto encoder =
-      FrameEncoder::create(format_of(format, options.least_level), *settings, sink_of(handle));
+  auto encoder = FrameEncoder::create(format_of(format, options), *settings, sink_of(handle));
   if (!encoder) {
     const InputError& error = encoder.error();
     return handle.error.break_handle(error.is_limit ? RLPC_LIMIT_EXCEEDED : RLPC_BAD_INPUT,

@@ -14,7 +14,8 @@
 // Frames are added one by one; memory is bounded by one group of frames (GOF) and its analysis.
 // Adding the last frame of a GOF encodes the GOF and passes its bytes to the callback; this
 // call takes almost all of the time. Each GOF meets the target separately, and thus the whole
-// stream does (see frame_encoder.h). The same frames and options give the same bytes on every
+// stream does (see frame_encoder.h). In the High profile, several GOFs are held and encoded
+// together (max_held_frames). The same frames and options give the same bytes on every
 // machine. No function throws or aborts. A handle may be used by one thread at a time;
 // different handles are independent.
 //
@@ -96,6 +97,9 @@ typedef struct rlpc_encode_options {
   // High profile: temporal layers, 1 to RLPC_MAX_TEMPORAL_LAYERS, to which the stream can be
   // cut; default 1, with which it cannot.
   uint32_t temporal_layers;
+  // High profile: most frames that are held before they are encoded together, but at least
+  // those of one GOF; 0: as many as share a skinned model in memory, 2^23 positions or fewer.
+  uint32_t max_held_frames;
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {

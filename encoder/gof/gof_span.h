@@ -1,6 +1,7 @@
 // Stretches of a sequence.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -27,6 +28,20 @@ inline std::vector<GofSpan> equal_spans(std::uint32_t num_frames, std::uint64_t 
 // The fewest spans of at most `longest` frames.
 inline std::vector<GofSpan> equal_gofs(std::uint32_t num_frames, std::uint32_t longest) {
   return equal_spans(num_frames, (std::uint64_t{num_frames} + longest - 1) / longest);
+}
+
+// Divides spans into GOFs of at most `longest` frames.
+inline void divide_spans(std::vector<GofSpan>& spans, std::uint32_t longest) {
+  for (GofSpan& span : spans) span.num_gofs = (span.count - 1) / longest + 1;
+}
+
+// Frames of the longest GOF of some spans.
+inline std::uint32_t longest_gof_of(const std::vector<GofSpan>& spans) {
+  std::uint32_t longest = 0;
+  for (const GofSpan& span : spans) {
+    longest = std::max(longest, (span.count - 1) / span.num_gofs + 1);
+  }
+  return longest;
 }
 
 }  // namespace rlpc

@@ -22,10 +22,10 @@
 namespace rlpc {
 namespace {
 
-// Buffers the frames of one GOF as they are added.
-class GofBuffer final : public FrameSource {
+// Buffers the frames of one span as they are added.
+class SpanBuffer final : public FrameSource {
  public:
-  GofBuffer(std::uint32_t num_vertices, std::uint32_t num_frames)
+  SpanBuffer(std::uint32_t num_vertices, std::uint32_t num_frames)
       : FrameSource({num_vertices, num_frames, {}, {}}) {
     xyz_.reserve(3 * std::size_t{num_vertices} * num_frames);
   }
@@ -72,7 +72,7 @@ std::optional<InputError> check_format(const FrameFormat& format) {
   return std::nullopt;
 }
 
-// The grid is chosen for the first GOF; later GOFs may need errors smaller by this factor. The
+// The grid is chosen for the first span; later ones may need errors smaller by this factor. The
 // finer grid keeps steps far below their maximum.
 constexpr double kReserve = 16.0;  // fixed: four bits of the grid
 
@@ -92,20 +92,22 @@ class FrameEncoder::Impl {
   std::uint32_t num_added() const { return num_added_; }
 
  private:
-  // The results of all GOFs so far.
+  // The results of all spans so far.
   struct Coded {
     explicit Coded(std::uint32_t num_vertices)
         : metrics(num_vertices, MetricsAccumulator::kTotals) {}
 
-    std::size_t gofs = 0;
-    double step = 0.0;  // step of the last GOF, grid steps; 0: none yet
+    std::size_t spans = 0;
+    double step = 0.0;  // step of the last span, grid steps; 0: none yet
     MetricsAccumulator metrics;
     std::vector<MetricsAccumulator> cuts;  // to 1 temporal layer and more
     EncodeReport report;
   };
 
+  void make_spans(const SequenceHeader& header);
   std::optional<InputError> check_frame(std::span<const float> xyz) const;
-  std::optional<InputError> encode_gof();
+  std::optional<InputError> encode_span();
+  bool write(const CodedGof& span);  // false: the sink failed
   void use_header(const SequenceHeader& header);
   // The header with the grid for an error of `finest` (units).
   SequenceHeader header_for(double finest) const;
@@ -123,13 +125,25 @@ class FrameEncoder::Impl {
   ByteSink sink_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
-  std::optional<StreamAssembly> stream_;  // from the first GOF on
-  std::optional<GofBuffer> buffer_;
+  std::optional<StreamAssembly> stream_;  // from the first span on
+  std::optional<SpanBuffer> buffer_;
   std::uint32_t num_added_ = 0;
+  std::uint32_t longest_gof_ = 0;
   std::uint32_t num_threads_ = 1;
   Coded coded_;
   std::optional<InputError> failure_;
 };
+
+// Spans of as many GOFs as may be held, all of about the same length.
+void FrameEncoder::Impl::make_spans(const SequenceHeader& header) {
+  const std::uint32_t of_gof = longest_gof(settings_);
+  std::uint32_t longest = longest_span(settings_, header);
+  if (format_.max_held_frames > 0) {
+    longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
+  }
+  spans_ = equal_gofs(header.num_frames, longest);
+  divide_spans(spans_, of_gof);
+}
 
 std::optional<InputError> FrameEncoder::Impl::prepare() {
   if (auto error = check_settings(settings_)) return error;
@@ -139,7 +153,7 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
   header.num_frames = format_.num_frames;
   header.frame_rate = format_.frame_rate;
-  spans_ = equal_gofs(header.num_frames, longest_gof(settings_));
+  make_spans(header);
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
   // The buffer holds frames as floats.
@@ -147,9 +161,12 @@ std::optional<InputError> FrameEncoder::Impl::prepare() {
   const auto threads = check_memory(settings_, header, longest, 0, buffer_bytes);
   if (!threads) return threads.error();
   num_threads_ = *threads;
-  if (auto error = choose_level(header, longest, format_.least_level)) return error;
+  longest_gof_ = longest_gof_of(spans_);
+  if (auto error = choose_level(header, longest_gof_, format_.least_level)) return error;
   // The level must allow later GOFs to have all clusters, bones and components of the settings.
-  if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest)) return error;
+  if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest_gof_)) {
+    return error;
+  }
   coded_.cuts.assign(settings_.main.temporal_layers - 1,
                      MetricsAccumulator(header.num_vertices, MetricsAccumulator::kTotals));
   coding_.emplace(header, settings_, format_.triangles);
@@ -165,9 +182,11 @@ double FrameEncoder::Impl::fixed_bits_per_frame() const {
   if (settings_.target.kind == Target::kBpvf) {
     std::vector<GofEntry> largest;
     for (const GofSpan& span : spans_) {
-      const double bits = settings_.target.value * format_.num_vertices * span.count;
-      largest.push_back(
-          {span.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
+      for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+        const double bits = settings_.target.value * format_.num_vertices * gof.count;
+        largest.push_back(
+            {gof.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
+      }
     }
     bytes += stream_->index_bytes(std::move(largest));
   }
@@ -199,11 +218,11 @@ std::optional<InputError> FrameEncoder::Impl::check_frame(std::span<const float>
 std::optional<InputError> FrameEncoder::Impl::add_frame(std::span<const float> xyz) {
   if (failure_) return failure_;
   if (auto error = check_frame(xyz)) return fail(*error);
-  if (!buffer_) buffer_.emplace(format_.num_vertices, spans_[coded_.gofs].count);
+  if (!buffer_) buffer_.emplace(format_.num_vertices, spans_[coded_.spans].count);
   buffer_->add(xyz);
   ++num_added_;
   if (!buffer_->is_full()) return std::nullopt;
-  if (auto error = encode_gof()) return fail(*error);
+  if (auto error = encode_span()) return fail(*error);
   return std::nullopt;
 }
 
@@ -222,7 +241,7 @@ SequenceHeader FrameEncoder::Impl::header_for(double finest) const {
 }
 
 InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double rms_spread) {
-  GofBatch batch(*coding_, *buffer_, {{0, span.count}},
+  GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
                  {.first_frame = span.first,
                   .keep_decoded = true,
                   .metrics = MetricsAccumulator::kTotals});
@@ -230,14 +249,14 @@ InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double
                             .header = coding_->header(),
                             .rms_spread = rms_spread,
                             .fixed_bits = fixed_bits_per_frame() * span.count,
-                            .first_step = coded_.step,  // GOFs are usually similar
-                            .keeps_level = coded_.gofs > 0},
+                            .first_step = coded_.step,  // spans are usually similar
+                            .keeps_level = coded_.spans > 0},
                            batch);
   if (best) coded_.report.trials += best->trials;
   return best;
 }
 
-// Searches the first GOF, which determines the grid. If the target is a rate, the resulting
+// Searches the first span, which determines the grid. If the target is a rate, the resulting
 // error may require a finer grid and a second search.
 InputResult<TargetResult> FrameEncoder::Impl::search_first(const GofSpan& span,
                                                            double rms_spread) {
@@ -251,14 +270,14 @@ InputResult<TargetResult> FrameEncoder::Impl::search_first(const GofSpan& span,
   return search(span, rms_spread);
 }
 
-// Sets the level with a reserve at the first GOF; error if a later GOF needs a higher one.
+// Sets the level with a reserve at the first span; error if a later one needs a higher level.
 std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& needs) {
-  const GofSpan& span = spans_[coded_.gofs];
+  const GofSpan& span = spans_[coded_.spans];
   SequenceHeader header = coding_->header();
   const std::uint32_t level_idc = header.level_idc;
-  const bool first = coded_.gofs == 0;
+  const bool first = coded_.spans == 0;
   const LevelNeeds wanted = first ? needs.with_reserve() : needs;
-  if (auto error = raise_level(header.level_idc, wanted, span.count)) return error;
+  if (auto error = raise_level(header.level_idc, wanted, longest_gof_)) return error;
   if (first) coding_->set_header(header);
   if (first || header.level_idc == level_idc) return std::nullopt;
   return InputError{"frames " + std::to_string(span.first) + " to " +
@@ -269,35 +288,40 @@ std::optional<InputError> FrameEncoder::Impl::keep_to_level(const LevelNeeds& ne
                     ": encode again with a higher least level, or with fewer components"};
 }
 
-std::optional<InputError> FrameEncoder::Impl::encode_gof() {
+std::optional<InputError> FrameEncoder::Impl::encode_span() {
   const Threads threads(num_threads_);
-  const GofSpan& span = spans_[coded_.gofs];
+  const GofSpan& span = spans_[coded_.spans];
   const auto extent = measure_extent(*buffer_);
   if (!extent) return extent.error();
-  const auto best = coded_.gofs == 0 ? search_first(span, extent->rms_spread)
-                                     : search(span, extent->rms_spread);
+  const auto best = coded_.spans == 0 ? search_first(span, extent->rms_spread)
+                                      : search(span, extent->rms_spread);
   if (!best) return best.error();
-  const CodedGof& gof = best->trial.gofs.front();
+  const CodedGof& coded = best->trial.gofs.front();
   coded_.report.target_met = coded_.report.target_met && best->met;
-  coded_.report.clusters += gof.clusters;
-  coded_.report.components += gof.components;
+  coded_.report.clusters += coded.clusters;
+  coded_.report.components += coded.components;
   coded_.step = best->step;
-  if (auto error = keep_to_level(gof.needs)) return error;
+  if (auto error = keep_to_level(coded.needs)) return error;
   std::mutex reading;
-  const auto hash =
-      coding_->measure({*buffer_, reading}, {0, span.count}, gof.frame, coded_.metrics);
-  if (!hash) return hash.error();
+  const SharedSource source{*buffer_, reading};
+  const GofSpan frames{0, span.count, span.num_gofs};
+  const auto hashes = coding_->measure(source, frames, coded.frame, coded_.metrics);
+  if (!hashes) return hashes.error();
   for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
-    const auto cut = coding_->measure({*buffer_, reading}, {0, span.count},
-                                      gof.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
+    const auto cut =
+        coding_->measure(source, frames, coded.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
     if (!cut) return cut.error();
   }
-  const bool written = (coded_.gofs > 0 || stream_->write_lead(coding_->header(), sink_)) &&
-                       stream_->write_gof(gof.gofs.front(), sink_);
-  if (!written) return InputError{"the stream could not be written"};
-  ++coded_.gofs;
+  if (!write(coded)) return InputError{"the stream could not be written"};
+  ++coded_.spans;
   buffer_.reset();
   return std::nullopt;
+}
+
+bool FrameEncoder::Impl::write(const CodedGof& span) {
+  bool ok = coded_.spans > 0 || stream_->write_lead(coding_->header(), sink_);
+  for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink_);
+  return ok;
 }
 
 InputResult<EncodeReport> FrameEncoder::Impl::finish() {

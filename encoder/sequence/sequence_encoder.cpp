@@ -40,7 +40,6 @@ class SequenceEncoder {
   std::optional<InputError> prepare();
   void use_grid(const GridChoice& grid);
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
-  void divide_spans();
   InputResult<TargetResult> search();
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
   void show_progress(std::uint32_t trial, double done) const;
@@ -78,11 +77,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   set_grid(header, choose_grid(extent_, finest_error(settings_.target, extent_.rms_spread)));
 
   if (auto error = cut_gofs(header)) return error;
-  std::uint32_t longest = 0;
-  for (const GofSpan& span : spans_) {
-    longest = std::max(longest, (span.count + span.num_gofs - 1) / span.num_gofs);
-  }
-  if (auto error = choose_level(header, longest)) return error;
+  if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
   return std::nullopt;
@@ -99,20 +94,15 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
   }
   if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast) {
     spans_ = equal_gofs(header.num_frames, longest);
-    divide_spans();
+    divide_spans(spans_, longest_gof(settings_));
     return std::nullopt;
   }
   const double step = search_for(settings_, header, extent_.rms_spread).step();
   auto spans = cheapest_gofs(source_, longest, step * exact_exp2(header.grid.log2_step));
   if (!spans) return spans.error();
   spans_ = std::move(*spans);
-  divide_spans();
+  divide_spans(spans_, longest_gof(settings_));
   return std::nullopt;
-}
-
-void SequenceEncoder::divide_spans() {
-  const std::uint32_t longest = longest_gof(settings_);
-  for (GofSpan& span : spans_) span.num_gofs = (span.count - 1) / longest + 1;
 }
 
 void SequenceEncoder::use_grid(const GridChoice& grid) {
