@@ -184,19 +184,18 @@ SkinnedTrial BoneSearch::search_likely() const {
       trials[0] = try_one_bone();
     }
   });
-  const double without = trials[0]->cost;
   for_each(search_influences_, [&](std::size_t i) {
     const Estimate& estimated = expected.of_influences[i];
     if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) return;
-    trials[i + 1] = try_estimated(static_cast<std::uint32_t>(i + 1), estimated, without);
+    trials[i + 1] = try_estimated(static_cast<std::uint32_t>(i + 1), estimated);
   });
   return cheapest(std::move(trials));
 }
 
 // About as many bones as are likely the best, unless the sample was too small to tell.
-BestTrial BoneSearch::try_estimated(std::uint32_t influences, const Estimate& estimate,
-                                    double without) const {
+BestTrial BoneSearch::try_estimated(std::uint32_t influences, const Estimate& estimate) const {
   BoneFit full = fit(influences);
+  const double without = full.expected_translation_cost();
   std::size_t first = 0;
   do {
     if (!grow(full, kFewBones[first])) return std::nullopt;

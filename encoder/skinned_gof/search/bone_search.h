@@ -53,8 +53,7 @@ class BoneSearch {
   BestTrial try_requested() const;
   SkinnedTrial search_all() const;
   SkinnedTrial search_likely() const;
-  BestTrial try_estimated(std::uint32_t influences, const Estimate& estimate,
-                          double without) const;
+  BestTrial try_estimated(std::uint32_t influences, const Estimate& estimate) const;
   BestTrial try_counts(BoneFit& full, std::uint32_t influences,
                        std::span<const std::uint32_t> counts, std::uint32_t likely) const;
 
