@@ -17,12 +17,13 @@ void SkinnedGofCoder::choose(double step) {
   }
   SkinnedTrial best = search_tools(context_, trials, bones.search());
   choice_ = std::move(best.candidate);
-  analysis_.put(step, std::move(best.analysis));
+  choice_->settings.draft = false;
+  forecast_ = {step, best.error};
 }
 
 const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
   return analysis_.get(
-      step, [&] { return SkinnedTrials(context_, frames_, step).analyse(*choice_); });
+      step, [&] { return analyse_candidate(context_, frames_, *choice_, step); });
 }
 
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
@@ -31,7 +32,9 @@ bool SkinnedGofCoder::is_valid_for(double step) const {
   // trajectories. With fewer, the error comes from bones and rest positions, and a new analysis
   // must follow the step.
   constexpr std::size_t kEnough = 4;
-  return has_trajectories(kEnough, *analysis_.last(), choice_->settings, step);
+  SkinnedSettings draft = choice_->settings;
+  draft.draft = true;
+  return has_trajectories(kEnough, *analysis_.last(), draft, step);
 }
 
 bool SkinnedGofCoder::needs_frames(double step, double analysis_step) const {

@@ -32,6 +32,11 @@ class SkinnedGofCoder : public GofCoder {
   const GofFrames& frames_;
   // Bones and tools, chosen for the first step.
   std::optional<SkinnedCandidate> choice_;
+  struct Forecast {
+    double step = 0.0;
+    double squared_error = 0.0;
+  };
+  Forecast forecast_;  // the error of the choice, from its draft
   StepCache<SkinnedAnalysis> analysis_;  // of the choice
 };
 

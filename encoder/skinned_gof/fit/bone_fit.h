@@ -26,7 +26,7 @@ struct BoneFitOptions {
 
   // tuned (off: 0): Rounds in which the least useful bones are exchanged for new ones, once all
   // bones are found. They lead out of local minima, and take most of the time of a fit.
-  static constexpr int kExchanges = 6;
+  static constexpr int kExchanges = 3;
 };
 
 // Finds bones, weights, rest positions, hierarchy and pivots, for a growing number of bones.

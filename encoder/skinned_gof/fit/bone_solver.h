@@ -92,6 +92,8 @@ class BoneSolver {
   void choose_candidates(std::size_t v, const SkinSums& sums);
   void fit_weights(std::size_t v, const SkinSums& sums);
   void fit_all_weights(bool new_candidates, const SkinSums& sums);
+  void offer_last_bone(const SkinSums& sums);
+  std::size_t farthest_candidate(std::size_t v) const;
 
   double loss_without(std::size_t v, std::uint32_t bone) const;
   std::vector<double> losses() const;

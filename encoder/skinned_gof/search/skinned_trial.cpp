@@ -16,6 +16,9 @@ namespace {
 // tuned (off: 0): Levels of hierarchical tracks besides level 0, with the High profile. Each
 // level more doubles the distance over which level 0 is predicted.
 constexpr int kTrackLevels = 1;
+// tuned: Frames from which the error of a draft is taken. It hardly differs from frame to
+// frame, and decoding takes time.
+constexpr std::uint32_t kErrorFrames = 24;
 
 }  // namespace
 
@@ -50,22 +53,25 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial) {
   return trial;
 }
 
-SkinnedAnalysis SkinnedTrials::analyse(const SkinnedCandidate& candidate) const {
-  return analyse_skinned_gof(context_.meshes[candidate.settings.prediction],
-                             context_.header.position_bits, frames_, candidate.rig,
-                             candidate.settings, step_);
+SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames& frames,
+                                  const SkinnedCandidate& candidate, double step,
+                                  const SkinnedAnalysis* before) {
+  return analyse_skinned_gof(context.meshes[candidate.settings.prediction],
+                             context.header.position_bits, frames, candidate.rig,
+                             candidate.settings, step, before);
 }
 
-double SkinnedTrials::cost(const SkinnedAnalysis& analysis,
-                           const SkinnedSettings& settings) const {
-  return lagrangian_cost(encode_skinned_gof(context_, analysis, settings, step_), frames_,
-                         step_);
+SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const {
+  const EncodedGof encoded = encode_skinned_gof(context_, analysis, candidate.settings, step_);
+  const double error = squared_error(frames_, encoded.frame, kErrorFrames);
+  return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
+          error};
 }
 
 SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate) const {
-  SkinnedAnalysis analysis = analyse(candidate);
-  const double candidate_cost = cost(analysis, candidate.settings);
-  return {std::move(candidate), std::move(analysis), candidate_cost};
+  candidate.settings.draft = true;
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, candidate, step_);
+  return encode(std::move(candidate), std::move(analysis));
 }
 
 BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
@@ -74,13 +80,12 @@ BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
   const bool same_analysis =
       settings.prediction == before.prediction && settings.layer_steps == before.layer_steps;
   SkinnedCandidate candidate{trial.candidate.rig, trial.candidate.counts, settings};
-  if (!same_analysis) {
-    SkinnedTrial other = run(std::move(candidate));
-    return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
-  }
-  const double other_cost = cost(trial.analysis, settings);
-  if (!(other_cost < trial.cost)) return std::nullopt;
-  return SkinnedTrial{std::move(candidate), trial.analysis, other_cost};
+  candidate.settings.draft = true;
+  SkinnedAnalysis analysis =
+      same_analysis ? trial.analysis
+                    : analyse_candidate(context_, frames_, candidate, step_, &trial.analysis);
+  SkinnedTrial other = encode(std::move(candidate), std::move(analysis));
+  return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
 }
 
 namespace {
