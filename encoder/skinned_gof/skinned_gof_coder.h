@@ -6,6 +6,7 @@
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/gof/step_cache.h"
+#include "encoder/skinned_gof/search/bone_search.h"
 #include "encoder/skinned_gof/search/skinned_context.h"
 #include "encoder/skinned_gof/search/skinned_trial.h"
 
@@ -15,28 +16,35 @@ class SkinnedGofCoder : public GofCoder {
  public:
   // Keeps references to both.
   SkinnedGofCoder(const SkinnedContext& context, const GofFrames& frames)
-      : context_(context), frames_(frames) {}
+      : context_(context), frames_(frames), bones_(context, frames) {}
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
-  void release_analysis() override { analysis_.release(); }
+  void release_analysis() override;
 
  private:
-  void choose(double step);
+  // A draft: the step that it was made for, its squared error and its analysis.
+  struct Draft {
+    double step = 0.0;
+    double error = 0.0;
+    SkinnedAnalysis analysis;
+  };
+
+  static double error_at(double step, const Draft& draft);
+  double likely_step(double step);
+  void choose(double first_step);
   const SkinnedAnalysis& analysis_for(double step);
   bool is_valid_for(double step) const;
+  bool follows_step() const { return choice_->rig.bones.size() > 1; }
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
-  // Bones and tools, chosen for the first step.
+  BoneSearch bones_;
+  // Bones and tools, chosen for the step at which the target is expected.
   std::optional<SkinnedCandidate> choice_;
-  struct Forecast {
-    double step = 0.0;
-    double squared_error = 0.0;
-  };
-  Forecast forecast_;  // the error of the choice, from its draft
+  std::optional<Draft> draft_;           // of the choice
   StepCache<SkinnedAnalysis> analysis_;  // of the choice
 };
 

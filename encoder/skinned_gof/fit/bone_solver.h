@@ -53,6 +53,8 @@ class BoneSolver {
   void exchange_bones(int times);
   // Improves the rest positions as well; no bones can be added afterwards.
   void settle();
+  // Takes the bones, weights and rest positions of a copy of this solver.
+  void take(const BoneSolver& other);
   // Removes bones that save less squared error than `worth`.
   void remove_worthless_bones(double worth);
 
@@ -71,7 +73,6 @@ class BoneSolver {
   // to date.
   void find_patch_errors();
   bool exchange(std::size_t count, SkinSums& sums);
-  void take(const BoneSolver& other);
   std::size_t add_bones(std::size_t count, SkinSums& sums);
   std::vector<std::size_t> poorly_explained_patches(std::span<const double> error) const;
   struct PatchMotion {

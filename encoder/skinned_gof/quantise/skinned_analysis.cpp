@@ -134,8 +134,8 @@ class SkinnedAnalyser {
       }
     }
     code_rest();
-    if (before_ != nullptr && before_->rest == found_.rest) {
-      found_.pc = before_->pc;
+    if (before_ != nullptr) {
+      found_.pc = before_->pc;  // rest positions differ by errors of their quantisers
     } else {
       // A component of less energy than the error of quantising its factors is not worth a
       // trajectory. Steps that are tried later may be finer.

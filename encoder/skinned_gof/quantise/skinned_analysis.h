@@ -70,8 +70,8 @@ struct SkinnedAnalysis {
 // Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
 // to the sum over all coordinates of all frames. step: grid units.
 //
-//   before  an analysis of the same rig for the same step, with other tools, or null: what
-//           these do not change is copied from it
+//   before  an analysis of the same rig with other tools, for the same step or one nearby, or
+//           null: its bones and principal components are copied
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step,

@@ -9,6 +9,7 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/gof/component_cost.h"
 #include "encoder/skinned_gof/quantise/slice_cuts.h"
 #include "encoder/skinned_gof/quantise/spatial_values.h"
 #include "encoder/skinned_gof/quantise/temporal_values.h"
@@ -138,18 +139,14 @@ bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
 }
 
 double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
-  // tuned (off: 1): Error of a coded value relative to that of a uniform quantiser, in the
-  // forecast that starts the search. Most small values are rounded to zero and err by less than
-  // half a step.
-  constexpr double kOfCoded = 0.52;
+  const auto num_vertices = static_cast<double>(analysis.rest[0].size());
   std::size_t num_frames = 0;
   for (const SkinnedGof& gof : analysis.gofs) num_frames += gof.num_frames;
-  const double num_values = static_cast<double>(analysis.rest[0].size()) +
-                            3.0 * kTemporalError * static_cast<double>(num_frames);
-  const double quantised = kOfCoded * step * step / 12.0 * num_values;
   double error = analysis.pc.total_energy;
-  for (const double energy : analysis.pc.energy)
-    error -= energy * energy / (energy + quantised);
+  for (const double energy : analysis.pc.energy) {
+    error -= energy - expected_component_error(energy, num_vertices,
+                                               static_cast<double>(num_frames), step);
+  }
   return error;
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,7 +11,6 @@
 namespace rlpc {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 // tuned (off: 1): Bones that a vertex may follow while bones are looked for. With more, bones
 // overlap, and neither their motion nor the weights are smooth.
 constexpr std::uint32_t kSearchInfluences = 2;
@@ -23,15 +20,6 @@ constexpr std::uint32_t kSearchInfluences = 2;
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
 // fixed: those of kFewBones, so that slow finds what medium finds, and numbers around them.
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
-
-// The first of the cheapest; the first of all exists.
-SkinnedTrial cheapest(std::vector<BestTrial> trials) {
-  BestTrial best;
-  for (BestTrial& trial : trials) {
-    if (trial) best = cheaper(std::move(best), std::move(*trial));
-  }
-  return std::move(*best);
-}
 
 // A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
@@ -58,186 +46,166 @@ Rig translation_rig(const GofFrames& frames) {
 
 }  // namespace
 
-BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames,
-                       const SkinnedTrials& trials)
+BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames)
     : context_(context),
       frames_(frames),
-      trials_(trials),
       settings_(usual_settings(context.settings)),
       max_influences_(context.settings.main.influences == 0 ? std::uint32_t{kMaxExtraBones}
                                                             : context.settings.main.influences),
       search_influences_(std::min(kSearchInfluences, max_influences_)) {}
 
-BoneFit BoneSearch::fit(std::size_t influences) const {
-  return {frames_, context_.triangles, {.max_influences = influences, .step = trials_.step()}};
+BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
+  Growth growth{influences, std::make_unique<BoneFit>(
+                                frames_, context_.triangles,
+                                BoneFitOptions{.max_influences = influences})};
+  growth.bones.push_back({1, growth.fit->state()});
+  return growth;
 }
 
-// A fit to a small sample, for estimates.
-BoneFit BoneSearch::quick_fit(std::size_t influences) const {
-  return {frames_,
-          context_.triangles,
-          {.max_influences = influences,
-           .step = trials_.step(),
-           .sample_frames = kSampleFrames / kQuickPart,
-           .sample_vertices = kSampleVertices / kQuickPart}};
+// Fits bones of each number, ascending.
+void BoneSearch::grow(std::span<const std::uint32_t> counts) {
+  if (growths_.empty()) {
+    for (std::uint32_t i = 1; i <= search_influences_; ++i) growths_.push_back(start(i));
+  }
+  for_each(growths_.size(), [&](std::size_t i) {
+    Growth& growth = growths_[i];
+    if (growth.bones.size() > 1) return;
+    for (const std::uint32_t count : counts) {
+      if (!growth.fit->grow(count)) break;
+      growth.fit->settle();
+      growth.bones.push_back({count, growth.fit->state()});
+    }
+  });
 }
 
-bool BoneSearch::grow(BoneFit& fit, std::uint32_t count) const {
-  if (!fit.grow(count)) return false;
-  fit.settle();
-  return true;
+Rig BoneSearch::rig(Growth& growth, const BoneSolver& state, double step) const {
+  return growth.fit->rig(state, growth.influences == 1 ? 1 : max_influences_, step);
 }
 
-SkinnedTrial BoneSearch::run(Rig rig, const BoneCounts& counts) const {
-  return trials_.run({std::move(rig), counts, settings_});
+SkinnedTrial BoneSearch::run(const SkinnedTrials& trials, Rig rig,
+                             const BoneCounts& counts) const {
+  return trials.run({std::move(rig), counts, settings_});
 }
 
-Rig BoneSearch::guess_one_bone() const {
-  const BoneFit one = quick_fit(1);
-  const bool rotates = one.expected_cost() < one.expected_translation_cost();
-  return rotates ? one.rig(1) : translation_rig(frames_);
+Rig BoneSearch::guess_one_bone(double step) {
+  if (growths_.empty()) grow({});
+  Growth& any = growths_.front();
+  const BoneSolver& one = any.bones.front().state;
+  const bool rotates =
+      any.fit->expected_cost(one, step) < any.fit->expected_translation_cost(step);
+  return rotates ? any.fit->rig(one, 1, step) : translation_rig(frames_);
 }
 
-SkinnedTrial BoneSearch::try_one_bone() const {
-  if (context_.settings.preset != Preset::kSlow) return run(guess_one_bone(), {});
-  SkinnedTrial best = run(translation_rig(frames_), {});
-  return std::move(*cheaper(std::move(best), run(quick_fit(1).rig(1), {})));
+SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials) {
+  if (context_.settings.preset != Preset::kSlow) {
+    return run(trials, guess_one_bone(trials.step()), {});
+  }
+  Growth& any = growths_.front();
+  SkinnedTrial best = run(trials, translation_rig(frames_), {});
+  return std::move(*cheaper(
+      std::move(best),
+      run(trials, any.fit->rig(any.bones.front().state, 1, trials.step()), {})));
 }
 
-BestTrial BoneSearch::try_requested() const {
+SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
   BestTrial best;
   for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-    BoneFit full = fit(influences);
-    full.grow(context_.settings.main.bones);
-    full.settle();
-    best = cheaper(std::move(best), run(full.rig(influences == 1 ? 1 : max_influences_), {}));
+    Growth growth = start(influences);
+    growth.fit->grow(context_.settings.main.bones);
+    growth.fit->settle();
+    best = cheaper(std::move(best),
+                   run(trials, rig(growth, growth.fit->state(), trials.step()), {}));
   }
-  return best;
+  return std::move(*best);
 }
 
-BoneSearch::Estimate BoneSearch::estimate(std::size_t influences) const {
-  Estimate best;
-  BoneFit quick = quick_fit(influences);
-  best.translation = quick.expected_translation_cost();
-  for (const std::uint32_t count : kFewBones) {
-    if (!quick.grow(count)) break;
-    const double expected = quick.expected_cost();
-    best.costs.push_back(expected);
-    if (expected < best.cost) {
-      best.cost = expected;
-      best.count = count;
-    }
+// Bones that may be worth their bits, the most likely first: if they are expected to cost less
+// than a single bone, and not more than estimates are wrong by above the least.
+std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
+  // tuned: Candidates are encoded as drafts, at most this many.
+  constexpr std::size_t kDrafts = 3;
+  std::vector<Candidate> list;
+  for (std::size_t g = 0; g < growths_.size(); ++g) {
+    for (std::size_t i = 1; i < growths_[g].bones.size(); ++i) list.push_back({g, i, 0.0});
   }
-  return best;
+  for_each(list.size(), [&](std::size_t k) {
+    const Growth& growth = growths_[list[k].growth];
+    list[k].expected = growth.fit->expected_cost(growth.bones[list[k].bones].state, step);
+  });
+  std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+    return a.expected < b.expected;
+  });
+  if (context_.settings.preset == Preset::kSlow) return list;
+  const double translation = growths_.front().fit->expected_translation_cost(step);
+  const auto is_unlikely = [&](const Candidate& c) {
+    return c.expected >= std::min((1.0 - kTryMargin) * translation,
+                                  (1.0 + kTryMargin) * list.front().expected);
+  };
+  list.erase(std::find_if(list.begin(), list.end(), is_unlikely), list.end());
+  if (list.size() > kDrafts) list.erase(list.begin() + kDrafts, list.end());
+  return list;
 }
 
-// Bones are worth a trial if they are expected to save more than estimates are wrong by. What
-// does not with two influences does so less with one.
-BoneSearch::Estimates BoneSearch::estimates() const {
-  Estimates result;
-  result.of_influences.resize(search_influences_);
-  for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
-    Estimate of = estimate(influences);
-    if (of.cost >=
-        std::min((1.0 - kTryMargin) * of.translation, (1.0 + kTryMargin) * result.least)) {
-      break;
-    }
-    result.least = std::min(result.least, of.cost);
-    result.of_influences[influences - 1] = std::move(of);
-  }
-  return result;
+// Exchanges more of the bones of a candidate; none if they were before.
+BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& candidate) {
+  Growth& growth = growths_[candidate.growth];
+  Growth::Bones& bones = growth.bones[candidate.bones];
+  if (bones.polished) return std::nullopt;
+  growth.fit->return_to(bones.state);
+  for (int i = 0; i < 2; ++i) growth.fit->settle();
+  SkinnedTrial trial = run(trials, rig(growth, growth.fit->state(), trials.step()),
+                           {bones.count, growth.influences});
+  bones.state.take(growth.fit->state());
+  bones.polished = true;
+  return trial;
 }
 
-SkinnedTrial BoneSearch::search() const {
-  if (context_.settings.main.bones > 0) return std::move(*try_requested());
-  return context_.settings.preset == Preset::kSlow ? search_all() : search_likely();
+// The numbers of bones that the settings leave.
+void BoneSearch::grow() {
+  if (context_.settings.main.bones > 0) return grow({});
+  const bool all = context_.settings.preset == Preset::kSlow;
+  grow(all ? std::span<const std::uint32_t>(kManyBones) : kFewBones);
 }
 
-// All numbers of bones.
-SkinnedTrial BoneSearch::search_all() const {
-  std::vector<BestTrial> trials(1 + search_influences_);
-  for_each(trials.size(), [&](std::size_t i) {
-    const auto influences = static_cast<std::uint32_t>(i);
-    if (influences == 0) {
-      trials[0] = try_one_bone();
+SkinnedTrial BoneSearch::likeliest(const SkinnedTrials& trials) {
+  if (context_.settings.main.bones > 0) return try_requested(trials);
+  grow();
+  const std::vector<Candidate> list = candidates(trials.step());
+  return list.empty() ? run(trials, guess_one_bone(trials.step()), {})
+                      : run_candidate(trials, list.front());
+}
+
+double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
+
+SkinnedTrial BoneSearch::run_candidate(const SkinnedTrials& trials, const Candidate& candidate) {
+  Growth& growth = growths_[candidate.growth];
+  const Growth::Bones& bones = growth.bones[candidate.bones];
+  return run(trials, rig(growth, bones.state, trials.step()),
+             {bones.count, growth.influences});
+}
+
+SkinnedTrial BoneSearch::search(const SkinnedTrials& trials) {
+  if (context_.settings.main.bones > 0) return try_requested(trials);
+  grow();
+  const std::vector<Candidate> list = candidates(trials.step());
+  std::vector<BestTrial> drafts(list.size() + 1);
+  for_each(drafts.size(), [&](std::size_t i) {
+    if (i == 0) {
+      drafts[0] = try_one_bone(trials);
       return;
     }
-    BoneFit full = fit(influences);
-    if (!grow(full, kManyBones.front())) return;
-    trials[i] = try_counts(full, influences, kManyBones, kManyBones.back());
+    drafts[i] = run_candidate(trials, list[i - 1]);
   });
-  // Where bones are not worth adding, more influences are not tried.
-  trials.erase(
-      std::find_if(trials.begin(), trials.end(), [](const BestTrial& trial) { return !trial; }),
-      trials.end());
-  return cheapest(std::move(trials));
-}
-
-// The numbers of bones that are expected to cost least.
-SkinnedTrial BoneSearch::search_likely() const {
-  std::vector<BestTrial> trials(1 + search_influences_);
-  Estimates expected;
-  for_each(2, [&](std::size_t i) {
-    if (i == 0) {
-      expected = estimates();
-    } else {
-      trials[0] = try_one_bone();
-    }
-  });
-  for_each(search_influences_, [&](std::size_t i) {
-    const Estimate& estimated = expected.of_influences[i];
-    if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) return;
-    trials[i + 1] = try_estimated(static_cast<std::uint32_t>(i + 1), estimated);
-  });
-  return cheapest(std::move(trials));
-}
-
-// About as many bones as are likely the best, unless the sample was too small to tell.
-BestTrial BoneSearch::try_estimated(std::uint32_t influences, const Estimate& estimate) const {
-  BoneFit full = fit(influences);
-  const double without = full.expected_translation_cost();
-  std::size_t first = 0;
-  do {
-    if (!grow(full, kFewBones[first])) return std::nullopt;
-    const double correction = full.expected_cost() / estimate.costs[first];
-    if (correction * estimate.cost >= without) return std::nullopt;
-  } while (2 * kFewBones[first] < estimate.count && ++first < estimate.costs.size());
-  return try_counts(full, influences, std::span(kFewBones).subspan(first), estimate.count);
-}
-
-// Encodes with each of `counts` bones, ascending; `full` already has the first number. Stops
-// once the cost rises at or beyond the number that is likely the best.
-BestTrial BoneSearch::try_counts(BoneFit& full, std::uint32_t influences,
-                                 std::span<const std::uint32_t> counts,
-                                 std::uint32_t likely) const {
-  BestTrial best;
-  double expected = kNone;
-  double before = kNone;
-  bool has_grown = true;
-  for (std::size_t i = 0; i < counts.size() && has_grown; ++i) {
-    const double now = full.expected_cost();
-    expected = std::min(expected, now);
-    std::optional<Rig> rig;
-    if (now <= (1.0 + kTryMargin) * expected) {
-      rig = full.rig(influences == 1 ? 1 : max_influences_);
-    }
-    BestTrial trial;
-    std::atomic<bool> ends = i + 1 == counts.size();
-    for_each(2, [&](std::size_t pass) {
-      if (pass == 0 && rig) {
-        trial = run(std::move(*rig), {counts[i], influences});
-        if (trial->cost > before && counts[i] >= likely) ends = true;
-      } else if (pass == 1 && !ends) {  // if threads grow ahead, perhaps for nothing
-        has_grown = grow(full, counts[i + 1]);
-      }
-    });
-    if (trial) {
-      before = trial->cost;
-      best = cheaper(std::move(best), std::move(*trial));
-    }
-    if (ends) break;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < drafts.size(); ++i) {
+    if (drafts[i]->cost < drafts[best]->cost) best = i;
   }
-  return best;
+  BestTrial cheapest = std::move(drafts[best]);
+  if (best > 0) {
+    BestTrial polished = polish(trials, list[best - 1]);
+    if (polished) cheapest = cheaper(std::move(cheapest), std::move(*polished));
+  }
+  return std::move(*cheapest);
 }
 
 }  // namespace rlpc

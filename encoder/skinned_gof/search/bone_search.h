@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,54 +15,59 @@
 
 namespace rlpc {
 
-// All results are for the step of the trials.
+// Bones do not depend on the step, and are fitted once. Which of them are worth their bits
+// does, so that a search may be repeated for another step.
 class BoneSearch {
  public:
   // Keeps references to all arguments.
-  BoneSearch(const SkinnedContext& context, const GofFrames& frames,
-             const SkinnedTrials& trials);
+  BoneSearch(const SkinnedContext& context, const GofFrames& frames);
 
   // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
   // one that only translates.
-  Rig guess_one_bone() const;
+  Rig guess_one_bone(double step);
+  // The trial that is expected to be the cheapest.
+  SkinnedTrial likeliest(const SkinnedTrials& trials);
   // The cheapest trial over all numbers of bones.
-  SkinnedTrial search() const;
+  SkinnedTrial search(const SkinnedTrials& trials);
+  // The sum of squared distances of all vertices from the centres of their frames, about; after
+  // a trial.
+  double squared_spread() const;
 
  private:
-  // Expected costs of different numbers of bones, from a small sample.
-  struct Estimate {
-    std::uint32_t count = 0;                                // the number that costs least
-    double cost = std::numeric_limits<double>::infinity();  // its expected cost
-    double translation = 0.0;   // expected cost of a single bone that only translates
-    std::vector<double> costs;  // expected costs of all numbers, as far as tried
+  // Bones of different numbers, with a maximum number of them for each vertex.
+  struct Growth {
+    std::uint32_t influences;
+    std::unique_ptr<BoneFit> fit;
+    struct Bones {
+      std::uint32_t count;  // that were asked for
+      BoneSolver state;
+      bool polished = false;  // there is nothing to gain from further exchanges
+    };
+    std::vector<Bones> bones = {};  // the first: a single one
+  };
+  struct Candidate {
+    std::size_t growth;
+    std::size_t bones;  // index
+    double expected;    // cost
   };
 
-  // Estimates for each maximum number of bones per vertex.
-  struct Estimates {
-    std::vector<Estimate> of_influences;                     // [influences - 1]
-    double least = std::numeric_limits<double>::infinity();  // the lowest cost of all
-  };
-
-  BoneFit fit(std::size_t influences) const;
-  BoneFit quick_fit(std::size_t influences) const;
-  bool grow(BoneFit& fit, std::uint32_t count) const;
-  SkinnedTrial run(Rig rig, const BoneCounts& counts) const;
-  Estimate estimate(std::size_t influences) const;
-  Estimates estimates() const;
-  SkinnedTrial try_one_bone() const;
-  BestTrial try_requested() const;
-  SkinnedTrial search_all() const;
-  SkinnedTrial search_likely() const;
-  BestTrial try_estimated(std::uint32_t influences, const Estimate& estimate) const;
-  BestTrial try_counts(BoneFit& full, std::uint32_t influences,
-                       std::span<const std::uint32_t> counts, std::uint32_t likely) const;
+  Growth start(std::uint32_t influences) const;
+  void grow();
+  void grow(std::span<const std::uint32_t> counts);
+  Rig rig(Growth& growth, const BoneSolver& state, double step) const;
+  SkinnedTrial run(const SkinnedTrials& trials, Rig rig, const BoneCounts& counts) const;
+  SkinnedTrial try_one_bone(const SkinnedTrials& trials);
+  SkinnedTrial try_requested(const SkinnedTrials& trials);
+  std::vector<Candidate> candidates(double step);
+  SkinnedTrial run_candidate(const SkinnedTrials& trials, const Candidate& candidate);
+  BestTrial polish(const SkinnedTrials& trials, const Candidate& candidate);
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
-  const SkinnedTrials& trials_;
   SkinnedSettings settings_;
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
+  std::vector<Growth> growths_;
 };
 
 }  // namespace rlpc
