@@ -32,32 +32,50 @@ double SkinnedGofCoder::error_at(double step, const Draft& draft) {
          expected_squared_error(draft.analysis, draft.step);
 }
 
-// The step at which the target is expected, as far as the likeliest bones show.
-double SkinnedGofCoder::likely_step(double step) {
-  const Target& target = context_.settings.target;
-  if (target.kind != Target::kKg) return step;
-  SkinnedTrial trial = bones_.likeliest(SkinnedTrials(context_, frames_, step));
-  const Draft draft{step, trial.error, std::move(trial.analysis)};
-  const double wanted = target.value * target.value * 1e-4 * bones_.squared_spread();
-  constexpr double kFarthest = 50.0;  // fixed: as in the search for the target
-  constexpr int kHalvings = 12;       // fixed: precise enough
-  double low = step / kFarthest;
-  double high = step * kFarthest;
+// What shows the step at which the target is expected: a draft of the likeliest bones or, with
+// a single bone, its components.
+SkinnedGofCoder::Draft SkinnedGofCoder::survey(double step) {
+  SkinnedCandidate likeliest = bones_.likeliest(step);
+  if (likeliest.rig.bones.size() > 1) {
+    SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(std::move(likeliest));
+    return {step, trial.error, std::move(trial.analysis)};
+  }
+  likeliest.settings.draft = true;
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, likeliest, step);
+  const double error = expected_squared_error(analysis, step);
+  return {step, error, std::move(analysis)};
+}
+
+double SkinnedGofCoder::step_of_error(double wanted, const Draft& draft) {
+  constexpr double kFinestStep = 0.5;  // fixed: as in the search for the target
+  constexpr double kFarthest = 50.0;   // fixed: likewise
+  constexpr int kHalvings = 12;        // fixed: precise enough
+  double low = draft.step / kFarthest;
+  double high = draft.step * kFarthest;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = std::sqrt(low * high);
     (error_at(middle, draft) > wanted ? high : low) = middle;
   }
-  return std::max(low, 0.5);
+  return std::max(low, kFinestStep);
 }
 
-void SkinnedGofCoder::choose(double first_step) {
+void SkinnedGofCoder::choose(double step) {
   if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
-    choice_ = {bones_.guess_one_bone(first_step), {}, usual_settings(context_.settings)};
+    choice_ = {bones_.guess_one_bone(step), {}, usual_settings(context_.settings)};
     return;
   }
-  const double step = likely_step(first_step);
+  const Target& target = context_.settings.target;
+  std::optional<Draft> first;
+  if (target.kind == Target::kKg && context_.settings.main.bones == 0) {
+    first = survey(step);
+    const double part = target.value / 100.0;
+    step = step_of_error(part * part * bones_.squared_spread(), *first);
+  }
   const SkinnedTrials trials(context_, frames_, step);
-  SkinnedTrial best = search_tools(context_, trials, bones_.search(trials));
+  const bool keeps = first && first->analysis.model.bones.size() == 1 &&
+                     first->step < kDraftServes * step && step < kDraftServes * first->step;
+  SkinnedTrial best = search_tools(
+      context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
   draft_ = Draft{step, best.error, std::move(best.analysis)};
@@ -65,7 +83,7 @@ void SkinnedGofCoder::choose(double first_step) {
 
 // Without bones, the components of the draft serve, as the only bone hardly changes.
 const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
-  const bool keeps = draft_ && !follows_step() && is_within(kAnalysisServes, step, draft_->step);
+  const bool keeps = draft_ && !follows_step() && is_within(kDraftServes, step, draft_->step);
   return analysis_.get(step, [&] {
     return analyse_candidate(context_, frames_, *choice_, step,
                              keeps ? &draft_->analysis : nullptr);

@@ -33,8 +33,9 @@ class SkinnedGofCoder : public GofCoder {
   };
 
   static double error_at(double step, const Draft& draft);
-  double likely_step(double step);
-  void choose(double first_step);
+  static double step_of_error(double wanted, const Draft& draft);
+  Draft survey(double step);
+  void choose(double step);
   const SkinnedAnalysis& analysis_for(double step);
   bool is_valid_for(double step) const;
   bool follows_step() const { return choice_->rig.bones.size() > 1; }

@@ -179,16 +179,20 @@ double BoneFit::cost_of_bone(std::size_t num_bones, double step) const {
   return lambda(step) * expected_bone_bits(unsteady_, frames_, num_bones, step);
 }
 
-double BoneFit::expected_cost(const BoneSolver& state, double step) const {
+double BoneFit::expected_cost(const BoneSolver& state, const ResidualSpectrum& spectrum,
+                              double step) const {
   const std::size_t num_bones = state.motions().size();
-  return rlpc::expected_cost(sample_, state.residuals(), frames_.num_vertices,
-                             frames_.num_frames, step) +
+  return rlpc::expected_cost(spectrum, frames_.num_vertices, frames_.num_frames, step) +
          static_cast<double>(num_bones) * cost_of_bone(num_bones, step) +
          lambda(step) * kInfluenceBits * frames_.num_vertices * state.mean_influences();
 }
 
-// [vertex of the sample][3 * frame]
-std::vector<double> BoneFit::translation_residuals() const {
+ResidualSpectrum BoneFit::spectrum(const BoneSolver& state) const {
+  return residual_spectrum(sample_, state.residuals(), frames_.num_vertices,
+                           frames_.num_frames);
+}
+
+ResidualSpectrum BoneFit::translation_spectrum() const {
   std::vector<double> residuals;
   residuals.reserve(3 * sample_.positions.size());
   for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
@@ -200,12 +204,8 @@ std::vector<double> BoneFit::translation_residuals() const {
       residuals.insert(residuals.end(), {residual(0), residual(1), residual(2)});
     }
   }
-  return residuals;
-}
-
-double BoneFit::expected_translation_cost(double step) const {
-  return rlpc::expected_cost(sample_, translation_residuals(), frames_.num_vertices,
-                             frames_.num_frames, step);
+  return residual_spectrum(sample_, std::move(residuals), frames_.num_vertices,
+                           frames_.num_frames);
 }
 
 double BoneFit::squared_spread() const {
@@ -217,12 +217,6 @@ double BoneFit::squared_spread() const {
 
 double BoneFit::rms_error() const {
   return std::sqrt(solver_.error() / static_cast<double>(sample_.positions.size()));
-}
-
-double BoneFit::translation_error() const {
-  double sum = 0.0;
-  for (const double x : translation_residuals()) sum += x * x;
-  return std::sqrt(sum / static_cast<double>(sample_.positions.size()));
 }
 
 // Fits weights and rest positions of all vertices to the bones.
@@ -280,8 +274,8 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
       while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
       const std::vector<Motion> wanted = targets.of_frame(f - first);
       for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-      for (int i = 0; i < kRounds; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kRounds; ++i) solve_poses(moments, wanted, now);
+      for (int i = 0; i < 2 * kRounds; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < kRounds - 1; ++i) solve_poses(moments, wanted, now);
       for (std::size_t b = 0; b < n; ++b) {
         result[b][f] = now[b];
         result[b][f].col(3) += centre_[f];
@@ -296,7 +290,7 @@ Rig BoneFit::rig(const BoneSolver& state, std::size_t max_influences, double ste
   rig.rest.resize(frames_.num_vertices);
   rig.weights.resize(frames_.num_vertices);
   BoneSolver settled = state;
-  settled.settle();
+  if (!settled.is_settled()) settled.settle();
   const double sampled = static_cast<double>(sample_.positions.size()) /
                          (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
   const double worth = cost_of_bone(state.motions().size(), step);

@@ -11,6 +11,7 @@
 #include "common/mesh/mesh.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/gof/sample_size.h"
+#include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 #include "encoder/skinned_gof/fit/bone_solver.h"
 #include "encoder/skinned_gof/fit/rig.h"
@@ -45,17 +46,18 @@ class BoneFit {
   // The bones as they are, to return to.
   BoneSolver state() const { return solver_; }
   void return_to(const BoneSolver& state) { solver_.take(state); }
+  // What the bones of a state leave, for expected_cost(); and a single one that only
+  // translates, with the centre of the vertices.
+  ResidualSpectrum spectrum(const BoneSolver& state) const;
+  ResidualSpectrum translation_spectrum() const;
   // Expected Lagrangian cost of the GOF with the bones of a state, without rest positions
   // (bone_estimate.h). step: of the quantiser, in grid units.
-  double expected_cost(const BoneSolver& state, double step) const;
-  // The same with a single bone that only translates, with the centre of the vertices.
-  double expected_translation_cost(double step) const;
+  double expected_cost(const BoneSolver& state, const ResidualSpectrum& spectrum,
+                       double step) const;
   // The sum of squared distances of all vertices from the centres of their frames, about.
   double squared_spread() const;
   // RMS error of a vertex position in the sample, grid units.
   double rms_error() const;
-  // The same with a single bone that only translates.
-  double translation_error() const;
   std::size_t num_bones() const { return solver_.motions().size(); }
 
   // The rig of all frames, without bones that save less than they cost. Bone 0 is the only
@@ -67,7 +69,6 @@ class BoneFit {
   Rig rig(const BoneSolver& state, std::size_t max_influences, double step) const;
 
  private:
-  std::vector<double> translation_residuals() const;
   double cost_of_bone(std::size_t num_bones, double step) const;
   Vec3d centred(std::uint32_t frame, std::uint32_t vertex) const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;

@@ -53,6 +53,7 @@ class BoneSolver {
   void exchange_bones(int times);
   // Improves the rest positions as well; no bones can be added afterwards.
   void settle();
+  bool is_settled() const { return refines_rest_; }
   // Takes the bones, weights and rest positions of a copy of this solver.
   void take(const BoneSolver& other);
   // Removes bones that save less squared error than `worth`.

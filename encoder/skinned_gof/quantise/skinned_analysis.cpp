@@ -120,7 +120,7 @@ class SkinnedAnalyser {
     model.layer_group_size = {mesh_.num_layers()};
     model.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
     model.slice_layers = {1};
-    if (before_ != nullptr) {
+    if (before_ != nullptr && settings_.draft) {
       found_.gofs = before_->gofs;
       found_.bones = before_->bones;
       model.bones = before_->model.bones;
@@ -135,11 +135,11 @@ class SkinnedAnalyser {
     }
     code_rest();
     if (before_ != nullptr) {
-      found_.pc = before_->pc;  // rest positions differ by errors of their quantisers
+      found_.pc = before_->pc;  // the rest differs by errors of its quantisers
     } else {
       // A component of less energy than the error of quantising its factors is not worth a
       // trajectory. Steps that are tried later may be finer.
-      const double finest = step_ / kAnalysisServes;
+      const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
       const double least = finest * finest / 12.0 * frames_.num_vertices;
       found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
     }

@@ -71,7 +71,7 @@ struct SkinnedAnalysis {
 // to the sum over all coordinates of all frames. step: grid units.
 //
 //   before  an analysis of the same rig with other tools, for the same step or one nearby, or
-//           null: its bones and principal components are copied
+//           null: its principal components and, in a draft, its bones are copied
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step,

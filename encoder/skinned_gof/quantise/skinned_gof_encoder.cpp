@@ -91,7 +91,8 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
                                     CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
   SkinnedModel& model = coded.model;
-  TemporalLimits limits{kLevels.back().max_components};
+  TemporalLimits limits{
+      std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, {}, 0)};

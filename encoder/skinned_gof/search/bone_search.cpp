@@ -58,53 +58,87 @@ BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
   Growth growth{influences, std::make_unique<BoneFit>(
                                 frames_, context_.triangles,
                                 BoneFitOptions{.max_influences = influences})};
-  growth.bones.push_back({1, growth.fit->state()});
+  growth.bones.push_back(
+      {1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
   return growth;
 }
 
-// Fits bones of each number, ascending.
-void BoneSearch::grow(std::span<const std::uint32_t> counts) {
-  if (growths_.empty()) {
-    for (std::uint32_t i = 1; i <= search_influences_; ++i) growths_.push_back(start(i));
+void BoneSearch::start_all() {
+  if (!growths_.empty()) return;
+  for (std::uint32_t i = 1; i <= search_influences_; ++i) growths_.push_back(start(i));
+  translation_ = growths_.front().fit->translation_spectrum();
+}
+
+double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bones,
+                                 double step) const {
+  return growth.fit->expected_cost(bones.state, bones.spectrum, step);
+}
+
+// Fits bones of each number, ascending, as long as there is a prospect that they are worth
+// their bits.
+void BoneSearch::grow(Growth& growth, double step) const {
+  // tuned (off: 100): Numbers of bones after which a single one is likely to be best if it is
+  // expected to be so far.
+  constexpr std::size_t kHopeless = 2;
+  const bool all = context_.settings.preset == Preset::kSlow;
+  const std::span<const std::uint32_t> counts =
+      all ? std::span<const std::uint32_t>(kManyBones) : kFewBones;
+  const double without =
+      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
+  double least = without;
+  for (const std::uint32_t count : counts) {
+    if (!growth.fit->grow(count)) break;
+    growth.fit->settle();
+    growth.bones.push_back(
+        {count, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
+    least = std::min(least, expected_cost(growth, growth.bones.back(), step));
+    if (!all && least >= without && growth.bones.size() > kHopeless) break;
   }
+}
+
+void BoneSearch::grow_all(double step) {
+  start_all();
   for_each(growths_.size(), [&](std::size_t i) {
-    Growth& growth = growths_[i];
-    if (growth.bones.size() > 1) return;
-    for (const std::uint32_t count : counts) {
-      if (!growth.fit->grow(count)) break;
-      growth.fit->settle();
-      growth.bones.push_back({count, growth.fit->state()});
-    }
+    if (growths_[i].bones.size() == 1) grow(growths_[i], step);
   });
 }
 
-Rig BoneSearch::rig(Growth& growth, const BoneSolver& state, double step) const {
-  return growth.fit->rig(state, growth.influences == 1 ? 1 : max_influences_, step);
-}
-
-SkinnedTrial BoneSearch::run(const SkinnedTrials& trials, Rig rig,
-                             const BoneCounts& counts) const {
-  return trials.run({std::move(rig), counts, settings_});
-}
-
-Rig BoneSearch::guess_one_bone(double step) {
-  if (growths_.empty()) grow({});
-  Growth& any = growths_.front();
-  const BoneSolver& one = any.bones.front().state;
-  const bool rotates =
-      any.fit->expected_cost(one, step) < any.fit->expected_translation_cost(step);
-  return rotates ? any.fit->rig(one, 1, step) : translation_rig(frames_);
-}
-
-SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials) {
-  if (context_.settings.preset != Preset::kSlow) {
-    return run(trials, guess_one_bone(trials.step()), {});
+SkinnedCandidate BoneSearch::candidate(Growth& growth, Growth::Bones& bones,
+                                       double step) const {
+  if (!bones.settled) {
+    bones.settled.emplace(bones.state);
+    bones.settled->settle();
   }
-  Growth& any = growths_.front();
-  SkinnedTrial best = run(trials, translation_rig(frames_), {});
+  const std::uint32_t influences = growth.influences == 1 ? 1 : max_influences_;
+  return {growth.fit->rig(*bones.settled, influences, step),
+          {bones.count, growth.influences},
+          settings_};
+}
+
+// Whichever is expected to cost less, a bone that rotates or one that only translates.
+Rig BoneSearch::guess_one_bone(double step) {
+  start_all();
+  const Growth& any = growths_.front();
+  const Growth::Bones& one = any.bones.front();
+  const bool rotates =
+      expected_cost(any, one, step) <
+      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
+  return rotates ? any.fit->rig(one.state, 1, step) : translation_rig(frames_);
+}
+
+SkinnedCandidate BoneSearch::one_bone(double step) {
+  return {guess_one_bone(step), {}, settings_};
+}
+
+SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
+  if (context_.settings.preset != Preset::kSlow) {
+    return trials.run(one_bone(trials.step()), one);
+  }
+  const Growth& any = growths_.front();
+  SkinnedTrial best = trials.run({translation_rig(frames_), {}, settings_});
   return std::move(*cheaper(
       std::move(best),
-      run(trials, any.fit->rig(any.bones.front().state, 1, trials.step()), {})));
+      trials.run({any.fit->rig(any.bones.front().state, 1, trials.step()), {}, settings_})));
 }
 
 SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
@@ -113,8 +147,8 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
     Growth growth = start(influences);
     growth.fit->grow(context_.settings.main.bones);
     growth.fit->settle();
-    best = cheaper(std::move(best),
-                   run(trials, rig(growth, growth.fit->state(), trials.step()), {}));
+    Growth::Bones bones{0, growth.fit->state(), {}};
+    best = cheaper(std::move(best), trials.run(candidate(growth, bones, trials.step())));
   }
   return std::move(*best);
 }
@@ -126,17 +160,16 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
   constexpr std::size_t kDrafts = 3;
   std::vector<Candidate> list;
   for (std::size_t g = 0; g < growths_.size(); ++g) {
-    for (std::size_t i = 1; i < growths_[g].bones.size(); ++i) list.push_back({g, i, 0.0});
+    for (std::size_t i = 1; i < growths_[g].bones.size(); ++i) {
+      list.push_back({g, i, expected_cost(growths_[g], growths_[g].bones[i], step)});
+    }
   }
-  for_each(list.size(), [&](std::size_t k) {
-    const Growth& growth = growths_[list[k].growth];
-    list[k].expected = growth.fit->expected_cost(growth.bones[list[k].bones].state, step);
-  });
   std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
     return a.expected < b.expected;
   });
   if (context_.settings.preset == Preset::kSlow) return list;
-  const double translation = growths_.front().fit->expected_translation_cost(step);
+  const double translation =
+      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
   const auto is_unlikely = [&](const Candidate& c) {
     return c.expected >= std::min((1.0 - kTryMargin) * translation,
                                   (1.0 + kTryMargin) * list.front().expected);
@@ -147,54 +180,41 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
 }
 
 // Exchanges more of the bones of a candidate; none if they were before.
-BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& candidate) {
-  Growth& growth = growths_[candidate.growth];
-  Growth::Bones& bones = growth.bones[candidate.bones];
+BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& chosen) {
+  Growth& growth = growths_[chosen.growth];
+  Growth::Bones& bones = growth.bones[chosen.bones];
   if (bones.polished) return std::nullopt;
   growth.fit->return_to(bones.state);
   for (int i = 0; i < 2; ++i) growth.fit->settle();
-  SkinnedTrial trial = run(trials, rig(growth, growth.fit->state(), trials.step()),
-                           {bones.count, growth.influences});
   bones.state.take(growth.fit->state());
+  bones.settled.reset();
   bones.polished = true;
-  return trial;
+  return trials.run(candidate(growth, bones, trials.step()));
 }
 
-// The numbers of bones that the settings leave.
-void BoneSearch::grow() {
-  if (context_.settings.main.bones > 0) return grow({});
-  const bool all = context_.settings.preset == Preset::kSlow;
-  grow(all ? std::span<const std::uint32_t>(kManyBones) : kFewBones);
-}
-
-SkinnedTrial BoneSearch::likeliest(const SkinnedTrials& trials) {
-  if (context_.settings.main.bones > 0) return try_requested(trials);
-  grow();
-  const std::vector<Candidate> list = candidates(trials.step());
-  return list.empty() ? run(trials, guess_one_bone(trials.step()), {})
-                      : run_candidate(trials, list.front());
+SkinnedCandidate BoneSearch::likeliest(double step) {
+  grow_all(step);
+  const std::vector<Candidate> list = candidates(step);
+  if (list.empty()) return one_bone(step);
+  Growth& growth = growths_[list.front().growth];
+  return candidate(growth, growth.bones[list.front().bones], step);
 }
 
 double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
 
-SkinnedTrial BoneSearch::run_candidate(const SkinnedTrials& trials, const Candidate& candidate) {
-  Growth& growth = growths_[candidate.growth];
-  const Growth::Bones& bones = growth.bones[candidate.bones];
-  return run(trials, rig(growth, bones.state, trials.step()),
-             {bones.count, growth.influences});
-}
-
-SkinnedTrial BoneSearch::search(const SkinnedTrials& trials) {
+SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
-  grow();
+  grow_all(trials.step());
   const std::vector<Candidate> list = candidates(trials.step());
   std::vector<BestTrial> drafts(list.size() + 1);
   for_each(drafts.size(), [&](std::size_t i) {
     if (i == 0) {
-      drafts[0] = try_one_bone(trials);
+      drafts[0] = try_one_bone(trials, one);
       return;
     }
-    drafts[i] = run_candidate(trials, list[i - 1]);
+    Growth& growth = growths_[list[i - 1].growth];
+    Growth::Bones& bones = growth.bones[list[i - 1].bones];
+    drafts[i] = trials.run(candidate(growth, bones, trials.step()));
   });
   std::size_t best = 0;
   for (std::size_t i = 1; i < drafts.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "encoder/gof/gof_frames.h"
@@ -25,10 +25,11 @@ class BoneSearch {
   // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
   // one that only translates.
   Rig guess_one_bone(double step);
-  // The trial that is expected to be the cheapest.
-  SkinnedTrial likeliest(const SkinnedTrials& trials);
-  // The cheapest trial over all numbers of bones.
-  SkinnedTrial search(const SkinnedTrials& trials);
+  // What is expected to be the cheapest.
+  SkinnedCandidate likeliest(double step);
+  // The cheapest trial over all numbers of bones. one: an analysis of a single bone for a step
+  // nearby, or null.
+  SkinnedTrial search(const SkinnedTrials& trials, const SkinnedAnalysis* one);
   // The sum of squared distances of all vertices from the centres of their frames, about; after
   // a trial.
   double squared_spread() const;
@@ -40,7 +41,9 @@ class BoneSearch {
     std::unique_ptr<BoneFit> fit;
     struct Bones {
       std::uint32_t count;  // that were asked for
-      BoneSolver state;
+      BoneSolver state;     // while they can be exchanged
+      ResidualSpectrum spectrum;
+      std::optional<BoneSolver> settled = {};  // the same, with the best rest positions
       bool polished = false;  // there is nothing to gain from further exchanges
     };
     std::vector<Bones> bones = {};  // the first: a single one
@@ -52,14 +55,15 @@ class BoneSearch {
   };
 
   Growth start(std::uint32_t influences) const;
-  void grow();
-  void grow(std::span<const std::uint32_t> counts);
-  Rig rig(Growth& growth, const BoneSolver& state, double step) const;
-  SkinnedTrial run(const SkinnedTrials& trials, Rig rig, const BoneCounts& counts) const;
-  SkinnedTrial try_one_bone(const SkinnedTrials& trials);
+  void start_all();
+  void grow_all(double step);
+  void grow(Growth& growth, double step) const;
+  double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
+  SkinnedCandidate one_bone(double step);
+  SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
+  SkinnedTrial try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
   std::vector<Candidate> candidates(double step);
-  SkinnedTrial run_candidate(const SkinnedTrials& trials, const Candidate& candidate);
   BestTrial polish(const SkinnedTrials& trials, const Candidate& candidate);
 
   const SkinnedContext& context_;
@@ -68,6 +72,7 @@ class BoneSearch {
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
   std::vector<Growth> growths_;
+  ResidualSpectrum translation_;  // of a single bone that only translates
 };
 
 }  // namespace rlpc

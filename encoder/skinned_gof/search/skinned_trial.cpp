@@ -16,9 +16,6 @@ namespace {
 // tuned (off: 0): Levels of hierarchical tracks besides level 0, with the High profile. Each
 // level more doubles the distance over which level 0 is predicted.
 constexpr int kTrackLevels = 1;
-// tuned: Frames from which the error of a draft is taken. It hardly differs from frame to
-// frame, and decoding takes time.
-constexpr std::uint32_t kErrorFrames = 24;
 
 }  // namespace
 
@@ -65,17 +62,18 @@ SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis a
   const EncodedGof encoded = encode_skinned_gof(context_, analysis, candidate.settings, step_);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
   return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
-          error};
+          error, encoded.components};
 }
 
-SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate) const {
+SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate,
+                                const SkinnedAnalysis* before) const {
   candidate.settings.draft = true;
-  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, candidate, step_);
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, candidate, step_, before);
   return encode(std::move(candidate), std::move(analysis));
 }
 
-BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
-                                       const SkinnedSettings& settings) const {
+SkinnedTrial SkinnedTrials::again(const SkinnedTrial& trial,
+                                  const SkinnedSettings& settings) const {
   const SkinnedSettings& before = trial.candidate.settings;
   const bool same_analysis =
       settings.prediction == before.prediction && settings.layer_steps == before.layer_steps;
@@ -84,7 +82,12 @@ BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
   SkinnedAnalysis analysis =
       same_analysis ? trial.analysis
                     : analyse_candidate(context_, frames_, candidate, step_, &trial.analysis);
-  SkinnedTrial other = encode(std::move(candidate), std::move(analysis));
+  return encode(std::move(candidate), std::move(analysis));
+}
+
+BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
+                                       const SkinnedSettings& settings) const {
+  SkinnedTrial other = again(trial, settings);
   return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
 }
 

@@ -29,6 +29,7 @@ struct SkinnedTrial {
   SkinnedAnalysis analysis;
   double cost = 0.0;   // Lagrangian cost
   double error = 0.0;  // its part that is squared error
+  std::size_t num_trajectories = 0;
 };
 
 // None: no trial so far.
@@ -46,7 +47,10 @@ class SkinnedTrials {
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
-  SkinnedTrial run(SkinnedCandidate candidate) const;
+  // before: of analyse_skinned_gof().
+  SkinnedTrial run(SkinnedCandidate candidate, const SkinnedAnalysis* before = nullptr) const;
+  // The candidate with other settings.
+  SkinnedTrial again(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
   // Tries the candidate with other settings; none if that is not cheaper.
   BestTrial with_settings(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
 
