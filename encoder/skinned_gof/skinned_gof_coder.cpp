@@ -61,7 +61,11 @@ double SkinnedGofCoder::step_of_error(double wanted, const Draft& draft) {
 
 void SkinnedGofCoder::choose(double step) {
   if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
-    choice_ = {bones_.guess_one_bone(step), {}, usual_settings(context_.settings)};
+    choice_ = bones_.likeliest(step);
+    if (follows_step()) {
+      SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(*choice_);
+      draft_ = Draft{step, trial.error, std::move(trial.analysis)};
+    }
     return;
   }
   const Target& target = context_.settings.target;

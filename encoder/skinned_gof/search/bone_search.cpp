@@ -55,9 +55,14 @@ BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames)
       search_influences_(std::min(kSearchInfluences, max_influences_)) {}
 
 BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
-  Growth growth{influences, std::make_unique<BoneFit>(
-                                frames_, context_.triangles,
-                                BoneFitOptions{.max_influences = influences})};
+  BoneFitOptions options{.max_influences = influences};
+  if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
+    options.sample_frames = kSampleFrames / kQuickPart;
+    options.sample_vertices = kSampleVertices / kQuickPart;
+    options.exchanges = 0;
+  }
+  Growth growth{influences,
+                std::make_unique<BoneFit>(frames_, context_.triangles, options)};
   growth.bones.push_back(
       {1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
   return growth;
@@ -69,38 +74,52 @@ void BoneSearch::start_all() {
   translation_ = growths_.front().fit->translation_spectrum();
 }
 
+double BoneSearch::translation_cost(double step) const {
+  return rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
+}
+
 double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bones,
                                  double step) const {
   return growth.fit->expected_cost(bones.state, bones.spectrum, step);
 }
 
 // Fits bones of each number, ascending, as long as there is a prospect that they are worth
-// their bits.
-void BoneSearch::grow(Growth& growth, double step) const {
-  // tuned (off: 100): Numbers of bones after which a single one is likely to be best if it is
-  // expected to be so far.
-  constexpr std::size_t kHopeless = 2;
+// their bits: more than a single bone, and others with the same number.
+void BoneSearch::grow_all(double step) {
+  // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there is
+  // none.
+  constexpr std::size_t kTelling = 2;
+  start_all();
+  if (growths_.front().bones.size() > 1) return;
   const bool all = context_.settings.preset == Preset::kSlow;
   const std::span<const std::uint32_t> counts =
       all ? std::span<const std::uint32_t>(kManyBones) : kFewBones;
-  const double without =
-      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
-  double least = without;
-  for (const std::uint32_t count : counts) {
-    if (!growth.fit->grow(count)) break;
-    growth.fit->settle();
-    growth.bones.push_back(
-        {count, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
-    least = std::min(least, expected_cost(growth, growth.bones.back(), step));
-    if (!all && least >= without && growth.bones.size() > kHopeless) break;
+  std::vector<Growth*> growing;
+  for (Growth& growth : growths_) growing.push_back(&growth);
+  double least = translation_cost(step);
+  for (std::size_t i = 0; i < counts.size() && !growing.empty(); ++i) {
+    std::vector<double> cost(growing.size());
+    for_each(growing.size(), [&](std::size_t k) {
+      Growth& growth = *growing[k];
+      cost[k] = std::numeric_limits<double>::infinity();
+      if (!growth.fit->grow(counts[i])) return;
+      growth.fit->settle();
+      growth.bones.push_back(
+          {counts[i], growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
+      cost[k] = expected_cost(growth, growth.bones.back(), step);
+    });
+    const double of_count = *std::min_element(cost.begin(), cost.end());
+    least = std::min(least, of_count);
+    const bool telling = !all && i + 1 >= kTelling;
+    std::vector<Growth*> still;
+    for (std::size_t k = 0; k < growing.size(); ++k) {
+      const bool ended = growing[k]->bones.back().count != counts[i];
+      const bool hopeless = telling && cost[k] > (1.0 + kTryMargin) * of_count;
+      if (!ended && !hopeless) still.push_back(growing[k]);
+    }
+    growing = std::move(still);
+    if (telling && least >= translation_cost(step)) break;
   }
-}
-
-void BoneSearch::grow_all(double step) {
-  start_all();
-  for_each(growths_.size(), [&](std::size_t i) {
-    if (growths_[i].bones.size() == 1) grow(growths_[i], step);
-  });
 }
 
 SkinnedCandidate BoneSearch::candidate(Growth& growth, Growth::Bones& bones,
@@ -120,9 +139,7 @@ Rig BoneSearch::guess_one_bone(double step) {
   start_all();
   const Growth& any = growths_.front();
   const Growth::Bones& one = any.bones.front();
-  const bool rotates =
-      expected_cost(any, one, step) <
-      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
+  const bool rotates = expected_cost(any, one, step) < translation_cost(step);
   return rotates ? any.fit->rig(one.state, 1, step) : translation_rig(frames_);
 }
 
@@ -168,8 +185,7 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
     return a.expected < b.expected;
   });
   if (context_.settings.preset == Preset::kSlow) return list;
-  const double translation =
-      rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
+  const double translation = translation_cost(step);
   const auto is_unlikely = [&](const Candidate& c) {
     return c.expected >= std::min((1.0 - kTryMargin) * translation,
                                   (1.0 + kTryMargin) * list.front().expected);
@@ -193,9 +209,15 @@ BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& chose
 }
 
 SkinnedCandidate BoneSearch::likeliest(double step) {
+  // tuned (off: 1): Bones that are not tried are used if they are expected to cost less than
+  // this fraction of a single one, of which the expected cost is too high: it leaves out what
+  // adaptive weights predict.
+  constexpr double kWithoutTrial = 0.55;
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
-  if (list.empty()) return one_bone(step);
+  const bool fast = context_.settings.preset == Preset::kFast;
+  const double most = (fast ? kWithoutTrial : 1.0) * translation_cost(step);
+  if (list.empty() || list.front().expected >= most) return one_bone(step);
   Growth& growth = growths_[list.front().growth];
   return candidate(growth, growth.bones[list.front().bones], step);
 }

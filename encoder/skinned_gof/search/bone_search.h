@@ -57,7 +57,7 @@ class BoneSearch {
   Growth start(std::uint32_t influences) const;
   void start_all();
   void grow_all(double step);
-  void grow(Growth& growth, double step) const;
+  double translation_cost(double step) const;
   double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
   SkinnedCandidate one_bone(double step);
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
