@@ -34,8 +34,8 @@ double SkinnedGofCoder::error_at(double step, const Draft& draft) {
 
 // What shows the step at which the target is expected: a draft of the likeliest bones or, with
 // a single bone, its components.
-SkinnedGofCoder::Draft SkinnedGofCoder::survey(double step) {
-  SkinnedCandidate likeliest = bones_.likeliest(step);
+SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest,
+                                                double step) const {
   if (likeliest.rig.bones.size() > 1) {
     SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(std::move(likeliest));
     return {step, trial.error, std::move(trial.analysis)};
@@ -62,16 +62,13 @@ double SkinnedGofCoder::step_of_error(double wanted, const Draft& draft) {
 void SkinnedGofCoder::choose(double step) {
   if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
     choice_ = bones_.likeliest(step);
-    if (follows_step()) {
-      SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(*choice_);
-      draft_ = Draft{step, trial.error, std::move(trial.analysis)};
-    }
+    draft_ = survey(*choice_, step);
     return;
   }
   const Target& target = context_.settings.target;
   std::optional<Draft> first;
   if (target.kind == Target::kKg && context_.settings.main.bones == 0) {
-    first = survey(step);
+    first = survey(bones_.likeliest(step), step);
     const double part = target.value / 100.0;
     step = step_of_error(part * part * bones_.squared_spread(), *first);
   }

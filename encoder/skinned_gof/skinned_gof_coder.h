@@ -34,7 +34,7 @@ class SkinnedGofCoder : public GofCoder {
 
   static double error_at(double step, const Draft& draft);
   static double step_of_error(double wanted, const Draft& draft);
-  Draft survey(double step);
+  Draft survey(SkinnedCandidate likeliest, double step) const;
   void choose(double step);
   const SkinnedAnalysis& analysis_for(double step);
   bool is_valid_for(double step) const;

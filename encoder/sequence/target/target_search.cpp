@@ -116,8 +116,8 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where a trajectory more is worth coding. Beyond the usual number of
   // trials, a narrow bracket is not worth further ones.
-  constexpr int kUsualTrials = 4;       // fixed: a promise about time
-  constexpr double kNarrowKg = 1.03;    // fixed: the tolerance, and its half
+  constexpr int kUsualTrials = 4;     // fixed: a promise about time
+  constexpr double kNarrowKg = 1.06;  // fixed: thrice the tolerance
   const bool enough = target_.kind == Target::kKg && trials_ >= kUsualTrials && best_.met() &&
                       bracket_.closed() && bracket_.within(kNarrowKg);
   if (best_.close() || enough || trials_ >= kMaxTrials) {
