@@ -30,6 +30,7 @@ class SkinnedGofCoder : public GofCoder {
     double step = 0.0;
     double error = 0.0;
     SkinnedAnalysis analysis;
+    bool is_encoded = false;  // otherwise, the error is what its components let expect
   };
 
   static double error_at(double step, const Draft& draft);

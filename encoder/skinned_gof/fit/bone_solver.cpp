@@ -284,7 +284,12 @@ void BoneSolver::improve(int rounds, SkinSums& sums) {
   for (int i = 0; i < rounds; ++i) {
     fit_all_weights(i % kRounds == 0, sums);
     improve_motions();
-    sums.set_motions(motions_);
+    const bool only_candidates = i + 1 < rounds && (i + 1) % kRounds != 0;
+    if (only_candidates) {
+      sums.set_motions(motions_, candidates_);
+    } else {
+      sums.set_motions(motions_);
+    }
   }
   fit_all_weights(false, sums);
 }

@@ -243,7 +243,7 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalys
     if (drafts[i]->cost < drafts[best]->cost) best = i;
   }
   BestTrial cheapest = std::move(drafts[best]);
-  if (best > 0) {
+  if (best > 0 && context_.settings.preset == Preset::kSlow) {
     BestTrial polished = polish(trials, list[best - 1]);
     if (polished) cheapest = cheaper(std::move(cheapest), std::move(*polished));
   }
