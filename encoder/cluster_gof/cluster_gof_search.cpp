@@ -68,7 +68,10 @@ class ClusterSearch {
     const bool world_requested = tools.frame_mode == FrameMode::kWorld;
     const bool any_frame = tools.frame_mode == FrameMode::kAuto;
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
-    if (coding_.settings().preset == Preset::kFast) {
+    // Beside skinned GOFs, the usual number is what the estimate has found to be cheaper.
+    const bool searches = coding_.settings().preset == Preset::kSlow ||
+                          coding_.settings().profile == Profile::kBaseline;
+    if (coding_.settings().preset == Preset::kFast || !searches) {
       const std::uint32_t usual = usual_clusters(coding_.frames().num_vertices);
       return {tools.clusters > 0 ? tools.clusters : usual, world_requested};
     }

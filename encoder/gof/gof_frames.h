@@ -1,6 +1,7 @@
 // The frames of a span as the encoder analyses them: in grid units, unrounded.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,30 +28,35 @@ struct GofFrames {
   }
 };
 
-// Sum of squared distances between the frames and the decoded positions. decode(f, positions)
-// writes the positions of frame f, [num_vertices][3]; any thread may call it.
+// Sum of squared distances between the frames and the decoded positions, or what it is
+// expected to be from `most` evenly spaced frames. decode(f, positions) writes the positions of
+// frame f, [num_vertices][3]; any thread may call it.
 template <typename Decode>
-double squared_error(const GofFrames& frames, const Decode& decode) {
+double squared_error(const GofFrames& frames, const Decode& decode,
+                     std::uint32_t most = 0xFFFFFFFF) {
   constexpr std::size_t kTogether = 8;  // fixed: frames of a pass
   const std::size_t values = std::size_t{frames.num_vertices} * 3;
-  std::vector<double> sums(frames.num_frames);
-  for_ranges(frames.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
+  const std::uint32_t count = std::min(most, frames.num_frames);
+  std::vector<double> sums(count);
+  for_ranges(count, kTogether, [&](std::size_t first, std::size_t end) {
     std::vector<std::int32_t> positions(values);
-    for (std::size_t f = first; f < end; ++f) {
-      const auto frame = static_cast<std::uint32_t>(f);
+    for (std::size_t i = first; i < end; ++i) {
+      // The middles of equal parts.
+      const auto frame = static_cast<std::uint32_t>((2 * std::uint64_t{i} + 1) *
+                                                    frames.num_frames / (2 * count));
       decode(frame, std::span<std::int32_t>(positions));
       const double* original = frames.at(frame, 0);
       double sum = 0.0;
-      for (std::size_t i = 0; i < values; ++i) {
-        const double d = positions[i] - original[i];
+      for (std::size_t k = 0; k < values; ++k) {
+        const double d = positions[k] - original[k];
         sum += d * d;
       }
-      sums[f] = sum;
+      sums[i] = sum;
     }
   });
   double sum = 0.0;
   for (const double of_frame : sums) sum += of_frame;
-  return sum;
+  return sum * frames.num_frames / count;
 }
 
 // The grid position nearest to a vertex, clipped to position_bits.

@@ -14,11 +14,20 @@ inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 // The squared error, in squared grid steps, that one bit is worth at a quantiser step.
 inline double lambda(double step) { return kLambda * step * step; }
 
-// D + lambda R of an encoded GOF: squared error of its decoded frames, and bits of its units.
-inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+inline double bits_of(const EncodedGof& encoded) {
   double bits = 0.0;
   for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
-  return squared_error(frames, encoded.frame) + lambda(step) * bits;
+  return bits;
+}
+
+// tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
+// frame, and decoding takes time.
+inline constexpr std::uint32_t kErrorFrames = 24;
+
+// D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample, and bits
+// of its units.
+inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+  return squared_error(frames, encoded.frame, kErrorFrames) + lambda(step) * bits_of(encoded);
 }
 
 }  // namespace rlpc

@@ -22,6 +22,7 @@ class StepCache {
   void put(double step, T value) { held_.emplace(step, std::move(value)); }
   void release() { held_.reset(); }
   bool has(double step) const { return held_ && held_->first == step; }
+  double step() const { return held_->first; }  // of the value; there must be one
   // Whatever value is cached; null if there is none.
   const T* last() const { return held_ ? &held_->second : nullptr; }
 

@@ -1,6 +1,7 @@
 #include "encoder/math/matrix_products.h"
 
 #include <algorithm>
+#include <array>
 
 #include "encoder/math/widest.h"
 #include "encoder/parallel/for_each.h"
@@ -110,6 +111,20 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
   if (r < num_rows) add_row_product(&a[r * a_width], inner, b, b_width, out);
 }
 
+RLPC_WIDEST void four_columns(const double* x, std::size_t inner, const double* b,
+                              std::size_t b_width, double* out) noexcept {
+  std::array<double, 4> sum{};
+  std::size_t i = 0;
+  for (; i + kTogether <= inner; i += kTogether) {
+    const FourProducts products(x + i, 1, b + i * b_width, b_width);
+    for (std::size_t j = 0; j < 4; ++j) sum[j] += products[j];
+  }
+  for (; i < inner; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) sum[j] += x[i] * b[i * b_width + j];
+  }
+  for (std::size_t j = 0; j < 4; ++j) out[j] = sum[j];
+}
+
 RLPC_WIDEST void add_ordered_product(std::span<const double> row, std::span<const double> b,
                                      std::span<double> result) noexcept {
   const std::size_t width = result.size();
@@ -180,6 +195,12 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
     add_product(a.subspan(begin * a_width, count * a_width), a_width, b, b_width,
                 result.subspan(begin * b_width, count * b_width));
   });
+}
+
+void four_columns_product(std::span<const double> row, std::span<const double> b,
+                          std::size_t b_width, std::size_t first,
+                          std::span<double, 4> result) {
+  four_columns(row.data(), row.size(), b.data() + first, b_width, result.data());
 }
 
 std::vector<double> ordered_product(std::span<const double> row, std::span<const double> b,

@@ -30,6 +30,13 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result);
 
+// Four columns of the product of a row and b, bit-exactly as matrix_product() gives them.
+//
+//   row     [height of b]
+//   first   of the columns
+void four_columns_product(std::span<const double> row, std::span<const double> b,
+                          std::size_t b_width, std::size_t first, std::span<double, 4> result);
+
 // row * b, each element summed strictly in the order of the rows of b.
 //
 //   row     [width]

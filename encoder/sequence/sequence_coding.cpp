@@ -29,8 +29,8 @@ std::uint32_t longest_gof(const EncoderSettings& settings) {
 }
 
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
-  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 23;  // fixed: memory
-  constexpr std::uint64_t kPart = 4;  // fixed: a span takes at most a quarter of the limit
+  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 24;  // fixed: memory
+  constexpr std::uint64_t kPart = 2;  // fixed: a span takes at most half of the limit
   const std::uint32_t longest = longest_gof(settings);
   if (settings.profile != Profile::kHigh) return longest;
   const std::uint64_t positions =

@@ -1,28 +1,94 @@
 #include "encoder/skinned_gof/skinned_gof_coder.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "encoder/math/det_math.h"
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
 #include "encoder/skinned_gof/search/bone_search.h"
 #include "encoder/skinned_gof/search/tool_search.h"
 
 namespace rlpc {
 
-void SkinnedGofCoder::choose(double step) {
-  const SkinnedTrials trials(context_, frames_, step);
-  const BoneSearch bones(context_, frames_, trials);
-  if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
-    choice_ = {bones.guess_one_bone(), {}, usual_settings(context_.settings)};
-    return;
+namespace {
+
+// tuned (off: 1): With bones, an analysis is used for steps within this factor. Their error is
+// that of bones and rest positions, and follows the step only if these are coded anew.
+constexpr double kBonesServe = 1.03;
+// tuned: With bones, the squared error is about this power of the step, if these follow it.
+constexpr double kErrorPower = 1.7;
+
+bool is_within(double factor, double a, double b) { return a < factor * b && b < factor * a; }
+
+}  // namespace
+
+// The expected squared error of a trial at another step.
+double SkinnedGofCoder::error_at(double step, const Draft& draft) {
+  if (draft.analysis.model.bones.size() > 1) {
+    return draft.error * det_exp2(kErrorPower * det_log2(step / draft.step));
   }
-  SkinnedTrial best = search_tools(context_, trials, bones.search());
-  choice_ = std::move(best.candidate);
-  analysis_.put(step, std::move(best.analysis));
+  return draft.error * expected_squared_error(draft.analysis, step) /
+         expected_squared_error(draft.analysis, draft.step);
 }
 
+// What shows the step at which the target is expected: a draft of the likeliest bones or, with
+// a single bone, its components.
+SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest,
+                                                double step) const {
+  if (likeliest.rig.bones.size() > 1) {
+    SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(std::move(likeliest));
+    return {step, trial.error, std::move(trial.analysis), true};
+  }
+  likeliest.settings.draft = true;
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, likeliest, step);
+  const double error = expected_squared_error(analysis, step);
+  return {step, error, std::move(analysis), false};
+}
+
+double SkinnedGofCoder::step_of_error(double wanted, const Draft& draft) {
+  constexpr double kFinestStep = 0.5;  // fixed: as in the search for the target
+  constexpr double kFarthest = 50.0;   // fixed: likewise
+  constexpr int kHalvings = 12;        // fixed: precise enough
+  double low = draft.step / kFarthest;
+  double high = draft.step * kFarthest;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = std::sqrt(low * high);
+    (error_at(middle, draft) > wanted ? high : low) = middle;
+  }
+  return std::max(low, kFinestStep);
+}
+
+void SkinnedGofCoder::choose(double step) {
+  if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
+    choice_ = bones_.likeliest(step);
+    draft_ = survey(*choice_, step);
+    return;
+  }
+  const Target& target = context_.settings.target;
+  std::optional<Draft> first;
+  if (target.kind == Target::kKg && context_.settings.main.bones == 0) {
+    first = survey(bones_.likeliest(step), step);
+    const double part = target.value / 100.0;
+    step = step_of_error(part * part * bones_.squared_spread(), *first);
+  }
+  const SkinnedTrials trials(context_, frames_, step);
+  const bool keeps = first && first->analysis.model.bones.size() == 1 &&
+                     first->step < kDraftServes * step && step < kDraftServes * first->step;
+  SkinnedTrial best = search_tools(
+      context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
+  choice_ = std::move(best.candidate);
+  choice_->settings.draft = false;
+  draft_ = Draft{step, best.error, std::move(best.analysis), true};
+}
+
+// Without bones, the components of the draft serve, as the only bone hardly changes.
 const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
-  return analysis_.get(
-      step, [&] { return SkinnedTrials(context_, frames_, step).analyse(*choice_); });
+  const bool keeps = draft_ && !follows_step() && is_within(kDraftServes, step, draft_->step);
+  return analysis_.get(step, [&] {
+    return analyse_candidate(context_, frames_, *choice_, step,
+                             keeps ? &draft_->analysis : nullptr);
+  });
 }
 
 // Whether what is coded follows the step, with the analysis that there is: it has trajectories.
@@ -31,28 +97,44 @@ bool SkinnedGofCoder::is_valid_for(double step) const {
   // trajectories. With fewer, the error comes from bones and rest positions, and a new analysis
   // must follow the step.
   constexpr std::size_t kEnough = 4;
-  return has_trajectories(kEnough, *analysis_.last(), choice_->settings, step);
+  if (follows_step()) return is_within(kBonesServe, step, analysis_.step());
+  SkinnedSettings draft = choice_->settings;
+  draft.draft = true;
+  return has_trajectories(kEnough, *analysis_.last(), draft, step);
 }
 
 bool SkinnedGofCoder::needs_frames(double step, double analysis_step) const {
-  return !choice_ || !analysis_.has(analysis_step) || !is_valid_for(step);
+  if (!choice_) return true;
+  if (follows_step()) return analysis_.last() == nullptr || !is_valid_for(step);
+  return !analysis_.has(analysis_step) || !is_valid_for(step);
 }
 
 void SkinnedGofCoder::analyse(double analysis_step) {
   if (!choice_) choose(analysis_step);
-  analysis_for(analysis_step);
+  if (!draft_) analysis_for(analysis_step);
 }
 
 std::optional<double> SkinnedGofCoder::expected_error(double step) const {
-  const SkinnedAnalysis* analysis = analysis_.last();
-  if (analysis == nullptr || analysis->model.bones.size() > 1) return std::nullopt;
-  return expected_squared_error(*analysis, step);
+  // tuned (off: 1): Squared error of an encoding relative to that of its draft, whose residuals
+  // of tracks are chosen one by one.
+  constexpr double kOfDraft = 0.92;
+  if (draft_ && analysis_.last() == nullptr) {
+    return (draft_->is_encoded ? kOfDraft : 1.0) * error_at(step, *draft_);
+  }
+  if (!choice_ || follows_step() || analysis_.last() == nullptr) return std::nullopt;
+  return expected_squared_error(*analysis_.last(), step);
 }
 
 EncodedGof SkinnedGofCoder::encode(double step, double analysis_step) {
-  analyse(analysis_step);
-  if (!is_valid_for(step)) analysis_for(step);
+  if (!choice_) choose(analysis_step);
+  if (!follows_step()) analysis_for(analysis_step);
+  if (analysis_.last() == nullptr || !is_valid_for(step)) analysis_for(step);
   return encode_skinned_gof(context_, *analysis_.last(), choice_->settings, step);
+}
+
+void SkinnedGofCoder::release_analysis() {
+  analysis_.release();
+  draft_.reset();
 }
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/gof/step_cache.h"
+#include "encoder/skinned_gof/search/bone_search.h"
 #include "encoder/skinned_gof/search/skinned_context.h"
 #include "encoder/skinned_gof/search/skinned_trial.h"
 
@@ -15,23 +16,37 @@ class SkinnedGofCoder : public GofCoder {
  public:
   // Keeps references to both.
   SkinnedGofCoder(const SkinnedContext& context, const GofFrames& frames)
-      : context_(context), frames_(frames) {}
+      : context_(context), frames_(frames), bones_(context, frames) {}
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
-  void release_analysis() override { analysis_.release(); }
+  void release_analysis() override;
 
  private:
+  // A draft: the step that it was made for, its squared error and its analysis.
+  struct Draft {
+    double step = 0.0;
+    double error = 0.0;
+    SkinnedAnalysis analysis;
+    bool is_encoded = false;  // otherwise, the error is what its components let expect
+  };
+
+  static double error_at(double step, const Draft& draft);
+  static double step_of_error(double wanted, const Draft& draft);
+  Draft survey(SkinnedCandidate likeliest, double step) const;
   void choose(double step);
   const SkinnedAnalysis& analysis_for(double step);
   bool is_valid_for(double step) const;
+  bool follows_step() const { return choice_->rig.bones.size() > 1; }
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
-  // Bones and tools, chosen for the first step.
+  BoneSearch bones_;
+  // Bones and tools, chosen for the step at which the target is expected.
   std::optional<SkinnedCandidate> choice_;
+  std::optional<Draft> draft_;           // of the choice
   StepCache<SkinnedAnalysis> analysis_;  // of the choice
 };
 

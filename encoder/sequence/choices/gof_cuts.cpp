@@ -63,7 +63,9 @@ class GofCosts {
   // Displacements of the vertices from their mean positions in a sample of frames. The sample
   // includes the first and the last frame, which reveal a cut that is slightly misplaced.
   TrajectoryMatrix displacements(const GofSpan& span) const {
-    const std::uint32_t count = std::min(span.count, kSampleFrames / kQuickPart);
+    // tuned: Frames of a GOF in its sample. More hardly change the estimate.
+    constexpr std::uint32_t kFrames = 16;
+    const std::uint32_t count = std::min(span.count, kFrames);
     TrajectoryMatrix matrix;
     matrix.num_values = vertices_.size();
     matrix.num_frames = 3 * std::size_t{count};

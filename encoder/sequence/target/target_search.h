@@ -58,6 +58,7 @@ class TargetSearch {
     return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
   }
   bool is_near(double measured) const;
+  double aim() const;
   void choose_next(double measured, const Expected& expected);
   void sample_beyond_jump();
   void narrow_bracket(double aim);

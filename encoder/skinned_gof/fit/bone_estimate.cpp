@@ -32,27 +32,30 @@ std::vector<double> differences(const BoneSample& sample, const PrincipalCompone
 
 }  // namespace
 
-double expected_cost(const BoneSample& sample, std::vector<double> residuals,
-                     std::uint32_t num_vertices, std::uint32_t num_frames, double step) {
+ResidualSpectrum residual_spectrum(const BoneSample& sample, std::vector<double> residuals,
+                                   std::uint32_t num_vertices, std::uint32_t num_frames) {
   TrajectoryMatrix matrix;
   matrix.num_values = sample.num_vertices();
   matrix.num_frames = 3 * sample.num_frames;
   matrix.a = std::move(residuals);
   const PrincipalComponents pc = principal_components(matrix, matrix.num_frames, 0.0);
-  const std::vector<double> difference = differences(sample, pc);
-  const double vertices = num_vertices;
-  const double values = 3.0 * num_frames;
+  ResidualSpectrum spectrum{pc.energy, differences(sample, pc)};
   const double frame_scale = num_frames / static_cast<double>(sample.num_frames);
-  const double scale = frame_scale * vertices / static_cast<double>(sample.num_vertices());
+  const double scale = frame_scale * num_vertices / static_cast<double>(sample.num_vertices());
+  for (double& x : spectrum.energy) x *= scale;
+  for (double& x : spectrum.predicted) x *= frame_scale;
+  return spectrum;
+}
+
+double expected_cost(const ResidualSpectrum& spectrum, std::uint32_t num_vertices,
+                     std::uint32_t num_frames, double step) {
   double cost = 0.0;
-  for (std::size_t l = 0; l < pc.energy.size(); ++l) {
-    const double energy = scale * pc.energy[l];
-    if (l >= difference.size()) {
-      cost += energy;
-      continue;
-    }
-    cost +=
-        expected_component_cost(energy, vertices, values, frame_scale * difference[l], step);
+  for (std::size_t l = 0; l < spectrum.energy.size(); ++l) {
+    const double energy = spectrum.energy[l];
+    cost += l < spectrum.predicted.size()
+                ? expected_component_cost(energy, num_vertices, 3.0 * num_frames,
+                                          spectrum.predicted[l], step)
+                : energy;
   }
   return cost;
 }

@@ -10,13 +10,20 @@
 
 namespace rlpc {
 
-// Expected Lagrangian cost of trajectories for the residuals of a whole GOF, from a sample.
-//
-//   residuals                 [vertex of the sample][3 * frame of the sample], grid units
-//   num_vertices, num_frames  size of the whole GOF
-//   step                      quantiser step, grid units
-double expected_cost(const BoneSample& sample, std::vector<double> residuals,
-                     std::uint32_t num_vertices, std::uint32_t num_frames, double step);
+// The principal components of the residuals of a whole GOF, as expected from a sample.
+struct ResidualSpectrum {
+  std::vector<double> energy;     // squared grid units, descending
+  std::vector<double> predicted;  // mean square that prediction leaves of a spatial factor
+};
+
+// residuals: [vertex of the sample][3 * frame of the sample], grid units
+ResidualSpectrum residual_spectrum(const BoneSample& sample, std::vector<double> residuals,
+                                   std::uint32_t num_vertices, std::uint32_t num_frames);
+
+// Expected Lagrangian cost of trajectories for the residuals. step: of the quantiser, in grid
+// units.
+double expected_cost(const ResidualSpectrum& spectrum, std::uint32_t num_vertices,
+                     std::uint32_t num_frames, double step);
 
 // Distances, in grid units, between the positions of a sample of vertices and their linear
 // extrapolation from the two frames before; for each frame except the first.

@@ -29,6 +29,13 @@ std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t
   return chosen;
 }
 
+// More frames of small meshes, which take no more time.
+std::uint32_t most_frames(const GofFrames& frames, const BoneFitOptions& options) {
+  const std::uint32_t vertices = std::min(frames.num_vertices, options.sample_vertices);
+  return std::clamp(kSamplePositions / vertices, options.sample_frames,
+                    kSmallMeshFrames * options.sample_frames);
+}
+
 std::vector<Vec3d> centres(const GofFrames& frames) {
   std::vector<Vec3d> result(frames.num_frames, Vec3d::Zero());
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
@@ -123,7 +130,7 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
     : frames_(frames),
       options_(options),
       centre_(centres(frames)),
-      chosen_(sample_frames(frames.num_frames, options.sample_frames)),
+      chosen_(sample_frames(frames.num_frames, most_frames(frames, options))),
       unsteady_(unsteadiness(frames)),
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
@@ -167,21 +174,25 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
 }
 
 // The Lagrangian cost of the bits of one unpinned bone, as a squared error over all frames.
-double BoneFit::cost_of_bone() const {
-  if (options_.step == 0.0) return 0.0;  // exact fit: bones are free
-  return lambda(options_.step) *
-         expected_bone_bits(unsteady_, frames_, num_bones(), options_.step);
+double BoneFit::cost_of_bone(std::size_t num_bones, double step) const {
+  if (step == 0.0) return 0.0;  // exact fit: bones are free
+  return lambda(step) * expected_bone_bits(unsteady_, frames_, num_bones, step);
 }
 
-double BoneFit::expected_cost() const {
-  const double n = static_cast<double>(frames_.num_vertices);
-  return rlpc::expected_cost(sample_, solver_.residuals(), frames_.num_vertices,
-                             frames_.num_frames, options_.step) +
-         static_cast<double>(num_bones()) * cost_of_bone() +
-         lambda(options_.step) * kInfluenceBits * n * solver_.mean_influences();
+double BoneFit::expected_cost(const BoneSolver& state, const ResidualSpectrum& spectrum,
+                              double step) const {
+  const std::size_t num_bones = state.motions().size();
+  return rlpc::expected_cost(spectrum, frames_.num_vertices, frames_.num_frames, step) +
+         static_cast<double>(num_bones) * cost_of_bone(num_bones, step) +
+         lambda(step) * kInfluenceBits * frames_.num_vertices * state.mean_influences();
 }
 
-double BoneFit::expected_translation_cost() const {
+ResidualSpectrum BoneFit::spectrum(const BoneSolver& state) const {
+  return residual_spectrum(sample_, state.residuals(), frames_.num_vertices,
+                           frames_.num_frames);
+}
+
+ResidualSpectrum BoneFit::translation_spectrum() const {
   std::vector<double> residuals;
   residuals.reserve(3 * sample_.positions.size());
   for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
@@ -193,31 +204,27 @@ double BoneFit::expected_translation_cost() const {
       residuals.insert(residuals.end(), {residual(0), residual(1), residual(2)});
     }
   }
-  return rlpc::expected_cost(sample_, std::move(residuals), frames_.num_vertices,
-                             frames_.num_frames, options_.step);
+  return residual_spectrum(sample_, std::move(residuals), frames_.num_vertices,
+                           frames_.num_frames);
+}
+
+double BoneFit::squared_spread() const {
+  double sum = 0.0;
+  for (const Vec3d& x : sample_.positions) sum += x.squaredNorm();
+  return sum / static_cast<double>(sample_.positions.size()) * frames_.num_vertices *
+         frames_.num_frames;
 }
 
 double BoneFit::rms_error() const {
   return std::sqrt(solver_.error() / static_cast<double>(sample_.positions.size()));
 }
 
-double BoneFit::translation_error() const {
-  double sum = 0.0;
-  for (std::size_t v = 0; v < sample_.num_vertices(); ++v) {
-    Vec3d mean = Vec3d::Zero();
-    for (const Vec3d& x : sample_.trajectory(v)) mean += x;
-    mean /= static_cast<double>(sample_.num_frames);
-    for (const Vec3d& x : sample_.trajectory(v)) sum += (x - mean).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(sample_.positions.size()));
-}
-
 // Fits weights and rest positions of all vertices to the bones.
-void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
+void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences, double step,
                            Rig& rig) const {
   constexpr std::size_t kTogether = 64;  // fixed: vertices of a pass
   const double part = static_cast<double>(chosen_.size()) / frames_.num_frames;
-  const double per_influence = kInfluenceBits * lambda(options_.step) * part;
+  const double per_influence = kInfluenceBits * lambda(step) * part;
   const SkinSums sums_of_motions({}, solver.motions());
   for_ranges(frames_.num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
     std::vector<Vec3d> positions;
@@ -267,8 +274,8 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
       while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
       const std::vector<Motion> wanted = targets.of_frame(f - first);
       for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-      for (int i = 0; i < kRounds; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kRounds; ++i) solve_poses(moments, wanted, now);
+      for (int i = 0; i < 2 * kRounds; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < kRounds - 1; ++i) solve_poses(moments, wanted, now);
       for (std::size_t b = 0; b < n; ++b) {
         result[b][f] = now[b];
         result[b][f].col(3) += centre_[f];
@@ -278,22 +285,23 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
   return result;
 }
 
-Rig BoneFit::rig(std::size_t max_influences) const {
+Rig BoneFit::rig(const BoneSolver& state, std::size_t max_influences, double step) const {
   Rig rig;
   rig.rest.resize(frames_.num_vertices);
   rig.weights.resize(frames_.num_vertices);
-  BoneSolver settled = solver_;
-  settled.settle();
+  BoneSolver settled = state;
+  if (!settled.is_settled()) settled.settle();
   const double sampled = static_cast<double>(sample_.positions.size()) /
                          (static_cast<double>(frames_.num_vertices) * frames_.num_frames);
-  settled.remove_worthless_bones(cost_of_bone() * sampled);
-  fit_vertices(settled, max_influences, rig);
+  const double worth = cost_of_bone(state.motions().size(), step);
+  settled.remove_worthless_bones(worth * sampled);
+  fit_vertices(settled, max_influences, step, rig);
   SkinMoments moments(settled.motions().size());
   for (std::uint32_t v = 0; v < frames_.num_vertices; ++v) {
     moments.add(rest_of(rig, v), rig.weights[v]);
   }
   BoneMotions motions = fit_frames(settled.motions(), moments, rig);
-  const double pin_error = 0.5 * cost_of_bone();  // pinning saves three of six values per pose
+  const double pin_error = 0.5 * worth;  // pinning saves three of six values per pose
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
   put_in_tree_order(tree, motions, rig);
   return rig;

@@ -11,6 +11,7 @@
 #include "common/mesh/mesh.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/gof/sample_size.h"
+#include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 #include "encoder/skinned_gof/fit/bone_solver.h"
 #include "encoder/skinned_gof/fit/rig.h"
@@ -19,14 +20,13 @@ namespace rlpc {
 
 struct BoneFitOptions {
   std::size_t max_influences = 3;  // maximum bones per vertex during the search, 1 to 4
-  double step = 1.0;  // quantiser step, grid units; 0: fit as precisely as possible
   std::uint32_t sample_frames = kSampleFrames;
   std::uint32_t sample_vertices = kSampleVertices;
   int exchanges = kExchanges;  // maximum attempts to exchange bones per call of settle()
 
   // tuned (off: 0): Rounds in which the least useful bones are exchanged for new ones, once all
   // bones are found. They lead out of local minima, and take most of the time of a fit.
-  static constexpr int kExchanges = 6;
+  static constexpr int kExchanges = 2;
 };
 
 // Finds bones, weights, rest positions, hierarchy and pivots, for a growing number of bones.
@@ -43,28 +43,38 @@ class BoneFit {
   bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
   // Replaces bones by more useful ones. Takes about as long as grow().
   void settle() { solver_.exchange_bones(options_.exchanges); }
-  // Expected Lagrangian cost of the GOF with these bones, without rest positions
-  // (bone_estimate.h).
-  double expected_cost() const;
-  // The same with a single bone that only translates, with the centre of the vertices.
-  double expected_translation_cost() const;
+  // The bones as they are, to return to.
+  BoneSolver state() const { return solver_; }
+  void return_to(const BoneSolver& state) { solver_.take(state); }
+  // What the bones of a state leave, for expected_cost(); and a single one that only
+  // translates, with the centre of the vertices.
+  ResidualSpectrum spectrum(const BoneSolver& state) const;
+  ResidualSpectrum translation_spectrum() const;
+  // Expected Lagrangian cost of the GOF with the bones of a state, without rest positions
+  // (bone_estimate.h). step: of the quantiser, in grid units.
+  double expected_cost(const BoneSolver& state, const ResidualSpectrum& spectrum,
+                       double step) const;
+  // The sum of squared distances of all vertices from the centres of their frames, about.
+  double squared_spread() const;
   // RMS error of a vertex position in the sample, grid units.
   double rms_error() const;
-  // The same with a single bone that only translates.
-  double translation_error() const;
   std::size_t num_bones() const { return solver_.motions().size(); }
 
   // The rig of all frames, without bones that save less than they cost. Bone 0 is the only
   // root. The weights of a vertex are in descending order; quaternions keep their sign from
-  // frame to frame. max_influences: maximum bones per vertex, 1 to 4.
-  Rig rig(std::size_t max_influences) const;
+  // frame to frame.
+  //
+  //   max_influences  maximum bones per vertex, 1 to 4
+  //   step            quantiser step, grid units; 0: fit as precisely as possible
+  Rig rig(const BoneSolver& state, std::size_t max_influences, double step) const;
 
  private:
-  double cost_of_bone() const;
+  double cost_of_bone(std::size_t num_bones, double step) const;
   Vec3d centred(std::uint32_t frame, std::uint32_t vertex) const;
   void append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) const;
   BoneSample sample_of(std::span<const Triangle> triangles) const;
-  void fit_vertices(const BoneSolver& solver, std::size_t max_influences, Rig& rig) const;
+  void fit_vertices(const BoneSolver& solver, std::size_t max_influences, double step,
+                    Rig& rig) const;
   BoneMotions fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                          const Rig& rig) const;
 

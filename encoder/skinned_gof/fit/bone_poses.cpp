@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "encoder/math/matrix_products.h"
-#include "encoder/math/symmetric_system.h"
+#include "encoder/math/small_system.h"
 
 namespace rlpc {
 namespace {
@@ -90,6 +90,8 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
 
 namespace {
 
+using Vector = Eigen::Matrix<double, 6, 1>;  // a rotation vector and a translation
+
 // The sum of u x v over pairs (u, v), where k is the sum of v u^T.
 Vec3d curl(const Eigen::Matrix3d& k) {
   return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
@@ -116,43 +118,119 @@ Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen
   return a;
 }
 
+// The equations of a Gauss-Newton step. Bones that share no vertices are not coupled, so that
+// the matrix has few blocks.
+class StepEquations {
+ public:
+  StepEquations(const SkinMoments& moments, std::span<const Motion> motions)
+      : moments_(moments) {
+    constexpr double kDamping = 1e-3;  // fixed: of the diagonal
+    for (std::size_t b = 0; b < motions.size(); ++b) {
+      first_.push_back(blocks_.size());
+      for (const std::size_t c : moments.sharing(b)) {
+        const Eigen::Matrix3d rb = motions[b].leftCols<3>();
+        blocks_.push_back(coupling(moments.block(b, c), rb, motions[c].leftCols<3>()));
+        if (c != b) continue;
+        blocks_.back().diagonal() *= 1.0 + kDamping;
+        add_inverse(blocks_.back());
+      }
+      if (inverse_.size() == b) inverse_.push_back(Block::Zero());
+    }
+  }
+
+  // By conjugate gradients, preconditioned with the inverses of the diagonal blocks.
+  std::vector<Vector> solve(std::vector<Vector> left) const {
+    constexpr int kMost = 30;            // fixed: of steps; usually ten are enough
+    constexpr double kLeastPart = 1e-6;  // fixed: squared; another Gauss-Newton step follows
+    std::vector<Vector> x(left.size(), Vector::Zero());
+    std::vector<Vector> near = times_inverse(left);
+    std::vector<Vector> along = near;
+    double size = dot(left, near);
+    const double least = kLeastPart * size;
+    for (int i = 0; i < kMost && size > least; ++i) {
+      const std::vector<Vector> change = times(along);
+      const double curvature = dot(along, change);
+      if (!(curvature > 0.0)) break;
+      const double by = size / curvature;
+      for (std::size_t b = 0; b < x.size(); ++b) {
+        x[b] += by * along[b];
+        left[b] -= by * change[b];
+      }
+      near = times_inverse(left);
+      const double before = size;
+      size = dot(left, near);
+      for (std::size_t b = 0; b < x.size(); ++b) along[b] = near[b] + size / before * along[b];
+    }
+    return x;
+  }
+
+ private:
+  using Block = Eigen::Matrix<double, 6, 6>;
+
+  // Unknowns without a pivot stay 0.
+  void add_inverse(const Block& block) {
+    Block inverse;
+    for (std::size_t k = 0; k < 6; ++k) {
+      SmallSystem<6> m;
+      for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = 0; j < 6; ++j) {
+          m.a[i][j] = block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        }
+      }
+      m.b[k] = 1.0;
+      const auto column = solve_small(m).x;
+      for (std::size_t i = 0; i < 6; ++i) {
+        inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = column[i];
+      }
+    }
+    inverse_.push_back(inverse);
+  }
+  std::vector<Vector> times_inverse(const std::vector<Vector>& x) const {
+    std::vector<Vector> result(x.size());
+    for (std::size_t b = 0; b < x.size(); ++b) result[b] = inverse_[b] * x[b];
+    return result;
+  }
+  std::vector<Vector> times(const std::vector<Vector>& x) const {
+    std::vector<Vector> result(x.size(), Vector::Zero());
+    for (std::size_t b = 0; b < x.size(); ++b) {
+      const Block* block = &blocks_[first_[b]];
+      for (const std::size_t c : moments_.sharing(b)) result[b] += *block++ * x[c];
+    }
+    return result;
+  }
+  static double dot(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+    return sum;
+  }
+
+  const SkinMoments& moments_;
+  std::vector<std::size_t> first_;  // [bone], of its blocks
+  std::vector<Block> blocks_;       // of each bone, with those of SkinMoments::sharing()
+  std::vector<Block> inverse_;      // [bone], of its own block
+};
+
 }  // namespace
 
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions) {
-  constexpr double kDamping = 1e-3;  // fixed: of the diagonal
   const std::size_t n = motions.size();
-  std::vector<double> a(36 * n * n, 0.0);
-  std::vector<double> x(6 * n, 0.0);
+  std::vector<Vector> left(n);
   for (std::size_t b = 0; b < n; ++b) {
     Motion residual = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all bones
+    for (const std::size_t c : moments.sharing(b)) residual -= motions[c] * moments.block(c, b);
     const Eigen::Matrix3d rb = motions[b].leftCols<3>();
-    for (const std::size_t c : moments.sharing(b)) {
-      residual -= motions[c] * moments.block(c, b);
-      if (c < b) continue;
-      const auto block = coupling(moments.block(b, c), rb, motions[c].leftCols<3>());
-      for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t k = 0; k < 6; ++k) {
-          a[(6 * b + i) * 6 * n + 6 * c + k] =
-              block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
-        }
-      }
-    }
-    const Vec3d turn = curl(residual.leftCols<3>() * rb.transpose());
-    for (std::size_t i = 0; i < 3; ++i) {
-      x[6 * b + i] = turn(static_cast<Eigen::Index>(i));
-      x[6 * b + 3 + i] = residual(static_cast<Eigen::Index>(i), 3);
-    }
+    left[b].head<3>() = curl(residual.leftCols<3>() * rb.transpose());
+    left[b].tail<3>() = residual.col(3);
   }
-  for (std::size_t i = 0; i < 6 * n; ++i) a[i * 6 * n + i] *= 1.0 + kDamping;
-  SymmetricSystem(std::move(a), 6 * n).solve(x);
+  const std::vector<Vector> x = StepEquations(moments, motions).solve(std::move(left));
   for (std::size_t b = 0; b < n; ++b) {
     if (!(moments.mass(b) > 0.0)) continue;
-    const Vec3d turn{x[6 * b], x[6 * b + 1], x[6 * b + 2]};
+    const Vec3d turn = x[b].head<3>();
     const Eigen::Matrix3d r =
         rotation_matrix(normalised({1.0, 0.5 * turn(0), 0.5 * turn(1), 0.5 * turn(2)}));
     motions[b].leftCols<3>() = r * motions[b].leftCols<3>();
-    motions[b].col(3) += Vec3d(x[6 * b + 3], x[6 * b + 4], x[6 * b + 5]);
+    motions[b].col(3) += x[b].tail<3>();
   }
 }
 

@@ -69,7 +69,7 @@ std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertice
   for (std::size_t f = 0; f < sample_.num_frames; ++f) {
     MotionFit fit;
     for (const std::uint32_t v : vertices) fit.add(rest_[v], sample_.trajectory(v)[f]);
-    motion[f] = fit.motion();
+    motion[f] = f == 0 ? fit.motion() : fit.motion_near(motion[f - 1]);
   }
   return motion;
 }
@@ -104,7 +104,7 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
     if (most <= std::max(kLeastPart * sum, negligible)) break;
     motions_.push_back(std::move(best));
     sums.add_bone(motions_.back());
-    fit_all_weights(true, sums);
+    offer_last_bone(sums);
     for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
   }
   return added;
@@ -242,11 +242,54 @@ void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
   });
 }
 
+// Fits the weights of vertices that the last bone moves more closely than a candidate.
+void BoneSolver::offer_last_bone(const SkinSums& sums) {
+  const std::size_t bone = motions_.size() - 1;
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      std::vector<std::size_t>& list = candidates_[v];
+      std::size_t place = list.size();
+      if (place == SkinSums::kMaxCandidates) {
+        place = farthest_candidate(v);
+        const double most = gram_[v][place * SkinSums::kMaxCandidates + place];
+        if (!(sums.rigid_error(v, bone, rest_[v]) < most)) continue;
+        list[place] = bone;
+      } else {
+        list.push_back(bone);
+      }
+      fit_weights(v, sums);
+    }
+  });
+}
+
+// The place of the candidate with the largest error of those that the vertex does not follow.
+std::size_t BoneSolver::farthest_candidate(std::size_t v) const {
+  const std::vector<RigWeight>& weights = weights_[v].weights;
+  std::size_t farthest = 0;
+  double most = -1.0;
+  for (std::size_t i = 0; i < candidates_[v].size(); ++i) {
+    const double error = gram_[v][i * SkinSums::kMaxCandidates + i];
+    if (error <= most) continue;
+    const bool followed = std::any_of(weights.begin(), weights.end(), [&](const RigWeight& w) {
+      return w.bone == candidates_[v][i];
+    });
+    if (followed) continue;
+    farthest = i;
+    most = error;
+  }
+  return farthest;
+}
+
 void BoneSolver::improve(int rounds, SkinSums& sums) {
   for (int i = 0; i < rounds; ++i) {
     fit_all_weights(i % kRounds == 0, sums);
     improve_motions();
-    sums.set_motions(motions_);
+    const bool only_candidates = i + 1 < rounds && (i + 1) % kRounds != 0;
+    if (only_candidates) {
+      sums.set_motions(motions_, candidates_);
+    } else {
+      sums.set_motions(motions_);
+    }
   }
   fit_all_weights(false, sums);
 }
@@ -321,8 +364,22 @@ std::vector<double> BoneSolver::losses() const {
 void BoneSolver::remove_bone(std::size_t bone, SkinSums& sums) {
   motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
   sums.remove_bone(bone);
-  for (BoneWeights& w : weights_) w.weights.clear();
-  fit_all_weights(true, sums);
+  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      bool lost = false;
+      for (std::size_t& candidate : candidates_[v]) {
+        lost = lost || candidate == bone;
+        if (candidate > bone) --candidate;
+      }
+      if (lost) {
+        weights_[v].weights.clear();
+        choose_candidates(v, sums);
+        fit_weights(v, sums);
+      } else {
+        for (RigWeight& w : weights_[v].weights) w.bone -= w.bone > bone ? 1 : 0;
+      }
+    }
+  });
 }
 
 double BoneSolver::error() const {

@@ -53,6 +53,9 @@ class BoneSolver {
   void exchange_bones(int times);
   // Improves the rest positions as well; no bones can be added afterwards.
   void settle();
+  bool is_settled() const { return refines_rest_; }
+  // Takes the bones, weights and rest positions of a copy of this solver.
+  void take(const BoneSolver& other);
   // Removes bones that save less squared error than `worth`.
   void remove_worthless_bones(double worth);
 
@@ -71,7 +74,6 @@ class BoneSolver {
   // to date.
   void find_patch_errors();
   bool exchange(std::size_t count, SkinSums& sums);
-  void take(const BoneSolver& other);
   std::size_t add_bones(std::size_t count, SkinSums& sums);
   std::vector<std::size_t> poorly_explained_patches(std::span<const double> error) const;
   struct PatchMotion {
@@ -92,6 +94,8 @@ class BoneSolver {
   void choose_candidates(std::size_t v, const SkinSums& sums);
   void fit_weights(std::size_t v, const SkinSums& sums);
   void fit_all_weights(bool new_candidates, const SkinSums& sums);
+  void offer_last_bone(const SkinSums& sums);
+  std::size_t farthest_candidate(std::size_t v) const;
 
   double loss_without(std::size_t v, std::uint32_t bone) const;
   std::vector<double> losses() const;

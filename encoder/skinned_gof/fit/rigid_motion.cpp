@@ -93,15 +93,26 @@ void MotionFit::add(const Vec3d& original, const Vec3d& image) {
   products_ += b * a.transpose();
 }
 
-Motion MotionFit::motion() const {
-  Motion m = Motion::Zero();
-  m.leftCols<3>().setIdentity();
-  if (count_ == 0.0) return m;
-  const Eigen::Matrix3d h = products_ - image_ * original_.transpose() / count_;
-  m.leftCols<3>() = rotation_matrix(nearest_rotation(h));
+Motion MotionFit::with_rotation(const Eigen::Matrix3d& rotation) const {
+  Motion m;
+  m.leftCols<3>() = rotation;
   m.col(3) =
-      first_image_ + image_ / count_ - m.leftCols<3>() * (first_original_ + original_ / count_);
+      first_image_ + image_ / count_ - rotation * (first_original_ + original_ / count_);
   return m;
+}
+
+Motion MotionFit::motion() const {
+  if (count_ == 0.0) {
+    Motion m = Motion::Zero();
+    m.leftCols<3>().setIdentity();
+    return m;
+  }
+  return with_rotation(rotation_matrix(nearest_rotation(covariance())));
+}
+
+Motion MotionFit::motion_near(const Motion& start) const {
+  if (count_ == 0.0) return motion();
+  return with_rotation(closest_rotation(covariance(), start.leftCols<3>()));
 }
 
 }  // namespace rlpc

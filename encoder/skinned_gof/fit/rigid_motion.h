@@ -32,8 +32,15 @@ class MotionFit {
  public:
   void add(const Vec3d& original, const Vec3d& image);
   Motion motion() const;
+  // The same, but faster if the rotation of `start` is close.
+  Motion motion_near(const Motion& start) const;
 
  private:
+  Eigen::Matrix3d covariance() const {
+    return products_ - image_ * original_.transpose() / count_;
+  }
+  Motion with_rotation(const Eigen::Matrix3d& rotation) const;
+
   double count_ = 0.0;
   Vec3d original_ = Vec3d::Zero();
   Vec3d image_ = Vec3d::Zero();

@@ -8,6 +8,7 @@
 
 #include "encoder/math/matrix_products.h"
 #include "encoder/math/small_system.h"
+#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {
@@ -101,10 +102,32 @@ void SkinSums::sum_along() {
 }
 
 void SkinSums::set_motions(const BoneMotions& motions) {
+  sum_products(motions);
+  sum_along();
+}
+
+void SkinSums::set_motions(const BoneMotions& motions,
+                           std::span<const std::vector<std::size_t>> bones) {
+  constexpr std::size_t kTogether = 64;  // fixed: vertices of a pass
+  sum_products(motions);
+  const std::size_t columns = kColumns * num_bones_;
+  const std::size_t values = 3 * num_frames_;
+  along_.resize(square_.size() * columns);
+  for_ranges(square_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      for (const std::size_t bone : bones[v]) {
+        const std::size_t column = kColumns * bone;
+        four_columns_product(positions_.subspan(v * values, values), by_frame_, columns, column,
+                             std::span<double, kColumns>(&along_[v * columns + column], kColumns));
+      }
+    }
+  });
+}
+
+void SkinSums::sum_products(const BoneMotions& motions) {
   num_bones_ = motions.size();
   const std::size_t columns = kColumns * num_bones_;
   by_frame_ = motions_by_frame(motions);
-  sum_along();
   const std::vector<double> gram = gram_matrix(by_frame_, columns);
   product_.resize(num_bones_ * num_bones_);
   for (std::size_t a = 0; a < num_bones_; ++a) {

@@ -23,6 +23,9 @@ class SkinSums {
   // Each gives the same sums as the constructor, but faster.
   void set_positions(std::span<const Vec3d> positions);
   void set_motions(const BoneMotions& motions);
+  // The same, but sums of a vertex are only those of some bones: [vertex].
+  void set_motions(const BoneMotions& motions,
+                   std::span<const std::vector<std::size_t>> bones);
   void add_bone(const std::vector<Motion>& motion);  // appends a bone
   void remove_bone(std::size_t bone);
 
@@ -45,6 +48,7 @@ class SkinSums {
 
  private:
   void sum_along();
+  void sum_products(const BoneMotions& motions);
   const Eigen::Matrix4d& product(std::size_t a, std::size_t b) const {
     return product_[a * num_bones_ + b];
   }

@@ -160,18 +160,21 @@ class RestCoder {
 }  // namespace
 
 CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
-                             std::uint32_t rest_step, int position_bits, bool counterparts) {
+                             std::uint32_t rest_step, int position_bits,
+                             const RestChoices& choices) {
   std::optional<CodedRest> best;
   const auto attempt = [&](const RestSettings& settings) {
     CodedRest coded =
         RestCoder(mesh.rest_order(), wanted, rest_step, position_bits, settings).code();
     if (!best || coded.cost < best->cost) best = std::move(coded);
   };
-  for (const RestSettings& settings : kWeights) attempt(settings);
+  const std::size_t count = choices.few ? 2 : kWeights.size();
+  for (std::size_t i = 0; i < count; ++i) attempt(kWeights[i]);
+  if (choices.few) return std::move(*best);
   RestSettings on_world = best->settings;
   on_world.axes_flag = false;
   attempt(on_world);
-  if (counterparts) {
+  if (choices.counterparts) {
     RestSettings with_counterparts = best->settings;
     with_counterparts.counterparts_flag = true;
     attempt(with_counterparts);

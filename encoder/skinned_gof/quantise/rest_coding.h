@@ -20,9 +20,15 @@ struct CodedRest {
   double cost = 0.0;                      // D + lambda R, in squared steps of rest positions
 };
 
+struct RestChoices {
+  bool few = false;  // only the usual settings
+  bool counterparts = true;
+};
+
 // wanted: [num_vertices][3], 1/16 grid units, in the range of rest positions.
 CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
-                             std::uint32_t rest_step, int position_bits, bool counterparts);
+                             std::uint32_t rest_step, int position_bits,
+                             const RestChoices& choices);
 
 // The cost of rest positions coded in the order of the mesh (9.8.4): their residuals and values
 // as decoded, [num_vertices][3].

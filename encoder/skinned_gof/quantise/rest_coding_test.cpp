@@ -68,7 +68,7 @@ struct Coded {
       : topology(make_topology(2 * kWidth * kHeight, sheets.triangles)),
         meshes(topology, sheets.triangles),
         rest(code_rest_in_order(meshes[Prediction::kLayers], sheets.wanted, kStep,
-                                kPositionBits, counterparts)) {}
+                                kPositionBits, {.counterparts = counterparts})) {}
 
   Topology topology;
   CodedMeshes meshes;

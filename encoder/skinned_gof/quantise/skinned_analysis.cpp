@@ -95,7 +95,8 @@ TrackOptions track_options(const SkinnedSettings& settings) {
           .nearest = settings.rounding == Rounding::kNearest,
           .track_levels = settings.track_levels,
           .only_levels = settings.temporal_layers > 1,
-          .fast = settings.rounding == Rounding::kDeadZone};
+          .fast = settings.rounding == Rounding::kDeadZone,
+          .draft = settings.draft};
 }
 
 namespace {
@@ -103,13 +104,15 @@ namespace {
 class SkinnedAnalyser {
  public:
   SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
-                  const Rig& rig, const SkinnedSettings& settings, double step)
+                  const Rig& rig, const SkinnedSettings& settings, double step,
+                  const SkinnedAnalysis* before)
       : mesh_(mesh),
         position_bits_(position_bits),
         frames_(frames),
         rig_(rig),
         settings_(settings),
-        step_(step) {}
+        step_(step),
+        before_(before) {}
 
   SkinnedAnalysis analyse() {
     SkinnedModel& model = found_.model;
@@ -118,27 +121,43 @@ class SkinnedAnalyser {
     model.layer_group_size = {mesh_.num_layers()};
     model.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
     model.slice_layers = {1};
+    if (before_ != nullptr && settings_.draft) {
+      found_.gofs = before_->gofs;
+      found_.bones = before_->bones;
+      model.bones = before_->model.bones;
+      model.influences = before_->model.influences;
+      for (const BoneMotion& bone : found_.bones) motions_.push_back(motions_of(bone));
+    } else {
+      start_gofs();
+      code_bones();
+      for (const auto& weights : rig_.weights) {
+        model.influences.push_back(quantise_weights(weights, 1 << model.weight_bits));
+      }
+    }
+    code_rest();
+    if (before_ != nullptr) {
+      found_.pc = before_->pc;  // the rest differs by errors of its quantisers
+    } else {
+      // A component of less energy than the error of quantising its factors is not worth a
+      // trajectory. Steps that are tried later may be finer.
+      const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
+      const double least = finest * finest / 12.0 * frames_.num_vertices;
+      found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
+    }
+    find_spatial_left();
+    return std::move(found_);
+  }
+
+ private:
+  void start_gofs() {
     for (const GofSpan& span : frames_.gofs()) {
       SkinnedGof& gof = found_.gofs.emplace_back();
       gof.first_frame = frames_.first_frame + span.first;
       gof.num_frames = span.count;
       gof.track_levels = settings_.track_levels;
     }
-    code_bones();
-    for (const auto& weights : rig_.weights) {
-      model.influences.push_back(quantise_weights(weights, 1 << model.weight_bits));
-    }
-    code_rest();
-    // A component of less energy than the error of quantising its factors is not worth a
-    // trajectory. Steps that are tried later may be finer.
-    const double finest = step_ / kAnalysisServes;
-    const double least = finest * finest / 12.0 * frames_.num_vertices;
-    found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
-    find_spatial_left();
-    return std::move(found_);
   }
 
- private:
   // Differences of a vertex and the mean of those that predict it, squared, averaged over the
   // vertex and its ring: residuals are coded by what these are nearby.
   void find_spatial_left() {
@@ -334,8 +353,10 @@ class SkinnedAnalyser {
             round_to_int(std::clamp(of_axis * kPointScale, -limit, limit - 1.0))));
       }
     }
-    CodedRest coded = code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
-                                         settings_.rest == RestTools::kCounterparts);
+    const bool counterparts = settings_.rest == RestTools::kCounterparts && !settings_.draft;
+    CodedRest coded =
+        code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
+                           {.few = settings_.draft, .counterparts = counterparts});
     if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, model.rest_step,
                                            model.vertex_residual[0], values))) {
       return;
@@ -397,6 +418,7 @@ class SkinnedAnalyser {
   const Rig& rig_;
   const SkinnedSettings& settings_;
   double step_;
+  const SkinnedAnalysis* before_;
   SkinnedAnalysis found_;
   std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
   std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
@@ -407,8 +429,9 @@ class SkinnedAnalyser {
 
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
-                                    const SkinnedSettings& settings, double step) {
-  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step).analyse();
+                                    const SkinnedSettings& settings, double step,
+                                    const SkinnedAnalysis* before) {
+  return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step, before).analyse();
 }
 
 }  // namespace rlpc

@@ -37,6 +37,7 @@ struct SkinnedSettings {
   int temporal_layers = 1;                  // of a GOF; at most track_levels + 1
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
+  bool draft = false;         // tracks as simply as suffices to compare candidates
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
   std::uint32_t component_groups = 0;  // 0: chosen by size
   std::uint32_t layer_groups = 0;      // 0: chosen by size
@@ -70,8 +71,12 @@ struct SkinnedAnalysis {
 
 // Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
 // to the sum over all coordinates of all frames. step: grid units.
+//
+//   before  an analysis of the same rig with other tools, for the same step or one nearby, or
+//           null: its principal components and, in a draft, its bones are copied
 SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
                                     const GofFrames& frames, const Rig& rig,
-                                    const SkinnedSettings& settings, double step);
+                                    const SkinnedSettings& settings, double step,
+                                    const SkinnedAnalysis* before = nullptr);
 
 }  // namespace rlpc

@@ -9,6 +9,8 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/gof/component_cost.h"
+#include "encoder/math/det_math.h"
 #include "encoder/skinned_gof/quantise/slice_cuts.h"
 #include "encoder/skinned_gof/quantise/spatial_values.h"
 #include "encoder/skinned_gof/quantise/temporal_values.h"
@@ -84,32 +86,43 @@ struct CodedTrajectories {
   SliceCuts cuts;
 };
 
+// The bits of the spatial factors of the leading components, from what prediction leaves.
+double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count, double step) {
+  const std::size_t width = analysis.pc.temporal.size();
+  const std::size_t places = analysis.spatial_left.size() / width;
+  const double error = step * step / 12.0;
+  double bits = 0.0;
+  for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t l = 0; l < count; ++l) {
+      bits += 0.5 * det_log2(1.0 + analysis.spatial_left[i * width + l] / error);
+    }
+  }
+  return bits * static_cast<double>(analysis.rest[0].size()) / static_cast<double>(places);
+}
+
 // Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
 CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
                                     CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
   SkinnedModel& model = coded.model;
-  TemporalLimits limits{kLevels.back().max_components};
+  TemporalLimits limits{
+      std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
-    if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, {}, 0)};
+    if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};
     const std::size_t count = temporal.size();
-    const auto code = [&](std::span<const std::size_t> group_end) {
-      return code_spatial_values(mesh, model, analysis, temporal, group_end, settings.rounding,
-                                 step);
-    };
     model.weights.num_adaptive_factors = 0;
     if (model.prediction == Prediction::kLayers) {
       model.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
-    SpatialValues spatial = code(std::array{count});
-    SliceCuts cuts = choose_slice_cuts(settings, spatial.residual, count);
-    // Where groups begin, adaptive weights start afresh.
-    if (model.weights.num_adaptive_factors > 0 && cuts.group_end.size() > 1) {
-      spatial = code(cuts.group_end);
-    }
+    constexpr double kAdaptive = 0.42;  // fixed: of the bits, with adaptive weights; an estimate
+    const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
+                        (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
+    SliceCuts cuts = choose_slice_cuts(settings, bits, count);
+    const SpatialValues spatial = code_spatial_values(
+        mesh, model, analysis, temporal, cuts.group_end, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
@@ -138,18 +151,14 @@ bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
 }
 
 double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
-  // tuned (off: 1): Error of a coded value relative to that of a uniform quantiser, in the
-  // forecast that starts the search. Most small values are rounded to zero and err by less than
-  // half a step.
-  constexpr double kOfCoded = 0.52;
+  const auto num_vertices = static_cast<double>(analysis.rest[0].size());
   std::size_t num_frames = 0;
   for (const SkinnedGof& gof : analysis.gofs) num_frames += gof.num_frames;
-  const double num_values = static_cast<double>(analysis.rest[0].size()) +
-                            3.0 * kTemporalError * static_cast<double>(num_frames);
-  const double quantised = kOfCoded * step * step / 12.0 * num_values;
   double error = analysis.pc.total_energy;
-  for (const double energy : analysis.pc.energy)
-    error -= energy * energy / (energy + quantised);
+  for (const double energy : analysis.pc.energy) {
+    error -= energy - expected_component_error(energy, num_vertices,
+                                               static_cast<double>(num_frames), step);
+  }
   return error;
 }
 

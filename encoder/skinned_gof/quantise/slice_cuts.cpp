@@ -3,25 +3,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/int_math.h"
-
 namespace rlpc {
 namespace {
 
 constexpr double kBytesOfSlice = 4000.0;  // fixed: slices are a feature; they cost 0.2 %
-
-double estimated_bytes(std::span<const std::int32_t> residual) {
-  constexpr double kZeroBits = 0.4;      // fixed: estimates
-  constexpr double kBits = 2.0;          // fixed: estimates
-  constexpr double kBitsOfOctave = 1.5;  // fixed: estimates
-  double bits = 0.0;
-  for (const std::int32_t r : residual) {
-    bits +=
-        r == 0 ? kZeroBits
-               : kBits + kBitsOfOctave * floor_log2(static_cast<std::uint64_t>(r < 0 ? -r : r));
-  }
-  return bits / 8.0;
-}
 
 // The layers before each group have at most an eighth of the vertices of all layers up to its
 // end. A group is smaller if it would not leave enough layers for the requested number of
@@ -81,12 +66,11 @@ void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
 
 }  // namespace
 
-SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
-                            std::span<const std::int32_t> residual, std::size_t count) {
+SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::size_t count) {
   std::size_t num_groups = settings.component_groups;
   SliceCuts cuts;
   cuts.num_layer_groups = settings.layer_groups;
-  const double slices = estimated_bytes(residual) / kBytesOfSlice;
+  const double slices = bits / (8.0 * kBytesOfSlice);
   if (num_groups == 0) num_groups = slices < 4 ? 1 : slices < 12 ? 2 : slices < 24 ? 3 : 4;
   if (cuts.num_layer_groups == 0) cuts.num_layer_groups = slices < 6 ? 1 : slices < 16 ? 2 : 3;
   if (count > 0)

@@ -21,9 +21,9 @@ struct SliceCuts {
 
 // As many groups as the settings request, otherwise as many as the overhead of slices allows.
 //
-//   residual  [num_vertices][count]: those of the trajectories
-SliceCuts choose_slice_cuts(const SkinnedSettings& settings,
-                            std::span<const std::int32_t> residual, std::size_t count);
+//   bits   of the spatial factors, about
+//   count  number of trajectories
+SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::size_t count);
 
 // Divides layers and trajectories into groups.
 //

@@ -11,10 +11,6 @@
 
 namespace rlpc {
 
-// tuned (off: 1): Squared error of a temporal value relative to that of a spatial one, without
-// bones. Each temporal value affects all vertices and has few contexts to share its cost with.
-inline constexpr double kTemporalError = 0.8;
-
 struct TemporalValues {
   std::vector<std::vector<Trajectory>> of_gof;  // [GOF][trajectory], weights and residuals
   std::vector<int> eighths;  // [trajectory], product of both steps is 2^(eighths / 8)

@@ -21,6 +21,9 @@ namespace {
 constexpr double kWeightScale = 64.0;  // fixed: of temporal_weight
 constexpr double kMaxWeight = 255.0;   // fixed: format
 constexpr int kWeightBits = 9;         // fixed: format
+// tuned (off: 100): Ways to code a track that are tried with each order of its frames: those of
+// the fewest expected bits.
+constexpr std::size_t kTried = 2;
 // tuned (off: 1): Codings of a track that the search for residuals tries to improve, cheapest
 // first. It changes their order of cost little.
 constexpr std::size_t kSearched = 2;
@@ -154,6 +157,44 @@ void search_residuals(const Series& series, const TrackTask& task, bool fast,
   if (found) coded = std::move(*found);
 }
 
+// The bits of residuals whose magnitudes have a geometric distribution of this mean.
+double geometric_bits(double mean) {
+  const double some = mean > 0.0 ? (1.0 + mean) * det_log2(1.0 + mean) - mean * det_log2(mean) : 0.0;
+  return some + mean / (1.0 + mean);
+}
+
+// The expected bits of the residuals, with rounding to nearest: values then hardly depend on
+// what predicts them.
+template <class Series>
+double expected_bits(const Series& series, const TrackTask& task,
+                     std::span<const std::vector<typename Series::Value>> ideal) {
+  struct OfLevel {
+    double sum = 0.0;
+    double count = 0.0;
+  };
+  std::array<std::array<OfLevel, 3>, kMaxTrackLevels + 1> levels;
+  for (const TrackPlace& at : task.order) {
+    auto& of_level = levels[static_cast<std::size_t>(at.level)];
+    typename Series::Predicted predicted;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (c == 0 || !Series::kCoupled) {
+        const auto& values = ideal[Series::kCoupled ? 0 : c];
+        predicted = series.predict(
+            [&](std::uint32_t f) -> const auto& { return values[f]; }, at, c);
+      }
+      of_level[c].sum += std::floor(std::abs(predicted.wanted[c]) + 0.5);
+      of_level[c].count += 1.0;
+    }
+  }
+  double bits = task.header_bits;
+  for (const auto& of_level : levels) {
+    for (const OfLevel& of : of_level) {
+      if (of.count > 0.0) bits += of.count * geometric_bits(of.sum / of.count);
+    }
+  }
+  return bits;
+}
+
 // A way to code a track: a trajectory or bone with the elements that specify it.
 template <class Header>
 struct Way {
@@ -171,6 +212,42 @@ void write_between(Coder& coder, Models& models, int between, int track_levels) 
   }
 }
 
+// The tasks of the ways of the fewest expected bits, the fewest first. Expectations tell less of
+// orders of frames than of ways with the same order.
+template <class Series, class Wanted, class Header>
+std::vector<std::pair<const Way<Header>*, TrackTask>> likely_ways(
+    Wanted wanted, std::span<const Way<Header>> ways, const TrackOptions& options,
+    TrackState& state) {
+  const auto num_frames = static_cast<std::uint32_t>(wanted.size());
+  std::array<std::vector<typename Series::Value>, 3> ideal;
+  std::vector<std::pair<const Way<Header>*, TrackTask>> tasks;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (const Way<Header>& way : ways) {
+    const Series series(wanted, way.header);
+    for (std::size_t c = 0; c < (Series::kCoupled ? 1 : 3) && tasks.empty(); ++c) {
+      for (std::uint32_t f = 0; f < num_frames; ++f) ideal[c].push_back(series.ideal(f, c));
+    }
+    BitEstimate between;
+    write_between(between, state.between, way.between, options.track_levels);
+    tasks.push_back({&way,
+                     {track_order(num_frames, options.track_levels, way.between), &state,
+                      way.bits + between.bits()}});
+    order.emplace_back(
+        expected_bits(series, tasks.back().second,
+                      std::span<const std::vector<typename Series::Value>>(ideal)),
+        order.size());
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::pair<const Way<Header>*, TrackTask>> likely;
+  std::array<std::size_t, kMaxBetween + 1> tried{};
+  for (const auto& [bits, i] : order) {
+    if (options.draft && !likely.empty()) break;
+    if (tried[static_cast<std::size_t>(ways[i].between)]++ >= kTried) continue;
+    likely.push_back(std::move(tasks[i]));
+  }
+  return likely;
+}
+
 // Codes a track in the cheapest of several ways; sets `header` and advances the state.
 //
 //   wanted  [num_frames], as Series wants it
@@ -186,25 +263,20 @@ CodedTrack<typename Series::Value> code_best(Wanted wanted, std::span<const Way<
   };
   std::vector<Candidate> best;  // the cheapest first
   const std::size_t count = options.fast ? 1 : kSearched;
-  for (const Way<Header>& way : ways) {
-    BitEstimate between;
-    write_between(between, state.between, way.between, options.track_levels);
-    TrackTask task{track_order(static_cast<std::uint32_t>(wanted.size()), options.track_levels,
-                               way.between),
-                   &state, way.bits + between.bits()};
+  for (auto& [way, task] : likely_ways<Series>(wanted, ways, options, state)) {
     const double limit =
         best.size() < count ? std::numeric_limits<double>::infinity() : best.back().cost();
-    auto coded = code_greedily(Series(wanted, way.header), task, limit, options.nearest);
+    auto coded = code_greedily(Series(wanted, way->header), task, limit, options.nearest);
     if (!coded) continue;
     if (best.size() == count) best.pop_back();
-    Candidate candidate{&way, std::move(task), std::move(*coded)};
+    Candidate candidate{way, std::move(task), std::move(*coded)};
     const auto place = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
       return candidate.cost() < other.cost();
     });
     best.insert(place, std::move(candidate));
   }
   for (Candidate& candidate : best) {
-    if (options.nearest) break;
+    if (options.nearest || options.draft) break;
     search_residuals(Series(wanted, candidate.way->header), candidate.task, options.fast,
                      candidate.coded);
   }

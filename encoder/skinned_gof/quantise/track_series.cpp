@@ -53,6 +53,14 @@ double RotationSeries::follow(const Predicted& predicted, Vec3i& residual,
   return error;
 }
 
+Quaternion RotationSeries::ideal(std::uint32_t f, std::size_t /*c*/) const {
+  Quaternion q{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    q[k] = round_to_int(wanted_[f][k] * exact_exp2(kQuaternionFractionBits));
+  }
+  return q;
+}
+
 // Whether they differ by less than what half a step changes.
 bool RotationSeries::are_alike(const Value& a, const Value& b) const {
   std::int64_t sum = 0;

@@ -11,6 +11,7 @@
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/trajectory_prediction.h"
 #include "common/skinned_gof/skinned_gof.h"
+#include "encoder/math/det_math.h"
 
 namespace rlpc {
 
@@ -43,6 +44,8 @@ class TrajectorySeries {
     return clip_signed(kTemporalIndexBits, predicted.prediction + residual[c]);
   }
   static bool are_alike(Value a, Value b) { return a == b; }
+  // The value nearest to the wanted one.
+  Value ideal(std::uint32_t f, std::size_t c) const { return round_to_int(wanted_[f][c]); }
 
  private:
   std::span<const std::array<double, 3>> wanted_;
@@ -76,6 +79,7 @@ class OffsetSeries {
     return offset_from(predicted.prediction, residual[c], step_);
   }
   static bool are_alike(Value a, Value b) { return a == b; }
+  Value ideal(std::uint32_t f, std::size_t c) const { return round_to_int(wanted_[f][c]); }
 
  private:
   std::span<const std::array<double, 3>> wanted_;
@@ -116,6 +120,7 @@ class RotationSeries {
     return rotation_from(predicted.prediction, residual, step_);
   }
   bool are_alike(const Value& a, const Value& b) const;
+  Value ideal(std::uint32_t f, std::size_t c) const;
 
  private:
   std::array<double, 3> wanted_residual(const Quaternion& prediction, std::uint32_t f) const;

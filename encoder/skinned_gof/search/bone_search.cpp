@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,7 +11,6 @@
 namespace rlpc {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 // tuned (off: 1): Bones that a vertex may follow while bones are looked for. With more, bones
 // overlap, and neither their motion nor the weights are smooth.
 constexpr std::uint32_t kSearchInfluences = 2;
@@ -23,15 +20,6 @@ constexpr std::uint32_t kSearchInfluences = 2;
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
 // fixed: those of kFewBones, so that slow finds what medium finds, and numbers around them.
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
-
-// The first of the cheapest; the first of all exists.
-SkinnedTrial cheapest(std::vector<BestTrial> trials) {
-  BestTrial best;
-  for (BestTrial& trial : trials) {
-    if (trial) best = cheaper(std::move(best), std::move(*trial));
-  }
-  return std::move(*best);
-}
 
 // A single bone that only translates, with the centre of the vertices.
 Rig translation_rig(const GofFrames& frames) {
@@ -58,187 +46,208 @@ Rig translation_rig(const GofFrames& frames) {
 
 }  // namespace
 
-BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames,
-                       const SkinnedTrials& trials)
+BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames)
     : context_(context),
       frames_(frames),
-      trials_(trials),
       settings_(usual_settings(context.settings)),
       max_influences_(context.settings.main.influences == 0 ? std::uint32_t{kMaxExtraBones}
                                                             : context.settings.main.influences),
       search_influences_(std::min(kSearchInfluences, max_influences_)) {}
 
-BoneFit BoneSearch::fit(std::size_t influences) const {
-  return {frames_, context_.triangles, {.max_influences = influences, .step = trials_.step()}};
+BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
+  BoneFitOptions options{.max_influences = influences};
+  if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
+    options.sample_frames = kSampleFrames / kQuickPart;
+    options.sample_vertices = kSampleVertices / kQuickPart;
+    options.exchanges = 0;
+  }
+  Growth growth{influences,
+                std::make_unique<BoneFit>(frames_, context_.triangles, options)};
+  growth.bones.push_back(
+      {1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
+  return growth;
 }
 
-// A fit to a small sample, for estimates.
-BoneFit BoneSearch::quick_fit(std::size_t influences) const {
-  return {frames_,
-          context_.triangles,
-          {.max_influences = influences,
-           .step = trials_.step(),
-           .sample_frames = kSampleFrames / kQuickPart,
-           .sample_vertices = kSampleVertices / kQuickPart}};
+void BoneSearch::start_all() {
+  if (!growths_.empty()) return;
+  for (std::uint32_t i = 1; i <= search_influences_; ++i) growths_.push_back(start(i));
+  translation_ = growths_.front().fit->translation_spectrum();
 }
 
-bool BoneSearch::grow(BoneFit& fit, std::uint32_t count) const {
-  if (!fit.grow(count)) return false;
-  fit.settle();
-  return true;
+double BoneSearch::translation_cost(double step) const {
+  return rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
 }
 
-SkinnedTrial BoneSearch::run(Rig rig, const BoneCounts& counts) const {
-  return trials_.run({std::move(rig), counts, settings_});
+double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bones,
+                                 double step) const {
+  return growth.fit->expected_cost(bones.state, bones.spectrum, step);
 }
 
-Rig BoneSearch::guess_one_bone() const {
-  const BoneFit one = quick_fit(1);
-  const bool rotates = one.expected_cost() < one.expected_translation_cost();
-  return rotates ? one.rig(1) : translation_rig(frames_);
+// Fits bones of each number, ascending, as long as there is a prospect that they are worth
+// their bits: more than a single bone, and others with the same number.
+void BoneSearch::grow_all(double step) {
+  // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there is
+  // none.
+  constexpr std::size_t kTelling = 2;
+  start_all();
+  if (growths_.front().bones.size() > 1) return;
+  const bool all = context_.settings.preset == Preset::kSlow;
+  const std::span<const std::uint32_t> counts =
+      all ? std::span<const std::uint32_t>(kManyBones) : kFewBones;
+  std::vector<Growth*> growing;
+  for (Growth& growth : growths_) growing.push_back(&growth);
+  double least = translation_cost(step);
+  for (std::size_t i = 0; i < counts.size() && !growing.empty(); ++i) {
+    std::vector<double> cost(growing.size());
+    for_each(growing.size(), [&](std::size_t k) {
+      Growth& growth = *growing[k];
+      cost[k] = std::numeric_limits<double>::infinity();
+      if (!growth.fit->grow(counts[i])) return;
+      growth.fit->settle();
+      growth.bones.push_back(
+          {counts[i], growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
+      cost[k] = expected_cost(growth, growth.bones.back(), step);
+    });
+    const double of_count = *std::min_element(cost.begin(), cost.end());
+    least = std::min(least, of_count);
+    const bool telling = !all && i + 1 >= kTelling;
+    std::vector<Growth*> still;
+    for (std::size_t k = 0; k < growing.size(); ++k) {
+      const bool ended = growing[k]->bones.back().count != counts[i];
+      const bool hopeless = telling && cost[k] > (1.0 + kTryMargin) * of_count;
+      if (!ended && !hopeless) still.push_back(growing[k]);
+    }
+    growing = std::move(still);
+    if (telling && least >= translation_cost(step)) break;
+  }
 }
 
-SkinnedTrial BoneSearch::try_one_bone() const {
-  if (context_.settings.preset != Preset::kSlow) return run(guess_one_bone(), {});
-  SkinnedTrial best = run(translation_rig(frames_), {});
-  return std::move(*cheaper(std::move(best), run(quick_fit(1).rig(1), {})));
+SkinnedCandidate BoneSearch::candidate(Growth& growth, Growth::Bones& bones,
+                                       double step) const {
+  if (!bones.settled) {
+    bones.settled.emplace(bones.state);
+    bones.settled->settle();
+  }
+  const std::uint32_t influences = growth.influences == 1 ? 1 : max_influences_;
+  return {growth.fit->rig(*bones.settled, influences, step),
+          {bones.count, growth.influences},
+          settings_};
 }
 
-BestTrial BoneSearch::try_requested() const {
+// Whichever is expected to cost less, a bone that rotates or one that only translates.
+Rig BoneSearch::guess_one_bone(double step) {
+  start_all();
+  const Growth& any = growths_.front();
+  const Growth::Bones& one = any.bones.front();
+  const bool rotates = expected_cost(any, one, step) < translation_cost(step);
+  return rotates ? any.fit->rig(one.state, 1, step) : translation_rig(frames_);
+}
+
+SkinnedCandidate BoneSearch::one_bone(double step) {
+  return {guess_one_bone(step), {}, settings_};
+}
+
+SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
+  if (context_.settings.preset != Preset::kSlow) {
+    return trials.run(one_bone(trials.step()), one);
+  }
+  const Growth& any = growths_.front();
+  SkinnedTrial best = trials.run({translation_rig(frames_), {}, settings_});
+  return std::move(*cheaper(
+      std::move(best),
+      trials.run({any.fit->rig(any.bones.front().state, 1, trials.step()), {}, settings_})));
+}
+
+SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
   BestTrial best;
   for (std::uint32_t influences = 1; influences <= search_influences_; ++influences) {
-    BoneFit full = fit(influences);
-    full.grow(context_.settings.main.bones);
-    full.settle();
-    best = cheaper(std::move(best), run(full.rig(influences == 1 ? 1 : max_influences_), {}));
+    Growth growth = start(influences);
+    growth.fit->grow(context_.settings.main.bones);
+    growth.fit->settle();
+    Growth::Bones bones{0, growth.fit->state(), {}};
+    best = cheaper(std::move(best), trials.run(candidate(growth, bones, trials.step())));
   }
-  return best;
+  return std::move(*best);
 }
 
-BoneSearch::Estimate BoneSearch::estimate(std::size_t influences) const {
-  Estimate best;
-  BoneFit quick = quick_fit(influences);
-  best.translation = quick.expected_translation_cost();
-  for (const std::uint32_t count : kFewBones) {
-    if (!quick.grow(count)) break;
-    const double expected = quick.expected_cost();
-    best.costs.push_back(expected);
-    if (expected < best.cost) {
-      best.cost = expected;
-      best.count = count;
+// Bones that may be worth their bits, the most likely first: if they are expected to cost less
+// than a single bone, and not more than estimates are wrong by above the least.
+std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
+  // tuned: Candidates are encoded as drafts, at most this many.
+  constexpr std::size_t kDrafts = 3;
+  std::vector<Candidate> list;
+  for (std::size_t g = 0; g < growths_.size(); ++g) {
+    for (std::size_t i = 1; i < growths_[g].bones.size(); ++i) {
+      list.push_back({g, i, expected_cost(growths_[g], growths_[g].bones[i], step)});
     }
   }
-  return best;
+  std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+    return a.expected < b.expected;
+  });
+  if (context_.settings.preset == Preset::kSlow) return list;
+  const double translation = translation_cost(step);
+  const auto is_unlikely = [&](const Candidate& c) {
+    return c.expected >= std::min((1.0 - kTryMargin) * translation,
+                                  (1.0 + kTryMargin) * list.front().expected);
+  };
+  list.erase(std::find_if(list.begin(), list.end(), is_unlikely), list.end());
+  if (list.size() > kDrafts) list.erase(list.begin() + kDrafts, list.end());
+  return list;
 }
 
-// Bones are worth a trial if they are expected to save more than estimates are wrong by. What
-// does not with two influences does so less with one.
-BoneSearch::Estimates BoneSearch::estimates() const {
-  Estimates result;
-  result.of_influences.resize(search_influences_);
-  for (std::uint32_t influences = search_influences_; influences > 0; --influences) {
-    Estimate of = estimate(influences);
-    if (of.cost >=
-        std::min((1.0 - kTryMargin) * of.translation, (1.0 + kTryMargin) * result.least)) {
-      break;
-    }
-    result.least = std::min(result.least, of.cost);
-    result.of_influences[influences - 1] = std::move(of);
-  }
-  return result;
+// Exchanges more of the bones of a candidate; none if they were before.
+BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& chosen) {
+  Growth& growth = growths_[chosen.growth];
+  Growth::Bones& bones = growth.bones[chosen.bones];
+  if (bones.polished) return std::nullopt;
+  growth.fit->return_to(bones.state);
+  for (int i = 0; i < 2; ++i) growth.fit->settle();
+  bones.state.take(growth.fit->state());
+  bones.settled.reset();
+  bones.polished = true;
+  return trials.run(candidate(growth, bones, trials.step()));
 }
 
-SkinnedTrial BoneSearch::search() const {
-  if (context_.settings.main.bones > 0) return std::move(*try_requested());
-  return context_.settings.preset == Preset::kSlow ? search_all() : search_likely();
+SkinnedCandidate BoneSearch::likeliest(double step) {
+  // tuned (off: 1): Bones that are not tried are used if they are expected to cost less than
+  // this fraction of a single one, of which the expected cost is too high: it leaves out what
+  // adaptive weights predict.
+  constexpr double kWithoutTrial = 0.55;
+  grow_all(step);
+  const std::vector<Candidate> list = candidates(step);
+  const bool fast = context_.settings.preset == Preset::kFast;
+  const double most = (fast ? kWithoutTrial : 1.0) * translation_cost(step);
+  if (list.empty() || list.front().expected >= most) return one_bone(step);
+  Growth& growth = growths_[list.front().growth];
+  return candidate(growth, growth.bones[list.front().bones], step);
 }
 
-// All numbers of bones.
-SkinnedTrial BoneSearch::search_all() const {
-  std::vector<BestTrial> trials(1 + search_influences_);
-  for_each(trials.size(), [&](std::size_t i) {
-    const auto influences = static_cast<std::uint32_t>(i);
-    if (influences == 0) {
-      trials[0] = try_one_bone();
+double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
+
+SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
+  if (context_.settings.main.bones > 0) return try_requested(trials);
+  grow_all(trials.step());
+  const std::vector<Candidate> list = candidates(trials.step());
+  std::vector<BestTrial> drafts(list.size() + 1);
+  for_each(drafts.size(), [&](std::size_t i) {
+    if (i == 0) {
+      drafts[0] = try_one_bone(trials, one);
       return;
     }
-    BoneFit full = fit(influences);
-    if (!grow(full, kManyBones.front())) return;
-    trials[i] = try_counts(full, influences, kManyBones, kManyBones.back());
+    Growth& growth = growths_[list[i - 1].growth];
+    Growth::Bones& bones = growth.bones[list[i - 1].bones];
+    drafts[i] = trials.run(candidate(growth, bones, trials.step()));
   });
-  // Where bones are not worth adding, more influences are not tried.
-  trials.erase(
-      std::find_if(trials.begin(), trials.end(), [](const BestTrial& trial) { return !trial; }),
-      trials.end());
-  return cheapest(std::move(trials));
-}
-
-// The numbers of bones that are expected to cost least.
-SkinnedTrial BoneSearch::search_likely() const {
-  std::vector<BestTrial> trials(1 + search_influences_);
-  Estimates expected;
-  for_each(2, [&](std::size_t i) {
-    if (i == 0) {
-      expected = estimates();
-    } else {
-      trials[0] = try_one_bone();
-    }
-  });
-  const double without = trials[0]->cost;
-  for_each(search_influences_, [&](std::size_t i) {
-    const Estimate& estimated = expected.of_influences[i];
-    if (estimated.count == 0 || estimated.cost > (1.0 + kTryMargin) * expected.least) return;
-    trials[i + 1] = try_estimated(static_cast<std::uint32_t>(i + 1), estimated, without);
-  });
-  return cheapest(std::move(trials));
-}
-
-// About as many bones as are likely the best, unless the sample was too small to tell.
-BestTrial BoneSearch::try_estimated(std::uint32_t influences, const Estimate& estimate,
-                                    double without) const {
-  BoneFit full = fit(influences);
-  std::size_t first = 0;
-  do {
-    if (!grow(full, kFewBones[first])) return std::nullopt;
-    const double correction = full.expected_cost() / estimate.costs[first];
-    if (correction * estimate.cost >= without) return std::nullopt;
-  } while (2 * kFewBones[first] < estimate.count && ++first < estimate.costs.size());
-  return try_counts(full, influences, std::span(kFewBones).subspan(first), estimate.count);
-}
-
-// Encodes with each of `counts` bones, ascending; `full` already has the first number. Stops
-// once the cost rises at or beyond the number that is likely the best.
-BestTrial BoneSearch::try_counts(BoneFit& full, std::uint32_t influences,
-                                 std::span<const std::uint32_t> counts,
-                                 std::uint32_t likely) const {
-  BestTrial best;
-  double expected = kNone;
-  double before = kNone;
-  bool has_grown = true;
-  for (std::size_t i = 0; i < counts.size() && has_grown; ++i) {
-    const double now = full.expected_cost();
-    expected = std::min(expected, now);
-    std::optional<Rig> rig;
-    if (now <= (1.0 + kTryMargin) * expected) {
-      rig = full.rig(influences == 1 ? 1 : max_influences_);
-    }
-    BestTrial trial;
-    std::atomic<bool> ends = i + 1 == counts.size();
-    for_each(2, [&](std::size_t pass) {
-      if (pass == 0 && rig) {
-        trial = run(std::move(*rig), {counts[i], influences});
-        if (trial->cost > before && counts[i] >= likely) ends = true;
-      } else if (pass == 1 && !ends) {  // if threads grow ahead, perhaps for nothing
-        has_grown = grow(full, counts[i + 1]);
-      }
-    });
-    if (trial) {
-      before = trial->cost;
-      best = cheaper(std::move(best), std::move(*trial));
-    }
-    if (ends) break;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < drafts.size(); ++i) {
+    if (drafts[i]->cost < drafts[best]->cost) best = i;
   }
-  return best;
+  BestTrial cheapest = std::move(drafts[best]);
+  if (best > 0 && context_.settings.preset == Preset::kSlow) {
+    BestTrial polished = polish(trials, list[best - 1]);
+    if (polished) cheapest = cheaper(std::move(cheapest), std::move(*polished));
+  }
+  return std::move(*cheapest);
 }
 
 }  // namespace rlpc

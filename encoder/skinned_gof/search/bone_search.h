@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <span>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "encoder/gof/gof_frames.h"
@@ -15,55 +15,64 @@
 
 namespace rlpc {
 
-// All results are for the step of the trials.
+// Bones do not depend on the step, and are fitted once. Which of them are worth their bits
+// does, so that a search may be repeated for another step.
 class BoneSearch {
  public:
   // Keeps references to all arguments.
-  BoneSearch(const SkinnedContext& context, const GofFrames& frames,
-             const SkinnedTrials& trials);
+  BoneSearch(const SkinnedContext& context, const GofFrames& frames);
 
   // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
   // one that only translates.
-  Rig guess_one_bone() const;
-  // The cheapest trial over all numbers of bones.
-  SkinnedTrial search() const;
+  Rig guess_one_bone(double step);
+  // What is expected to be the cheapest.
+  SkinnedCandidate likeliest(double step);
+  // The cheapest trial over all numbers of bones. one: an analysis of a single bone for a step
+  // nearby, or null.
+  SkinnedTrial search(const SkinnedTrials& trials, const SkinnedAnalysis* one);
+  // The sum of squared distances of all vertices from the centres of their frames, about; after
+  // a trial.
+  double squared_spread() const;
 
  private:
-  // Expected costs of different numbers of bones, from a small sample.
-  struct Estimate {
-    std::uint32_t count = 0;                                // the number that costs least
-    double cost = std::numeric_limits<double>::infinity();  // its expected cost
-    double translation = 0.0;   // expected cost of a single bone that only translates
-    std::vector<double> costs;  // expected costs of all numbers, as far as tried
+  // Bones of different numbers, with a maximum number of them for each vertex.
+  struct Growth {
+    std::uint32_t influences;
+    std::unique_ptr<BoneFit> fit;
+    struct Bones {
+      std::uint32_t count;  // that were asked for
+      BoneSolver state;     // while they can be exchanged
+      ResidualSpectrum spectrum;
+      std::optional<BoneSolver> settled = {};  // the same, with the best rest positions
+      bool polished = false;  // there is nothing to gain from further exchanges
+    };
+    std::vector<Bones> bones = {};  // the first: a single one
+  };
+  struct Candidate {
+    std::size_t growth;
+    std::size_t bones;  // index
+    double expected;    // cost
   };
 
-  // Estimates for each maximum number of bones per vertex.
-  struct Estimates {
-    std::vector<Estimate> of_influences;                     // [influences - 1]
-    double least = std::numeric_limits<double>::infinity();  // the lowest cost of all
-  };
-
-  BoneFit fit(std::size_t influences) const;
-  BoneFit quick_fit(std::size_t influences) const;
-  bool grow(BoneFit& fit, std::uint32_t count) const;
-  SkinnedTrial run(Rig rig, const BoneCounts& counts) const;
-  Estimate estimate(std::size_t influences) const;
-  Estimates estimates() const;
-  SkinnedTrial try_one_bone() const;
-  BestTrial try_requested() const;
-  SkinnedTrial search_all() const;
-  SkinnedTrial search_likely() const;
-  BestTrial try_estimated(std::uint32_t influences, const Estimate& estimate,
-                          double without) const;
-  BestTrial try_counts(BoneFit& full, std::uint32_t influences,
-                       std::span<const std::uint32_t> counts, std::uint32_t likely) const;
+  Growth start(std::uint32_t influences) const;
+  void start_all();
+  void grow_all(double step);
+  double translation_cost(double step) const;
+  double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
+  SkinnedCandidate one_bone(double step);
+  SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
+  SkinnedTrial try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one);
+  SkinnedTrial try_requested(const SkinnedTrials& trials);
+  std::vector<Candidate> candidates(double step);
+  BestTrial polish(const SkinnedTrials& trials, const Candidate& candidate);
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
-  const SkinnedTrials& trials_;
   SkinnedSettings settings_;
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
+  std::vector<Growth> growths_;
+  ResidualSpectrum translation_;  // of a single bone that only translates
 };
 
 }  // namespace rlpc

@@ -55,37 +55,45 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial) {
   return trial;
 }
 
-SkinnedAnalysis SkinnedTrials::analyse(const SkinnedCandidate& candidate) const {
-  return analyse_skinned_gof(context_.meshes[candidate.settings.prediction],
-                             context_.header.position_bits, frames_, candidate.rig,
-                             candidate.settings, step_);
+SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames& frames,
+                                  const SkinnedCandidate& candidate, double step,
+                                  const SkinnedAnalysis* before) {
+  return analyse_skinned_gof(context.meshes[candidate.settings.prediction],
+                             context.header.position_bits, frames, candidate.rig,
+                             candidate.settings, step, before);
 }
 
-double SkinnedTrials::cost(const SkinnedAnalysis& analysis,
-                           const SkinnedSettings& settings) const {
-  return lagrangian_cost(encode_skinned_gof(context_, analysis, settings, step_), frames_,
-                         step_);
+SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const {
+  const EncodedGof encoded = encode_skinned_gof(context_, analysis, candidate.settings, step_);
+  const double error = squared_error(frames_, encoded.frame, kErrorFrames);
+  return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
+          error, encoded.components};
 }
 
-SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate) const {
-  SkinnedAnalysis analysis = analyse(candidate);
-  const double candidate_cost = cost(analysis, candidate.settings);
-  return {std::move(candidate), std::move(analysis), candidate_cost};
+SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate,
+                                const SkinnedAnalysis* before) const {
+  candidate.settings.draft = true;
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, candidate, step_, before);
+  return encode(std::move(candidate), std::move(analysis));
 }
 
-BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
-                                       const SkinnedSettings& settings) const {
+SkinnedTrial SkinnedTrials::again(const SkinnedTrial& trial,
+                                  const SkinnedSettings& settings) const {
   const SkinnedSettings& before = trial.candidate.settings;
   const bool same_analysis =
       settings.prediction == before.prediction && settings.layer_steps == before.layer_steps;
   SkinnedCandidate candidate{trial.candidate.rig, trial.candidate.counts, settings};
-  if (!same_analysis) {
-    SkinnedTrial other = run(std::move(candidate));
-    return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
-  }
-  const double other_cost = cost(trial.analysis, settings);
-  if (!(other_cost < trial.cost)) return std::nullopt;
-  return SkinnedTrial{std::move(candidate), trial.analysis, other_cost};
+  candidate.settings.draft = true;
+  SkinnedAnalysis analysis =
+      same_analysis ? trial.analysis
+                    : analyse_candidate(context_, frames_, candidate, step_, &trial.analysis);
+  return encode(std::move(candidate), std::move(analysis));
+}
+
+BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
+                                       const SkinnedSettings& settings) const {
+  SkinnedTrial other = again(trial, settings);
+  return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
 }
 
 namespace {

@@ -27,7 +27,9 @@ struct SkinnedCandidate {
 struct SkinnedTrial {
   SkinnedCandidate candidate;
   SkinnedAnalysis analysis;
-  double cost = 0.0;  // actual Lagrangian cost
+  double cost = 0.0;   // Lagrangian cost
+  double error = 0.0;  // its part that is squared error
+  std::size_t num_trajectories = 0;
 };
 
 // None: no trial so far.
@@ -36,7 +38,8 @@ using BestTrial = std::optional<SkinnedTrial>;
 // The cheaper of the two; `before` in a tie.
 BestTrial cheaper(BestTrial before, SkinnedTrial trial);
 
-// Encodes candidates at one quantiser step (grid units).
+// Encodes candidates at one quantiser step (grid units), as drafts: with tracks coded as simply
+// as suffices to compare them, and errors from a sample of the frames.
 class SkinnedTrials {
  public:
   // Keeps references to context and frames.
@@ -44,18 +47,25 @@ class SkinnedTrials {
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
-  SkinnedAnalysis analyse(const SkinnedCandidate& candidate) const;
-  SkinnedTrial run(SkinnedCandidate candidate) const;
+  // before: of analyse_skinned_gof().
+  SkinnedTrial run(SkinnedCandidate candidate, const SkinnedAnalysis* before = nullptr) const;
+  // The candidate with other settings.
+  SkinnedTrial again(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
   // Tries the candidate with other settings; none if that is not cheaper.
   BestTrial with_settings(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
 
  private:
-  double cost(const SkinnedAnalysis& analysis, const SkinnedSettings& settings) const;
+  SkinnedTrial encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const;
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
   double step_;
 };
+
+// The analysis that encode_skinned_gof() starts from.
+SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames& frames,
+                                  const SkinnedCandidate& candidate, double step,
+                                  const SkinnedAnalysis* before = nullptr);
 
 // Quantises the trajectories and writes the units. step: quantiser step, grid units.
 EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,

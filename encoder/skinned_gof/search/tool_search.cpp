@@ -52,13 +52,26 @@ std::vector<Change> changes(const SkinnedContext& context, const SkinnedCandidat
   return list;
 }
 
+// The same trial with only the largest trajectories. What tools gain shows in these.
+SkinnedTrial with_few(const SkinnedTrials& trials, const SkinnedTrial& best) {
+  // tuned (off: 1e9): Trajectories with which tools are compared.
+  constexpr std::size_t kFew = 32;
+  if (best.num_trajectories <= 2 * kFew) return best;
+  SkinnedSettings settings = best.candidate.settings;
+  settings.max_trajectories = kFew;
+  return trials.again(best, settings);
+}
+
 }  // namespace
 
 // The result is that of trying one change after another, each on the best so far. Threads try
 // them ahead: what follows a change that wins is tried again.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
-                          SkinnedTrial best) {
-  const std::vector<Change> list = changes(context, best.candidate);
+                          SkinnedTrial start) {
+  const std::vector<Change> list = changes(context, start.candidate);
+  if (list.empty()) return start;
+  SkinnedTrial best = with_few(trials, start);
+  bool changed = false;
   std::size_t first = 0;
   while (first < list.size()) {
     std::vector<BestTrial> cheaper_by(list.size());
@@ -73,9 +86,16 @@ SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& tr
       }
     });
     first = winner;
-    if (first < list.size()) best = std::move(*cheaper_by[first++]);
+    if (first < list.size()) {
+      best = std::move(*cheaper_by[first++]);
+      changed = true;
+    }
   }
-  return best;
+  if (!changed) return start;
+  SkinnedSettings settings = best.candidate.settings;
+  if (settings.max_trajectories == start.candidate.settings.max_trajectories) return best;
+  settings.max_trajectories = start.candidate.settings.max_trajectories;
+  return trials.again(best, settings);
 }
 
 }  // namespace rlpc

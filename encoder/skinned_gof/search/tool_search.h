@@ -6,8 +6,8 @@
 
 namespace rlpc {
 
-// Varies the tools of `best`, with the same bones; returns the cheapest trial.
+// Varies the tools of `start`, with the same bones; returns the cheapest trial.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
-                          SkinnedTrial best);
+                          SkinnedTrial start);
 
 }  // namespace rlpc
