@@ -21,8 +21,8 @@ using DecodeFrame = std::function<void(std::uint32_t f, std::span<std::int32_t> 
 // narrower range means more analyses, and more jumps of the error.
 inline constexpr double kAnalysisServes = 1.44;
 
-// tuned (off: 1): The principal components of a draft are used for all steps within this
-// factor; they hardly depend on the step.
+// tuned (off: 1): The principal components of a draft serve other drafts for all steps within
+// this factor.
 inline constexpr double kDraftServes = 3.0;
 
 // The model_idx of all skinned models: each replaces the one before.

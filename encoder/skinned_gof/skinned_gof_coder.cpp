@@ -16,6 +16,9 @@ namespace {
 // tuned (off: 1): With bones, an analysis is used for steps within this factor. Their error is
 // that of bones and rest positions, and follows the step only if these are coded anew.
 constexpr double kBonesServe = 1.03;
+// tuned (off: 1): The principal components of a draft serve an encoding for steps within this
+// factor, unless the preset is fast: they hold the errors of bones and rest positions, which are coded anew.
+constexpr double kComponentsServe = 1.2;
 // tuned: With bones, the squared error is about this power of the step, if these follow it.
 constexpr double kErrorPower = 1.7;
 
@@ -84,7 +87,10 @@ void SkinnedGofCoder::choose(double step) {
 
 // Without bones, the components of the draft serve, as the only bone hardly changes.
 const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
-  const bool keeps = draft_ && !follows_step() && is_within(kDraftServes, step, draft_->step);
+  const double factor =
+      context_.settings.preset == Preset::kFast ? kDraftServes : kComponentsServe;
+  const bool keeps = draft_ && !follows_step() &&
+                     is_within(factor, step, draft_->analysis.step_of_components);
   return analysis_.get(step, [&] {
     return analyse_candidate(context_, frames_, *choice_, step,
                              keeps ? &draft_->analysis : nullptr);

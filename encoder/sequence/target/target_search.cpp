@@ -114,12 +114,10 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 }
 
 void TargetSearch::choose_next(double measured, const Expected& expected) {
-  // The KG error jumps where a trajectory more is worth coding. Beyond the usual number of
-  // trials, a narrow bracket is not worth further ones.
-  constexpr int kUsualTrials = 4;     // fixed: a promise about time
-  constexpr double kNarrowKg = 1.06;  // fixed: thrice the tolerance
-  const bool enough = target_.kind == Target::kKg && trials_ >= kUsualTrials && best_.met() &&
-                      bracket_.closed() && bracket_.within(kNarrowKg);
+  // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
+  // even in a narrow bracket, and so would further trials.
+  constexpr int kUsualTrials = 4;  // fixed: a promise about time
+  const bool enough = was_interpolated_ && best_.met() && trials_ >= kUsualTrials;
   if (best_.close() || enough || trials_ >= kMaxTrials) {
     finished_ = true;
     return;
@@ -152,7 +150,11 @@ void TargetSearch::narrow_bracket(double aim) {
     return;
   }
   constexpr int kHalving = 3;  // fixed: keeps interpolation from stalling
-  step_ = trials_ % kHalving == 0 ? bracket_.middle() : bracket_.interpolate(aim);
+  constexpr double kNarrowKg = 1.06;  // fixed: where errors are linear to within the tolerance
+  const bool halves = trials_ % kHalving == 0;
+  was_interpolated_ =
+      !halves && target_.kind == Target::kKg && bracket_.within(kNarrowKg);
+  step_ = halves ? bracket_.middle() : bracket_.interpolate(aim);
 }
 
 // The factor from the current step to the one whose value should be `aim`.

@@ -62,6 +62,7 @@ struct SkinnedAnalysis {
   std::vector<BoneMotion> bones;                  // as decoded, in all frames
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
+  double step_of_components = 0.0;  // of the analysis that they were first found in
   // What prediction leaves of spatial factors near each of some vertices, mean square:
   // [vertex of the sample][component].
   std::vector<float> spatial_left;
