@@ -197,7 +197,7 @@ std::size_t bytes_of(const EncodedGof& gof) {
 // Components that are kept from the first step on hardly affect the result.
 TEST(SkinnedGofCoder, RecomputesAReleasedAnalysis) {
   const Animation a(bending);
-  const EncoderSettings settings = fast();
+  const EncoderSettings settings;
   const SkinnedContext context = a.context(settings);
   SkinnedGofCoder keeping(context, a.frames);
   SkinnedGofCoder releasing(context, a.frames);

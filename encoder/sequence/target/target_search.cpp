@@ -129,7 +129,8 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
   power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
-  const double factor = std::clamp(factor_to(aim(), value, expected), 1.0 / kFarthest, kFarthest);
+  const double factor =
+      std::clamp(factor_to(aim(), value, expected), 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // at the finest or coarsest step
   step_ = next;
@@ -149,11 +150,10 @@ void TargetSearch::narrow_bracket(double aim) {
     finished_ = true;
     return;
   }
-  constexpr int kHalving = 3;  // fixed: keeps interpolation from stalling
+  constexpr int kHalving = 3;         // fixed: keeps interpolation from stalling
   constexpr double kNarrowKg = 1.06;  // fixed: where errors are linear to within the tolerance
   const bool halves = trials_ % kHalving == 0;
-  was_interpolated_ =
-      !halves && target_.kind == Target::kKg && bracket_.within(kNarrowKg);
+  was_interpolated_ = !halves && target_.kind == Target::kKg && bracket_.within(kNarrowKg);
   step_ = halves ? bracket_.middle() : bracket_.interpolate(aim);
 }
 

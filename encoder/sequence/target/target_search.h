@@ -75,7 +75,7 @@ class TargetSearch {
   PowerLaw power_law_;
   int trials_ = 0;
   bool was_interpolated_ = false;  // the current step, in a narrow bracket
-  double sampled_from_ = 0.0;  // start of the samples beyond a jump; 0: not sampling
+  double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling
   int samples_ = 0;
   bool finished_ = false;
 };

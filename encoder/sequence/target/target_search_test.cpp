@@ -235,8 +235,9 @@ TEST(TargetSearch, KeepsTheAnalysisForStepsThatItIsValidFor) {
 
 // As where a trajectory more is worth coding: no step gives an error near the target.
 TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
-  const Outcome outcome = search(
-      {Target::kKg, 1.0}, [](double step) { return step / 700.0 * (step < 700.0 ? 0.93 : 1.04); });
+  const Outcome outcome = search({Target::kKg, 1.0}, [](double step) {
+    return step / 700.0 * (step < 700.0 ? 0.93 : 1.04);
+  });
   EXPECT_TRUE(outcome.met);
   EXPECT_GT(outcome.best, 0.85);
   EXPECT_LE(outcome.trials, 7);

@@ -356,8 +356,9 @@ class SkinnedAnalyser {
       }
     }
     const bool counterparts = settings_.rest == RestTools::kCounterparts && !settings_.draft;
-    CodedRest coded = code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
-                                         {.few = settings_.draft, .counterparts = counterparts});
+    CodedRest coded =
+        code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
+                           {.few = settings_.draft, .counterparts = counterparts});
     if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, model.rest_step,
                                            model.vertex_residual[0], values))) {
       return;

@@ -36,7 +36,7 @@ struct SkinnedSettings {
   int track_levels = 0;                     // of hierarchical tracks; 0: there are none
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
-  bool draft = false;         // tracks as simply as suffices to compare candidates
+  bool draft = false;        // tracks as simply as suffices to compare candidates
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
   std::uint32_t component_groups = 0;  // 0: chosen by size
   std::uint32_t layer_groups = 0;      // 0: chosen by size
