@@ -68,12 +68,15 @@ class ClusterSearch {
     const bool world_requested = tools.frame_mode == FrameMode::kWorld;
     const bool any_frame = tools.frame_mode == FrameMode::kAuto;
     if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
-    // Beside skinned GOFs, the usual number is what the estimate has found to be cheaper.
-    const bool searches = coding_.settings().preset == Preset::kSlow ||
-                          coding_.settings().profile == Profile::kBaseline;
-    if (coding_.settings().preset == Preset::kFast || !searches) {
-      const std::uint32_t usual = usual_clusters(coding_.frames().num_vertices);
-      return {tools.clusters > 0 ? tools.clusters : usual, world_requested};
+    const std::uint32_t usual =
+        tools.clusters > 0 ? tools.clusters : usual_clusters(coding_.frames().num_vertices);
+    if (coding_.settings().preset == Preset::kFast) return {usual, world_requested};
+    // Beside skinned GOFs, which are usually better, only the extremes are tried.
+    if (coding_.settings().preset != Preset::kSlow &&
+        coding_.settings().profile != Profile::kBaseline) {
+      const ClusterChoice many{usual, false};
+      const ClusterChoice single{1, true};
+      return cost(single) < cost(many) ? single : many;
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};

@@ -24,8 +24,8 @@ using DecodeCut = std::function<DecodeFrame(int layers)>;
 // narrower range means more analyses, and more jumps of the error.
 inline constexpr double kAnalysisServes = 1.44;
 
-// tuned (off: 1): The principal components of a draft are used for all steps within this
-// factor; they hardly depend on the step.
+// tuned (off: 1): The principal components of a draft serve other drafts for all steps within
+// this factor.
 inline constexpr double kDraftServes = 3.0;
 
 // The model_idx of all skinned models: each replaces the one before.

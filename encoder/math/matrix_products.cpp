@@ -198,8 +198,7 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
 }
 
 void four_columns_product(std::span<const double> row, std::span<const double> b,
-                          std::size_t b_width, std::size_t first,
-                          std::span<double, 4> result) {
+                          std::size_t b_width, std::size_t first, std::span<double, 4> result) {
   four_columns(row.data(), row.size(), b.data() + first, b_width, result.data());
 }
 

@@ -218,10 +218,13 @@ bool is_as_good(const TargetResult& slow, const TargetResult& usual, Target::Kin
 // are better for each GOF may by chance be worse at the target.
 InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettings& settings,
                                         const ByteSink& sink, const Progress& progress) {
+  constexpr double kUsualPart = 0.25;  // fixed: of the time, about
   EncoderSettings usual_settings = settings;
   usual_settings.preset = Preset::kMedium;
-  const Progress first = [&](double done) { progress(0.25 * done); };
-  const Progress second = [&](double done) { progress(0.25 + 0.75 * done); };
+  const Progress first = [&](double done) { progress(kUsualPart * done); };
+  const Progress second = [&](double done) {
+    progress(kUsualPart + (1.0 - kUsualPart) * done);
+  };
   SequenceEncoder usual(source, usual_settings, progress ? first : progress);
   auto of_usual = usual.find();
   if (!of_usual) return of_usual.error();

@@ -16,6 +16,10 @@ namespace {
 // tuned (off: 1): With bones, an analysis is used for steps within this factor. Their error is
 // that of bones and rest positions, and follows the step only if these are coded anew.
 constexpr double kBonesServe = 1.03;
+// tuned (off: 1): The principal components of a draft serve an encoding for steps within this
+// factor, unless the preset is fast: they hold the errors of bones and rest positions, which
+// are coded anew.
+constexpr double kComponentsServe = 1.2;
 // tuned: With bones, the squared error is about this power of the step, if these follow it.
 constexpr double kErrorPower = 1.7;
 
@@ -34,8 +38,7 @@ double SkinnedGofCoder::error_at(double step, const Draft& draft) {
 
 // What shows the step at which the target is expected: a draft of the likeliest bones or, with
 // a single bone, its components.
-SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest,
-                                                double step) const {
+SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest, double step) const {
   if (likeliest.rig.bones.size() > 1) {
     SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(std::move(likeliest));
     return {step, trial.error, std::move(trial.analysis), true};
@@ -75,8 +78,8 @@ void SkinnedGofCoder::choose(double step) {
   const SkinnedTrials trials(context_, frames_, step);
   const bool keeps = first && first->analysis.model.bones.size() == 1 &&
                      first->step < kDraftServes * step && step < kDraftServes * first->step;
-  SkinnedTrial best = search_tools(
-      context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
+  SkinnedTrial best =
+      search_tools(context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
   draft_ = Draft{step, best.error, std::move(best.analysis), true};
@@ -84,7 +87,10 @@ void SkinnedGofCoder::choose(double step) {
 
 // Without bones, the components of the draft serve, as the only bone hardly changes.
 const SkinnedAnalysis& SkinnedGofCoder::analysis_for(double step) {
-  const bool keeps = draft_ && !follows_step() && is_within(kDraftServes, step, draft_->step);
+  const double factor =
+      context_.settings.preset == Preset::kFast ? kDraftServes : kComponentsServe;
+  const bool keeps =
+      draft_ && !follows_step() && is_within(factor, step, draft_->analysis.step_of_components);
   return analysis_.get(step, [&] {
     return analyse_candidate(context_, frames_, *choice_, step,
                              keeps ? &draft_->analysis : nullptr);

@@ -160,13 +160,20 @@ TEST(SkinnedGofCoder, EstimatesTheErrorWithOneBone) {
   EXPECT_LT(most, 1.2 * least);
 }
 
-TEST(SkinnedGofCoder, HasNoEstimateWithSeveralBones) {
+// From a draft, so that it ends with the first encoding.
+TEST(SkinnedGofCoder, EstimatesTheErrorWithSeveralBonesUntilItEncodes) {
   const Animation a(bending);
-  EncoderSettings settings = fast();
+  EncoderSettings settings;
   settings.main.bones = 2;
   const SkinnedContext context = a.context(settings);
   SkinnedGofCoder coder(context, a.frames);
   coder.analyse(10.0);
+  for (const double step : {10.0, 13.0}) {
+    SkinnedGofCoder other(context, a.frames);
+    const double real = squared_error(a.frames, other.encode(step, step).frame);
+    EXPECT_NEAR(std::sqrt(coder.expected_error(step).value() / real), 1.0, 0.15) << step;
+  }
+  coder.encode(10.0, 10.0);
   EXPECT_FALSE(coder.expected_error(10.0));
 }
 
@@ -181,23 +188,26 @@ TEST(SkinnedGofCoder, IsDeterministic) {
   }
 }
 
-// Data kept from one step to the next must not affect the result.
+std::size_t bytes_of(const EncodedGof& gof) {
+  std::size_t bytes = 0;
+  for (const auto& unit : gof.units) bytes += unit.payload.size();
+  return bytes;
+}
+
+// Components that are kept from the first step on hardly affect the result.
 TEST(SkinnedGofCoder, RecomputesAReleasedAnalysis) {
   const Animation a(bending);
-  const EncoderSettings settings = fast();
+  const EncoderSettings settings;
   const SkinnedContext context = a.context(settings);
   SkinnedGofCoder keeping(context, a.frames);
   SkinnedGofCoder releasing(context, a.frames);
   for (const auto& [step, analysis_step] : {std::pair{20.0, 20.0}, std::pair{50.0, 20.0},
                                             std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
-    const auto expected = releasing.encode(step, analysis_step).units;
+    const auto expected = static_cast<double>(bytes_of(releasing.encode(step, analysis_step)));
     releasing.release_analysis();
     EXPECT_TRUE(releasing.needs_frames(step, analysis_step));
-    const auto units = keeping.encode(step, analysis_step).units;
-    ASSERT_EQ(units.size(), expected.size());
-    for (std::size_t i = 0; i < units.size(); ++i) {
-      EXPECT_EQ(units[i].payload, expected[i].payload) << step << " " << i;
-    }
+    const auto bytes = static_cast<double>(bytes_of(keeping.encode(step, analysis_step)));
+    EXPECT_NEAR(bytes, expected, 0.02 * expected) << step;
   }
 }
 
@@ -211,7 +221,8 @@ TEST(SkinnedGofCoder, HasTheRequestedNumbersOfBonesAndTrajectories) {
   EXPECT_EQ(outcome.gof.components, 2U);
 }
 
-// No explicit setting of bones or prediction is better than the automatic choice.
+// No explicit setting of prediction is clearly better than the automatic choice, which is made
+// by drafts.
 TEST(SkinnedGofCoder, ChoosesTheCheapestPrediction) {
   const double step = 20.0;
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
@@ -228,8 +239,8 @@ TEST(SkinnedGofCoder, ChoosesTheCheapestPrediction) {
       EncoderSettings settings;
       settings.main.prediction = prediction;
       const double asked = cost(a, settings);
-      EXPECT_LE(chosen, asked * (1.0 + 1e-9)) << static_cast<int>(prediction);
-      differs = differs || asked > 1.01 * chosen;
+      EXPECT_LE(chosen, 1.02 * asked) << static_cast<int>(prediction);
+      differs = differs || asked > 1.03 * chosen;
     }
   }
   EXPECT_TRUE(differs);

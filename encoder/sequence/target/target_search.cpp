@@ -114,12 +114,10 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 }
 
 void TargetSearch::choose_next(double measured, const Expected& expected) {
-  // The KG error jumps where a trajectory more is worth coding. Beyond the usual number of
-  // trials, a narrow bracket is not worth further ones.
-  constexpr int kUsualTrials = 4;     // fixed: a promise about time
-  constexpr double kNarrowKg = 1.06;  // fixed: thrice the tolerance
-  const bool enough = target_.kind == Target::kKg && trials_ >= kUsualTrials && best_.met() &&
-                      bracket_.closed() && bracket_.within(kNarrowKg);
+  // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
+  // even in a narrow bracket, and so would further trials.
+  constexpr int kUsualTrials = 4;  // fixed: a promise about time
+  const bool enough = was_interpolated_ && best_.met() && trials_ >= kUsualTrials;
   if (best_.close() || enough || trials_ >= kMaxTrials) {
     finished_ = true;
     return;
@@ -131,7 +129,8 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
   power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
-  const double factor = std::clamp(factor_to(aim(), value, expected), 1.0 / kFarthest, kFarthest);
+  const double factor =
+      std::clamp(factor_to(aim(), value, expected), 1.0 / kFarthest, kFarthest);
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // at the finest or coarsest step
   step_ = next;
@@ -151,8 +150,11 @@ void TargetSearch::narrow_bracket(double aim) {
     finished_ = true;
     return;
   }
-  constexpr int kHalving = 3;  // fixed: keeps interpolation from stalling
-  step_ = trials_ % kHalving == 0 ? bracket_.middle() : bracket_.interpolate(aim);
+  constexpr int kHalving = 3;         // fixed: keeps interpolation from stalling
+  constexpr double kNarrowKg = 1.06;  // fixed: where errors are linear to within the tolerance
+  const bool halves = trials_ % kHalving == 0;
+  was_interpolated_ = !halves && target_.kind == Target::kKg && bracket_.within(kNarrowKg);
+  step_ = halves ? bracket_.middle() : bracket_.interpolate(aim);
 }
 
 // The factor from the current step to the one whose value should be `aim`.

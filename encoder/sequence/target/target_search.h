@@ -74,7 +74,8 @@ class TargetSearch {
   Bracket bracket_;
   PowerLaw power_law_;
   int trials_ = 0;
-  double sampled_from_ = 0.0;  // start of the samples beyond a jump; 0: not sampling
+  bool was_interpolated_ = false;  // the current step, in a narrow bracket
+  double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling
   int samples_ = 0;
   bool finished_ = false;
 };

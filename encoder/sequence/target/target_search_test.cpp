@@ -210,22 +210,37 @@ TEST(TargetSearch, FindsItsTargetDespiteWrongExpectations) {
   }
 }
 
-TEST(TargetSearch, KeepsTheAnalysisForStepsThatItIsValidFor) {
+// The analysis of an expectation is not that of the first encoding, however close.
+TEST(TargetSearch, AnalysesAnewForTheExpectedStep) {
   const AnalysisRange range{.finest = 0.9, .made_for = 1.25, .coarsest = 1.6};
-  const auto analysis_for = [&](double factor) {
+  for (const double factor : {0.85, 0.95, 1.5, 1.7}) {
     TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, kStepOfError, range);
     const double made = search.analysis_step();
     EXPECT_DOUBLE_EQ(made, search.step() / 1.25);
-    const double target = 0.5;
-    // expected to be met at `factor` times the analysis step
-    search.begin_at([&](double step) { return target * step / (factor * made); });
+    // Aims at the middle of the tolerance.
+    search.begin_at([&](double step) { return 0.99 * 0.5 * step / (factor * made); });
     EXPECT_NEAR(search.step(), factor * made, 1e-3 * made);
-    return search.analysis_step() / made;
-  };
-  EXPECT_EQ(analysis_for(0.95), 1.0);
-  EXPECT_EQ(analysis_for(1.5), 1.0);
-  EXPECT_NEAR(analysis_for(0.85), 0.85 / 1.25, 1e-3);
-  EXPECT_NEAR(analysis_for(1.7), 1.7 / 1.25, 1e-3);
+    EXPECT_DOUBLE_EQ(search.analysis_step(), search.step() / 1.25);
+  }
+}
+
+TEST(TargetSearch, KeepsTheAnalysisForStepsThatItIsValidFor) {
+  const AnalysisRange range{.finest = 0.9, .made_for = 1.25, .coarsest = 1.6};
+  TargetSearch search({Target::kKg, 0.5}, 10000.0, 1000.0, kStepOfError, range);
+  const double made = search.analysis_step();
+  search.report(0.55, 1000);
+  EXPECT_LT(search.step(), 1.25 * made);
+  EXPECT_EQ(search.analysis_step(), made);
+}
+
+// As where a trajectory more is worth coding: no step gives an error near the target.
+TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
+  const Outcome outcome = search({Target::kKg, 1.0}, [](double step) {
+    return step / 700.0 * (step < 700.0 ? 0.93 : 1.04);
+  });
+  EXPECT_TRUE(outcome.met);
+  EXPECT_GT(outcome.best, 0.85);
+  EXPECT_LE(outcome.trials, 7);
 }
 
 TEST(TargetSearch, EndsWithTheSmallestErrorIfTheTargetIsUnreachable) {

@@ -96,8 +96,7 @@ void MotionFit::add(const Vec3d& original, const Vec3d& image) {
 Motion MotionFit::with_rotation(const Eigen::Matrix3d& rotation) const {
   Motion m;
   m.leftCols<3>() = rotation;
-  m.col(3) =
-      first_image_ + image_ / count_ - rotation * (first_original_ + original_ / count_);
+  m.col(3) = first_image_ + image_ / count_ - rotation * (first_original_ + original_ / count_);
   return m;
 }
 

@@ -117,8 +117,9 @@ void SkinSums::set_motions(const BoneMotions& motions,
     for (std::size_t v = first; v < end; ++v) {
       for (const std::size_t bone : bones[v]) {
         const std::size_t column = kColumns * bone;
-        four_columns_product(positions_.subspan(v * values, values), by_frame_, columns, column,
-                             std::span<double, kColumns>(&along_[v * columns + column], kColumns));
+        four_columns_product(
+            positions_.subspan(v * values, values), by_frame_, columns, column,
+            std::span<double, kColumns>(&along_[v * columns + column], kColumns));
       }
     }
   });

@@ -24,8 +24,7 @@ class SkinSums {
   void set_positions(std::span<const Vec3d> positions);
   void set_motions(const BoneMotions& motions);
   // The same, but sums of a vertex are only those of some bones: [vertex].
-  void set_motions(const BoneMotions& motions,
-                   std::span<const std::vector<std::size_t>> bones);
+  void set_motions(const BoneMotions& motions, std::span<const std::vector<std::size_t>> bones);
   void add_bone(const std::vector<Motion>& motion);  // appends a bone
   void remove_bone(std::size_t bone);
 

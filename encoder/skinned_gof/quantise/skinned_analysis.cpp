@@ -136,13 +136,16 @@ class SkinnedAnalyser {
     }
     code_rest();
     if (before_ != nullptr) {
-      found_.pc = before_->pc;  // the rest differs by errors of its quantisers
+      // Bones and rest positions differ by errors of their quantisers.
+      found_.pc = before_->pc;
+      found_.step_of_components = before_->step_of_components;
     } else {
       // A component of less energy than the error of quantising its factors is not worth a
       // trajectory. Steps that are tried later may be finer.
       const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
       const double least = finest * finest / 12.0 * frames_.num_vertices;
       found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
+      found_.step_of_components = step_;
     }
     find_spatial_left();
     return std::move(found_);

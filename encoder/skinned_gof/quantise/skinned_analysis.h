@@ -37,7 +37,7 @@ struct SkinnedSettings {
   int temporal_layers = 1;                  // of a GOF; at most track_levels + 1
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
-  bool draft = false;         // tracks as simply as suffices to compare candidates
+  bool draft = false;        // tracks as simply as suffices to compare candidates
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
   std::uint32_t component_groups = 0;  // 0: chosen by size
   std::uint32_t layer_groups = 0;      // 0: chosen by size
@@ -64,6 +64,7 @@ struct SkinnedAnalysis {
   std::vector<BoneMotion> bones;                  // as decoded, in all frames
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
+  double step_of_components = 0.0;  // of the analysis that they were first found in
   // What prediction leaves of spatial factors near each of some vertices, mean square:
   // [vertex of the sample][component].
   std::vector<float> spatial_left;

@@ -117,12 +117,13 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
       model.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
-    constexpr double kAdaptive = 0.42;  // fixed: of the bits, with adaptive weights; an estimate
+    constexpr double kAdaptive =
+        0.42;  // fixed: of the bits, with adaptive weights; an estimate
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
                         (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
-    const SpatialValues spatial = code_spatial_values(
-        mesh, model, analysis, temporal, cuts.group_end, settings.rounding, step);
+    const SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal,
+                                                      cuts.group_end, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;

@@ -159,7 +159,8 @@ void search_residuals(const Series& series, const TrackTask& task, bool fast,
 
 // The bits of residuals whose magnitudes have a geometric distribution of this mean.
 double geometric_bits(double mean) {
-  const double some = mean > 0.0 ? (1.0 + mean) * det_log2(1.0 + mean) - mean * det_log2(mean) : 0.0;
+  const double some =
+      mean > 0.0 ? (1.0 + mean) * det_log2(1.0 + mean) - mean * det_log2(mean) : 0.0;
   return some + mean / (1.0 + mean);
 }
 
@@ -212,8 +213,8 @@ void write_between(Coder& coder, Models& models, int between, int track_levels) 
   }
 }
 
-// The tasks of the ways of the fewest expected bits, the fewest first. Expectations tell less of
-// orders of frames than of ways with the same order.
+// The tasks of the ways of the fewest expected bits, the fewest first. Expectations tell less
+// of orders of frames than of ways with the same order.
 template <class Series, class Wanted, class Header>
 std::vector<std::pair<const Way<Header>*, TrackTask>> likely_ways(
     Wanted wanted, std::span<const Way<Header>> ways, const TrackOptions& options,

@@ -61,10 +61,8 @@ BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
     options.sample_vertices = kSampleVertices / kQuickPart;
     options.exchanges = 0;
   }
-  Growth growth{influences,
-                std::make_unique<BoneFit>(frames_, context_.triangles, options)};
-  growth.bones.push_back(
-      {1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
+  Growth growth{influences, std::make_unique<BoneFit>(frames_, context_.triangles, options)};
+  growth.bones.push_back({1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
   return growth;
 }
 
@@ -86,8 +84,8 @@ double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bone
 // Fits bones of each number, ascending, as long as there is a prospect that they are worth
 // their bits: more than a single bone, and others with the same number.
 void BoneSearch::grow_all(double step) {
-  // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there is
-  // none.
+  // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there
+  // is none.
   constexpr std::size_t kTelling = 2;
   start_all();
   if (growths_.front().bones.size() > 1) return;
