@@ -99,7 +99,7 @@ class Messages(ToolsTest):
         clip = [INPUTS / "robot_arm.obj", "--points", INPUTS / "robot_arm.pc2", "--preset", "fast",
                 "-o", self.path("a.rlpc")]
         for options in (["--kg", 1e-5], ["--max-error", 1e-7], ["--bpvf", 0.05],
-                        ["--kg", 0.01, "--components", 2]):
+                        ["--kg", 0.01, "--components", 2, "--bones", 1]):
             said = self.fails(2, "out of reach", "rlpcenc", *clip, *options).err
             found = re.search(r"Try (?:more --components, or )?(--\S+) (\S+?)(?:, or a longer --gof)?"
                               r"\.\n", said)

@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(FrameEncoder, EachProfile,
 
 // With fewer vertices, the error jumps by more than 2 % from step to step.
 TEST_P(EachProfile, EveryGofMeetsTheKgError) {
-  MemoryFrames source = bending_tube(40, 60);
+  MemoryFrames source = bending_tube(60, 60);
   const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kKg, 0.5}, 20));
   EXPECT_TRUE(encoded.report.target_met);
   EXPECT_EQ(encoded.report.num_gofs, 3U);

@@ -66,6 +66,7 @@ void SkinnedGofCoder::choose(double step) {
   if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
     choice_ = bones_.likeliest(step);
     draft_ = survey(*choice_, step);
+    bones_.release();
     return;
   }
   const Target& target = context_.settings.target;
@@ -83,6 +84,7 @@ void SkinnedGofCoder::choose(double step) {
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
   draft_ = Draft{step, best.error, std::move(best.analysis), true};
+  bones_.release();
 }
 
 // Without bones, the components of the draft serve, as the only bone hardly changes.

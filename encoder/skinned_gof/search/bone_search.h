@@ -33,6 +33,8 @@ class BoneSearch {
   // The sum of squared distances of all vertices from the centres of their frames, about; after
   // a trial.
   double squared_spread() const;
+  // Frees the fitted bones; for after the last search.
+  void release() { growths_.clear(); }
 
  private:
   // Bones of different numbers, with a maximum number of them for each vertex.
