@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(FrameEncoder, EachProfile,
 
 // With fewer vertices, the error jumps by more than 2 % from step to step.
 TEST_P(EachProfile, EveryGofMeetsTheKgError) {
-  MemoryFrames source = bending_tube(60, 60);
+  MemoryFrames source = bending_tube(80, 60);
   const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kKg, 0.5}, 20));
   EXPECT_TRUE(encoded.report.target_met);
   EXPECT_EQ(encoded.report.num_gofs, 3U);
@@ -130,7 +130,7 @@ TEST_P(EachProfile, EveryGofMeetsTheKgError) {
 }
 
 TEST_P(EachProfile, EveryGofMeetsTheLargestError) {
-  MemoryFrames source = bending_tube(20, 60);
+  MemoryFrames source = bending_tube(80, 60);
   const auto encoded =
       encode_frames(source, settings_of(GetParam(), {Target::kMaxError, 0.01}, 20));
   EXPECT_TRUE(encoded.report.target_met);
@@ -181,7 +181,7 @@ TEST(FrameEncoder, OneSpanIsCodedAsByEncode) {
 }
 
 TEST(FrameEncoder, GofsOfASpanShareASkinnedModel) {
-  MemoryFrames source = bending_tube(20, 60);
+  MemoryFrames source = bending_tube(80, 60);
   const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 10);
   const Encoded apart = encode_frames(source, settings, 1);
   const Encoded in_two = encode_frames(source, settings, 30);
@@ -195,7 +195,7 @@ TEST(FrameEncoder, GofsOfASpanShareASkinnedModel) {
 }
 
 TEST(FrameEncoder, GivesTheBytesOfASpanWhenItIsFull) {
-  MemoryFrames source = bending_tube(8, 60);
+  MemoryFrames source = bending_tube(80, 60);
   FrameFormat format = format_of(source);
   format.max_held_frames = 30;
   std::size_t bytes = 0;
