@@ -145,7 +145,7 @@ class MainStreams(StreamTest):
         self.assertEqual(len(outputs), len(slices))
 
     def test_numbers_of_the_text_matter(self):
-        data = self.encode_main("curtain", 9, "--kg", "0.5", "--hash", "none")
+        data = self.encode_main("curtain", 9, "--kg", "0.05", "--hash", "none", "--bones", "1")
         self.numbers_matter(data, (
             ("08-decoding.md", "left = 16384", "left = 19384"),
             ("08-decoding.md", "range(1, 7)", "range(1, 6)"),
