@@ -15,13 +15,12 @@ namespace {
 constexpr std::uint64_t kBytesPerTrackValue = 14;
 
 // Memory for the components of a cluster: the residuals, and the factors laid out for
-// reconstruction (ComponentSum), in tiles and with both limbs of both factors, each in a vector
-// whose capacity may be twice its size.
+// reconstruction (ComponentSum): spatial ones in tiles and with two limbs, temporal ones with
+// those two for each of them, in vectors whose capacity may be twice their size.
 constexpr std::uint64_t kBytesPerComponent = 500;
 constexpr std::uint64_t kBytesPerResidual = 4;
-constexpr std::uint64_t kBytesPerFactor = 16;
-constexpr std::uint64_t kBytesPerTemporalFactor = kBytesPerFactor + 4;  // before it is laid out
-constexpr std::uint64_t kBytesPerTile = kTileValues * kBytesPerFactor + 48;
+constexpr std::uint64_t kBytesPerTemporalFactor = 4 + 16;  // before and after it is laid out
+constexpr std::uint64_t kBytesPerTile = kTileValues * 8 + 48;
 
 std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_values,
                                std::uint64_t num_frames) {
