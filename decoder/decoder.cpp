@@ -25,6 +25,7 @@ class Decoder::Impl {
         models_(stream_.context()),
         threads_(std::clamp(options.threads, 1U, kMaxThreads)),
         band_(threads_) {
+    stream_.models().when_dropped([this] { models_.erase_unused(); });
     // A trace follows the order of the stream.
     if (threads_ > 1 && options.trace == nullptr) {
       prefetch_.emplace(stream_, models_, options.limits.max_memory_bytes / threads_);

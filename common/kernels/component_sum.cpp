@@ -150,15 +150,4 @@ void ComponentSum::add_tile(std::size_t tile, std::size_t first_row, std::size_t
   }
 }
 
-void ComponentSum::sum(std::size_t row, std::span<std::int64_t> sums) const {
-  assert(sums.size() == spatial_->num_values() && row < num_rows_);
-  std::array<std::int64_t, kTileValues> of_tile{};
-  for (std::size_t tile = 0; tile < spatial_->num_tiles(); ++tile) {
-    of_tile.fill(0);
-    add_tile(tile, row, 1, of_tile);
-    const auto rest = sums.subspan(tile * kTileValues);
-    std::copy_n(of_tile.begin(), std::min(rest.size(), kTileValues), rest.begin());
-  }
-}
-
 }  // namespace rlpc

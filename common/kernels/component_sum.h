@@ -93,10 +93,10 @@ class ComponentSum {
                std::span<const TemporalFactor> temporal, std::size_t num_rows,
                const Kernels& loops = kernels().back());
 
-  // 8.5.3: sums[i] = sum over the components of temporal(row) * spatial(i); at most 2^58.
-  void sum(std::size_t row, std::span<std::int64_t> sums) const;
-  // Adds the same, for several rows and the values of a tile, kTileValues * tile and after, to
-  // sums [num_rows][kTileValues]; nothing is added where there are fewer values.
+  std::size_t num_values() const { return spatial_->num_values(); }
+  // 8.5.3: adds the sum over the components of temporal(row) * spatial(i), at most 2^58, for
+  // several rows and the values of a tile, kTileValues * tile and after, to sums
+  // [num_rows][kTileValues]; nothing is added where there are fewer values.
   void add_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
                 std::span<std::int64_t> sums) const;
 

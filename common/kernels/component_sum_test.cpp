@@ -44,13 +44,24 @@ ComponentSum sum_of(const std::vector<Factor>& factors, std::size_t num_values,
   return {spatial, temporal, num_frames, loops};
 }
 
+// All values of a row.
+std::vector<std::int64_t> sums_of(const ComponentSum& set, std::size_t row) {
+  std::vector<std::int64_t> sums;
+  for (std::size_t tile = 0; sums.size() < set.num_values(); ++tile) {
+    std::vector<std::int64_t> of_tile(kTileValues);
+    set.add_tile(tile, row, 1, of_tile);
+    sums.insert(sums.end(), of_tile.begin(), of_tile.end());
+  }
+  sums.resize(set.num_values());
+  return sums;
+}
+
 void expect_sums_of_the_plain_twin(const std::vector<Factor>& factors, std::size_t num_values,
                                    std::size_t num_frames) {
   for (const Kernels& loops : kernels()) {
     const ComponentSum set = sum_of(factors, num_values, num_frames, loops);
-    std::vector<std::int64_t> sums(num_values, 12345);
     for (std::size_t frame = 0; frame < num_frames; ++frame) {
-      set.sum(frame, sums);
+      const std::vector<std::int64_t> sums = sums_of(set, frame);
       const std::vector<Int128> plain = plain_sum(factors, num_values, frame);
       for (std::size_t i = 0; i < num_values; ++i) {
         ASSERT_TRUE(plain[i] == sums[i]) << "frame " << frame << ", value " << i;
@@ -116,9 +127,8 @@ TEST(ComponentSum, SumsRowsOfATileLikeSingleRows) {
   const ComponentSum set = sum_of(factors, kTileValues + 5, kRows);
   std::vector<std::int64_t> sums((kRows - 1) * kTileValues);
   set.add_tile(1, 1, kRows - 1, sums);
-  std::vector<std::int64_t> of_row(kTileValues + 5);
   for (std::size_t r = 0; r + 1 < kRows; ++r) {
-    set.sum(r + 1, of_row);
+    const std::vector<std::int64_t> of_row = sums_of(set, r + 1);
     for (std::size_t i = 0; i < kTileValues; ++i) {
       ASSERT_EQ(sums[r * kTileValues + i], i < 5 ? of_row[kTileValues + i] : 0)
           << "row " << r << ", value " << i;
@@ -130,9 +140,7 @@ TEST(ComponentSum, ReadsSpatialValuesWithAStride) {
   const auto spatial = std::make_shared<SpatialFactors>(2);
   spatial->add(std::vector<std::int32_t>{5, 99, -7}, 13, 2);
   const ComponentSum set(spatial, std::vector<TemporalFactor>{{{3}, 3}}, 1);
-  std::vector<std::int64_t> sums(2);
-  set.sum(0, sums);
-  EXPECT_EQ(sums, (std::vector<std::int64_t>{15, -21}));
+  EXPECT_EQ(sums_of(set, 0), (std::vector<std::int64_t>{15, -21}));
 }
 
 // Factors that do not occur, and those after the last temporal factor, add nothing.
@@ -153,9 +161,8 @@ TEST(ComponentSum, LeavesOutComponentsThatDoNotOccur) {
       if (occurs) left.push_back(factors[k]);
     }
     const ComponentSum set(spatial, temporal, 3);
-    std::vector<std::int64_t> sums(7);
     for (std::size_t f = 0; f < 3; ++f) {
-      set.sum(f, sums);
+      const std::vector<std::int64_t> sums = sums_of(set, f);
       const std::vector<Int128> plain = plain_sum(left, 7, f);
       for (std::size_t i = 0; i < 7; ++i) ASSERT_TRUE(plain[i] == sums[i]);
     }
@@ -201,8 +208,7 @@ TEST(ComponentSum, SumOfTheLargestComponentsIsTwoToThe58) {
   const std::int32_t t = 1 << 25;
   const ComponentSum set =
       sum_of(std::vector<Factor>(1024, {{-t}, {-s, 0, s - 1}, 26, 24}), 3, 1);
-  std::vector<std::int64_t> sums(3);
-  set.sum(0, sums);
+  const std::vector<std::int64_t> sums = sums_of(set, 0);
   EXPECT_EQ(sums[0], std::int64_t{1} << 58);
   EXPECT_EQ(sums[1], 0);
   EXPECT_EQ(sums[2], -(std::int64_t{1} << 35) * (s - 1));

@@ -20,6 +20,9 @@ class CutBorder {
  public:
   explicit CutBorder(std::uint32_t urgent_degree) : urgent_degree_(urgent_degree) {}
 
+  // Makes room for the nodes of so many triangles, if each is a component of its own.
+  void reserve(std::uint32_t num_triangles) { nodes_.reserve(3 * std::size_t{num_triangles}); }
+
   // 8.7.3 SelectGate( ): false if no edge is left, so that a new component has to start.
   bool select_gate();
 

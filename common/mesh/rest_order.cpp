@@ -69,6 +69,7 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
     std::uint32_t count = 0;
   };
   std::vector<Across> across(place_.size());
+  edges_.reserve(sides.size() / 2);  // exact for a closed surface
   first_edge_.assign(place_.size() + 1, 0);
   for (std::uint32_t low = 0; low < place_.size(); ++low) {
     for (std::uint32_t i = first[low]; i < first[low + 1]; ++i) {

@@ -47,6 +47,7 @@ AdaptiveWeights::AdaptiveWeights(const CodedMesh& mesh, const GeometryWeights& w
       adapt_to_rest_(settings.damping_log2 > 0),
       num_adaptive_factors_(settings.num_adaptive_factors),
       first_(std::size_t{mesh.num_vertices()} + 1, 0) {
+  weights_.reserve(weights.size());
   constexpr std::int64_t kFiner = 1 << (kAdaptiveFractionBits - kWeightFractionBits);
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     for (const std::int32_t w : weights[v]) {

@@ -154,6 +154,11 @@ class VertexWeights {
 GeometryWeights::GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
                                  const std::array<std::span<const std::int32_t>, 3>& rest)
     : first_(std::size_t{mesh.num_vertices()} + 1, 0) {
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
+    count += mesh.ring(v).size() + mesh.outer_ring(v).size();
+  }
+  weights_.reserve(count);
   VertexWeights vertex(settings, rest);
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     for (const std::int64_t w : vertex.find(v, mesh.ring(v), mesh.outer_ring(v))) {

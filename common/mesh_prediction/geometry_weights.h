@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,6 +26,7 @@ class GeometryWeights {
   std::span<const std::int32_t> operator[](std::uint32_t v) const {
     return std::span(weights_).subspan(first_[v], first_[v + 1] - first_[v]);
   }
+  std::size_t size() const { return weights_.size(); }  // of all vertices
 
  private:
   std::vector<std::uint32_t> first_;  // [num_vertices + 1]

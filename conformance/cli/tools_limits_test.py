@@ -7,11 +7,12 @@
 import itertools
 import json
 import os
+import re
 import struct
 import subprocess
 import threading
 
-from tools_testing import INPUTS, NAMES, Result, Tools, ToolsTest, main, write_pc2
+from tools_testing import INPUTS, NAMES, Result, Tools, ToolsTest, main, run, write_pc2
 
 MIB = 1 << 20
 SIGNATURE = b"\x89RLPC\r\n\x1a"
@@ -182,6 +183,73 @@ class Expansion(ToolsTest):
                    "--max-output", 1200043)
         self.assertEqual(self.path("out.rlpd").stat().st_size, 1200044)
         self.ok("rlpcdec", self.stream, "-o", self.path("out.pc2"))  # without a limit
+
+
+class WorstCases(MeasuredTest):
+    """Streams at the limits of level 1, with fewer frames and components than make_worst_case
+    usually gives them."""
+
+    KINDS = ("clusters", "bones", "tracks")
+    GOF = 4  # unit_type
+    NEEDED = re.compile(r"needs at least (\d+) (KiB|MiB) of memory")
+
+    def make(self, kind, *options):
+        self.ok("make_worst_case", 1, kind, self.path("a.rlpc"), *options)
+        return self.path("a.rlpc")
+
+    def needed(self, stream):
+        """The least --max-memory: each refusal says how much is needed so far."""
+        estimate = 1
+        while True:
+            result = run("rlpcdec", stream, "--verify", "--max-memory", estimate)
+            if result.code == 0:
+                return estimate
+            self.assertEqual(result.code, 3, result.err)
+            number, unit = self.NEEDED.search(result.err).groups()
+            more = int(number) * (1024 if unit == "KiB" else MIB)
+            self.assertGreater(more, estimate)
+            estimate = more
+
+    def test_take_less_memory_than_estimated(self):
+        usual = self.measured("rlpcdec", "--version")[1]
+        for kind in self.KINDS:
+            stream = self.make(kind, "--frames", 4, "--components", 20)
+            self.ok("rlpcval", stream)
+            estimate = self.needed(stream)
+            self.assertGreater(estimate, 20 * MIB)  # much more than the program itself
+            self.fails(3, "--max-memory", "rlpcdec", stream, "--verify", "--max-memory",
+                       estimate - MIB)
+            result, memory = self.measured("rlpcdec", stream, "--verify", "--threads", 1,
+                                           "--max-memory", estimate)
+            self.assertEqual(result.code, 0, result.err)
+            if b"__asan_init" not in (Tools.folder / "rlpcdec").read_bytes():
+                self.assertLess(memory, usual + estimate, kind)
+
+    def refused(self, rule, stream):
+        self.fails(1, rule, "rlpcdec", stream, "--verify")
+        self.assertIn(rule, run("rlpcval", stream).out.decode())
+
+    def test_one_more_than_the_level_allows(self):
+        for kind, what, rule in (("clusters", "vertices", "R-LVL-01"),
+                                 ("clusters", "frames", "R-LVL-04"),
+                                 ("bones", "values", "R-LVL-04"),
+                                 ("clusters", "factors", "R-LVL-05"),
+                                 ("clusters", "clusters", "R-LVL-06"),
+                                 ("bones", "clusters", "R-LVL-06"),
+                                 ("tracks", "clusters", "R-LVL-06"),
+                                 ("tracks", "adaptive", "R-LVL-09")):
+            with self.subTest(kind=kind, what=what):
+                self.refused(rule, self.make(kind, "--frames", 16, "--beyond", what))
+
+    def test_a_unit_larger_than_the_level_allows(self):
+        stream = self.make("clusters", "--frames", 1, "--components", 1)
+        data = bytearray(stream.read_bytes())
+        at = 10
+        while data[at] != self.GOF:
+            at += 5 + int.from_bytes(data[at + 1:at + 5], "big") + 4
+        data[at + 1:at + 5] = (2 ** 25 + 1).to_bytes(4, "big")
+        stream.write_bytes(data)
+        self.refused("R-LVL-07", stream)
 
 
 class Threads(MeasuredTest):

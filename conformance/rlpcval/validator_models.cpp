@@ -46,6 +46,7 @@ void StreamValidator::model(const UnitHeader& unit, const Payload& payload) {
     release(models_[*header.model_idx]);
     KeptModel& kept = models_[*header.model_idx];
     kept = {};
+    if (recons_) recons_->erase_unused();
     kept.lost = true;  // until it has been read
   }
   if (!header.section_readable || !lead_.context.meshes || !lead_.header->positions) {
@@ -54,8 +55,7 @@ void StreamValidator::model(const UnitHeader& unit, const Payload& payload) {
   }
   findings_.in_unit(model_.place);
   findings_.suspect(model_.suspect);
-  model_.parser =
-      std::make_unique<ModelParser>(lead_.context, options_.limits.max_memory_bytes);
+  model_.parser = std::make_unique<ModelParser>(lead_.context, memory_limit());
   BitReader bits(payload, unit.payload_offset() * 8);
   if (const auto read = model_.parser->model(bits, slots_of(models_), unit.end() - unit.offset);
       !read) {

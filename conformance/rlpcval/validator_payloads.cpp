@@ -10,12 +10,14 @@
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_gofs.h"
 #include "conformance/rlpcval/validator_stream.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/sequence/json_text.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/parse/sequence/parse_vertex_order.h"
 #include "decoder/recon/gof_recon.h"
+#include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
 namespace {
@@ -28,14 +30,6 @@ std::string hex(std::uint32_t value) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%08X", value);
   return text;
-}
-
-// Keeps what the rest of the stream is read with, up to the caller's limits.
-std::uint64_t memory_of(const SequenceHeader& h) {
-  const std::uint64_t of_layers = h.has_skinned_gofs() ? 300 : 0;
-  const std::uint64_t of_rest_order = h.profile_idc >= kProfileHigh ? 200 : 0;
-  const std::uint64_t of_vertex = 100 + of_layers + of_rest_order;
-  return std::uint64_t{h.num_vertices} * of_vertex + std::uint64_t{h.num_triangles} * 120;
 }
 
 }  // namespace
@@ -107,9 +101,10 @@ void StreamValidator::check_limits() {
   const SequenceHeader& h = lead_.header->header;
   const char* element = nullptr;
   std::uint64_t needed_bytes = 0;
-  if (memory_of(h) > limits.max_memory_bytes) {
+  if (const std::uint64_t bytes = memory_of_stream(h, kFramesHeld);
+      bytes > limits.max_memory_bytes) {
     element = "num_vertices_minus1";
-    needed_bytes = memory_of(h);
+    needed_bytes = bytes;
   }
   if (h.num_frames > limits.max_frames) element = "num_frames_minus1";
   if (h.num_triangles > limits.max_triangles) element = "num_triangles";
@@ -117,6 +112,11 @@ void StreamValidator::check_limits() {
   lead_.within_limits = element == nullptr;
   if (lead_.within_limits) return;
   findings_.error({Errc::kLimitExceeded, "", element, lead_.header_bit_pos, needed_bytes});
+}
+
+MemoryLimit StreamValidator::memory_limit() const {
+  return {options_.limits.max_memory_bytes,
+          memory_of_stream(lead_.header->header, kFramesHeld)};
 }
 
 // 6.4 Connectivity
@@ -192,8 +192,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
     report_.complete = false;
     return;
   }
-  gof_.parser =
-      std::make_unique<AccessUnitParser>(lead_.context, options_.limits.max_memory_bytes);
+  gof_.parser = std::make_unique<AccessUnitParser>(lead_.context, memory_limit());
   BitReader r = bits_of(unit, payload);
   if (const auto read =
           gof_.parser->gof(r, header.first_frame, slots_of(models_), unit.end() - unit.offset);

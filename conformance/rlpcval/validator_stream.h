@@ -17,6 +17,7 @@
 #include "conformance/rlpcval/validator_models.h"
 #include "conformance/rlpcval/validator_units.h"
 #include "decoder/parse/access_unit_parser.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/parse/model_parser.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/recon/model_recons.h"
@@ -48,6 +49,8 @@ class StreamValidator {
   void read_payload(const UnitHeader& unit, bool sound);
   void sequence_header(const UnitHeader& unit, const Payload& payload);
   void check_limits();
+  // Of a GOF or skinned model.
+  MemoryLimit memory_limit() const;
   void connectivity(const UnitHeader& unit, const Payload& payload);
   void vertex_order(const UnitHeader& unit, const Payload& payload);
   void begin_gof(const UnitHeader& unit);

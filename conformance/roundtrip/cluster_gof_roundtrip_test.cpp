@@ -156,7 +156,7 @@ void expect_round_trip(const Generator& from, const ClusterGof& gof) {
   BitReader r(payload);
   const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
   EXPECT_EQ(header.kind, GofKind::kClusters);
-  const auto parsed = parse_clusters(r, from.header, from.topology, header, kAmple);
+  const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmple, 0});
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
   expect_equal(gof, *parsed);
 
@@ -243,11 +243,12 @@ std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
                                const std::vector<std::uint8_t>& payload) {
   std::uint64_t too_few = 0;
   std::uint64_t enough = kAmple;
-  while (enough - too_few > enough / 50) {
+  while (enough - too_few > std::max<std::uint64_t>(1, enough / 50)) {
     const std::uint64_t middle = too_few + (enough - too_few) / 2;
     BitReader r(payload);
     const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
-    (parse_clusters(r, from.header, from.topology, header, middle) ? enough : too_few) = middle;
+    const auto parsed = parse_clusters(r, from.header, from.topology, header, {middle, 0});
+    (parsed ? enough : too_few) = middle;
   }
   return enough;
 }
@@ -261,7 +262,7 @@ void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof)
   {
     BitReader r(payload);
     const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
-    const auto parsed = parse_clusters(r, from.header, from.topology, header, kAmple);
+    const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmple, 0});
     ASSERT_TRUE(parsed);
     const ClusterRecon recon(from.header, from.topology, *parsed);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});

@@ -35,7 +35,7 @@ class Reading {
   explicit Reading(const RandomSkinnedGof& from, std::uint64_t max_memory = kMemory)
       : from_(from),
         meshes_(from.topology, from.triangles),
-        parser_(from.header, meshes_, max_memory) {}
+        parser_(from.header, meshes_, {max_memory, 0}) {}
 
   std::optional<Error> gof(const Payload& payload) {
     BitReader r(payload);

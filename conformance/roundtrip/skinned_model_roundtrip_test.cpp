@@ -30,7 +30,7 @@ class Reading {
       : from_(from),
         models_(models),
         meshes_(from.whole.topology, from.whole.triangles),
-        parser_(from.whole.header, meshes_, kMemory) {}
+        parser_(from.whole.header, meshes_, {kMemory, 0}) {}
 
   std::optional<Error> model(const Payload& payload) {
     BitReader r(payload);

@@ -31,7 +31,7 @@ void decode_gof(const rlpc::SequenceHeader& header, const rlpc::Topology& topolo
                 std::uint32_t first_frame, std::span<const std::uint8_t> payload) {
   rlpc::BitReader r(payload);
   const rlpc::GofHeader gof_header = rlpc::parse_gof_header(r, header, first_frame);
-  const auto gof = rlpc::parse_clusters(r, header, topology, gof_header, kMaxMemoryBytes);
+  const auto gof = rlpc::parse_clusters(r, header, topology, gof_header, {kMaxMemoryBytes, 0});
   if (!gof) return;
   const rlpc::ClusterRecon recon(header, topology, *gof);
   rlpc::fuzz_check_frames(recon, header, first_frame);

@@ -71,7 +71,7 @@ struct Unit {
 class Units {
  public:
   Units(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes)
-      : header_(header), meshes_(meshes), parser_(header, meshes, kMaxMemoryBytes) {}
+      : header_(header), meshes_(meshes), parser_(header, meshes, {kMaxMemoryBytes, 0}) {}
 
   // False after an error.
   bool add(const Unit& unit, std::uint32_t first_frame) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/parse_gof_header.h"
@@ -19,6 +20,7 @@ class GofParser {
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              std::vector<SliceEntry>& slices);
   virtual bool is_cut() const { return false; }
+  virtual std::uint64_t memory_bytes() const { return 0; }  // 0: no slices follow
   virtual AnyGof finish() = 0;
 };
 
@@ -32,11 +34,12 @@ namespace {
 
 class ClusterParser final : public GofParser {
  public:
-  ClusterParser(const StreamContext& context, std::uint64_t max_memory_bytes)
-      : context_(context), max_memory_bytes_(max_memory_bytes) {}
+  ClusterParser(const StreamContext& context, const MemoryLimit& memory)
+      : context_(context), memory_(memory) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots&) override {
-    auto gof = parse_clusters(r, context_.header, context_.topology, header, max_memory_bytes_);
+  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
+    memory_.bytes_in_use += memory_of_models(models);
+    auto gof = parse_clusters(r, context_.header, context_.topology, header, memory_);
     if (!gof) return gof.error();
     gof_ = std::move(*gof);
     return true;
@@ -45,15 +48,14 @@ class ClusterParser final : public GofParser {
 
  private:
   const StreamContext& context_;
-  std::uint64_t max_memory_bytes_;
+  MemoryLimit memory_;
   ClusterGof gof_;
 };
 
 class SkinnedParser final : public GofParser {
  public:
-  SkinnedParser(const StreamContext& context, std::uint64_t max_memory_bytes,
-                const SliceCut& cut)
-      : parser_(context.header, *context.meshes, max_memory_bytes, cut) {}
+  SkinnedParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut)
+      : parser_(context.header, *context.meshes, memory, cut) {}
 
   Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
     return header.kind == GofKind::kTracks ? parser_.tracks(r, header, models)
@@ -66,6 +68,7 @@ class SkinnedParser final : public GofParser {
     return true;
   }
   bool is_cut() const override { return parser_.is_cut(); }
+  std::uint64_t memory_bytes() const override { return parser_.memory_bytes(); }
   AnyGof finish() override { return parser_.finish(); }
 
  private:
@@ -74,19 +77,19 @@ class SkinnedParser final : public GofParser {
 
 }  // namespace
 
-AccessUnitParser::AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
+AccessUnitParser::AccessUnitParser(const StreamContext& context, const MemoryLimit& memory,
                                    const SliceCut& cut)
-    : context_(context), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
+    : context_(context), memory_(memory), cut_(cut) {}
 
 AccessUnitParser::~AccessUnitParser() = default;
 
 std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
   switch (kind_) {
     case GofKind::kClusters:
-      return std::make_unique<ClusterParser>(context_, max_memory_bytes_);
+      return std::make_unique<ClusterParser>(context_, memory_);
     case GofKind::kSkinned:
     case GofKind::kTracks:
-      return std::make_unique<SkinnedParser>(context_, max_memory_bytes_, cut_);
+      return std::make_unique<SkinnedParser>(context_, memory_, cut_);
   }
   return nullptr;
 }
@@ -115,6 +118,10 @@ Result<bool> AccessUnitParser::hash(BitReader& r) {
   if (!hash) return hash.error();
   access_unit_.hash = std::move(*hash);
   return true;
+}
+
+std::uint64_t AccessUnitParser::memory_bytes() const {
+  return parser_ ? parser_->memory_bytes() : 0;
 }
 
 AccessUnit AccessUnitParser::finish() {

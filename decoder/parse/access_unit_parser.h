@@ -10,19 +10,20 @@
 #include "common/skinned_gof/model_slots.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
 
 class GofParser;  // of one kind
 
-// Every size is checked against the level, and the memory it needs against max_memory_bytes,
+// Every size is checked against the level, and the memory it needs against the limit,
 // before anything is allocated. After an error it can only be destroyed.
 class AccessUnitParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
   // treated as absent.
-  AccessUnitParser(const StreamContext& context, std::uint64_t max_memory_bytes,
+  AccessUnitParser(const StreamContext& context, const MemoryLimit& memory,
                    const SliceCut& cut = {});
   ~AccessUnitParser();
 
@@ -39,6 +40,9 @@ class AccessUnitParser {
   // 6.7 gof_hash( ), at most once.
   Result<bool> hash(BitReader& r);
 
+  // Estimated memory of what has been parsed so far, and of the skinned models alive; 0 before
+  // the GOF unit.
+  std::uint64_t memory_bytes() const;
   // After the last unit.
   AccessUnit finish();
 
@@ -46,7 +50,7 @@ class AccessUnitParser {
   std::unique_ptr<GofParser> make_parser() const;
 
   const StreamContext& context_;
-  std::uint64_t max_memory_bytes_;
+  MemoryLimit memory_;
   SliceCut cut_;
   std::uint32_t num_frames_ = 0;
   GofKind kind_ = GofKind::kClusters;

@@ -10,6 +10,7 @@
 #include "common/skinned_gof/model_slots.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/parse/parse_skinned_gof.h"
 #include "decoder/slice_cut.h"
 
@@ -28,9 +29,8 @@ class ModelParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
   // treated as absent.
-  ModelParser(const StreamContext& context, std::uint64_t max_memory_bytes,
-              const SliceCut& cut = {})
-      : parser_(context.header, *context.meshes, max_memory_bytes, cut) {}
+  ModelParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut = {})
+      : parser_(context.header, *context.meshes, memory, cut) {}
 
   // As for AccessUnitParser. models: those alive before it.
   Result<bool> model(BitReader& r, const ModelSlots& models, std::uint64_t unit_bytes) {
@@ -45,6 +45,8 @@ class ModelParser {
     parsed_.slices.back().bytes = unit_bytes;
     return true;
   }
+  // As of AccessUnitParser.
+  std::uint64_t memory_bytes() const { return parser_.memory_bytes(); }
   // After the last unit.
   ParsedModel finish() {
     parsed_.model_idx = parser_.model_idx();

@@ -15,30 +15,30 @@ namespace {
 constexpr std::uint64_t kBytesPerTrackValue = 14;
 
 // Memory for the components of a cluster: the residuals, and the factors laid out for
-// reconstruction (ComponentSum), in tiles and with both limbs of both factors, each in a vector
-// whose capacity may be twice its size.
-constexpr std::uint64_t kBytesPerComponent = 320;
+// reconstruction (ComponentSum): spatial ones in tiles and with two limbs, temporal ones with
+// those two for each of them, in vectors whose capacity may be twice their size.
+constexpr std::uint64_t kBytesPerComponent = 500;
 constexpr std::uint64_t kBytesPerResidual = 4;
-constexpr std::uint64_t kBytesPerFactor = 16;
-constexpr std::uint64_t kBytesPerTile = kTileValues * kBytesPerFactor + 48;
+constexpr std::uint64_t kBytesPerTemporalFactor = 4 + 16;  // before and after it is laid out
+constexpr std::uint64_t kBytesPerTile = kTileValues * 8 + 48;
 
 std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_values,
                                std::uint64_t num_frames) {
   const std::uint64_t tiles = (num_values + kTileValues - 1) / kTileValues;
   return num_components * (kBytesPerComponent + kBytesPerResidual * (num_values + num_frames) +
-                           kBytesPerFactor * num_frames + kBytesPerTile * tiles);
+                           kBytesPerTemporalFactor * num_frames + kBytesPerTile * tiles);
 }
 
 // The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
 class ClusterSectionParser {
  public:
   ClusterSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
-                       ClusterGof& gof, std::uint64_t max_memory_bytes)
+                       ClusterGof& gof, const MemoryLimit& memory)
       : section_(r, "gof_section"),
         header_(header),
         topology_(topology),
         gof_(gof),
-        max_memory_bytes_(max_memory_bytes) {}
+        memory_(memory) {}
 
   void parse();
 
@@ -60,7 +60,7 @@ class ClusterSectionParser {
   const SequenceHeader& header_;
   const Topology& topology_;
   ClusterGof& gof_;
-  std::uint64_t max_memory_bytes_;
+  MemoryLimit memory_;
   ClusterModels models_;
   std::vector<std::size_t> coded_vertices_;  // of each cluster
   std::uint64_t num_factors_ = 0;
@@ -140,9 +140,7 @@ void ClusterSectionParser::count_factors(std::uint64_t more, const char* element
 
 void ClusterSectionParser::take_memory(std::uint64_t bytes, const char* element) {
   memory_bytes_ += bytes;
-  if (!failed() && memory_bytes_ > max_memory_bytes_) {
-    section_.fail_memory(element, memory_bytes_);
-  }
+  section_.check_memory(memory_, memory_bytes_, element);
 }
 
 // 6.5.4 seed_tracks( )
@@ -243,7 +241,7 @@ void ClusterSectionParser::parse() {
 // 6.5 clusters_of_gof( )
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
                                   const Topology& topology, const GofHeader& gof_header,
-                                  std::uint64_t max_memory_bytes) {
+                                  const MemoryLimit& memory) {
   const Level& level = header.level();
   ClusterGof gof;
   static_cast<GofHeader&>(gof) = gof_header;
@@ -258,7 +256,7 @@ Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
   r.byte_alignment();
   if (r.error()) return *r.error();
   gof.clusters.resize(num_clusters);
-  ClusterSectionParser(r, header, topology, gof, max_memory_bytes).parse();
+  ClusterSectionParser(r, header, topology, gof, memory).parse();
   if (r.error()) return *r.error();
   return gof;
 }

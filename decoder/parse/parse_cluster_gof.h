@@ -9,14 +9,15 @@
 #include "common/result.h"
 #include "common/syntax/gof_header.h"
 #include "common/syntax/sequence_header.h"
+#include "decoder/parse/memory_limit.h"
 
 namespace rlpc {
 
 // 6.5 clusters_of_gof( ): the rest of the payload, to which `r` ends. Every size is checked
-// against the level, and the memory of its factors against max_memory_bytes, before anything is
+// against the level, and the memory of its factors against the limit, before anything is
 // allocated.
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
                                   const Topology& topology, const GofHeader& gof_header,
-                                  std::uint64_t max_memory_bytes);
+                                  const MemoryLimit& memory);
 
 }  // namespace rlpc

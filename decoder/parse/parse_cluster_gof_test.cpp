@@ -43,7 +43,8 @@ Result<ClusterGof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
       make_topology(5, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {3, 1, 4}});
   BitReader r(payload, 0, trace);
   const SequenceHeader header = header_of(5, 5);
-  return parse_clusters(r, header, topology, parse_gof_header(r, header, 2), max_memory_bytes);
+  return parse_clusters(r, header, topology, parse_gof_header(r, header, 2),
+                        {max_memory_bytes, 0});
 }
 
 void expect_invalid(const Result<ClusterGof>& gof, const std::string& rule,
@@ -176,7 +177,8 @@ Result<ClusterGof> parse(const Bytes& payload, const SequenceHeader& header,
                          std::uint32_t first_frame = 0) {
   const Topology topology = make_topology(header.num_vertices, {});
   BitReader r(payload);
-  return parse_clusters(r, header, topology, parse_gof_header(r, header, first_frame), kAmple);
+  return parse_clusters(r, header, topology, parse_gof_header(r, header, first_frame),
+                        {kAmple, 0});
 }
 
 // One world cluster without components.

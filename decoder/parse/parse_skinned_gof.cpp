@@ -5,16 +5,12 @@
 
 #include "common/int_math.h"
 #include "decoder/parse/bone_parser.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_slice.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
 namespace {
-
-// Bytes per factor: as a residual with its magnitude, as a value, and laid out for the sums.
-constexpr std::uint64_t kBytesPerFactor = 18;
-// Bytes per vertex of counterparts, and of the hinges that they are chosen from.
-constexpr std::uint64_t kBytesPerCounterpart = 64;
 
 // 7.11.1 Bone section: without trajectories, R-LVL-05 cannot be broken.
 static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level) {
@@ -75,27 +71,23 @@ void SkinnedGofParser::rest(BitReader& r) {
   rest.counterparts_flag = r.flag("rest_counterparts_flag");
 }
 
-// NumFactors and the memory for it, before a section is parsed that adds to it.
-void SkinnedGofParser::check_factors(SectionReader& section, const char* element) const {
-  const std::uint64_t of_vertex =
-      sizeof(Influences) + (gof_.rest.order_flag ? kBytesPerCounterpart : 0);
-  const std::uint64_t needed_bytes = (num_factors_ + uncounted_factors_) * kBytesPerFactor +
-                                     of_vertex * std::uint64_t{header_.num_vertices};
+// NumFactors, and the memory.
+void SkinnedGofParser::count_factors(SectionReader& section, const Factors& factors,
+                                     const char* element) {
+  num_factors_ += factors.spatial * header_.num_vertices + factors.of_tracks;
+  memory_bytes_ += memory_of_spatial(header_.num_vertices, factors.spatial) +
+                   memory_of_tracks(factors.of_tracks);
   if (section.failed()) return;
-  if (num_factors_ > header_.level().max_gof_factors) {
-    section.fail("R-LVL-05", element);
-  } else if (needed_bytes > max_memory_bytes_) {
-    section.fail_memory(element, needed_bytes);
-  }
+  if (num_factors_ > header_.level().max_gof_factors) section.fail("R-LVL-05", element);
+  section.check_memory(memory_, memory_bytes_, element);
 }
 
 // 6.11.1 bone_section( )
 void SkinnedGofParser::bone_section(BitReader& r) {
   SectionReader section(r, "bone_section");
   const bool has_tracks = unit_ == Unit::kGof;
-  num_factors_ += 3 * std::uint64_t{header_.num_vertices};
-  if (has_tracks) num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
-  check_factors(section, "bone_section");
+  memory_bytes_ += memory_of_vertices(header_.num_vertices, gof_.rest.order_flag);
+  count_factors(section, {kRestFactors, factors_of_bones()}, "bone_section");
   if (section.failed()) return;
   BoneParser parser(section, header_, gof_);
   for (std::uint32_t b = 0; b < gof_.bones.size() && !section.failed(); ++b) {
@@ -109,8 +101,10 @@ void SkinnedGofParser::bone_section(BitReader& r) {
 // 6.13.1 track_section( )
 void SkinnedGofParser::track_section(BitReader& r) {
   SectionReader section(r, "track_section");
-  num_factors_ += 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
-  check_factors(section, "track_section");
+  if (gof_.num_local_groups > 0) {
+    memory_bytes_ += memory_of_adaptive_weights(header_.num_vertices);
+  }
+  count_factors(section, {0, factors_of_bones()}, "track_section");
   if (section.failed()) return;
   BoneParser parser(section, header_, gof_);
   for (Bone& bone : gof_.bones) {
@@ -192,7 +186,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
   static_cast<GofHeader&>(gof_) = gof_header;
   unit_ = Unit::kGof;
   num_factors_ = 0;
-  uncounted_factors_ = models.num_factors(kMaxModels);
+  memory_bytes_ = memory_of_models(models);
   if (header_.profile_idc >= kProfileHigh) levels_of_tracks(r);
   return rig(r);
 }
@@ -204,7 +198,7 @@ Result<bool> SkinnedGofParser::model(BitReader& r, const ModelSlots& models) {
   unit_ = Unit::kModel;
   gof_.model_idx = parse_model_idx(r);
   num_factors_ = models.num_factors(gof_.model_idx);
-  uncounted_factors_ = 0;
+  memory_bytes_ = memory_of_models(models);  // with the one that it replaces
   return rig(r);
 }
 
@@ -226,7 +220,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   r.byte_alignment();
   if (r.error()) return *r.error();
   num_factors_ = models.num_factors(kMaxModels);
-  uncounted_factors_ = 0;
+  memory_bytes_ = memory_of_models(models);
   track_section(r);
   if (r.error()) return *r.error();
 

@@ -15,6 +15,7 @@
 #include "common/skinned_gof/slice_models.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/sequence_header.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
@@ -25,14 +26,14 @@ class SectionReader;
 std::uint32_t parse_model_idx(BitReader& r);
 
 // The unit of a skinned GOF or skinned model and the slice units after it, one by one. Every
-// size is checked against the level, and the memory it needs against max_memory_bytes, before
+// size is checked against the level, and the memory it needs against the limit, before
 // anything is allocated. Slices outside the cut are treated as absent.
 class SkinnedGofParser {
  public:
   // All must outlive it.
   SkinnedGofParser(const SequenceHeader& header, const CodedMeshes& meshes,
-                   std::uint64_t max_memory_bytes, const SliceCut& cut = {})
-      : header_(header), meshes_(meshes), max_memory_bytes_(max_memory_bytes), cut_(cut) {}
+                   const MemoryLimit& memory, const SliceCut& cut = {})
+      : header_(header), meshes_(meshes), memory_(memory), cut_(cut) {}
 
   // One of these three begins: the rest of the payload of a unit, to which `r` ends. models:
   // those alive.
@@ -56,6 +57,8 @@ class SkinnedGofParser {
   const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
   // Whether a slice has been dropped so far.
   bool is_cut() const { return gof_.is_cut; }
+  // Estimated memory of what has been parsed so far, and of the skinned models alive.
+  std::uint64_t memory_bytes() const { return memory_bytes_; }
 
  private:
   class SliceParser;
@@ -70,7 +73,16 @@ class SkinnedGofParser {
   void load_model();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);
-  void check_factors(SectionReader& section, const char* element) const;
+  // Before a section is parsed that adds to them: counts spatial factors of all vertices,
+  // values of tracks, and the memory for both.
+  struct Factors {
+    std::uint64_t spatial = 0;
+    std::uint64_t of_tracks = 0;
+  };
+  std::uint64_t factors_of_bones() const {
+    return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
+  }
+  void count_factors(SectionReader& section, const Factors& factors, const char* element);
   // Whether slices of the group have tracks and no vertices: those are in the skinned model.
   bool has_only_tracks(std::uint32_t group) const {
     return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
@@ -90,13 +102,13 @@ class SkinnedGofParser {
 
   const SequenceHeader& header_;
   const CodedMeshes& meshes_;
-  std::uint64_t max_memory_bytes_;
+  MemoryLimit memory_;
   SliceCut cut_;
   const CodedMesh* mesh_ = nullptr;
   Unit unit_ = Unit::kGof;
   SkinnedGof gof_;  // or skinned model
   std::uint64_t num_factors_ = 0;
-  std::uint64_t uncounted_factors_ = 0;  // of skinned models that NumFactors leaves out
+  std::uint64_t memory_bytes_ = 0;
   // From slice to slice (9.8.1).
   struct SliceState {
     void start(std::uint32_t num_frames, std::uint32_t first_group);

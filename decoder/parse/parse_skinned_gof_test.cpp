@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/testing/element_names.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/skinned_gof_units_test.h"
 
 namespace rlpc {
@@ -280,31 +281,38 @@ TEST(ParseSkinnedGof, AlignmentIsZero) {
   }
 }
 
-// Bones and rest positions take 75 factors, each trajectory takes 15 more, and the influences
-// of nine vertices come on top.
+// The vertices with their rest positions and the bones, then a trajectory and another two; the
+// section that is read comes on top.
 TEST(ParseSkinnedGof, FactorsStayWithinTheMemoryOfTheCaller) {
-  constexpr std::uint64_t kFactor = 18;
-  constexpr std::uint64_t kBones = 75 * kFactor + 9 * sizeof(Influences);
-  constexpr std::uint64_t kGroups[] = {kBones + 2 * 15 * kFactor, kBones + 3 * 15 * kFactor};
-  static_assert(kBones < kGroups[0]);
-  SkinnedGofUnits ample = legal_units(kGroups[1]);
-  ASSERT_TRUE(ample.gof(kGof));
-  for (const Bytes& slice : kSlices) ASSERT_TRUE(ample.slice(slice));
-
-  const auto no_bones = legal_units(kBones - 1).gof(kGof);
-  ASSERT_FALSE(no_bones);
-  EXPECT_EQ(no_bones.error().code, Errc::kLimitExceeded);
-  EXPECT_STREQ(no_bones.error().element, "bone_section");
-
-  constexpr std::size_t kTooMuch[] = {2, 4};  // slices with trajectories
-  for (std::size_t i = 0; i < 2; ++i) {
-    SkinnedGofUnits scarce = legal_units(kGroups[i] - 1);
-    ASSERT_TRUE(scarce.gof(kGof));
-    for (std::size_t k = 0; k < kTooMuch[i]; ++k) ASSERT_TRUE(scarce.slice(kSlices[k]));
-    const auto no_group = scarce.slice(kSlices[kTooMuch[i]]);
-    ASSERT_FALSE(no_group);
-    EXPECT_EQ(no_group.error().code, Errc::kLimitExceeded);
-    EXPECT_STREQ(no_group.error().element, "num_group_components_minus1");
+  constexpr std::uint64_t kBones =
+      memory_of_vertices(9, false) + memory_of_spatial(9, 3) + memory_of_tracks(48);
+  constexpr std::uint64_t kTrajectory =
+      memory_of_trajectories(1) + memory_of_spatial(9, 1) + memory_of_tracks(6);
+  struct Case {
+    std::size_t unit;
+    std::uint64_t bytes;
+    const char* element;
+  };
+  const Case cases[] = {{0, kBones, "bone_section"},
+                        {3, kBones + 2 * kTrajectory, "num_group_components_minus1"},
+                        {5, kBones + 3 * kTrajectory, "num_group_components_minus1"}};
+  for (const auto& [unit, bytes, element] : cases) {
+    SCOPED_TRACE(unit);
+    const auto parse = [&, last = unit](std::uint64_t most) {
+      SkinnedGofUnits units = legal_units(most);
+      Result<bool> parsed = units.gof(kGof);
+      for (std::size_t i = 0; parsed && i < last; ++i) parsed = units.slice(kSlices[i]);
+      return parsed;
+    };
+    const auto too_little = parse(bytes);
+    ASSERT_FALSE(too_little);
+    EXPECT_EQ(too_little.error().code, Errc::kLimitExceeded);
+    EXPECT_STREQ(too_little.error().element, element);
+    const std::uint64_t needed = too_little.error().needed_bytes;
+    EXPECT_GT(needed, bytes);
+    EXPECT_LT(needed, bytes + unit_payload(unit).size());
+    EXPECT_TRUE(parse(needed));
+    EXPECT_FALSE(parse(needed - 1));
   }
 }
 

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "common/testing/skinned_gof_recipe.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/skinned_gof_units_test.h"
 
 namespace rlpc {
 namespace {
 
 using Memory = std::uint64_t;
-constexpr Memory kAmple = Memory{1} << 34;
+constexpr Memory kAmple = Memory{1} << 40;
 
 // Units of a mesh without triangles.
 class Units {
@@ -25,7 +26,7 @@ class Units {
       : header_(high_header(num_vertices, num_frames)),
         topology_(make_topology(num_vertices, {})),
         meshes_(topology_, {}),
-        parser_(header_, meshes_, max_memory_bytes) {}
+        parser_(header_, meshes_, {max_memory_bytes, 0}) {}
 
   Result<bool> model(const SkinnedGofRecipe& recipe, std::uint32_t model_idx) {
     const Bytes payload = recipe.model_payload(model_idx);
@@ -349,24 +350,49 @@ TEST(ParseModelRanges, FactorsOfTracksAreBoundedByTheLevel) {
   }
 }
 
-// 18 bytes for each factor of all models and of the GOF, and the influences.
-TEST(ParseModelRanges, FactorsStayWithinTheMemoryOfTheCaller) {
-  constexpr std::uint64_t kFactor = 18;
-  constexpr std::uint64_t kModel = 5 * 4 * kFactor;  // another one
-  constexpr std::uint64_t kOwn = 5 * (3 * kFactor + sizeof(Influences));
-  for (const bool enough : {true, false}) {
-    Units units(5, 1, kModel + kOwn - (enough ? 0 : 1));
-    units.models.of_idx[7] = model_of(5, 4);
-    const auto model = units.model({}, 0);
-    ASSERT_EQ(static_cast<bool>(model), enough);
-    if (!enough) {
-      EXPECT_EQ(model.error().code, Errc::kLimitExceeded);
-      EXPECT_STREQ(model.error().element, "bone_section");
-    }
-    // A GOF of bones next to models: 6 factors more.
-    Units other(5, 1, kModel + kOwn + 6 * kFactor - (enough ? 0 : 1));
-    other.models.of_idx[7] = model_of(5, 4);
-    EXPECT_EQ(static_cast<bool>(other.gof(gof_of_bones())), enough);
+// Of the unit itself, of what is made of it, and of other skinned models; also of the one that
+// a skinned model replaces, which is kept meanwhile.
+TEST(ParseModelRanges, ModelsStayWithinTheMemoryOfTheCaller) {
+  const Memory kept = memory_of_model(*model_of(5, 4));
+  const Memory own = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
+  for (const std::size_t kept_idx : {7U, 0U}) {
+    const auto parse = [&](Memory most) {
+      Units units(5, 1, most);
+      units.models.of_idx[kept_idx] = model_of(5, 4);
+      return units.model({}, 0);
+    };
+    const auto too_little = parse(kept + own);
+    ASSERT_FALSE(too_little);
+    EXPECT_EQ(too_little.error().code, Errc::kLimitExceeded);
+    EXPECT_STREQ(too_little.error().element, "bone_section");
+    const Memory needed = too_little.error().needed_bytes;
+    EXPECT_GT(needed, kept + own);
+    EXPECT_LT(needed, kept + own + SkinnedGofRecipe().model_payload(0).size());
+    EXPECT_TRUE(parse(needed));
+    EXPECT_FALSE(parse(needed - 1));
+  }
+}
+
+// Those of a GOF of bones; of a GOF of tracks, without and with local component groups.
+TEST(ParseModelRanges, GofsStayWithinTheMemoryOfTheCaller) {
+  const auto model = model_of(5, 4);
+  model->bones.resize(1);
+  const Memory kept = memory_of_model(*model);
+  const Memory of_vertices = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
+  const SkinnedGofRecipe recipe;
+  const std::pair<Bytes, Memory> gofs[] = {
+      {gof_of_bones(), kept + of_vertices + memory_of_tracks(6)},
+      {recipe.tracks_payload(2, 7, 0), kept + memory_of_tracks(6)},
+      {recipe.tracks_payload(2, 7, 1),
+       kept + memory_of_tracks(6) + memory_of_adaptive_weights(5)}};
+  for (const auto& [payload, bytes] : gofs) {
+    Units units(5, 1, 0);
+    units.models.of_idx[7] = model;
+    const auto parsed = units.gof(payload);
+    ASSERT_FALSE(parsed);
+    EXPECT_EQ(parsed.error().code, Errc::kLimitExceeded);
+    EXPECT_GT(parsed.error().needed_bytes, bytes);
+    EXPECT_LT(parsed.error().needed_bytes, bytes + payload.size());
   }
 }
 

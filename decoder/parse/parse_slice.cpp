@@ -5,6 +5,7 @@
 
 #include "common/int_math.h"
 #include "decoder/parse/bone_parser.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_component_header.h"
 #include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/parse_track.h"
@@ -28,9 +29,7 @@ void SkinnedGofParser::SliceParser::group_components() {
   }
   if (num_components == parser_.cut_.max_components)
     parser_.kept_.end_component_group = group_ + 1;
-  count_factors(static_cast<std::uint64_t>(count) *
-                    (parser_.header_.num_vertices + 3 * std::uint64_t{gof_.num_frames}),
-                "num_group_components_minus1");
+  count_factors(static_cast<std::uint64_t>(count), 1, "num_group_components_minus1");
   for (int l = 0; l < count && !failed(); ++l) {
     Trajectory& next = gof_.trajectories.emplace_back();
     Trajectory& before = state_.previous;
@@ -49,15 +48,17 @@ void SkinnedGofParser::SliceParser::group_components() {
   }
 }
 
-void SkinnedGofParser::SliceParser::count_factors(std::uint64_t count, const char* element) {
-  parser_.num_factors_ += count;
-  parser_.check_factors(section_, element);
+// Of `count` trajectories; spatial: their spatial factors, 0 if they are in the skinned model.
+void SkinnedGofParser::SliceParser::count_factors(std::uint64_t count, std::uint64_t spatial,
+                                                  const char* element) {
+  parser_.memory_bytes_ += memory_of_trajectories(count);
+  parser_.count_factors(section_, {spatial * count, 3 * count * gof_.num_frames}, element);
 }
 
 // 6.13.2 tracks_of_group( )
 void SkinnedGofParser::SliceParser::tracks_of_group() {
   const FactorGroup factors = factor_group(*gof_.model, group_);
-  count_factors(3 * factors.size() * std::uint64_t{gof_.num_frames}, "trajectory_flag");
+  count_factors(factors.size(), 0, "trajectory_flag");
   SliceModels& models = state_.models;
   for (std::size_t l = factors.first; l < factors.end && !failed(); ++l) {
     Trajectory& next = gof_.trajectories.emplace_back();

@@ -26,7 +26,7 @@ class SkinnedGofParser::SliceParser {
  private:
   bool failed() const { return section_.failed(); }
   FactorGroup own_factors() const { return factor_group(gof_, parser_.own_group(group_)); }
-  void count_factors(std::uint64_t count, const char* element);
+  void count_factors(std::uint64_t count, std::uint64_t spatial, const char* element);
   void tracks_of_group();
   void group_components();
   void trajectory(Trajectory& trajectory);

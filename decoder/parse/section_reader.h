@@ -10,6 +10,7 @@
 #include "common/bitstream/bit_reader.h"
 #include "common/bitstream/range_decoder.h"
 #include "common/bitstream/residual_models.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/parse/parse_residual.h"
 
 namespace rlpc {
@@ -20,15 +21,23 @@ class SectionReader {
  public:
   // name: of the syntax structure, for errors at its start and end.
   SectionReader(BitReader& r, const char* name)
-      : reader_(r), name_(name), first_bit_(r.bit_pos()), rd_(r.remaining_bytes()) {
+      : reader_(r),
+        name_(name),
+        first_bit_(r.bit_pos()),
+        num_bytes_(r.remaining_bytes().size()),
+        rd_(r.remaining_bytes()) {
     if (!rd_.starts_legally()) fail("R-RNG-02", name_);
   }
 
   bool failed() const { return reader_.error().has_value(); }
+  std::uint64_t num_bytes() const { return num_bytes_; }  // of the section
   void fail(const char* rule, const char* element) {
     reader_.fail(Errc::kInvalid, rule, element, bit_pos());
   }
-  void fail_memory(const char* element, std::uint64_t needed_bytes) {
+  // Fails if the limit does not allow `bytes` in addition to the section itself.
+  void check_memory(const MemoryLimit& memory, std::uint64_t bytes, const char* element) {
+    const std::uint64_t needed_bytes = memory.bytes_in_use + num_bytes_ + bytes;
+    if (failed() || needed_bytes <= memory.max_bytes) return;
     reader_.fail(Errc::kLimitExceeded, "", element, bit_pos(), needed_bytes);
   }
   // A section that ran out of bytes is not decoded any further.
@@ -120,6 +129,7 @@ class SectionReader {
   BitReader& reader_;
   const char* name_;
   std::uint64_t first_bit_;
+  std::uint64_t num_bytes_;
   RangeDecoder rd_;
 };
 

@@ -43,7 +43,7 @@ class SkinnedGofUnits {
       : header_(header),
         topology_(make_topology(header.num_vertices, triangles)),
         meshes_(topology_, triangles),
-        parser_(header_, meshes_, max_memory_bytes, cut) {}
+        parser_(header_, meshes_, {max_memory_bytes, 0}, cut) {}
 
   Result<bool> gof(const Bytes& payload, Trace* trace = nullptr,
                    std::uint32_t first_frame = 0) {

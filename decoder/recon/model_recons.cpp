@@ -5,10 +5,14 @@
 
 namespace rlpc {
 
+void ModelRecons::erase_unused() {
+  const std::lock_guard lock(listing_);
+  std::erase_if(entries_, [](const auto& entry) { return entry->model.use_count() == 1; });
+}
+
 std::shared_ptr<ModelRecons::Entry> ModelRecons::entry_of(
     const std::shared_ptr<const SkinnedModel>& model) {
   const std::lock_guard lock(listing_);
-  std::erase_if(entries_, [](const auto& entry) { return entry->model.use_count() == 1; });
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const auto& entry) { return entry->model == model; });
   if (found != entries_.end()) return *found;
@@ -17,6 +21,7 @@ std::shared_ptr<ModelRecons::Entry> ModelRecons::entry_of(
 
 std::shared_ptr<const ModelRecon> ModelRecons::of(
     const std::shared_ptr<const SkinnedModel>& model) {
+  erase_unused();
   const std::shared_ptr<Entry> entry = entry_of(model);
   const std::lock_guard lock(entry->making);
   if (!entry->recon) {

@@ -16,8 +16,10 @@ class ModelRecons {
   explicit ModelRecons(const StreamContext& context) : context_(context) {}
 
   // 8.16.1 Decoding a skinned model. Any number of threads may call it; the first makes the
-  // reconstruction, the others wait. Drops those of models that nobody else keeps.
+  // reconstruction, the others wait.
   std::shared_ptr<const ModelRecon> of(const std::shared_ptr<const SkinnedModel>& model);
+  // Drops those of models that nobody else keeps.
+  void erase_unused();
 
  private:
   struct Entry {

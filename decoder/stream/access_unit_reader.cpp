@@ -1,18 +1,21 @@
 #include "decoder/stream/access_unit_reader.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_header.h"
 
 namespace rlpc {
 
 Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                           const ModelSlots& models) {
-  AccessUnitParser parser(context_, max_memory_bytes_, cut_);
+  AccessUnitParser parser(context_, memory_, cut_);
+  const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
-    const auto payload = units_.payload(*unit);
-    if (!payload) return payload.error();
-    if (auto ok = parse_unit(parser, *unit, *payload, first_frame, models); !ok) {
+    const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+    if (!bytes) return bytes.error();
+    if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, models); !ok) {
       return ok.error();
     }
     end_ = unit->end();
@@ -49,12 +52,36 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
 Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
                                            const ModelSlots& models,
                                            std::uint64_t max_memory_bytes) const {
-  AccessUnitParser parser(context_, max_memory_bytes, cut_);
+  const MemoryLimit memory = limit_ahead(max_memory_bytes);
+  const std::uint64_t of_models = memory_of_models(models);
+  AccessUnitParser parser(context_, memory, cut_);
   for (const auto& [unit, payload] : coded.units) {
+    const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
+    if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
     if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame, models); !ok)
       return ok.error();
   }
   return parser.finish();
+}
+
+// Where read() has too little memory, so has parse().
+MemoryLimit AccessUnitReader::limit_ahead(std::uint64_t max_memory_bytes) const {
+  const std::uint64_t left =
+      memory_.max_bytes - std::min(memory_.max_bytes, memory_.bytes_in_use);
+  return {std::min(max_memory_bytes, left), 0};
+}
+
+Result<bool> AccessUnitReader::check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
+                                          const MemoryLimit& memory) {
+  const std::uint64_t needed_bytes = memory.bytes_in_use + taken_bytes + unit.size;
+  if (needed_bytes <= memory.max_bytes) return true;
+  return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
+}
+
+Result<std::vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
+                                                            std::uint64_t taken_bytes) {
+  if (auto ok = check_fits(unit, taken_bytes, memory_); !ok) return ok.error();
+  return units_.payload(unit);
 }
 
 Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
@@ -75,11 +102,12 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
 
 Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
                                                  const ModelSlots& models) {
-  ModelParser parser(context_, max_memory_bytes_, cut_);
+  ModelParser parser(context_, memory_, cut_);
+  const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = model_unit; unit;) {
-    const auto payload = units_.payload(*unit);
-    if (!payload) return payload.error();
-    if (auto ok = parse_unit(parser, *unit, *payload, models); !ok) return ok.error();
+    const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+    if (!bytes) return bytes.error();
+    if (auto ok = parse_unit(parser, *unit, *bytes, models); !ok) return ok.error();
     end_ = unit->end();
     const auto next = slice_after(*unit);
     if (!next) return next.error();
@@ -108,8 +136,12 @@ std::optional<std::vector<CodedUnit>> AccessUnitReader::collect_model(
 Result<ParsedModel> AccessUnitReader::parse_model(const std::vector<CodedUnit>& coded,
                                                   const ModelSlots& models,
                                                   std::uint64_t max_memory_bytes) const {
-  ModelParser parser(context_, max_memory_bytes, cut_);
+  const MemoryLimit memory = limit_ahead(max_memory_bytes);
+  const std::uint64_t of_models = memory_of_models(models);
+  ModelParser parser(context_, memory, cut_);
   for (const auto& [unit, payload] : coded) {
+    const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
+    if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
     if (auto ok = parse_unit(parser, unit, payload, models); !ok) return ok.error();
   }
   return parser.finish();

@@ -9,6 +9,7 @@
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/parse/access_unit_parser.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/parse/model_parser.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/unit_reader.h"
@@ -39,9 +40,12 @@ class AccessUnitReader {
                    const DecoderOptions& options)
       : units_(units),
         context_(context),
-        max_memory_bytes_(options.limits.max_memory_bytes),
+        memory_{options.limits.max_memory_bytes, 0},
         cut_(options.cut),
         wants_hash_(options.verify_hashes) {}
+
+  // Sets the memory that the rest of the decoder uses from now on.
+  void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
 
   // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
   // the GOF must have; models: those alive.
@@ -71,13 +75,20 @@ class AccessUnitReader {
   Result<bool> parse_unit(ModelParser& parser, const UnitHeader& unit,
                           const std::vector<std::uint8_t>& payload,
                           const ModelSlots& models) const;
+  MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
+  // Whether there is memory for the payload of a unit, in addition to what its access unit or
+  // skinned model has taken.
+  static Result<bool> check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
+                                 const MemoryLimit& memory);
+  // Such a payload.
+  Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
   // The slice unit that follows `unit`; none if another unit follows.
   Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
   Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit, bool has_slices);
 
   UnitReader& units_;
   const StreamContext& context_;
-  std::uint64_t max_memory_bytes_;
+  MemoryLimit memory_;
   SliceCut cut_;
   bool wants_hash_;
   std::uint64_t end_ = 0;

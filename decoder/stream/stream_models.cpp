@@ -65,11 +65,12 @@ Result<bool> StreamModels::parse(std::uint64_t offset, Entry& entry, const Model
 
 Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
   const std::vector<std::uint64_t> alive = alive_at(gof_offset);
-  std::erase_if(kept_, [&](std::uint64_t offset) {
+  const auto num_dropped = std::erase_if(kept_, [&](std::uint64_t offset) {
     const bool drop = !std::binary_search(alive.begin(), alive.end(), offset);
     if (drop) entries_[offset].model.reset();
     return drop;
   });
+  if (num_dropped > 0 && dropped_) dropped_();
   ModelSlots models;
   for (const std::uint64_t offset : alive) {
     Entry& entry = entries_[offset];

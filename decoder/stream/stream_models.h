@@ -46,6 +46,8 @@ class StreamModels {
   // Calls `see` with each skinned model that read() parses.
   using See = std::function<void(const ParsedModel& model)>;
   void watch(See see) { see_ = std::move(see); }
+  // Calls `dropped` when models have been dropped.
+  void when_dropped(std::function<void()> dropped) { dropped_ = std::move(dropped); }
 
  private:
   struct Entry {
@@ -64,6 +66,7 @@ class StreamModels {
   std::array<std::set<std::uint64_t>, kMaxModels> offsets_;  // of the entries, by model_idx
   std::set<std::uint64_t> kept_;                             // those whose model is there
   See see_;
+  std::function<void()> dropped_;
 };
 
 }  // namespace rlpc

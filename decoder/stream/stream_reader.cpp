@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/syntax/stream_format.h"
+#include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_end_of_sequence.h"
@@ -64,7 +65,7 @@ Result<bool> StreamReader::read_sequence_header() {
   return check_limits();
 }
 
-Result<bool> StreamReader::check_limits() const {
+Result<bool> StreamReader::check_limits() {
   const SequenceHeader& header = context_.header;
   const auto exceeded = [](const char* element, std::uint64_t needed_bytes = 0) {
     return Error{Errc::kLimitExceeded, "", element, kStreamHeaderBytes * 8, needed_bytes};
@@ -72,15 +73,10 @@ Result<bool> StreamReader::check_limits() const {
   if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
   if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
   if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
-  // Connectivity, topology, in the Main profile layers, in the High profile the order of rest
-  // positions, and frames, as this decoder holds them.
-  const std::uint64_t of_layers = header.has_skinned_gofs() ? 300 : 0;
-  const std::uint64_t of_rest_order = header.profile_idc >= kProfileHigh ? 200 : 0;
-  const std::uint64_t of_vertex =
-      100 + of_layers + of_rest_order + std::uint64_t{12} * kFramesHeld;
-  const std::uint64_t fixed = std::uint64_t{header.num_vertices} * of_vertex +
-                              std::uint64_t{header.num_triangles} * 120;
-  if (fixed > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", fixed);
+  const std::uint64_t bytes = memory_of_stream(header, kFramesHeld);
+  if (bytes > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", bytes);
+  units_.set_bytes_in_use(bytes);
+  access_units_.set_bytes_in_use(bytes);
   return true;
 }
 

@@ -67,7 +67,7 @@ class StreamReader {
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
   Result<bool> read_ancillary(const UnitHeader& unit);
-  Result<bool> check_limits() const;
+  Result<bool> check_limits();
   Result<bool> check_end(const UnitHeader& unit);
   // For a GOF that is skipped: reads only its first bytes.
   Result<GofHeader> gof_header(const UnitHeader& unit);

@@ -89,8 +89,9 @@ Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t compute
 }
 
 Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
-  if (unit.size > max_payload_bytes_) {
-    return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, unit.size};
+  const std::uint64_t needed_bytes = memory_.bytes_in_use + unit.size;
+  if (needed_bytes > memory_.max_bytes || unit.size > kMaxPayloadBytes) {
+    return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
   }
   trace_header(unit);
   std::vector<std::uint8_t> bytes(kUnitHeaderBytes + std::size_t{unit.size} + kUnitCrcBytes);

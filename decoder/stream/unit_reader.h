@@ -1,7 +1,6 @@
 // Finds units (6.2), reads them, and checks their CRC.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "common/bitstream/trace.h"
 #include "common/result.h"
 #include "common/syntax/stream_format.h"
+#include "decoder/parse/memory_limit.h"
 #include "decoder/stream/byte_source.h"
 
 namespace rlpc {
@@ -31,12 +31,10 @@ struct UnitHeader {
 
 class UnitReader {
  public:
-  // max_payload_bytes: of a unit that payload() reads.
+  // max_memory_bytes: of what payload() reads, together with the bytes in use.
   explicit UnitReader(std::unique_ptr<ByteSource> source, Trace* trace = nullptr,
-                      std::uint64_t max_payload_bytes = kMaxPayloadBytes)
-      : source_(std::move(source)),
-        trace_(trace),
-        max_payload_bytes_(std::min(max_payload_bytes, kMaxPayloadBytes)) {}
+                      std::uint64_t max_memory_bytes = kMaxPayloadBytes)
+      : source_(std::move(source)), trace_(trace), memory_{max_memory_bytes, 0} {}
 
   // 6.1: signature and version.
   Result<bool> stream_header();
@@ -45,6 +43,8 @@ class UnitReader {
   // Reads the header of the unit at a byte offset, and checks that the unit ends within the
   // stream.
   Result<UnitHeader> header_at(std::uint64_t offset);
+  // Sets the memory that others use from now on.
+  void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
   // Reads the payload of a unit and checks its CRC.
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
   // Skips a unit and checks its CRC. Allocates nothing.
@@ -81,7 +81,7 @@ class UnitReader {
 
   std::unique_ptr<ByteSource> source_;
   Trace* trace_;
-  std::uint64_t max_payload_bytes_;
+  MemoryLimit memory_;
   std::uint32_t version_minor_ = 0;
   std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
   std::optional<PendingCrc> pending_crc_;

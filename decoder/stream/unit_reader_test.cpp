@@ -189,6 +189,18 @@ TEST(UnitReader, TakesNoMemoryForLargerPayloadsThanAllowed) {
   }
 }
 
+TEST(UnitReader, CountsMemoryThatOthersUse) {
+  UnitReader reader(memory_source(joined({kHeader, kUnit})), nullptr, 10);
+  const auto unit = reader.header_at(10);
+  ASSERT_TRUE(unit);
+  reader.set_bytes_in_use(7);
+  const auto payload = reader.payload(*unit);
+  expect_error(payload, Errc::kLimitExceeded, "", "unit_size", 88);
+  EXPECT_EQ(payload.error().needed_bytes, 11);
+  reader.set_bytes_in_use(6);
+  EXPECT_TRUE(reader.payload(*unit));
+}
+
 // Payload sizes around multiples of the block size.
 TEST(UnitReader, SkipsUnitsWithAValidCrc) {
   for (const std::size_t size : {0U, 1U, 4090U, 4091U, 4092U, 8187U, 10000U}) {

@@ -1,5 +1,6 @@
 #include "common/cluster_gof/recon/cluster_recon.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/components/series_predictor.h"
@@ -132,16 +133,36 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
   }
 }
 
+// 8.5.3 Spatial factor, and sum over the components: the local coordinates of frames first to
+// first + count - 1, [count][3][vertices].
+std::vector<std::int32_t> ClusterRecon::local_coordinates(const ComponentSum& factors,
+                                                          std::uint32_t first,
+                                                          std::uint32_t count) const {
+  const std::size_t size = factors.num_values();
+  std::vector<std::int32_t> local(count * size);
+  std::vector<std::int64_t> sums(count * kTileValues);
+  for (std::size_t begin = 0; begin < size; begin += kTileValues) {
+    std::fill(sums.begin(), sums.end(), 0);
+    factors.add_tile(begin / kTileValues, first, count, sums);
+    const std::size_t n = std::min(kTileValues, size - begin);
+    for (std::size_t f = 0; f < count; ++f) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::int64_t q = round2(sums[f * kTileValues + i], fraction_bits_);
+        local[f * size + begin + i] = clip_signed(kLocalBits, q);
+      }
+    }
+  }
+  return local;
+}
+
 // 8.5.4 Positions of a cluster
 void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
+                                 std::span<const std::int32_t> local,
                                  std::span<std::int32_t> positions) const {
   const std::size_t n = cluster.vertices.size();
-  std::vector<std::int64_t> local(3 * n);
-  cluster.factors.sum(f, local);
-  for (std::int64_t& q : local) q = clip_signed(kLocalBits, round2(q, fraction_bits_));
-  const std::int64_t* x = local.data();
-  const std::int64_t* y = x + n;
-  const std::int64_t* z = y + n;
+  const std::int32_t* x = local.data();
+  const std::int32_t* y = x + n;
+  const std::int32_t* z = y + n;
   Lcf lcf{};
   if (cluster.lcf_flag) {
     const auto& s = cluster.seed_track;
@@ -157,13 +178,24 @@ void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
   }
 }
 
-void ClusterRecon::frame(std::uint32_t f, std::span<std::int32_t> positions) const {
-  for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      positions[3 * std::size_t{track_vertex_[t]} + c] = tracks_[t][f][c];
+void ClusterRecon::frames(std::uint32_t first, std::uint32_t count,
+                          std::span<std::int32_t> positions) const {
+  const std::size_t size = positions.size() / count;
+  for (std::uint32_t f = 0; f < count; ++f) {
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        positions[f * size + 3 * std::size_t{track_vertex_[t]} + c] = tracks_[t][first + f][c];
+      }
     }
   }
-  for (const ClusterState& cluster : clusters_) cluster_frame(cluster, f, positions);
+  for (const ClusterState& cluster : clusters_) {
+    const std::vector<std::int32_t> local = local_coordinates(cluster.factors, first, count);
+    for (std::uint32_t f = 0; f < count; ++f) {
+      const std::size_t num_values = cluster.factors.num_values();
+      cluster_frame(cluster, first + f, std::span(local).subspan(f * num_values, num_values),
+                    positions.subspan(f * size, size));
+    }
+  }
 }
 
 }  // namespace rlpc

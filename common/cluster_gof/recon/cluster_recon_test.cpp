@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -268,6 +270,52 @@ TEST(ClusterRecon, SaturatingInputsAreClippedNotWrapped) {
   }
   gof.clusters[0].lcf_flag = false;
   EXPECT_EQ((Positions{frame_of(header_of(5, 24), gof, 0)[6]}), Positions{most});
+}
+
+// Several frames at a time; clusters with and without a local frame, of more than a tile.
+TEST(ClusterRecon, ReconstructsFramesTogetherLikeSingleOnes) {
+  constexpr std::uint32_t kVertices = 60;
+  ClusterGof gof = world_gof(kVertices, 7);
+  gof.fraction_bits = 3;
+  gof.clusters.resize(2);
+  gof.clusters[1].lcf_flag = true;
+  gof.clusters[1].seed_vertex = {0, 1, 2};
+  for (std::uint32_t v = 0; v < kVertices; ++v) gof.cluster_of_vertex[v] = v % 2 == 0 ? 1 : 0;
+  std::mt19937 random(1);
+  const auto numbers = [&](std::size_t count) {
+    std::vector<std::int32_t> list(count);
+    for (std::int32_t& x : list) x = static_cast<std::int32_t>(random() % 2000) - 1000;
+    return list;
+  };
+  for (std::uint32_t v = 0; v < 3; ++v) {
+    gof.cluster_of_vertex[v] = kSeedCluster;
+    gof.seed_tracks.push_back({v, 0, {}});
+    for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
+      const auto x = numbers(3);
+      gof.seed_tracks.back().residual.push_back({x[0], x[1], x[2]});
+    }
+  }
+  const ClusterMembers members = cluster_members(gof);
+  for (std::size_t i = 0; i < 2; ++i) {
+    gof.clusters[i].components = {
+        component_of(numbers(gof.num_frames), numbers(3 * members.vertices[i].size())),
+        component_of(numbers(gof.num_frames), numbers(3 * members.vertices[i].size()))};
+  }
+  const Topology topology = make_topology(kVertices, {});
+  const ClusterRecon recon(header_of(kVertices), topology, gof);
+  constexpr std::size_t kSize = 3 * kVertices;
+  for (std::uint32_t first = 0; first < gof.num_frames; ++first) {
+    for (std::uint32_t count = 1; first + count <= gof.num_frames; ++count) {
+      Positions together(count * kSize, 77777);
+      recon.frames(first, count, together);
+      for (std::uint32_t f = 0; f < count; ++f) {
+        Positions alone(kSize, 77777);
+        recon.frame(first + f, alone);
+        EXPECT_TRUE(std::equal(alone.begin(), alone.end(), together.begin() + f * kSize))
+            << first << ' ' << f;
+      }
+    }
+  }
 }
 
 TEST(ClusterRecon, ReconstructsFramesInAnyOrder) {

@@ -1,6 +1,7 @@
 #include "common/skinned_gof/recon/model_recon.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "common/int_math.h"
@@ -8,6 +9,11 @@
 #include "common/skinned_gof/recon/rest_recon.h"
 
 namespace rlpc {
+namespace {
+
+constexpr std::size_t kPadding = 3;  // kernels may read one vector past the end
+
+}  // namespace
 
 // 8.10.2 Spatial values
 std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
@@ -83,6 +89,14 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
 
 void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {
   const std::vector<Influences> influences = complete_influences(mesh_, model);
+  // Exact, except for runs, of which there are usually fewer.
+  const std::size_t count = std::accumulate(
+      influences.begin(), influences.end(), std::size_t{0},
+      [](std::size_t sum, const Influences& of_vertex) { return sum + of_vertex.size; });
+  for (auto& list : arm_) list.reserve(count + kPadding);
+  weight_.reserve(count + kPadding);
+  place_.reserve(count);
+  runs_.reserve(count);
   struct Entry {
     Influence influence;
     std::size_t vertex;
@@ -112,13 +126,13 @@ void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::
     }
   }
   first_run_.push_back(runs_.size());
-  // The kernels may read one vector past the end.
-  for (auto& list : arm_) list.resize(list.size() + 3);
-  weight_.resize(weight_.size() + 3);
+  for (auto& list : arm_) list.resize(count + kPadding);
+  weight_.resize(count + kPadding);
 }
 
 void ModelRecon::start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest) {
   if (model.prediction != Prediction::kLayers) return;
+  for (auto& plane : rest_) plane.reserve(num_vertices());
   for (std::size_t i = 0; i < rest.size(); ++i) rest_[i % 3].push_back(rest[i]);
   const std::array<std::span<const std::int32_t>, 3> planes{rest_[0], rest_[1], rest_[2]};
   weights_.emplace(mesh_, model.weights, planes);

@@ -45,6 +45,8 @@ class ConnectivityParser {
 // 6.4.2 connectivity_section( )
 std::vector<Triangle> ConnectivityParser::parse(std::uint32_t num_regular,
                                                 std::uint32_t num_degenerate) {
+  triangles_.reserve(std::size_t{num_regular} + num_degenerate);
+  border_.reserve(num_regular);
   while (!failed() && triangles_.size() < num_regular) {
     if (border_.select_gate()) {
       gate();

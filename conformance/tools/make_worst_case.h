@@ -1,0 +1,90 @@
+// Streams that reach the limits of a level (Annex B) in one GOF, so that a decoder takes about
+// as much time and memory for it as a GOF of the level can demand.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "common/cluster_gof/cluster_gof.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/mesh/mesh.h"
+#include "common/skinned_gof/skinned_gof.h"
+#include "common/syntax/sequence_header.h"
+#include "common/syntax/write_units.h"
+
+namespace rlpc::worst_case {
+
+// A GOF of clusters (Baseline); a GOF of bones (Main); a GOF of tracks with its skinned model
+// (High).
+enum class Kind : std::uint8_t { kClusters, kBones, kTracks };
+
+struct Size {
+  std::uint32_t vertices = 0;
+  std::uint32_t frames = 1;
+  std::uint32_t components = 0;  // of the cluster, or trajectories
+  std::uint32_t bones = 0;       // or clusters
+  std::uint32_t adaptive_factors = 0;
+
+  std::uint64_t values() const { return std::uint64_t{vertices} * frames; }
+};
+
+struct Most {
+  std::uint32_t frames = kMaxFrames;
+  std::uint32_t components = 1U << 24;
+};
+
+// The size with the most products. Vertices times frames come as close to their limit as the
+// mesh allows; of the sizes that do, those with many factors are preferred.
+Size hardest_size(Kind kind, const Level& level, const Most& most);
+// The factors that R-LVL-05 counts.
+std::uint64_t num_factors(Kind kind, const Size& size);
+// With one more of something than its limit, and little of everything else; none for an unknown
+// word.
+std::optional<Size> size_beyond(std::string_view what, const Level& level, const Size& size);
+
+// A torus with handles. Handles raise the valence, and so the number of neighbours that predict
+// a vertex, to 17 in the mean; without them it is 15. num_vertices: a multiple of kAround.
+inline constexpr std::uint32_t kAround = 64;
+std::vector<Triangle> make_mesh(std::uint32_t num_vertices, std::uint32_t max_triangles);
+
+// Residuals that take the most bins: 14 in the prefix, and an escape. They stay just below 32
+// bits, so that a unit with all factors of a GOF stays within MaxUnitBytes.
+class Noise {
+ public:
+  std::int32_t residual() {
+    const auto bits = static_cast<std::uint32_t>(random_());
+    const auto magnitude = static_cast<std::int32_t>(kLeast + (bits >> 9));
+    return (bits & 1) != 0 ? -magnitude : magnitude;
+  }
+  std::vector<std::int32_t> residuals(std::size_t count);
+  TrackResiduals track(std::uint32_t num_frames);
+  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() % n); }
+
+ private:
+  static constexpr std::uint32_t kLeast = 1U << 23;
+  std::mt19937 random_{1};
+};
+
+// num_rounds times: skinned models, if the kind has them, and a GOF that uses each; or a GOF.
+struct Plan {
+  std::uint32_t level = 1;
+  Kind kind = Kind::kClusters;
+  Size size;
+  std::vector<Triangle> triangles;
+  std::uint32_t num_models = 1;
+  std::uint32_t num_rounds = 1;
+};
+// write: receives the stream piece by piece.
+void write_stream(const Plan& plan, const std::function<void(const Bytes&)>& write);
+
+ClusterGof make_clusters(const Size& size, Noise& noise);
+SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise);
+SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise);
+// Its member `model` is still null.
+SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise);
+
+}  // namespace rlpc::worst_case

@@ -1,0 +1,179 @@
+// The GOFs: as many factors, bones and influences as there can be, of the widths that take a
+// decoder longest.
+#include <span>
+
+#include "common/skinned_gof/influences.h"
+#include "conformance/tools/make_worst_case.h"
+
+namespace rlpc::worst_case {
+namespace {
+
+// The greatest widths: both factors have two limbs in memory, and each product is four.
+constexpr int kSpatialBits = kMaxSpatialBits;
+constexpr int kTemporalBits = kMaxTemporalBits;
+constexpr int kScaleIdx = 100;
+
+Trajectory make_trajectory(std::uint32_t num_frames, Noise& noise) {
+  Trajectory trajectory;
+  trajectory.spatial_bits = kSpatialBits;
+  if (num_frames == 0) return trajectory;
+  trajectory.scale_idx = kScaleIdx;
+  trajectory.temporal_bits = kTemporalBits;
+  trajectory.temporal_predictor = kMaxTemporalPredictor;
+  trajectory.temporal_weight = {255, -256, 255};
+  trajectory.residual = noise.track(num_frames);
+  return trajectory;
+}
+
+void add_tracks(Bone& bone, std::uint32_t num_frames, Noise& noise) {
+  bone.rotation_order = kMaxPredictorOrder;
+  bone.origin_order = kMaxPredictorOrder;
+  bone.rotation_residual = noise.track(num_frames);
+  bone.origin_residual = noise.track(num_frames);
+}
+
+// The most influences that can be coded, of bones that are rare around the vertex: 4 extra
+// bones, and 4 of the bones in its ring.
+class InfluenceMaker {
+ public:
+  InfluenceMaker(std::vector<Influences>& influences, std::uint32_t num_bones, Noise& noise)
+      : influences_(influences),
+        prediction_(influences, num_bones, kMaxWeightBits),
+        num_bones_(num_bones),
+        noise_(noise) {}
+
+  void set(std::uint32_t v, std::span<const std::uint32_t> ring) {
+    constexpr int kWeight = (1 << kMaxWeightBits) / kMaxInfluences;
+    prediction_.start(ring);
+    while (prediction_.can_add_bone()) {
+      std::uint32_t bone = noise_.below(num_bones_);
+      while (!prediction_.is_new_bone(bone)) bone = (bone + 1) % num_bones_;
+      prediction_.add_extra_bone(bone, kWeight);
+    }
+    const std::size_t count = prediction_.num_candidates();
+    for (std::size_t k = 1; k < count; ++k) {
+      const int weight = k + 3 >= count ? kWeight : 0;
+      const bool coded = prediction_.has_residual();
+      prediction_.add_candidate(k, coded ? weight - prediction_.candidate_mean(k) : 0);
+    }
+    influences_[v] = prediction_.finish();
+  }
+
+ private:
+  std::vector<Influences>& influences_;
+  InfluencePrediction prediction_;
+  std::uint32_t num_bones_;
+  Noise& noise_;
+};
+
+// num_frames: 0 of a skinned model.
+void fill_model(SkinnedModel& model, const Size& size, const CodedMesh& mesh, Noise& noise,
+                std::uint32_t num_frames) {
+  model.fraction_bits = kMaxFractionBits;
+  model.weight_bits = kMaxWeightBits;
+  model.rest_step = 1;
+  model.weights = {5, 8, 8, size.adaptive_factors};
+  model.layer_group_size = {mesh.num_layers()};
+  model.layer_step.assign(mesh.num_layers(), 1);
+  for (std::uint32_t b = 0; b < size.bones; ++b) {
+    Bone& bone = model.bones.emplace_back();
+    bone.parent = static_cast<std::int32_t>(b) - 1;
+    bone.rotation_flag = bone.origin_flag = true;
+    if (num_frames > 0) add_tracks(bone, num_frames, noise);
+  }
+  model.influences.resize(size.vertices);
+  InfluenceMaker influences(model.influences, size.bones, noise);
+  for (const std::uint32_t v : mesh.order()) influences.set(v, mesh.ring(v));
+  // A single component group, all of whose values are reconstructed together.
+  model.num_component_groups = 1;
+  model.slice_layers = {1, 1};
+  for (std::uint32_t l = 0; l < size.components; ++l)
+    model.trajectories.push_back(make_trajectory(num_frames, noise));
+  model.group_end.push_back(kRestFactors + size.components);
+  for (const std::size_t count : {kRestFactors, std::size_t{size.components}})
+    model.vertex_residual.push_back(noise.residuals(count * size.vertices));
+}
+
+}  // namespace
+
+std::vector<std::int32_t> Noise::residuals(std::size_t count) {
+  std::vector<std::int32_t> list(count);
+  for (std::int32_t& x : list) x = residual();
+  return list;
+}
+
+TrackResiduals Noise::track(std::uint32_t num_frames) {
+  TrackResiduals list(num_frames);
+  for (Vec3i& at : list) {
+    for (std::int32_t& x : at) x = residual();
+  }
+  return list;
+}
+
+ClusterGof make_clusters(const Size& size, Noise& noise) {
+  ClusterGof gof;
+  gof.num_frames = size.frames;
+  gof.fraction_bits = kMaxFractionBits;
+  gof.seed_predictor = kMaxPredictorOrder;
+  gof.seed_coupling_flag = true;
+  gof.clusters.resize(size.bones);
+  gof.cluster_of_vertex.assign(size.vertices, 0);
+  Cluster& cluster = gof.clusters[0];
+  cluster.lcf_flag = true;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    cluster.seed_vertex[k] = k;
+    gof.cluster_of_vertex[k] = kSeedCluster;
+    gof.seed_tracks.push_back({k, 0, noise.track(size.frames)});
+  }
+  cluster.components.resize(size.components);
+  for (Component& component : cluster.components) {
+    component.scale_idx = kScaleIdx;
+    component.spatial_bits = kSpatialBits;
+    component.temporal_bits = kTemporalBits;
+    component.temporal_predictor = kMaxPredictorOrder;
+    component.spatial_predictor = SpatialPredictor::kParallelogram;
+    component.temporal_residual = noise.residuals(size.frames);
+    component.spatial_residual = noise.residuals(3 * (std::size_t{size.vertices} - 3));
+  }
+  return gof;
+}
+
+SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise) {
+  SkinnedGof gof;
+  gof.num_frames = size.frames;
+  fill_model(gof, size, mesh, noise, size.frames);
+  return gof;
+}
+
+SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise) {
+  SkinnedModel model;
+  fill_model(model, size, mesh, noise, 0);
+  model.rest = {true, 8, 8, true, true};
+  model.counterparts.resize(size.vertices);
+  return model;
+}
+
+SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise) {
+  SkinnedGof gof;
+  gof.kind = GofKind::kTracks;
+  gof.num_frames = size.frames;
+  gof.track_levels = kMaxTrackLevels;
+  gof.num_component_groups = model.num_component_groups;
+  gof.layer_group_size = model.layer_group_size;
+  gof.prediction = model.prediction;
+  gof.slice_layers = model.slice_layers;
+  gof.bones = model.bones;
+  for (Bone& bone : gof.bones) {
+    add_tracks(bone, size.frames, noise);
+    bone.rotation_between = bone.origin_between = kMaxBetween;
+  }
+  for (std::uint32_t l = 0; l < size.components; ++l) {
+    gof.trajectories.push_back(make_trajectory(size.frames, noise));
+    gof.trajectories.back().temporal_between = kMaxBetween;
+  }
+  gof.group_end = {model.group_end.back()};
+  gof.vertex_residual.emplace_back();
+  return gof;
+}
+
+}  // namespace rlpc::worst_case

@@ -1,0 +1,103 @@
+// The units of the stream.
+#include <memory>
+#include <span>
+
+#include "common/mesh/coded_meshes.h"
+#include "conformance/tools/make_worst_case.h"
+#include "encoder/write/write_cluster_gof.h"
+#include "encoder/write/write_connectivity.h"
+#include "encoder/write/write_skinned_gof.h"
+#include "encoder/write/write_stream.h"
+
+namespace rlpc::worst_case {
+namespace {
+
+class StreamMaker {
+ public:
+  StreamMaker(const Plan& plan, const std::function<void(const Bytes&)>& write)
+      : plan_(plan), write_(write) {}
+
+  void make() {
+    const ConnectivityCode code = write_connectivity(plan_.size.vertices, plan_.triangles);
+    set_header();
+    write_(write_stream_header(header_.profile_idc));
+    unit(UnitType::kSequenceHeader, write_sequence_header(header_));
+    unit(UnitType::kConnectivity, code.payload);
+    gofs(code.triangles);
+    unit(UnitType::kEndOfSequence, write_end_of_sequence(0));
+  }
+
+ private:
+  void set_header() {
+    header_.profile_idc = static_cast<std::uint32_t>(plan_.kind);
+    header_.level_idc = plan_.level;
+    header_.num_vertices = plan_.size.vertices;
+    header_.num_triangles = static_cast<std::uint32_t>(plan_.triangles.size());
+    header_.num_frames = plan_.size.frames * plan_.num_models * plan_.num_rounds;
+    header_.position_bits = kMaxPositionBits;
+  }
+
+  void unit(UnitType type, const Bytes& payload) { write_(write_unit(type, payload)); }
+  void units(UnitType type, const SkinnedGofPayloads& payloads) {
+    unit(type, payloads.first);
+    for (const Bytes& slice : payloads.slices) unit(UnitType::kSlice, slice);
+  }
+
+  void gofs(std::span<const Triangle> triangles) {
+    const Topology topology = make_topology(header_.num_vertices, triangles);
+    if (plan_.kind == Kind::kClusters) {
+      for (std::uint32_t i = 0; i < plan_.num_rounds; ++i) {
+        ClusterGof gof = make_clusters(plan_.size, noise_);
+        gof.first_frame = next_frame();
+        unit(UnitType::kGof, write_cluster_gof(gof, header_, topology));
+      }
+      return;
+    }
+    const CodedMeshes meshes(topology, triangles, header_.profile_idc >= kProfileHigh);
+    const CodedMesh& mesh = meshes[Prediction::kLayers];
+    for (std::uint32_t i = 0; i < plan_.num_rounds; ++i) {
+      if (plan_.kind == Kind::kBones) {
+        SkinnedGof gof = make_bones(plan_.size, mesh, noise_);
+        gof.first_frame = next_frame();
+        units(UnitType::kGof, write_skinned_gof(gof, mesh, header_));
+      } else {
+        models_and_tracks(mesh);
+      }
+    }
+  }
+
+  void models_and_tracks(const CodedMesh& mesh) {
+    std::vector<std::shared_ptr<const SkinnedModel>> models;
+    for (std::uint32_t m = 0; m < plan_.num_models; ++m) {
+      models.push_back(std::make_shared<SkinnedModel>(make_model(plan_.size, mesh, noise_)));
+      units(UnitType::kModel, write_skinned_model(*models[m], m, mesh, header_));
+    }
+    for (std::uint32_t m = 0; m < plan_.num_models; ++m) {
+      SkinnedGof gof = make_tracks(plan_.size, *models[m], noise_);
+      gof.first_frame = next_frame();
+      gof.model = models[m];
+      gof.model_idx = m;
+      units(UnitType::kGof, write_tracks(gof, mesh, header_));
+    }
+  }
+
+  std::uint32_t next_frame() {
+    const std::uint32_t frame = num_frames_;
+    num_frames_ += plan_.size.frames;
+    return frame;
+  }
+
+  const Plan& plan_;
+  const std::function<void(const Bytes&)>& write_;
+  SequenceHeader header_;
+  Noise noise_;
+  std::uint32_t num_frames_ = 0;
+};
+
+}  // namespace
+
+void write_stream(const Plan& plan, const std::function<void(const Bytes&)>& write) {
+  StreamMaker(plan, write).make();
+}
+
+}  // namespace rlpc::worst_case
