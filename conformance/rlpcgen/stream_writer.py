@@ -344,13 +344,19 @@ class StreamWriter:
         """
         ns = self.ns
         bone_tracks, trajectory = ns["bone_tracks"], ns["trajectory"]
+        reconstructed = 0  # bones of this GOF
 
         def written_bone(b):
+            nonlocal reconstructed
             bone_tracks(b)
+            if b == 0:
+                reconstructed = 0
             if self.broken:
-                ns.update(BoneRotation=[], BoneAxes=[], BoneOrigin=[])
-                for earlier in range(b + 1):
-                    ns["ReconstructBone"](earlier)
+                if reconstructed == 0:
+                    ns.update(BoneRotation=[], BoneAxes=[], BoneOrigin=[])
+                for bone in range(reconstructed, b + 1):
+                    ns["ReconstructBone"](bone)
+                reconstructed = b + 1
 
         def written_trajectory():
             trajectory()
