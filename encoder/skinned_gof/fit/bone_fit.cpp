@@ -29,13 +29,6 @@ std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t
   return chosen;
 }
 
-// More frames of small meshes, which take no more time.
-std::uint32_t most_frames(const GofFrames& frames, const BoneFitOptions& options) {
-  const std::uint32_t vertices = std::min(frames.num_vertices, options.sample_vertices);
-  return std::clamp(kSamplePositions / vertices, options.sample_frames,
-                    kSmallMeshFrames * options.sample_frames);
-}
-
 std::vector<Vec3d> centres(const GofFrames& frames) {
   std::vector<Vec3d> result(frames.num_frames, Vec3d::Zero());
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
@@ -130,7 +123,7 @@ BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
     : frames_(frames),
       options_(options),
       centre_(centres(frames)),
-      chosen_(sample_frames(frames.num_frames, most_frames(frames, options))),
+      chosen_(sample_frames(frames.num_frames, options.sample_frames)),
       unsteady_(unsteadiness(frames)),
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
