@@ -11,9 +11,6 @@ inline constexpr std::uint32_t kSampleFrames = 24;
 // tuned: Bones are fitted to a sample of at most this many vertices. Fewer miss small parts of
 // the mesh; more take time in proportion.
 inline constexpr std::uint32_t kSampleVertices = 3000;
-// tuned (off: 1): With the fast preset, the sample has this fraction of the frames and of the
-// vertices. Its size decides the time of the fits.
-inline constexpr std::uint32_t kQuickPart = 2;
 // tuned: Vertices that stand for the whole mesh in estimates that are averages: costs of GOFs,
 // smoothness of motion, predictability of trajectories. More vertices hardly change an average.
 inline constexpr std::uint32_t kProbeVertices = 160;

@@ -18,6 +18,10 @@ constexpr std::uint32_t kSearchInfluences = 2;
 // tuned: Numbers of bones that are compared. Costs change little between neighbours of this
 // list, and every number takes time.
 constexpr std::array<std::uint32_t, 4> kFewBones{10, 20, 28, 36};
+// tuned: The number of bones that the fast preset fits.
+constexpr std::array<std::uint32_t, 1> kUsualBones{20};
+// tuned (off: 0): Rounds of exchanges with the fast preset (BoneFitOptions::kExchanges).
+constexpr int kFastExchanges = 1;
 // fixed: those of kFewBones, so that slow finds what medium finds, and numbers around them.
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
 
@@ -57,9 +61,7 @@ BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames)
 BoneSearch::Growth BoneSearch::start(std::uint32_t influences) const {
   BoneFitOptions options{.max_influences = influences};
   if (context_.settings.preset == Preset::kFast && context_.settings.main.bones == 0) {
-    options.sample_frames = kSampleFrames / kQuickPart;
-    options.sample_vertices = kSampleVertices / kQuickPart;
-    options.exchanges = 0;
+    options.exchanges = kFastExchanges;
   }
   Growth growth{influences, std::make_unique<BoneFit>(frames_, context_.triangles, options)};
   growth.bones.push_back({1, growth.fit->state(), growth.fit->spectrum(growth.fit->state())});
@@ -90,8 +92,11 @@ void BoneSearch::grow_all(double step) {
   start_all();
   if (growths_.front().bones.size() > 1) return;
   const bool all = context_.settings.preset == Preset::kSlow;
+  const bool fast = context_.settings.preset == Preset::kFast;
   const std::span<const std::uint32_t> counts =
-      all ? std::span<const std::uint32_t>(kManyBones) : kFewBones;
+      all    ? std::span<const std::uint32_t>(kManyBones)
+      : fast ? std::span<const std::uint32_t>(kUsualBones)
+             : kFewBones;
   std::vector<Growth*> growing;
   for (Growth& growth : growths_) growing.push_back(&growth);
   double least = translation_cost(step);
