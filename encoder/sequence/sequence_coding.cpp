@@ -79,7 +79,7 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
   const std::uint32_t n = header_.num_vertices;
   GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
-                   span.first, span.num_gofs};
+                   span.first, span.num_gofs, span.has_followers};
   std::vector<float> input(std::size_t{n} * 3);
   const double per_step = exact_exp2(-header_.grid.log2_step);
   double* out = frames.xyz.data();
@@ -100,6 +100,15 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
   if (is_last_resort) return last_resort_->make_coder(frames);
   if (kinds_.size() == 1) return kinds_.front()->make_coder(frames);
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
+}
+
+std::optional<EncodedGof> SequenceCoding::encode_with(const KeptModel& model,
+                                                      const GofFrames& frames, double step,
+                                                      double most) const {
+  for (const auto& kind : kinds_) {
+    if (auto encoded = kind->encode_with(model, frames, step, most)) return encoded;
+  }
+  return std::nullopt;
 }
 
 // Measures `some` frames of a span; `before`: the original of the frame before them, empty if

@@ -50,6 +50,7 @@ class SequenceEncoder {
   FrameSource& source_;
   const EncoderSettings& settings_;
   const Progress& progress_;
+  std::uint32_t num_threads_ = 1;
   std::optional<Threads> threads_;
   Extent extent_;
   std::vector<GofSpan> spans_;
@@ -71,7 +72,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
   const auto threads = check_memory(settings_, header, largest, kept, source_.memory_bytes());
   if (!threads) return threads.error();
-  threads_.emplace(*threads);
+  num_threads_ = *threads;
+  threads_.emplace(num_threads_);
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;
@@ -123,7 +125,7 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
 
 InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
-  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = keeps_analyses(header)});
+  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = keeps_analyses(header), .together = num_threads_});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
                             .header = header,

@@ -95,12 +95,16 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   auto best = search_steps(task, batch, 0);
-  if (!best || best->met || !batch.use_last_resort()) return best;
-  auto other = search_steps(task, batch, best->trials);
-  if (!other) return other;
-  best->trials = other->trials;
-  const bool closer = other->met || other->measured < best->measured;
-  return closer && fits_level(task, other->trial) ? std::move(other) : std::move(best);
+  for (const auto& change : {&GofBatch::use_own_models, &GofBatch::use_last_resort}) {
+    if (!best || best->met || !(batch.*change)()) continue;
+    auto other = search_steps(task, batch, best->trials);
+    if (!other) return other;
+    const std::uint32_t trials = other->trials;
+    const bool closer = other->met || other->measured < best->measured;
+    if (closer && fits_level(task, other->trial)) best = std::move(other);
+    best->trials = trials;
+  }
+  return best;
 }
 
 }  // namespace rlpc

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,20 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
 
 // The only GOF of a span, with vertices of its own.
 SkinnedGof merge_into_gof(CodedSpan coded);
+// Trajectories that a GOF of tracks has besides those of its skinned model.
+struct LocalGroup {
+  std::vector<Trajectory> trajectories;  // empty: none is worth its bits
+  std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
+};
+
+// Codes principal components as a local component group.
+//
+//   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
+LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            SkinnedSettings settings, double step);
+// Adds a local component group, unless it is empty, to a GOF of tracks.
+void add_local_group(LocalGroup group, SkinnedGof& gof);
+
 // Makes a GOF of a span a GOF of tracks.
 void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof);
 
