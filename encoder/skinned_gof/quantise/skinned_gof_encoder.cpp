@@ -94,21 +94,23 @@ double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count,
 }
 
 // Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
-// fraction_bits: of the model, or none if they are free; if values do not fit them, there are
-// no trajectories.
+// shared: the skinned model of a local component group, or null; if values do not fit its
+// fraction bits, there are no trajectories.
 CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
-                                    std::optional<int> fraction_bits, CodedSpan& coded) {
+                                    const ModelRecon* shared, CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
   SkinnedModel& model = coded.model;
+  std::optional<int> fraction_bits;
+  if (shared != nullptr) fraction_bits = model.fraction_bits;
   TemporalLimits limits{
       std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};
     const std::size_t count = temporal.size();
-    model.weights.num_adaptive_factors = 0;
-    if (model.prediction == Prediction::kLayers) {
+    if (shared == nullptr) model.weights.num_adaptive_factors = 0;
+    if (shared == nullptr && model.prediction == Prediction::kLayers) {
       model.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
@@ -118,7 +120,7 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
                         (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
     const SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal,
-                                                      cuts.group_end, settings.rounding, step);
+                                                      cuts.group_end, shared, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
@@ -166,18 +168,18 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
   SkinnedModel& model = coded.model;
   model.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
   const CodedTrajectories trajectories =
-      code_trajectories(mesh, analysis, settings, step, std::nullopt, coded);
+      code_trajectories(mesh, analysis, settings, step, nullptr, coded);
   cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, model);
   return coded;
 }
 
 LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
-                            SkinnedSettings settings, double step) {
+                            const ModelRecon& shared, SkinnedSettings settings,
+                            double step) {
   settings.component_groups = 1;
-  settings.num_adaptive_factors = 0;  // those of the skinned model come first
   CodedSpan coded{analysis.model, analysis.gofs};
   CodedTrajectories trajectories =
-      code_trajectories(mesh, analysis, settings, step, analysis.model.fraction_bits, coded);
+      code_trajectories(mesh, analysis, settings, step, &shared, coded);
   return {std::move(coded.gofs.front().trajectories), std::move(trajectories.residual)};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "encoder/skinned_gof/quantise/skinned_analysis.h"
 
@@ -44,8 +45,10 @@ struct LocalGroup {
 // Codes principal components as a local component group.
 //
 //   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
+//   shared    the skinned model
 LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
-                            SkinnedSettings settings, double step);
+                            const ModelRecon& shared, SkinnedSettings settings,
+                            double step);
 // Adds a local component group, unless it is empty, to a GOF of tracks.
 void add_local_group(LocalGroup group, SkinnedGof& gof);
 

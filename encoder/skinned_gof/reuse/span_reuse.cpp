@@ -215,7 +215,7 @@ LocalGroup SpanReuse::local_group(const GofSpan& span) const {
   analysis.rest = kept_.rest;
   analysis.pc = components_by_row(left.rows(), settings_.max_trajectories, least_energy());
   analysis.spatial_left = find_spatial_left(mesh_, analysis.pc);
-  return code_local_group(mesh_, analysis, settings_, step_);
+  return code_local_group(mesh_, analysis, *kept_.recon, settings_, step_);
 }
 
 EncodedGof SpanReuse::encode() {
@@ -241,8 +241,12 @@ EncodedGof SpanReuse::encode() {
 std::optional<EncodedGof> encode_with_model(const SkinnedContext& context,
                                             const KeptModel& kept, const GofFrames& frames,
                                             double step, double most) {
+  // tuned (off: 1e9): A span is encoded with an earlier model if its expected cost is at most
+  // this multiple of what it must not exceed. Expectations are too high: they leave out that
+  // weights of prediction adapt.
+  constexpr double kHopeful = 2.0;
   SpanReuse reuse(context, kept, frames, step);
-  if (std::isfinite(most) && reuse.expected_cost() >= most) return std::nullopt;
+  if (std::isfinite(most) && reuse.expected_cost() > kHopeful * most) return std::nullopt;
   EncodedGof encoded = reuse.encode();
   if (std::isfinite(most) && lagrangian_cost(encoded, frames, step) >= most) {
     return std::nullopt;
