@@ -49,11 +49,20 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  // Each thread has a GOF of its own, or a candidate for one.
-  const std::uint64_t of_thread = header.num_vertices * kBytesOfPosition * longest_gof;
+  // A skinned model that later spans may use: of a vertex, its rest position, influences, and
+  // two sets of weights of prediction; and factors of two or four bytes, of at most three
+  // trajectories for each frame.
+  constexpr std::uint64_t kOfModel = 400;        // fixed: memory
+  constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
+  const bool has_models = header.profile_idc >= kProfileHigh && longest_gof < header.num_frames;
+  const std::uint64_t of_model =
+      has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
+  // Each thread has a GOF of its own, or a candidate for one; another model is in force.
+  const std::uint64_t of_thread =
+      header.num_vertices * kBytesOfPosition * longest_gof + of_model;
   const std::uint64_t of_vertex = kOfVertex + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle + of_thread;
+                               header.num_triangles * kOfTriangle + of_thread + of_model;
   if (needed <= settings.max_memory_bytes) {
     const std::uint64_t others = (settings.max_memory_bytes - needed) / of_thread;
     const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
