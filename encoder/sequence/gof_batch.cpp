@@ -58,12 +58,14 @@ bool GofBatch::use_last_resort() {
   return true;
 }
 
+bool GofBatch::uses_earlier_models() const {
+  return std::any_of(gofs_.begin(), gofs_.end(),
+                     [](const Gof& gof) { return gof.vertices == Vertices::kOfEarlier; });
+}
+
 bool GofBatch::use_own_models() {
-  bool changed = false;
-  for (Gof& gof : gofs_) {
-    changed = changed || gof.vertices == Vertices::kOfEarlier;
-    gof.vertices = Vertices::kOwn;
-  }
+  const bool changed = uses_earlier_models();
+  for (Gof& gof : gofs_) gof.vertices = Vertices::kOwn;
   return changed;
 }
 

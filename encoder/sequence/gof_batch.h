@@ -60,6 +60,8 @@ class GofBatch {
   // From now on, encodes all GOFs with the kind reserved for targets that the others miss.
   // False: there is no such kind.
   bool use_last_resort();
+  // Whether some spans use skinned models of earlier ones.
+  bool uses_earlier_models() const;
   // From now on, each span has a skinned model of its own. False: so it was before.
   bool use_own_models();
   // Analyses all GOFs if analyses are kept. Errors: those of the source.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -48,8 +50,12 @@ class SpanReuse {
  private:
   void code_bones();
   void code_trajectories();
-  void code_trajectory(std::size_t l, std::span<const double> wanted, SpanTracks& tracks,
-                       std::span<double> decoded);
+  struct CodedTrajectory {
+    SpanTracks::Coded tracks;
+    std::vector<double> decoded;  // [3][num_frames]
+  };
+  std::optional<CodedTrajectory> code_trajectory(std::size_t l, std::span<const double> wanted,
+                                                 const SpanTracks& tracks) const;
   int eighths_of(std::size_t l, double largest) const;
   LocalGroup local_group(const GofSpan& span) const;
   // What is left in frames of the span; temporal values as decoded.
@@ -143,63 +149,58 @@ int SpanReuse::eighths_of(std::size_t l, double largest) const {
       round_to_int(8.0 * det_log2(std::max(wanted, largest / kMostTemporal))));
 }
 
-// Codes a trajectory of the model. wanted, decoded: [3][num_frames]
-void SpanReuse::code_trajectory(std::size_t l, std::span<const double> wanted,
-                                SpanTracks& tracks, std::span<double> decoded) {
-  double largest = 0.0;
-  for (const double x : wanted) largest = std::max(largest, std::abs(x));
+// Codes a trajectory of the model. wanted: [3][num_frames]. None: its values do not fit.
+std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
+    std::size_t l, std::span<const double> wanted, const SpanTracks& tracks) const {
+  const double largest = std::abs(*std::max_element(
+      wanted.begin(), wanted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  if (!(factors_.energy(l) > 0.0 && largest > 0.0)) return std::nullopt;
   const int spatial_bits = model_.trajectories[l].spatial_bits;
   const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
-  const int from_eighths = 8 * (4 - shift + model_.fraction_bits);  // to scale_idx
-  int scale_idx = 0;
-  bool fits = factors_.energy(l) > 0.0 && largest > 0.0;
-  if (fits) {
-    scale_idx = std::max(eighths_of(l, largest) + from_eighths, 0);
-    fits = scale_idx <= kMaxScaleIdx;
+  const int of_scale = 8 * (4 - shift + model_.fraction_bits);  // scale_idx minus eighths
+  const int scale_idx = std::max(eighths_of(l, largest) + of_scale, 0);
+  if (scale_idx > kMaxScaleIdx) return std::nullopt;
+  const double unit = power_of_eighths(scale_idx - of_scale);
+  const std::size_t num_frames = frames_.num_frames;
+  std::vector<std::array<double, 3>> values(num_frames);
+  for (std::size_t f = 0; f < num_frames; ++f) {
+    for (std::size_t c = 0; c < 3; ++c) values[f][c] = wanted[c * num_frames + f];
   }
-  SpanTracks::Coded coded;
-  coded.of_gof.resize(gofs_.size());
-  for (Trajectory& t : coded.of_gof) t.trajectory_flag = false;
-  std::vector<Vec3i> indices;
-  if (fits) {
-    const std::size_t num_frames = frames_.num_frames;
-    const double unit = power_of_eighths(scale_idx - from_eighths);
-    std::vector<std::array<double, 3>> values(num_frames);
-    for (std::size_t f = 0; f < num_frames; ++f) {
-      for (std::size_t c = 0; c < 3; ++c) values[f][c] = wanted[c * num_frames + f];
-    }
-    SpanTracks::Coded found = tracks.code(values, unit);
-    indices = tracks.indices(found);
-    std::size_t first = 0;
-    for (std::size_t g = 0; g < gofs_.size(); ++g) {
-      const auto of_gof = std::span(indices).subspan(first, gofs_[g].num_frames);
-      first += of_gof.size();
-      Trajectory& t = found.of_gof[g];
-      if (t.trajectory_flag) fits = fits && set_scale(scale_idx, of_gof, t);
-    }
-    if (fits) {
-      coded = std::move(found);
-      tracks.follow(coded);
-      for (std::size_t f = 0; f < num_frames; ++f) {
-        for (std::size_t c = 0; c < 3; ++c) decoded[c * num_frames + f] = unit * indices[f][c];
-      }
-    }
-  }
+  CodedTrajectory found{tracks.code(values, unit), std::vector<double>(3 * num_frames)};
+  const std::vector<Vec3i> indices = tracks.indices(found.tracks);
+  std::size_t first = 0;
   for (std::size_t g = 0; g < gofs_.size(); ++g) {
-    coded.of_gof[g].spatial_bits = spatial_bits;
-    gofs_[g].trajectories.push_back(std::move(coded.of_gof[g]));
+    const auto of_gof = std::span(indices).subspan(first, gofs_[g].num_frames);
+    first += of_gof.size();
+    Trajectory& t = found.tracks.of_gof[g];
+    t.spatial_bits = spatial_bits;
+    if (t.trajectory_flag && !set_scale(scale_idx, of_gof, t)) return std::nullopt;
   }
+  for (std::size_t f = 0; f < num_frames; ++f) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      found.decoded[c * num_frames + f] = unit * indices[f][c];
+    }
+  }
+  return found;
 }
 
 void SpanReuse::code_trajectories() {
   const GofSpan all{0, frames_.num_frames};
   const std::vector<double> wanted = factors_.fit(remainder(all, false).rows());
-  temporal_.assign(wanted.size(), 0.0);
   SpanTracks tracks(gofs_, settings_, true);
   const std::size_t width = 3 * std::size_t{frames_.num_frames};
+  temporal_.assign(wanted.size(), 0.0);
   for (std::size_t l = 0; l < factors_.count(); ++l) {
-    code_trajectory(l, std::span(wanted).subspan(l * width, width), tracks,
-                    std::span(temporal_).subspan(l * width, width));
+    auto coded = code_trajectory(l, std::span(wanted).subspan(l * width, width), tracks);
+    if (coded) {
+      tracks.follow(coded->tracks);
+      std::copy(coded->decoded.begin(), coded->decoded.end(), &temporal_[l * width]);
+    }
+    for (std::size_t g = 0; g < gofs_.size(); ++g) {
+      Trajectory& t = gofs_[g].trajectories.emplace_back();
+      t.trajectory_flag = false;
+      if (coded) t = std::move(coded->tracks.of_gof[g]);
+    }
   }
 }
 
@@ -209,9 +210,9 @@ LocalGroup SpanReuse::local_group(const GofSpan& span) const {
   SkinnedAnalysis analysis;
   analysis.model = model_;
   analysis.model.trajectories.clear();
-  analysis.gofs = gofs_of_span(frames_, settings_.track_levels);
-  analysis.gofs = {analysis.gofs[0]};
+  analysis.gofs.resize(1);
   analysis.gofs[0].num_frames = span.count;
+  analysis.gofs[0].track_levels = settings_.track_levels;
   analysis.rest = kept_.rest;
   analysis.pc = components_by_row(left.rows(), settings_.max_trajectories, least_energy());
   analysis.spatial_left = find_spatial_left(mesh_, analysis.pc);
