@@ -20,6 +20,9 @@ namespace {
 // Per position of the span being coded. Measured with random motion: 90 to 150. Real motion
 // needs 40.
 constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
+// Of a skinned model that later spans may use: factors of two or four bytes, of at most three
+// trajectories for each frame.
+constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
 
 }  // namespace
 
@@ -33,11 +36,16 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
   constexpr std::uint64_t kPart = 2;  // fixed: a span takes at most half of the limit
   const std::uint32_t longest = longest_gof(settings);
   if (settings.profile != Profile::kHigh) return longest;
-  const std::uint64_t positions =
-      std::min(kMostPositions, settings.max_memory_bytes / (kPart * kBytesOfPosition));
-  const std::uint64_t frames =
-      std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames);
-  return std::max(longest, static_cast<std::uint32_t>(frames));
+  const auto frames = [&](std::uint64_t bytes_of_position) {
+    const std::uint64_t positions =
+        std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
+    return std::max<std::uint64_t>(
+        longest, std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames));
+  };
+  const std::uint64_t alone = frames(kBytesOfPosition);
+  // With several spans, there are two skinned models besides: one in force and a new one.
+  return static_cast<std::uint32_t>(
+      header.num_frames <= alone ? alone : frames(kBytesOfPosition + 2 * kFactorsOfModel));
 }
 
 InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
@@ -49,11 +57,8 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  // A skinned model that later spans may use: of a vertex, its rest position, influences, and
-  // two sets of weights of prediction; and factors of two or four bytes, of at most three
-  // trajectories for each frame.
-  constexpr std::uint64_t kOfModel = 400;        // fixed: memory
-  constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
+  // The rest of such a model: rest position, influences, two sets of weights of prediction.
+  constexpr std::uint64_t kOfModel = 400;  // fixed: memory
   const bool has_models = header.profile_idc >= kProfileHigh && longest_gof < header.num_frames;
   const std::uint64_t of_model =
       has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
