@@ -56,8 +56,7 @@ std::vector<std::int32_t> SpatialFactors::tile(std::size_t tile) const {
     for (std::size_t p = 0; p < limbs.places.size(); ++p) {
       const std::int16_t* const pair = &limbs.tiles[tile][2 * kTileValues * (p / 2)];
       for (std::size_t i = 0; i < kTileValues; ++i) {
-        factors[i * num_components_ + limbs.places[p].component] +=
-            unit * pair[2 * i + p % 2];
+        factors[i * num_components_ + limbs.places[p].component] += unit * pair[2 * i + p % 2];
       }
     }
   }

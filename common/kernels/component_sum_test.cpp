@@ -126,7 +126,6 @@ TEST(SpatialFactors, TilesHaveTheNormalisedFactors) {
   }
 }
 
-
 TEST(ComponentSum, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   const std::vector<Widths> cases{
       {1, 16, 1, 16},    // all narrow

@@ -134,7 +134,8 @@ TEST(SpanModels, RepeatedMotionHasOneModel) {
   EXPECT_EQ(count(whole, UnitType::kModel), 1U);
   EXPECT_EQ(count(whole, UnitType::kGof), 6U);
   // Much less than a model for each span.
-  EXPECT_LT(whole.size(), 2.2 * static_cast<double>(encode_frames(first, settings_of(32), 64).size()));
+  EXPECT_LT(whole.size(),
+            2.2 * static_cast<double>(encode_frames(first, settings_of(32), 64).size()));
   EXPECT_EQ(decode(whole).size(), 192U);
 }
 

@@ -45,7 +45,7 @@ struct EncodedGof {
   // GOF unit, with its slices.
   std::vector<Unit> units;
   DecodeFrame frame;
-  DecodeCut cut;                      // empty: there is one temporal layer
+  DecodeCut cut;  // empty: there is one temporal layer
   // The skinned model among the units, if later spans may use it; otherwise null.
   std::shared_ptr<const KeptModel> model;
   std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest

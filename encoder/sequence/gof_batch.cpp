@@ -121,10 +121,10 @@ InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof&
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
-  return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
-                      encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
-                      encoded.model, encoded.cut},
-                     std::move(metrics)};
+  return MeasuredGof{
+      {std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
+       options_.keep_decoded ? encoded.frame : nullptr, encoded.model, encoded.cut},
+      std::move(metrics)};
 }
 
 InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,

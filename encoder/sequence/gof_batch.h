@@ -27,7 +27,7 @@ struct CodedGof {
   DecodeFrame frame;             // empty unless Options::keep_decoded
   // The skinned model that it brings; null: none, or Options::keep_decoded is not set.
   std::shared_ptr<const KeptModel> model;
-  DecodeCut cut;                 // of GOFs with one temporal layer: empty
+  DecodeCut cut;  // of GOFs with one temporal layer: empty
 };
 
 // All GOFs of a batch, encoded at one step.

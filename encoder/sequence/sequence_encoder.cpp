@@ -141,7 +141,8 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
 
 InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
-  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = keeps_analyses_, .together = num_threads_});
+  GofBatch batch(*coding_, source_, spans_,
+                 {.keep_analyses = keeps_analyses_, .together = num_threads_});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
                             .header = header,

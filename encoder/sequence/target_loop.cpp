@@ -68,7 +68,8 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
     // Bones, rest positions and factors of earlier models do not follow the step.
-    const bool is_stuck = !search.met() && batch.uses_earlier_models() && trial->gof_bytes == bytes;
+    const bool is_stuck =
+        !search.met() && batch.uses_earlier_models() && trial->gof_bytes == bytes;
     bytes = trial->gof_bytes;
     if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
     if (is_stuck) break;

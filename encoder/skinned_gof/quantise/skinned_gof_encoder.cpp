@@ -119,14 +119,14 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
                         (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
-    const SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal,
-                                                      cuts.group_end, shared, settings.rounding, step);
+    const SpatialValues spatial = code_spatial_values(
+        mesh, model, analysis, temporal, cuts.group_end, shared, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
     }
-    const std::optional<int> lacking = set_scales(spatial.largest, coded.gofs, fraction_bits,
-                                                  temporal, model.fraction_bits);
+    const std::optional<int> lacking =
+        set_scales(spatial.largest, coded.gofs, fraction_bits, temporal, model.fraction_bits);
     if (!lacking) return {{}, {}};
     if (*lacking == 0) {
       model.trajectories.resize(count);
@@ -174,8 +174,7 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
 }
 
 LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
-                            const ModelRecon& shared, SkinnedSettings settings,
-                            double step) {
+                            const ModelRecon& shared, SkinnedSettings settings, double step) {
   settings.component_groups = 1;
   CodedSpan coded{analysis.model, analysis.gofs};
   CodedTrajectories trajectories =

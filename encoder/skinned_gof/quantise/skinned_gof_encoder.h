@@ -47,8 +47,7 @@ struct LocalGroup {
 //   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
 //   shared    the skinned model
 LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
-                            const ModelRecon& shared, SkinnedSettings settings,
-                            double step);
+                            const ModelRecon& shared, SkinnedSettings settings, double step);
 // Adds a local component group, unless it is empty, to a GOF of tracks.
 void add_local_group(LocalGroup group, SkinnedGof& gof);
 

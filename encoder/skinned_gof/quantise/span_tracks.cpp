@@ -59,8 +59,7 @@ std::vector<Vec3i> SpanTracks::indices(const Coded& coded) const {
   indices.reserve(num_frames_);
   for (std::size_t g = 0; g < gofs_.size(); ++g) {
     if (coded.of_gof[g].trajectory_flag) {
-      const std::vector<Vec3i> part =
-          recon_trajectory(coded.of_gof[g], settings_.track_levels);
+      const std::vector<Vec3i> part = recon_trajectory(coded.of_gof[g], settings_.track_levels);
       indices.insert(indices.end(), part.begin(), part.end());
     } else {
       indices.resize(indices.size() + gofs_[g].num_frames);

@@ -85,8 +85,9 @@ std::optional<AdaptiveWeights> start_weights(const CodedMesh& mesh, const Skinne
   }
   if (model.weights.num_adaptive_factors == 0) return std::nullopt;
   const auto& rest = analysis.rest;
-  return AdaptiveWeights(mesh, *weights, model.weights,
-                         std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
+  return AdaptiveWeights(
+      mesh, *weights, model.weights,
+      std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
 }
 
 // Rounds the residuals of vertices, trajectory by trajectory, as the settings require.

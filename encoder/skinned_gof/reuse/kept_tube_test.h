@@ -9,7 +9,7 @@
 
 #include "common/testing/tube.h"
 #include "encoder/gof/lagrangian.h"
-#include "encoder/skinned_gof/reuse/kept_model.h"
+#include "encoder/skinned_gof/quantise/kept_model.h"
 #include "encoder/skinned_gof/skinned_gof_coder.h"
 
 namespace rlpc {
@@ -57,9 +57,8 @@ class KeptTube {
       for (std::uint32_t v = 0; v < kVertices; ++v) {
         const double angle = 6.283185307 * (v % kSides) / kSides;
         const double radius = 2500.0 + 300.0 * std::sin(1.7 * v);
-        const Point p = move({600.0 * (v / kSides), radius * std::cos(angle),
-                              radius * std::sin(angle)},
-                             f);
+        const Point p =
+            move({600.0 * (v / kSides), radius * std::cos(angle), radius * std::sin(angle)}, f);
         list.xyz.insert(list.xyz.end(), p.begin(), p.end());
       }
     }

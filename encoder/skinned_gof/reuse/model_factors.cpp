@@ -104,9 +104,8 @@ void ModelRemainder::write(std::size_t first, std::span<double> rows) {
     const auto v = static_cast<std::uint32_t>(first + i);
     Point rest;
     for (std::size_t c = 0; c < 3; ++c) rest[c] = kept_.rest[c][v] / kPointScale;
-    write_displacement(frames_, chosen_, v,
-                       motions_.of(model.influences[v], model.weight_bits), rest,
-                       &rows[i * width()]);
+    write_displacement(frames_, chosen_, v, motions_.of(model.influences[v], model.weight_bits),
+                       rest, &rows[i * width()]);
   }
   if (negative_.empty()) return;
   add_matrix_product(factors_.of(first, size), factors_.count(), negative_, width(), rows);

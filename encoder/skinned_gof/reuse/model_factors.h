@@ -10,7 +10,7 @@
 #include "encoder/math/principal_components.h"
 #include "encoder/math/symmetric_system.h"
 #include "encoder/skinned_gof/quantise/mean_motion.h"
-#include "encoder/skinned_gof/reuse/kept_model.h"
+#include "encoder/skinned_gof/quantise/kept_model.h"
 
 namespace rlpc {
 

@@ -21,9 +21,7 @@ Vec3d centre_of(const GofFrames& frames, std::uint32_t frame) {
   return sum / frames.num_vertices;
 }
 
-Vec3d point_of(const Vec3i& pivot) {
-  return Vec3d(pivot[0], pivot[1], pivot[2]) / kPointScale;
-}
+Vec3d point_of(const Vec3i& pivot) { return Vec3d(pivot[0], pivot[1], pivot[2]) / kPointScale; }
 
 // The pose of a bone that moves like this.
 WantedPose pose_of(const Motion& motion, const Vec3d& pivot, const WantedPose* before) {
@@ -83,8 +81,7 @@ PoseFit::Motions PoseFit::rigid_motions(const GofFrames& frames, std::uint32_t f
   for (std::size_t b = 0; b < n; ++b) {
     const std::int32_t parent = model_.bones[b].parent;
     const bool as_parent = counts[b] < kDetermined && parent >= 0;
-    motions.push_back(as_parent ? motions[static_cast<std::size_t>(parent)]
-                                : fits[b].motion());
+    motions.push_back(as_parent ? motions[static_cast<std::size_t>(parent)] : fits[b].motion());
   }
   return motions;
 }
@@ -97,8 +94,8 @@ void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
     const Vec3d pivot = point_of(bone.pivot) - rest_centre_;
     const Motion* parent =
         bone.parent < 0 ? nullptr : &motions[static_cast<std::size_t>(bone.parent)];
-    const Vec3d carried = parent != nullptr ? moved(*parent, pivot)
-                                            : Vec3d(pivot + rest_centre_ - centre);
+    const Vec3d carried =
+        parent != nullptr ? moved(*parent, pivot) : Vec3d(pivot + rest_centre_ - centre);
     Motion rest = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all other bones
     for (const std::size_t c : moments_.sharing(b)) {
       if (c != b) rest -= motions[c] * moments_.block(c, b);
@@ -123,8 +120,8 @@ void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
       turn = motions[b].leftCols<3>();
     }
     const bool is_shifted = bone.origin_flag && mass > 0.0;
-    const Vec3d shift = is_shifted ? Vec3d((rest.col(3) - turn * sum) / mass)
-                                   : Vec3d(carried - turn * pivot);
+    const Vec3d shift =
+        is_shifted ? Vec3d((rest.col(3) - turn * sum) / mass) : Vec3d(carried - turn * pivot);
     motions[b].leftCols<3>() = turn;
     motions[b].col(3) = shift;
   }

@@ -23,7 +23,8 @@ struct Arm {
     model.bones[1].parent = 0;
     model.bones[1].pivot = {16 * 3000, 0, 0};
     for (std::uint32_t v = 0; v < kVertices; ++v) {
-      const std::array<double, 3> p{100.0 * v, 500.0 * std::sin(1.1 * v), 400.0 * std::cos(2.3 * v)};
+      const std::array<double, 3> p{100.0 * v, 500.0 * std::sin(1.1 * v),
+                                    400.0 * std::cos(2.3 * v)};
       for (std::size_t c = 0; c < 3; ++c) {
         rest[c].push_back(static_cast<std::int32_t>(std::lround(16.0 * p[c])));
       }
@@ -83,7 +84,8 @@ void expect_near(const std::vector<std::vector<WantedPose>>& found,
     ASSERT_EQ(found[b].size(), wanted[b].size());
     for (std::size_t f = 0; f < wanted[b].size(); ++f) {
       double same = 0.0;
-      for (std::size_t k = 0; k < 4; ++k) same += found[b][f].rotation[k] * wanted[b][f].rotation[k];
+      for (std::size_t k = 0; k < 4; ++k)
+        same += found[b][f].rotation[k] * wanted[b][f].rotation[k];
       EXPECT_NEAR(std::abs(same), 1.0, 1e-4) << b << ' ' << f;
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(found[b][f].origin[c], wanted[b][f].origin[c], tolerance) << b << ' ' << f;
@@ -101,7 +103,8 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
   expect_near(found, wanted, 16.0);
   // A single frame starts afresh.
   const std::uint32_t last = 19;
-  EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1][0].origin[0], wanted[1][19].origin[0], 16.0);
+  EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1][0].origin[0], wanted[1][19].origin[0],
+              16.0);
 }
 
 TEST(PoseFit, QuaternionsKeepTheirSign) {

@@ -100,7 +100,8 @@ double SpanReuse::expected_cost() const {
   left.set_temporal(factors_.fit(left.rows()));
   const double frames_of_gof = static_cast<double>(frames_.num_frames) / frames_.num_gofs;
   const double part = frames_of_gof / count;
-  const ComponentsByRow pc = components_by_row(left.rows(), left.width(), least_energy() / part);
+  const ComponentsByRow pc =
+      components_by_row(left.rows(), left.width(), least_energy() / part);
   const std::vector<float> spatial_left = find_spatial_left(mesh_, pc);
   const std::size_t width = pc.temporal.size();
   double cost = part * pc.total_energy;  // of a GOF
@@ -152,8 +153,9 @@ int SpanReuse::eighths_of(std::size_t l, double largest) const {
 // Codes a trajectory of the model. wanted: [3][num_frames]. None: its values do not fit.
 std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
     std::size_t l, std::span<const double> wanted, const SpanTracks& tracks) const {
-  const double largest = std::abs(*std::max_element(
-      wanted.begin(), wanted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  const double largest =
+      std::abs(*std::max_element(wanted.begin(), wanted.end(),
+                                 [](double a, double b) { return std::abs(a) < std::abs(b); }));
   if (!(factors_.energy(l) > 0.0 && largest > 0.0)) return std::nullopt;
   const int spatial_bits = model_.trajectories[l].spatial_bits;
   const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;

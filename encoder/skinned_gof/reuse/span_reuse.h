@@ -5,7 +5,7 @@
 
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
-#include "encoder/skinned_gof/reuse/kept_model.h"
+#include "encoder/skinned_gof/quantise/kept_model.h"
 #include "encoder/skinned_gof/search/skinned_context.h"
 
 namespace rlpc {

@@ -60,7 +60,8 @@ SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames
 }
 
 SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const {
-  const EncodedGof encoded = encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
+  const EncodedGof encoded =
+      encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
   return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
           error, encoded.components};

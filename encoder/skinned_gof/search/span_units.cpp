@@ -47,11 +47,10 @@ void count(const SkinnedModel& model, std::uint64_t num_vertices,
   for (const SkinnedGof& gof : gofs) {
     const std::uint64_t all = std::max<std::uint64_t>(shared, gof.trajectories.size());
     encoded.components += static_cast<std::uint32_t>(all - shared);
-    encoded.max_components =
-        std::max(encoded.max_components, static_cast<std::uint32_t>(all));
-    encoded.num_factors = std::max(
-        encoded.num_factors,
-        (kRestFactors + all) * num_vertices + (6 * num_bones + 3 * all) * gof.num_frames);
+    encoded.max_components = std::max(encoded.max_components, static_cast<std::uint32_t>(all));
+    encoded.num_factors =
+        std::max(encoded.num_factors, (kRestFactors + all) * num_vertices +
+                                          (6 * num_bones + 3 * all) * gof.num_frames);
   }
 }
 
@@ -69,8 +68,7 @@ EncodedGof SpanUnits::alone(CodedSpan coded) const {
           std::make_shared<SkinnedRecon>(mesh, without_layers(*gof, layers), position_bits));
     };
   }
-  encoded.frame =
-      frames_of(std::make_shared<SkinnedRecon>(mesh_, *gof, header_.position_bits));
+  encoded.frame = frames_of(std::make_shared<SkinnedRecon>(mesh_, *gof, header_.position_bits));
   return encoded;
 }
 

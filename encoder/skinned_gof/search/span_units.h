@@ -11,7 +11,7 @@
 #include "common/syntax/sequence_header.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
-#include "encoder/skinned_gof/reuse/kept_model.h"
+#include "encoder/skinned_gof/quantise/kept_model.h"
 
 namespace rlpc {
 
