@@ -12,7 +12,6 @@ struct GofSpan {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t num_gofs = 1;  // GOFs of about equal length that it is divided into
-  bool has_followers = false;  // later spans may use its skinned model
 };
 
 // `num_spans` spans whose lengths differ by at most one frame.

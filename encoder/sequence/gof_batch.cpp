@@ -37,7 +37,7 @@ GofBatch::GofBatch(const SequenceCoding& coding, FrameSource& source,
     Gof& gof = gofs_[g];
     gof.span = spans[g];
     if (!coding.has_models()) continue;
-    gof.span.has_followers = options.has_followers || g + 1 < spans.size();
+    gof.has_followers = options.has_followers || g + 1 < spans.size();
     if (g > 0 || options.model) gof.vertices = Vertices::kUndecided;
   }
 }
@@ -76,6 +76,7 @@ std::optional<InputError> GofBatch::read(Gof& gof) {
   if (!frames) return frames.error();
   gof.frames = std::move(*frames);
   gof.frames.first_frame += options_.first_frame;
+  gof.frames.has_followers = gof.has_followers;
   return std::nullopt;
 }
 

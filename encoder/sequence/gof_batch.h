@@ -80,7 +80,8 @@ class GofBatch {
 
   struct Gof {
     GofSpan span{};
-    GofFrames frames;  // empty while they are not needed
+    bool has_followers = false;  // later spans may use its skinned model
+    GofFrames frames;            // empty while they are not needed
     std::unique_ptr<GofCoder> coder;
     Vertices vertices = Vertices::kOwn;
   };

@@ -92,9 +92,8 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
 InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
                                                    const GofSpan& span) const {
   const std::uint32_t n = header_.num_vertices;
-  GofFrames frames{
-      n,          span.count,    std::vector<double>(std::size_t{n} * span.count * 3),
-      span.first, span.num_gofs, span.has_followers};
+  GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
+                   span.first, span.num_gofs};
   std::vector<float> input(std::size_t{n} * 3);
   const double per_step = exact_exp2(-header_.grid.log2_step);
   double* out = frames.xyz.data();
