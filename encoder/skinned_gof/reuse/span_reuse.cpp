@@ -84,8 +84,8 @@ double SpanReuse::expected_cost() const {
   const std::uint32_t count = std::min(kFrames, frames_.num_frames);
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < count; ++i) {
-    chosen.push_back(static_cast<std::uint32_t>((2 * std::uint64_t{i} + 1) *
-                                                frames_.num_frames / (2 * count)));
+    chosen.push_back(static_cast<std::uint32_t>(
+        (2 * std::uint64_t{i} + 1) * frames_.num_frames / (2 * std::uint64_t{count})));
   }
   std::vector<std::vector<WantedPose>> poses(model_.bones.size());
   for (const std::uint32_t f : chosen) {
