@@ -119,8 +119,8 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
                         (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
-    const SpatialValues spatial = code_spatial_values(
-        mesh, model, analysis, temporal, cuts.group_end, shared, settings.rounding, step);
+    SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal, cuts.group_end,
+                                                shared, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
