@@ -48,6 +48,21 @@ void SpatialFactors::add(std::span<const std::int32_t> spatial, int spatial_bits
   ++num_components_;
 }
 
+std::vector<std::int32_t> SpatialFactors::tile(std::size_t tile) const {
+  std::vector<std::int32_t> factors(kTileValues * num_components_);
+  for (std::size_t list = 0; list < limbs_.size(); ++list) {
+    const std::int32_t unit = list == 0 ? 1 : 1 << kLowLimbBits;
+    const Limbs& limbs = limbs_[list];
+    for (std::size_t p = 0; p < limbs.places.size(); ++p) {
+      const std::int16_t* const pair = &limbs.tiles[tile][2 * kTileValues * (p / 2)];
+      for (std::size_t i = 0; i < kTileValues; ++i) {
+        factors[i * num_components_ + limbs.places[p].component] += unit * pair[2 * i + p % 2];
+      }
+    }
+  }
+  return factors;
+}
+
 // Makes the segments of the products of one list of spatial limbs and one limb of the temporal
 // factors, the low or only one (0), or the high one (1).
 class ComponentSum::SegmentMaker {

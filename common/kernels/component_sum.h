@@ -55,6 +55,10 @@ class SpatialFactors {
   // (at most 24); value i is spatial[i * stride].
   void add(std::span<const std::int32_t> spatial, int spatial_bits, std::size_t stride = 1);
 
+  // The factors of the values of a tile, normalised: [kTileValues][num_components]; 0 where
+  // there are fewer values.
+  std::vector<std::int32_t> tile(std::size_t tile) const;
+
   std::size_t num_values() const { return num_values_; }
   std::size_t num_components() const { return num_components_; }
   std::size_t num_tiles() const { return (num_values_ + kTileValues - 1) / kTileValues; }

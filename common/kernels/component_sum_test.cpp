@@ -99,6 +99,33 @@ std::vector<Factor> random_factors(std::mt19937& random, const Widths& w, std::s
   return factors;
 }
 
+// Narrow factors, a lone limb, and two limbs; over the edge of a tile.
+TEST(SpatialFactors, TilesHaveTheNormalisedFactors) {
+  constexpr std::size_t kValues = kTileValues + 3;
+  const std::vector<int> bits{5, 16, 13, 24};
+  SpatialFactors factors(kValues);
+  const auto value = [&](std::size_t component, std::size_t i) {
+    const auto limit = std::int32_t{1} << (bits[component] - 1);
+    return static_cast<std::int32_t>((i * 7919 + component) % (2 * limit)) - limit;
+  };
+  for (std::size_t k = 0; k < bits.size(); ++k) {
+    std::vector<std::int32_t> spatial;
+    for (std::size_t i = 0; i < kValues; ++i) spatial.push_back(value(k, i));
+    factors.add(spatial, bits[k]);
+  }
+  for (std::size_t t = 0; t < factors.num_tiles(); ++t) {
+    const std::vector<std::int32_t> tile = factors.tile(t);
+    ASSERT_EQ(tile.size(), kTileValues * bits.size());
+    for (std::size_t i = 0; i < kTileValues; ++i) {
+      const std::size_t v = t * kTileValues + i;
+      for (std::size_t k = 0; k < bits.size(); ++k) {
+        const int scale = 1 << (spatial_factor_bits(bits[k]) - bits[k]);
+        EXPECT_EQ(tile[i * bits.size() + k], v < kValues ? scale * value(k, v) : 0);
+      }
+    }
+  }
+}
+
 TEST(ComponentSum, SumsNarrowWideAndMixedComponentsLikeThePlainTwin) {
   const std::vector<Widths> cases{
       {1, 16, 1, 16},    // all narrow

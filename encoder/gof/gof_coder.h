@@ -31,6 +31,9 @@ inline constexpr double kDraftServes = 3.0;
 // The model_idx of all skinned models: each replaces the one before.
 inline constexpr std::uint32_t kModelIdx = 0;  // fixed: any would do
 
+// A skinned model as it was coded, with all that later spans need to use it.
+struct KeptModel;
+
 // One encoding of a span.
 struct EncodedGof {
   struct Unit {
@@ -42,7 +45,9 @@ struct EncodedGof {
   // GOF unit, with its slices.
   std::vector<Unit> units;
   DecodeFrame frame;
-  DecodeCut cut;                      // empty: there is one temporal layer
+  DecodeCut cut;  // empty: there is one temporal layer
+  // The skinned model among the units, if later spans may use it; otherwise null.
+  std::shared_ptr<const KeptModel> model;
   std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
   std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
   std::uint32_t clusters = 0;         // clusters of all GOFs, or bones

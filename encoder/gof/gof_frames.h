@@ -20,6 +20,7 @@ struct GofFrames {
   std::vector<double> xyz;        // [num_frames][num_vertices][3], decoded vertex order
   std::uint32_t first_frame = 0;  // in the sequence
   std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
+  bool has_followers = false;     // later spans may use the skinned model of this one
 
   // The GOFs, with frames counted from the start of the span.
   std::vector<GofSpan> gofs() const { return equal_spans(num_frames, num_gofs); }

@@ -127,6 +127,7 @@ class FrameEncoder::Impl {
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;  // from the first span on
   std::optional<SpanBuffer> buffer_;
+  std::shared_ptr<const KeptModel> model_;  // in force after the last span; null: none
   std::uint32_t num_added_ = 0;
   std::uint32_t longest_gof_ = 0;
   std::uint32_t num_threads_ = 1;
@@ -244,6 +245,8 @@ InputResult<TargetResult> FrameEncoder::Impl::search(const GofSpan& span, double
   GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
                  {.first_frame = span.first,
                   .keep_decoded = true,
+                  .model = model_,
+                  .has_followers = coded_.spans + 1 < spans_.size(),
                   .metrics = MetricsAccumulator::kTotals});
   auto best = reach_target({.settings = settings_,
                             .header = coding_->header(),
@@ -312,6 +315,7 @@ std::optional<InputError> FrameEncoder::Impl::encode_span() {
         coding_->measure(source, frames, coded.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
     if (!cut) return cut.error();
   }
+  if (coded.model) model_ = coded.model;
   if (!write(coded)) return InputError{"the stream could not be written"};
   ++coded_.spans;
   buffer_.reset();

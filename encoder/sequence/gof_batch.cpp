@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <utility>
 
+#include "encoder/gof/lagrangian.h"
 #include "encoder/parallel/for_each.h"
 
 namespace rlpc {
@@ -30,7 +32,14 @@ std::optional<InputError> for_each_gof(
 GofBatch::GofBatch(const SequenceCoding& coding, FrameSource& source,
                    const std::vector<GofSpan>& spans, const Options& options)
     : coding_(coding), source_(source), options_(options), gofs_(spans.size()) {
-  for (std::size_t g = 0; g < spans.size(); ++g) gofs_[g].span = spans[g];
+  if (!coding.has_models()) options_.has_followers = false;
+  for (std::size_t g = 0; g < spans.size(); ++g) {
+    Gof& gof = gofs_[g];
+    gof.span = spans[g];
+    if (!coding.has_models()) continue;
+    gof.has_followers = options.has_followers || g + 1 < spans.size();
+    if (g > 0 || options.model) gof.vertices = Vertices::kUndecided;
+  }
 }
 
 std::uint32_t GofBatch::num_frames() const {
@@ -42,18 +51,39 @@ std::uint32_t GofBatch::num_frames() const {
 bool GofBatch::use_last_resort() {
   if (!coding_.has_last_resort()) return false;
   is_last_resort_ = true;
-  for (Gof& gof : gofs_) gof.coder.reset();
+  for (Gof& gof : gofs_) {
+    gof.coder.reset();
+    gof.vertices = Vertices::kOwn;
+  }
   return true;
+}
+
+bool GofBatch::uses_earlier_models() const {
+  return std::any_of(gofs_.begin(), gofs_.end(),
+                     [](const Gof& gof) { return gof.vertices == Vertices::kOfEarlier; });
+}
+
+bool GofBatch::use_own_models() {
+  const bool changed = uses_earlier_models();
+  for (Gof& gof : gofs_) gof.vertices = Vertices::kOwn;
+  return changed;
+}
+
+std::optional<InputError> GofBatch::read(Gof& gof) {
+  if (!gof.frames.xyz.empty()) return std::nullopt;
+  const std::lock_guard lock(reading_);
+  auto frames = coding_.read_frames(source_, gof.span);
+  if (!frames) return frames.error();
+  gof.frames = std::move(*frames);
+  gof.frames.first_frame += options_.first_frame;
+  gof.frames.has_followers = gof.has_followers;
+  return std::nullopt;
 }
 
 std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analysis_step) {
   const bool needed = !gof.coder || gof.coder->needs_frames(step, analysis_step);
-  if (needed && gof.frames.xyz.empty()) {
-    const std::lock_guard lock(reading_);
-    auto frames = coding_.read_frames(source_, gof.span);
-    if (!frames) return frames.error();
-    gof.frames = std::move(*frames);
-    gof.frames.first_frame += options_.first_frame;
+  if (needed || gof.vertices == Vertices::kUndecided) {
+    if (auto error = read(gof)) return error;
   }
   if (!gof.coder) gof.coder = coding_.make_coder(gof.frames, is_last_resort_);
   return std::nullopt;
@@ -73,6 +103,7 @@ std::optional<InputError> GofBatch::analyse(double analysis_step) {
 std::function<double(double step)> GofBatch::expected_error() const {
   std::vector<const GofCoder*> coders;
   for (const Gof& gof : gofs_) {
+    if (gof.vertices == Vertices::kOfEarlier) return {};
     if (!gof.coder || !gof.coder->expected_error(1.0)) return {};
     coders.push_back(gof.coder.get());
   }
@@ -83,14 +114,7 @@ std::function<double(double step)> GofBatch::expected_error() const {
   };
 }
 
-InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
-                                                    double analysis_step) {
-  if (auto error = prepare(gof, step, analysis_step)) return *error;
-  const EncodedGof encoded = gof.coder->encode(step, analysis_step);
-  if (!options_.keep_analyses) gof.coder->release_analysis();
-  if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
-    gof.frames = {};
-  }
+InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof& encoded) {
   MetricsAccumulator metrics(coding_.header().num_vertices);
   auto hash_units = coding_.measure({source_, reading_}, gof.span, encoded.frame, metrics);
   if (!hash_units) return hash_units.error();
@@ -100,25 +124,127 @@ InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
   }
   return MeasuredGof{
       {std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
-       options_.keep_decoded ? encoded.frame : nullptr, encoded.cut},
+       options_.keep_decoded ? encoded.frame : nullptr, encoded.model, encoded.cut},
       std::move(metrics)};
+}
+
+InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,
+                                                    double analysis_step) {
+  if (auto error = prepare(gof, step, analysis_step)) return *error;
+  const EncodedGof encoded = gof.coder->encode(step, analysis_step);
+  if (!options_.keep_analyses) gof.coder->release_analysis();
+  const bool is_undecided = gof.vertices == Vertices::kUndecided;
+  const double cost = is_undecided ? lagrangian_cost(encoded, gof.frames, step) : 0.0;
+  if (!options_.keep_analyses || !gof.coder->needs_frames(step, analysis_step)) {
+    gof.frames = {};
+  }
+  auto measured = measure(gof, encoded);
+  if (measured) measured->cost = cost;
+  return measured;
+}
+
+// None: it costs at least `most`.
+InputResult<std::optional<GofBatch::MeasuredGof>> GofBatch::encode_with(const KeptModel& model,
+                                                                        Gof& gof, double step,
+                                                                        double most) {
+  if (auto error = read(gof)) return *error;
+  const auto encoded = coding_.encode_with(model, gof.frames, step, most);
+  gof.frames = {};
+  if (!encoded) return std::optional<MeasuredGof>();
+  auto measured = measure(gof, *encoded);
+  if (!measured) return measured.error();
+  return std::optional(std::move(*measured));
+}
+
+// At equal step, if its cost is lower.
+bool GofBatch::is_better(const MeasuredGof& with_model, const MeasuredGof& own) const {
+  const std::uint32_t level_idc = coding_.header().level_idc;
+  const auto level = [&](const MeasuredGof& gof) {
+    return gof.coded.needs.level_from(level_idc).value_or(kMaxLevelIdc + 1);
+  };
+  if (level(with_model) > level(own)) return false;
+  // The Lagrangian cost does not predict the largest error.
+  return !coding_.has_largest_error() ||
+         with_model.metrics.result().max_error <= own.metrics.result().max_error;
+}
+
+// Encodes a span with an earlier model, and keeps whichever is better.
+std::optional<InputError> GofBatch::decide(const std::shared_ptr<const KeptModel>& model,
+                                           Gof& gof, double step,
+                                           std::optional<MeasuredGof>& measured) {
+  gof.vertices = Vertices::kOwn;
+  if (!model) return std::nullopt;
+  auto other = encode_with(*model, gof, step, measured->cost);
+  if (!other) return other.error();
+  if (!*other || !is_better(**other, *measured)) return std::nullopt;
+  measured = std::move(*other);
+  gof.vertices = Vertices::kOfEarlier;
+  if (gof.coder) gof.coder->release_analysis();
+  return std::nullopt;
+}
+
+// Encodes some spans. Those with vertices of their own do not depend on others, and come first.
+//
+//   model  in force before them; then, after them
+std::optional<InputError> GofBatch::encode_some(GofSpan spans, double step,
+                                                double analysis_step,
+                                                std::shared_ptr<const KeptModel>& model,
+                                                const std::function<void()>& done,
+                                                Measured& measured) {
+  const auto encode_own = [&](std::size_t i) -> std::optional<InputError> {
+    Gof& gof = gofs_[spans.first + i];
+    if (gof.vertices == Vertices::kOfEarlier) return std::nullopt;
+    auto own = encode(gof, step, analysis_step);
+    if (!own) return own.error();
+    measured[spans.first + i] = std::move(*own);
+    done();
+    return std::nullopt;
+  };
+  if (auto error = for_each_gof(spans.count, encode_own)) return error;
+  Models models(spans.count);
+  for (std::uint32_t i = 0; i < spans.count; ++i) {
+    const std::size_t g = spans.first + i;
+    if (gofs_[g].vertices == Vertices::kOfEarlier) {
+      models[i] = model;
+      continue;
+    }
+    if (gofs_[g].vertices == Vertices::kUndecided) {
+      if (auto error = decide(model, gofs_[g], step, measured[g])) return error;
+    }
+    if (measured[g]->coded.model) model = measured[g]->coded.model;
+    if (!options_.keep_decoded) measured[g]->coded.model.reset();
+  }
+  return for_each_gof(spans.count, [&](std::size_t i) -> std::optional<InputError> {
+    if (!models[i]) return std::nullopt;
+    Gof& gof = gofs_[spans.first + i];
+    auto with_model =
+        encode_with(*models[i], gof, step, std::numeric_limits<double>::infinity());
+    if (!with_model) return with_model.error();
+    measured[spans.first + i] = std::move(*with_model);
+    done();
+    return std::nullopt;
+  });
 }
 
 InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,
                                          const Progress& progress) {
-  std::vector<std::optional<MeasuredGof>> measured(gofs_.size());
+  Measured measured(gofs_.size());
   std::mutex counting;
-  std::size_t done = 0;
-  const auto encode_one = [&](std::size_t g) -> std::optional<InputError> {
-    auto one = encode(gofs_[g], step, analysis_step);
-    if (!one) return one.error();
-    measured[g] = std::move(*one);
+  std::size_t count = 0;
+  const auto done = [&] {
     const std::lock_guard lock(counting);
-    ++done;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(gofs_.size()));
-    return std::nullopt;
+    ++count;
+    if (progress) progress(static_cast<double>(count) / static_cast<double>(gofs_.size()));
   };
-  if (auto error = for_each_gof(gofs_.size(), encode_one)) return *error;
+  std::shared_ptr<const KeptModel> model = options_.model;
+  const auto num_spans = static_cast<std::uint32_t>(gofs_.size());
+  const std::uint32_t together = coding_.has_models() ? options_.together : num_spans;
+  for (std::uint32_t first = 0; first < num_spans; first += together) {
+    const GofSpan spans{first, std::min(together, num_spans - first)};
+    if (auto error = encode_some(spans, step, analysis_step, model, done, measured)) {
+      return *error;
+    }
+  }
   BatchTrial trial;
   MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
   for (std::optional<MeasuredGof>& of_span : measured) {

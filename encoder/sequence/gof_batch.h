@@ -25,7 +25,9 @@ struct CodedGof {
   std::uint32_t clusters = 0;    // of all GOFs
   std::uint32_t components = 0;  // of all GOFs
   DecodeFrame frame;             // empty unless Options::keep_decoded
-  DecodeCut cut;                 // of GOFs with one temporal layer: empty
+  // The skinned model that it brings; null: none, or Options::keep_decoded is not set.
+  std::shared_ptr<const KeptModel> model;
+  DecodeCut cut;  // of GOFs with one temporal layer: empty
 };
 
 // All GOFs of a batch, encoded at one step.
@@ -40,7 +42,13 @@ class GofBatch {
   struct Options {
     std::uint32_t first_frame = 0;  // position in the stream of frame 0 of the source
     bool keep_analyses = true;      // from one encode() to the next; choices are always kept
-    bool keep_decoded = false;      // set CodedGof::frame
+    bool keep_decoded = false;      // set CodedGof::frame and model
+    // The skinned model in force before the batch; null: none.
+    std::shared_ptr<const KeptModel> model = nullptr;
+    bool has_followers = false;  // further batches may use the model in force after it
+    // Spans that are encoded at a time, where later ones may use skinned models of earlier
+    // ones. Affects memory only.
+    std::uint32_t together = 1;
     MetricsAccumulator::Keep metrics = MetricsAccumulator::kFrames;
   };
 
@@ -52,6 +60,10 @@ class GofBatch {
   // From now on, encodes all GOFs with the kind reserved for targets that the others miss.
   // False: there is no such kind.
   bool use_last_resort();
+  // Whether some spans use skinned models of earlier ones.
+  bool uses_earlier_models() const;
+  // From now on, each span has a skinned model of its own. False: so it was before.
+  bool use_own_models();
   // Analyses all GOFs if analyses are kept. Errors: those of the source.
   std::optional<InputError> analyse(double analysis_step);
   // Estimates the squared error of all GOFs at a step from their last analyses; empty if any
@@ -63,19 +75,37 @@ class GofBatch {
   InputResult<BatchTrial> encode(double step, double analysis_step, const Progress& progress);
 
  private:
+  // Whose vertices a span has: not known before its first encoding.
+  enum class Vertices : std::uint8_t { kUndecided, kOwn, kOfEarlier };
+
   struct Gof {
     GofSpan span{};
-    GofFrames frames;  // empty while they are not needed
+    bool has_followers = false;  // later spans may use its skinned model
+    GofFrames frames;            // empty while they are not needed
     std::unique_ptr<GofCoder> coder;
+    Vertices vertices = Vertices::kOwn;
   };
 
   struct MeasuredGof {
     CodedGof coded;
     MetricsAccumulator metrics;
+    double cost = 0.0;  // Lagrangian, if it is not decided whose vertices the span has
   };
+  using Measured = std::vector<std::optional<MeasuredGof>>;  // [span]
+  using Models = std::vector<std::shared_ptr<const KeptModel>>;
 
+  std::optional<InputError> read(Gof& gof);
   std::optional<InputError> prepare(Gof& gof, double step, double analysis_step);
+  InputResult<MeasuredGof> measure(Gof& gof, const EncodedGof& encoded);
   InputResult<MeasuredGof> encode(Gof& gof, double step, double analysis_step);
+  InputResult<std::optional<MeasuredGof>> encode_with(const KeptModel& model, Gof& gof,
+                                                      double step, double most);
+  std::optional<InputError> decide(const std::shared_ptr<const KeptModel>& model, Gof& gof,
+                                   double step, std::optional<MeasuredGof>& measured);
+  bool is_better(const MeasuredGof& with_model, const MeasuredGof& own) const;
+  std::optional<InputError> encode_some(GofSpan spans, double step, double analysis_step,
+                                        std::shared_ptr<const KeptModel>& model,
+                                        const std::function<void()>& done, Measured& measured);
 
   const SequenceCoding& coding_;
   FrameSource& source_;

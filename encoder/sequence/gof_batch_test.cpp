@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {
@@ -110,6 +111,68 @@ TEST(GofBatch, NumbersFramesFromItsFirst) {
   EXPECT_NE(a->gofs[0].gofs.front().units, b->gofs[0].gofs.front().units);
   EXPECT_EQ(a->metrics.kg_error_percent, b->metrics.kg_error_percent);
   EXPECT_TRUE(b->gofs[0].frame);
+}
+
+// In the High profile, spans follow each other; how many are encoded at a time, and on how many
+// threads, affects time and memory only.
+TEST(GofBatch, LaterSpansUseModelsOfEarlierOnes) {
+  EncoderSettings settings;
+  settings.profile = Profile::kHigh;
+  settings.preset = Preset::kFast;
+  WavingStrip source(96);
+  SequenceHeader header = header_of(source, settings);
+  header.profile_idc = kProfileHigh;
+  const SequenceCoding coding(header, settings, source.triangles());
+  const std::vector<GofSpan> spans{{0, 24}, {24, 24, 2}, {48, 24}, {72, 24}};
+  std::vector<std::vector<std::uint8_t>> first;  // bytes of the spans, step by step
+  for (const std::uint32_t together : {1U, 2U, 4U, 1U}) {
+    const Threads threads(first.empty() ? 1 : 2);
+    GofBatch batch(coding, source, spans, {.together = together});
+    EXPECT_FALSE(batch.uses_earlier_models());
+    std::vector<std::vector<std::uint8_t>> bytes;
+    for (const double step : {2000.0, 1800.0}) {
+      const auto trial = batch.encode(step, step, {});
+      ASSERT_TRUE(trial);
+      EXPECT_TRUE(batch.uses_earlier_models());
+      EXPECT_FALSE(trial->gofs[0].gofs[0].model.empty());
+      EXPECT_EQ(trial->gofs[1].gofs.size(), 2U);
+      for (const CodedGof& span : trial->gofs) {
+        EXPECT_FALSE(span.model);
+        for (const GofBytes& gof : span.gofs) {
+          bytes.push_back(gof.model);
+          bytes.push_back(gof.units);
+        }
+      }
+    }
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first) << together;
+    EXPECT_TRUE(batch.use_own_models());
+    EXPECT_FALSE(batch.uses_earlier_models());
+    EXPECT_FALSE(batch.use_own_models());
+  }
+}
+
+// A batch can start from the model of the one before.
+TEST(GofBatch, TakesTheModelInForce) {
+  EncoderSettings settings;
+  settings.profile = Profile::kHigh;
+  settings.preset = Preset::kFast;
+  WavingStrip source(48);
+  SequenceHeader header = header_of(source, settings);
+  header.profile_idc = kProfileHigh;
+  const SequenceCoding coding(header, settings, source.triangles());
+  GofBatch before(coding, source, {{0, 24}}, {.keep_decoded = true, .has_followers = true});
+  const auto first = before.encode(2000.0, 2000.0, {});
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(first->gofs[0].model);
+  GofBatch after(coding, source, {{24, 24}},
+                 {.keep_decoded = true, .model = first->gofs[0].model});
+  const auto second = after.encode(2000.0, 2000.0, {});
+  ASSERT_TRUE(second);
+  EXPECT_TRUE(after.uses_earlier_models());
+  EXPECT_FALSE(second->gofs[0].model);
+  GofBatch alone(coding, source, {{24, 24}}, {});
+  EXPECT_LT(second->gof_bytes, alone.encode(2000.0, 2000.0, {})->gof_bytes);
 }
 
 }  // namespace

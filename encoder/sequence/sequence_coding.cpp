@@ -20,6 +20,9 @@ namespace {
 // Per position of the span being coded. Measured with random motion: 90 to 150. Real motion
 // needs 40.
 constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
+// Of a skinned model that later spans may use: factors of two or four bytes, of at most three
+// trajectories for each frame.
+constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
 
 }  // namespace
 
@@ -33,11 +36,16 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
   constexpr std::uint64_t kPart = 2;  // fixed: a span takes at most half of the limit
   const std::uint32_t longest = longest_gof(settings);
   if (settings.profile != Profile::kHigh) return longest;
-  const std::uint64_t positions =
-      std::min(kMostPositions, settings.max_memory_bytes / (kPart * kBytesOfPosition));
-  const std::uint64_t frames =
-      std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames);
-  return std::max(longest, static_cast<std::uint32_t>(frames));
+  const auto frames = [&](std::uint64_t bytes_of_position) {
+    const std::uint64_t positions =
+        std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
+    return std::max<std::uint64_t>(
+        longest, std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames));
+  };
+  const std::uint64_t alone = frames(kBytesOfPosition);
+  // With several spans, there are two skinned models besides: one in force and a new one.
+  return static_cast<std::uint32_t>(
+      header.num_frames <= alone ? alone : frames(kBytesOfPosition + 2 * kFactorsOfModel));
 }
 
 InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
@@ -49,11 +57,17 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  // Each thread has a GOF of its own, or a candidate for one.
-  const std::uint64_t of_thread = header.num_vertices * kBytesOfPosition * longest_gof;
+  // The rest of such a model: rest position, influences, two sets of weights of prediction.
+  constexpr std::uint64_t kOfModel = 400;  // fixed: memory
+  const bool has_models = header.profile_idc >= kProfileHigh && longest_gof < header.num_frames;
+  const std::uint64_t of_model =
+      has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
+  // Each thread has a GOF of its own, or a candidate for one; another model is in force.
+  const std::uint64_t of_thread =
+      header.num_vertices * kBytesOfPosition * longest_gof + of_model;
   const std::uint64_t of_vertex = kOfVertex + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle + of_thread;
+                               header.num_triangles * kOfTriangle + of_thread + of_model;
   if (needed <= settings.max_memory_bytes) {
     const std::uint64_t others = (settings.max_memory_bytes - needed) / of_thread;
     const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
@@ -100,6 +114,15 @@ std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
   if (is_last_resort) return last_resort_->make_coder(frames);
   if (kinds_.size() == 1) return kinds_.front()->make_coder(frames);
   return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
+}
+
+std::optional<EncodedGof> SequenceCoding::encode_with(const KeptModel& model,
+                                                      const GofFrames& frames, double step,
+                                                      double most) const {
+  for (const auto& kind : kinds_) {
+    if (auto encoded = kind->encode_with(model, frames, step, most)) return encoded;
+  }
+  return std::nullopt;
 }
 
 // Measures `some` frames of a span; `before`: the original of the frame before them, empty if

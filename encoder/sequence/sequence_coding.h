@@ -73,6 +73,13 @@ class SequenceCoding {
   bool has_last_resort() const { return last_resort_ != nullptr; }
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
+  // Whether spans can use skinned models of earlier ones.
+  bool has_models() const { return header_.profile_idc >= kProfileHigh; }
+  // GofEncoder::encode_with(), by the kind that has skinned models.
+  std::optional<EncodedGof> encode_with(const KeptModel& model, const GofFrames& frames,
+                                        double step, double most) const;
+  // Whether the target is the largest error.
+  bool has_largest_error() const { return settings_.target.kind == Target::kMaxError; }
   // Decodes the span as a decoder would and adds its errors against the source to the metrics;
   // if these have no frames so far, they follow the frame before the span. Returns the hash
   // unit of each GOF; empty if hashes are off. Errors: those of the source.

@@ -40,6 +40,7 @@ class SequenceEncoder {
 
  private:
   std::optional<InputError> prepare();
+  std::optional<InputError> allot_memory(const SequenceHeader& header);
   void use_grid(const GridChoice& grid);
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
   InputResult<TargetResult> search();
@@ -50,6 +51,8 @@ class SequenceEncoder {
   FrameSource& source_;
   const EncoderSettings& settings_;
   const Progress& progress_;
+  bool keeps_analyses_ = true;
+  std::uint32_t num_threads_ = 1;
   std::optional<Threads> threads_;
   Extent extent_;
   std::vector<GofSpan> spans_;
@@ -65,13 +68,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header.num_frames = source_.num_frames();
   header.frame_rate = source_.frame_rate();
-  // What the cuts are measured from is smaller than an analysis.
-  const bool keeps = keeps_analyses(header) || settings_.main.temporal_layers > 1;
-  const std::uint32_t kept = keeps ? header.num_frames : 0;
-  const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
-  const auto threads = check_memory(settings_, header, largest, kept, source_.memory_bytes());
-  if (!threads) return threads.error();
-  threads_.emplace(*threads);
+  if (auto error = allot_memory(header)) return error;
+  threads_.emplace(num_threads_);
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;
@@ -81,6 +79,26 @@ std::optional<InputError> SequenceEncoder::prepare() {
   if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
+  return std::nullopt;
+}
+
+// Analyses are kept if there is memory for them.
+std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& header) {
+  const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
+  const auto threads = [&](bool keeps) {
+    return check_memory(settings_, header, largest, keeps ? header.num_frames : 0,
+                        source_.memory_bytes());
+  };
+  // What the cuts are measured from is smaller than an analysis.
+  const bool keeps_cuts = settings_.main.temporal_layers > 1;
+  keeps_analyses_ = keeps_analyses(header);
+  auto found = threads(keeps_analyses_ || keeps_cuts);
+  if (!found && keeps_analyses_ && !keeps_cuts) {
+    keeps_analyses_ = false;
+    found = threads(false);
+  }
+  if (!found) return found.error();
+  num_threads_ = *found;
   return std::nullopt;
 }
 
@@ -123,7 +141,8 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
 
 InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
-  GofBatch batch(*coding_, source_, spans_, {.keep_analyses = keeps_analyses(header)});
+  GofBatch batch(*coding_, source_, spans_,
+                 {.keep_analyses = keeps_analyses_, .together = num_threads_});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
                             .header = header,

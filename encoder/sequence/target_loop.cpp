@@ -57,6 +57,7 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
   }
   std::optional<TargetResult> best;
   std::uint32_t trials = trials_before;
+  std::uint64_t bytes = 0;
   while (!search.finished()) {
     ++trials;
     const auto progress = [&](double done) {
@@ -66,7 +67,12 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
     if (!trial) return trial.error();
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
+    // Bones, rest positions and factors of earlier models do not follow the step.
+    const bool is_stuck =
+        !search.met() && batch.uses_earlier_models() && trial->gof_bytes == bytes;
+    bytes = trial->gof_bytes;
     if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
+    if (is_stuck) break;
   }
   best->met = search.met();
   best->trials = trials;
@@ -95,12 +101,16 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   auto best = search_steps(task, batch, 0);
-  if (!best || best->met || !batch.use_last_resort()) return best;
-  auto other = search_steps(task, batch, best->trials);
-  if (!other) return other;
-  best->trials = other->trials;
-  const bool closer = other->met || other->measured < best->measured;
-  return closer && fits_level(task, other->trial) ? std::move(other) : std::move(best);
+  for (const auto& change : {&GofBatch::use_own_models, &GofBatch::use_last_resort}) {
+    if (!best || best->met || !(batch.*change)()) continue;
+    auto other = search_steps(task, batch, best->trials);
+    if (!other) return other;
+    const std::uint32_t trials = other->trials;
+    const bool closer = other->met || other->measured < best->measured;
+    if (closer && fits_level(task, other->trial)) best = std::move(other);
+    best->trials = trials;
+  }
+  return best;
 }
 
 }  // namespace rlpc

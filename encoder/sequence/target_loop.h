@@ -34,8 +34,8 @@ struct TargetResult {
   std::uint32_t trials = 0;
 };
 
-// Runs the search. If the compared kinds of GOF miss the target, searches again with the last
-// resort of the batch. Errors: those of the batch.
+// Runs the search. If it misses the target, searches again without skinned models of earlier
+// spans, then with the last resort of the batch. Errors: those of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
 
 }  // namespace rlpc

@@ -137,7 +137,8 @@ EncodedGof SkinnedGofCoder::encode(double step, double analysis_step) {
   if (!choice_) choose(analysis_step);
   if (!follows_step()) analysis_for(analysis_step);
   if (analysis_.last() == nullptr || !is_valid_for(step)) analysis_for(step);
-  return encode_skinned_gof(context_, *analysis_.last(), choice_->settings, step);
+  return encode_skinned_gof(context_, *analysis_.last(), choice_->settings, step,
+                            has_followers_);
 }
 
 void SkinnedGofCoder::release_analysis() {

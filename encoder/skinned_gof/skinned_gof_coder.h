@@ -16,7 +16,10 @@ class SkinnedGofCoder : public GofCoder {
  public:
   // Keeps references to both.
   SkinnedGofCoder(const SkinnedContext& context, const GofFrames& frames)
-      : context_(context), frames_(frames), bones_(context, frames) {}
+      : context_(context),
+        frames_(frames),
+        has_followers_(frames.has_followers),
+        bones_(context, frames) {}
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
@@ -42,7 +45,8 @@ class SkinnedGofCoder : public GofCoder {
   bool follows_step() const { return choice_->rig.bones.size() > 1; }
 
   const SkinnedContext& context_;
-  const GofFrames& frames_;
+  const GofFrames& frames_;  // may be freed
+  bool has_followers_;
   BoneSearch bones_;
   // Bones and tools, chosen for the step at which the target is expected.
   std::optional<SkinnedCandidate> choice_;

@@ -1,5 +1,6 @@
 #include "encoder/skinned_gof/skinned_gof_kind.h"
 
+#include "encoder/skinned_gof/reuse/span_reuse.h"
 #include "encoder/skinned_gof/search/skinned_context.h"
 #include "encoder/skinned_gof/skinned_gof_coder.h"
 
@@ -15,6 +16,11 @@ class SkinnedGofKind : public GofEncoder {
 
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
     return std::make_unique<SkinnedGofCoder>(context_, frames);
+  }
+
+  std::optional<EncodedGof> encode_with(const KeptModel& model, const GofFrames& frames,
+                                        double step, double most) const override {
+    return encode_with_model(context_, model, frames, step, most);
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.

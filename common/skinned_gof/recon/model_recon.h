@@ -68,6 +68,8 @@ class ModelRecon {
   const std::shared_ptr<const SpatialFactors>& factors() const { return factors_; }
   // Those of the local component groups of a GOF of tracks.
   std::shared_ptr<const SpatialFactors> local_factors(const SkinnedGof& gof) const;
+  // The weights with which local component groups begin; null: they do not adapt.
+  const AdaptiveWeights* adaptive_weights() const { return adaptive_ ? &*adaptive_ : nullptr; }
 
  private:
   struct RunRange {

@@ -8,15 +8,16 @@
 #include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/gof_coder.h"
-#include "encoder/gof/sample_size.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
+#include "encoder/skinned_gof/quantise/mean_motion.h"
 #include "encoder/skinned_gof/quantise/rest_coding.h"
+#include "encoder/skinned_gof/quantise/span_bones.h"
+#include "encoder/skinned_gof/quantise/spatial_left.h"
 
 namespace rlpc {
 namespace {
 
-constexpr double kPointScale = 16.0;  // fixed: 1 << kPointFractionBits
 // tuned (off: 1): Quantiser step of a layer relative to that of the next finer layer. Vertices
 // of coarse layers predict those of finer ones, so that their errors spread.
 constexpr double kFinerLayer = 0.9;
@@ -63,31 +64,6 @@ Influences quantise_weights(const std::vector<RigWeight>& weights, int total) {
   return influences;
 }
 
-// A bone motion or a weighted mean of several: world = turn * rest + shift, in grid units.
-struct MeanMotion {
-  std::array<Point, 3> turn{};  // columns: images of the axes
-  Point shift{};
-};
-
-// The motion of a decoded bone in each frame.
-std::vector<MeanMotion> motions_of(const BoneMotion& bone) {
-  const double axis_unit = exact_exp2(-kQuaternionFractionBits);
-  std::vector<MeanMotion> motions(bone.poses.size());
-  for (std::size_t f = 0; f < motions.size(); ++f) {
-    const BonePose& pose = bone.poses[f];
-    for (std::size_t c = 0; c < 3; ++c) {
-      double moved = static_cast<double>(pose.origin[c]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double a = static_cast<double>(pose.axes[k][c]) * axis_unit;
-        motions[f].turn[k][c] = a;
-        moved -= a * static_cast<double>(bone.pivot[k]);
-      }
-      motions[f].shift[c] = moved / kPointScale;
-    }
-  }
-  return motions;
-}
-
 }  // namespace
 
 TrackOptions track_options(const SkinnedSettings& settings) {
@@ -126,13 +102,15 @@ class SkinnedAnalyser {
       found_.bones = before_->bones;
       model.bones = before_->model.bones;
       model.influences = before_->model.influences;
-      for (const BoneMotion& bone : found_.bones) motions_.push_back(motions_of(bone));
     } else {
-      start_gofs();
+      found_.gofs = gofs_of_span(frames_, settings_.track_levels);
       code_bones();
       for (const auto& weights : rig_.weights) {
         model.influences.push_back(quantise_weights(weights, 1 << model.weight_bits));
       }
+    }
+    for (const BoneMotion& bone : found_.bones) {
+      motions_.add(motions_of(bone, 0, frames_.num_frames));
     }
     code_rest();
     if (before_ != nullptr) {
@@ -147,52 +125,11 @@ class SkinnedAnalyser {
       found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
       found_.step_of_components = step_;
     }
-    find_spatial_left();
+    found_.spatial_left = find_spatial_left(mesh_, found_.pc);
     return std::move(found_);
   }
 
  private:
-  void start_gofs() {
-    for (const GofSpan& span : frames_.gofs()) {
-      SkinnedGof& gof = found_.gofs.emplace_back();
-      gof.first_frame = frames_.first_frame + span.first;
-      gof.num_frames = span.count;
-      gof.track_levels = settings_.track_levels;
-    }
-  }
-
-  // Differences of a vertex and the mean of those that predict it, squared, averaged over the
-  // vertex and its ring: residuals are coded by what these are nearby.
-  void find_spatial_left() {
-    const std::size_t width = found_.pc.temporal.size();
-    const std::uint32_t n = mesh_.num_vertices();
-    const std::uint32_t places = std::min(n, kProbeVertices);
-    found_.spatial_left.assign(places * width, float{});
-    std::vector<float> difference(width);
-    for (std::uint32_t i = 0; i < places; ++i) {
-      const auto v = static_cast<std::uint32_t>(std::uint64_t{i} * n / places);
-      const std::span<float> mean = std::span(found_.spatial_left).subspan(i * width, width);
-      const std::span<const std::uint32_t> ring = mesh_.ring(v);
-      add_differences(v, difference, mean);
-      for (const std::uint32_t u : ring) add_differences(u, difference, mean);
-      for (float& x : mean) x /= static_cast<float>(ring.size() + 1);
-    }
-  }
-
-  void add_differences(std::uint32_t v, std::span<float> difference,
-                       std::span<float> sum) const {
-    const std::size_t width = difference.size();
-    const float* of_v = found_.pc.spatial.data() + v * width;
-    std::copy(of_v, of_v + width, difference.begin());
-    const std::span<const std::uint32_t> ring = mesh_.ring(v);
-    const float count = static_cast<float>(ring.size());
-    for (const std::uint32_t u : ring) {
-      const float* of_u = found_.pc.spatial.data() + u * width;
-      for (std::size_t l = 0; l < width; ++l) difference[l] -= of_u[l] / count;
-    }
-    for (std::size_t l = 0; l < width; ++l) sum[l] += difference[l] * difference[l];
-  }
-
   // The sum of the squared weights of a bone, and that of the squared weights times the squared
   // distances from its pivot.
   std::pair<double, double> mass_and_moment(std::size_t b) const {
@@ -214,13 +151,7 @@ class SkinnedAnalyser {
   }
 
   void code_bones() {
-    std::vector<TrackState> rotations;
-    std::vector<TrackState> origins;
-    for (const SkinnedGof& gof : found_.gofs) {
-      rotations.emplace_back(gof.num_frames);
-      origins.emplace_back(gof.num_frames);
-    }
-    found_.bones.reserve(rig_.bones.size());
+    SpanBones bones(found_.gofs, track_options(settings_));
     const int limit = 1 << (rest_bits(position_bits_) - 1);
     for (std::size_t b = 0; b < rig_.bones.size(); ++b) {
       const RigBone& from = rig_.bones[b];
@@ -248,63 +179,18 @@ class SkinnedAnalyser {
           wanted[f].origin[c] = from.poses[f].origin[c] * kPointScale;
         }
       }
-      found_.bones.push_back(code_tracks(bone, wanted, rotations, origins));
-      motions_.push_back(motions_of(found_.bones.back()));
+      bones.add(bone, wanted);
       found_.model.bones.push_back(std::move(bone));
     }
-  }
-
-  // Codes the motion of a bone, GOF by GOF.
-  BoneMotion code_tracks(const Bone& bone, std::span<const WantedPose> wanted,
-                         std::span<TrackState> rotations, std::span<TrackState> origins) {
-    BoneMotion motion;
-    BoneMotion parent;  // of the bone, in the frames of a GOF
-    for (std::size_t g = 0; g < found_.gofs.size(); ++g) {
-      const std::size_t count = found_.gofs[g].num_frames;
-      const std::size_t first = motion.poses.size();
-      if (bone.parent >= 0) {
-        const BoneMotion& whole = found_.bones[static_cast<std::size_t>(bone.parent)];
-        const auto begin = whole.poses.begin() + static_cast<std::ptrdiff_t>(first);
-        parent.pivot = whole.pivot;
-        parent.poses.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
-      }
-      Bone& coded = found_.gofs[g].bones.emplace_back(bone);
-      const BoneMotion part =
-          code_bone(wanted.subspan(first, count), bone.parent < 0 ? nullptr : &parent,
-                    track_options(settings_), rotations[g], origins[g], coded);
-      motion.pivot = part.pivot;
-      motion.poses.insert(motion.poses.end(), part.poses.begin(), part.poses.end());
-    }
-    return motion;
-  }
-
-  // Sets mean_ to the weighted mean of the motions of the bones of a vertex.
-  void find_mean_motion(std::uint32_t v) {
-    const Influences& influences = found_.model.influences[v];
-    if (std::ranges::equal(influences, mean_of_) && !mean_.empty()) return;
-    mean_of_ = influences;
-    const double unit = exact_exp2(-found_.model.weight_bits);
-    mean_.assign(frames_.num_frames, {});
-    for (const Influence& influence : influences) {
-      const double weight = influence.weight * unit;
-      const std::vector<MeanMotion>& motions = motions_[influence.bone];
-      for (std::size_t f = 0; f < mean_.size(); ++f) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            mean_[f].turn[k][c] += weight * motions[f].turn[k][c];
-          }
-          mean_[f].shift[c] += weight * motions[f].shift[c];
-        }
-      }
-    }
+    found_.bones = std::move(bones.motions());
   }
 
   // The least-squares rest position for the decoded bones.
   Point fit_rest(std::uint32_t v) {
-    find_mean_motion(v);
+    const auto mean = motions_.of(found_.model.influences[v], found_.model.weight_bits);
     SmallSystem<3> m;
     for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
-      const MeanMotion& motion = mean_[f];
+      const MeanMotion& motion = mean[f];
       const double* x = frames_.at(f, v);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -391,28 +277,23 @@ class SkinnedAnalyser {
   TrajectoryRows displacement() {
     const std::size_t width = 3 * std::size_t{frames_.num_frames};
     return {frames_.num_vertices, width,
-            [this, width](std::size_t first, std::span<double> rows) {
+            [this, width, chosen = numbers_from(0, frames_.num_frames)](
+                std::size_t first, std::span<double> rows) {
               for (std::size_t i = 0; i * width < rows.size(); ++i) {
-                write_displacement(static_cast<std::uint32_t>(first + i), &rows[i * width]);
+                const auto v = static_cast<std::uint32_t>(first + i);
+                write_displacement(
+                    frames_, chosen, v,
+                    motions_.of(found_.model.influences[v], found_.model.weight_bits),
+                    rest_of(v), &rows[i * width]);
               }
             }};
   }
 
-  // Writes the residual of one vertex: for each coordinate, all frames.
-  void write_displacement(std::uint32_t v, double* row) {
-    find_mean_motion(v);
-    const std::size_t num_frames = frames_.num_frames;
-    for (std::uint32_t f = 0; f < num_frames; ++f) {
-      const MeanMotion& motion = mean_[f];
-      const double* x = frames_.at(f, v);
-      for (std::size_t c = 0; c < 3; ++c) {
-        double residual = x[c] - motion.shift[c];
-        for (std::size_t k = 0; k < 3; ++k) {
-          residual -= motion.turn[k][c] * found_.rest[k][v] / kPointScale;
-        }
-        row[c * num_frames + f] = residual;
-      }
-    }
+  // As decoded, in grid units.
+  Point rest_of(std::uint32_t v) const {
+    Point rest;
+    for (std::size_t c = 0; c < 3; ++c) rest[c] = found_.rest[c][v] / kPointScale;
+    return rest;
   }
 
   const CodedMesh& mesh_;
@@ -423,9 +304,7 @@ class SkinnedAnalyser {
   double step_;
   const SkinnedAnalysis* before_;
   SkinnedAnalysis found_;
-  std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
-  std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
-  Influences mean_of_;
+  MeanMotions motions_;
 };
 
 }  // namespace

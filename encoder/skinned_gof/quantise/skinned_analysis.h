@@ -65,9 +65,7 @@ struct SkinnedAnalysis {
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
   double step_of_components = 0.0;  // of the analysis that they were first found in
-  // What prediction leaves of spatial factors near each of some vertices, mean square:
-  // [vertex of the sample][component].
-  std::vector<float> spatial_left;
+  std::vector<float> spatial_left;  // of find_spatial_left()
 };
 
 // Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "common/cluster_gof/cluster_gof.h"
-#include "common/int_math.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/gof/component_cost.h"
 #include "encoder/math/det_math.h"
 #include "encoder/skinned_gof/quantise/slice_cuts.h"
+#include "encoder/skinned_gof/quantise/span_tracks.h"
 #include "encoder/skinned_gof/quantise/spatial_values.h"
 #include "encoder/skinned_gof/quantise/temporal_values.h"
 
@@ -20,11 +21,6 @@ namespace {
 
 // Temporal values are scaled so that their step is 2^3 units of the sums, if possible.
 constexpr int kWantedScaleIdx = 56;  // fixed: format
-
-// Width in bits of a signed number of this magnitude.
-int signed_width(std::int64_t magnitude) {
-  return magnitude == 0 ? 1 : floor_log2(static_cast<std::uint64_t>(magnitude)) + 2;
-}
 
 // The frames of a GOF, `first` being that after the GOF before.
 std::span<const Vec3i> frames_of(const SkinnedGof& gof, std::span<const Vec3i> values,
@@ -42,26 +38,18 @@ bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
       Trajectory& t = temporal.of_gof[g][l];
       const auto values = frames_of(gofs[g], temporal.indices[l], first);
       if (!t.trajectory_flag) continue;
-      t.scale_idx = idx[l] + 8 * fraction_bits;
-      std::int64_t largest = 0;
-      for (const Vec3i& value : values) {
-        for (const std::int32_t x : value) {
-          const std::int64_t scaled = scale_temporal(x, t.scale_idx, kMaxTemporalBits + 1);
-          largest = std::max(largest, scaled < 0 ? ~scaled : scaled);
-        }
-      }
-      t.temporal_bits = signed_width(largest);
-      if (t.temporal_bits > kMaxTemporalBits) return false;
+      if (!set_scale(idx[l] + 8 * fraction_bits, values, t)) return false;
     }
   }
   return true;
 }
 
 // Sets widths and scales of the trajectories, with as many fraction bits in the sums as all
-// temporal factors need. Returns 0, or if the range of scales is too large, the excess in
-// eighths of an octave.
-int set_scales(const std::vector<std::int32_t>& largest, std::span<const SkinnedGof> gofs,
-               TemporalValues& temporal, int& fraction_bits) {
+// temporal factors need, or as many as are given. Returns 0, or if the range of scales is too
+// large, the excess in eighths of an octave. None: values are too large for the fraction bits.
+std::optional<int> set_scales(const std::vector<std::int32_t>& largest,
+                              std::span<const SkinnedGof> gofs, std::optional<int> given,
+                              TemporalValues& temporal, int& fraction_bits) {
   std::vector<int> idx(temporal.size());
   fraction_bits = 0;
   for (std::size_t l = 0; l < idx.size(); ++l) {
@@ -74,9 +62,14 @@ int set_scales(const std::vector<std::int32_t>& largest, std::span<const Skinned
   const int most = *std::max_element(idx.begin(), idx.end());
   fraction_bits = std::clamp(fraction_bits, 0, kMaxFractionBits);
   while (fraction_bits > 0 && most + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
+  if (given && most + 8 * *given > kMaxScaleIdx) return std::nullopt;
+  if (given) fraction_bits = *given;
   const int lacking = -(*std::min_element(idx.begin(), idx.end()) + 8 * fraction_bits);
   if (lacking > 0) return lacking;
-  while (!set_temporal_widths(idx, fraction_bits, gofs, temporal)) --fraction_bits;
+  while (!set_temporal_widths(idx, fraction_bits, gofs, temporal)) {
+    if (given) return std::nullopt;
+    --fraction_bits;
+  }
   return 0;
 }
 
@@ -101,19 +94,23 @@ double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count,
 }
 
 // Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
+// shared: the skinned model of a local component group, or null; if values do not fit its
+// fraction bits, there are no trajectories.
 CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
-                                    CodedSpan& coded) {
+                                    const ModelRecon* shared, CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
   SkinnedModel& model = coded.model;
+  std::optional<int> fraction_bits;
+  if (shared != nullptr) fraction_bits = model.fraction_bits;
   TemporalLimits limits{
       std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};
     const std::size_t count = temporal.size();
-    model.weights.num_adaptive_factors = 0;
-    if (model.prediction == Prediction::kLayers) {
+    if (shared == nullptr) model.weights.num_adaptive_factors = 0;
+    if (shared == nullptr && model.prediction == Prediction::kLayers) {
       model.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
@@ -122,14 +119,16 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
                         (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
-    const SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal,
-                                                      cuts.group_end, settings.rounding, step);
+    SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal, cuts.group_end,
+                                                shared, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
     }
-    const int lacking = set_scales(spatial.largest, coded.gofs, temporal, model.fraction_bits);
-    if (lacking == 0) {
+    const std::optional<int> lacking =
+        set_scales(spatial.largest, coded.gofs, fraction_bits, temporal, model.fraction_bits);
+    if (!lacking) return {{}, {}};
+    if (*lacking == 0) {
       model.trajectories.resize(count);
       for (std::size_t l = 0; l < count; ++l) {
         model.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
@@ -140,7 +139,7 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
       return {std::move(spatial.residual), std::move(cuts)};
     }
     limits.least_eighths =
-        *std::min_element(temporal.eighths.begin(), temporal.eighths.end()) + lacking;
+        *std::min_element(temporal.eighths.begin(), temporal.eighths.end()) + *lacking;
   }
 }
 
@@ -169,9 +168,28 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
   SkinnedModel& model = coded.model;
   model.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
   const CodedTrajectories trajectories =
-      code_trajectories(mesh, analysis, settings, step, coded);
+      code_trajectories(mesh, analysis, settings, step, nullptr, coded);
   cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, model);
   return coded;
+}
+
+LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const ModelRecon& shared, SkinnedSettings settings, double step) {
+  settings.component_groups = 1;
+  CodedSpan coded{analysis.model, analysis.gofs};
+  CodedTrajectories trajectories =
+      code_trajectories(mesh, analysis, settings, step, &shared, coded);
+  return {std::move(coded.gofs.front().trajectories), std::move(trajectories.residual)};
+}
+
+void add_local_group(LocalGroup group, SkinnedGof& gof) {
+  if (group.trajectories.empty()) return;
+  ++gof.num_local_groups;
+  gof.group_end.push_back(gof.group_end.back() + group.trajectories.size());
+  gof.slice_layers.push_back(static_cast<std::uint32_t>(gof.layer_group_size.size()));
+  gof.vertex_residual.resize(gof.num_local_groups);
+  gof.vertex_residual.push_back(std::move(group.residual));
+  for (Trajectory& t : group.trajectories) gof.trajectories.push_back(std::move(t));
 }
 
 SkinnedGof merge_into_gof(CodedSpan coded) {

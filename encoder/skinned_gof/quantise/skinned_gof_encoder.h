@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "encoder/skinned_gof/quantise/skinned_analysis.h"
 
@@ -34,6 +36,21 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
 
 // The only GOF of a span, with vertices of its own.
 SkinnedGof merge_into_gof(CodedSpan coded);
+// Trajectories that a GOF of tracks has besides those of its skinned model.
+struct LocalGroup {
+  std::vector<Trajectory> trajectories;  // empty: none is worth its bits
+  std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
+};
+
+// Codes principal components as a local component group.
+//
+//   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
+//   shared    the skinned model
+LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const ModelRecon& shared, SkinnedSettings settings, double step);
+// Adds a local component group, unless it is empty, to a GOF of tracks.
+void add_local_group(LocalGroup group, SkinnedGof& gof);
+
 // Makes a GOF of a span a GOF of tracks.
 void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof);
 

@@ -74,6 +74,22 @@ class FittedFactors {
   std::vector<double> mixing_;
 };
 
+// The adaptive weights before the first trajectory; none if there are none.
+std::optional<AdaptiveWeights> start_weights(const CodedMesh& mesh, const SkinnedModel& model,
+                                             const SkinnedAnalysis& analysis,
+                                             const std::optional<GeometryWeights>& weights,
+                                             const ModelRecon* shared) {
+  if (shared != nullptr) {
+    const AdaptiveWeights* before = shared->adaptive_weights();
+    return before != nullptr ? std::optional(*before) : std::nullopt;
+  }
+  if (model.weights.num_adaptive_factors == 0) return std::nullopt;
+  const auto& rest = analysis.rest;
+  return AdaptiveWeights(
+      mesh, *weights, model.weights,
+      std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
+}
+
 // Rounds the residuals of vertices, trajectory by trajectory, as the settings require.
 class ResidualRounding {
  public:
@@ -99,8 +115,8 @@ class ResidualRounding {
 SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
-                                  std::span<const std::size_t> group_end, Rounding rounding,
-                                  double step) {
+                                  std::span<const std::size_t> group_end,
+                                  const ModelRecon* shared, Rounding rounding, double step) {
   constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
   const std::size_t count = temporal.size();
   std::optional<GeometryWeights> weights;
@@ -110,13 +126,12 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& mod
                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
-  std::optional<AdaptiveWeights> adaptive;
+  std::optional<AdaptiveWeights> adaptive =
+      start_weights(mesh, model, analysis, weights, shared);
   std::optional<VertexAdaptation> adaptation;
-  if (model.weights.num_adaptive_factors > 0) {
-    const auto& rest = analysis.rest;
-    adaptive.emplace(mesh, *weights, model.weights,
-                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
-    adaptive->start(0, count, group_end);
+  if (adaptive) {
+    const std::size_t before = shared != nullptr ? shared->factors()->num_components() : 0;
+    adaptive->start(before, count, group_end);
     adaptation.emplace(*adaptive);
   }
   const FittedFactors all_factors(analysis.pc, temporal);

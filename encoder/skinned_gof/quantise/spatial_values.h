@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
+#include "common/skinned_gof/recon/model_recon.h"
 #include "encoder/skinned_gof/quantise/skinned_analysis.h"
 #include "encoder/skinned_gof/quantise/temporal_values.h"
 
@@ -22,11 +23,12 @@ struct SpatialValues {
 //
 //   model      that of the analysis, with its weight settings
 //   group_end  ends of the component groups, in trajectories
+//   shared     the skinned model of a local component group; null: there is none
 //   step       quantiser step, grid units
 SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
-                                  std::span<const std::size_t> group_end, Rounding rounding,
-                                  double step);
+                                  std::span<const std::size_t> group_end,
+                                  const ModelRecon* shared, Rounding rounding, double step);
 
 }  // namespace rlpc

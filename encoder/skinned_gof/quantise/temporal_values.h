@@ -7,9 +7,19 @@
 
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
+#include "encoder/gof/component_cost.h"
 #include "encoder/skinned_gof/quantise/skinned_analysis.h"
 
 namespace rlpc {
+
+// tuned (off: 1): Squared error of a temporal value relative to that of a spatial one, with
+// bones. The residual of bone motion is confined to few vertices, so that its temporal values
+// may be coarser.
+inline constexpr double kTemporalErrorOfBones = 2.0;
+// The squared error of a temporal value relative to that of a spatial one.
+inline double temporal_error(const SkinnedModel& model) {
+  return model.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
+}
 
 struct TemporalValues {
   std::vector<std::vector<Trajectory>> of_gof;  // [GOF][trajectory], weights and residuals

@@ -1,15 +1,11 @@
 #include "encoder/skinned_gof/search/skinned_trial.h"
 
 #include <algorithm>
-#include <memory>
-#include <span>
 #include <utility>
 
-#include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
-#include "encoder/skinned_gof/search/temporal_cut.h"
-#include "encoder/write/write_skinned_gof.h"
+#include "encoder/skinned_gof/search/span_units.h"
 
 namespace rlpc {
 namespace {
@@ -64,7 +60,8 @@ SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames
 }
 
 SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const {
-  const EncodedGof encoded = encode_skinned_gof(context_, analysis, candidate.settings, step_);
+  const EncodedGof encoded =
+      encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
   return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
           error, encoded.components};
@@ -96,97 +93,15 @@ BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
   return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
 }
 
-namespace {
-
-void add_units(SkinnedGofPayloads payloads, UnitType first, EncodedGof& encoded) {
-  encoded.units.push_back({first, std::move(payloads.first)});
-  for (std::size_t i = 0; i < payloads.slices.size(); ++i) {
-    encoded.units.push_back(
-        {UnitType::kSlice, std::move(payloads.slices[i]), payloads.temporal_layer_idx[i]});
-  }
-}
-
-DecodeFrame frames_of(std::shared_ptr<const SkinnedRecon> recon) {
-  return [recon = std::move(recon)](std::uint32_t f, std::span<std::int32_t> positions) {
-    recon->frame(f, positions);
-  };
-}
-
-// GOFs one after the other.
-DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
-  return [recons = std::move(recons)](std::uint32_t f, std::span<std::int32_t> positions) {
-    auto recon = recons.begin();
-    while (f >= (*recon)->num_frames()) f -= (*recon++)->num_frames();
-    (*recon)->frame(f, positions);
-  };
-}
-
-// A GOF with vertices of its own.
-DecodeFrame encode_alone(const CodedMesh& mesh, const SequenceHeader& header, CodedSpan coded,
-                         int temporal_layers, EncodedGof& encoded) {
-  auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
-  set_temporal_layers(temporal_layers, *gof);
-  add_units(write_skinned_gof(*gof, mesh, header), UnitType::kGof, encoded);
-  if (temporal_layers > 1) {
-    encoded.cut = [&mesh, gof, position_bits = header.position_bits](int layers) {
-      return frames_of(
-          std::make_shared<SkinnedRecon>(mesh, without_layers(*gof, layers), position_bits));
-    };
-  }
-  return frames_of(std::make_shared<SkinnedRecon>(mesh, *gof, header.position_bits));
-}
-
-// A skinned model and GOFs of tracks.
-DecodeFrame encode_with_model(const CodedMesh& mesh, const SequenceHeader& header,
-                              CodedSpan coded, int temporal_layers, EncodedGof& encoded) {
-  const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
-  add_units(write_skinned_model(*model, kModelIdx, mesh, header), UnitType::kModel, encoded);
-  const auto shared =
-      std::make_shared<const ModelRecon>(mesh, *model, header.position_bits, false);
-  std::vector<std::shared_ptr<const SkinnedRecon>> recons;
-  for (SkinnedGof& gof : coded.gofs) {
-    use_model(model, gof);
-    set_temporal_layers(temporal_layers, gof);
-    add_units(write_tracks(gof, mesh, header), UnitType::kGof, encoded);
-    recons.push_back(std::make_shared<SkinnedRecon>(shared, gof));
-  }
-  if (temporal_layers > 1) {
-    encoded.cut = [shared, gofs = std::move(coded.gofs)](int layers) {
-      std::vector<std::shared_ptr<const SkinnedRecon>> cut;
-      for (const SkinnedGof& gof : gofs) {
-        cut.push_back(std::make_shared<SkinnedRecon>(shared, without_layers(gof, layers)));
-      }
-      return frames_of(std::move(cut));
-    };
-  }
-  return frames_of(std::move(recons));
-}
-
-}  // namespace
-
 EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
-                              const SkinnedSettings& settings, double step) {
+                              const SkinnedSettings& settings, double step,
+                              bool has_followers) {
   const CodedMesh& mesh = context.meshes[settings.prediction];
   CodedSpan coded = code_skinned_span(mesh, analysis, settings, step);
-  const std::uint64_t num_vertices = mesh.num_vertices();
-  const std::uint64_t num_bones = coded.model.bones.size();
-  const std::uint64_t num_trajectories = coded.model.trajectories.size();
-  std::uint32_t longest = 0;
-  for (const SkinnedGof& gof : coded.gofs) longest = std::max(longest, gof.num_frames);
-  EncodedGof encoded;
-  encoded.clusters = static_cast<std::uint32_t>(num_bones);
-  encoded.max_clusters = encoded.clusters;
-  encoded.components = static_cast<std::uint32_t>(num_trajectories);
-  encoded.max_components = encoded.components;
-  encoded.num_factors = (kRestFactors + num_trajectories) * num_vertices +
-                        (6 * num_bones + 3 * num_trajectories) * longest;
-  encoded.adaptive_values = coded.model.weights.num_adaptive_factors * num_vertices;
-  encoded.frame = coded.gofs.size() == 1
-                      ? encode_alone(mesh, context.header, std::move(coded),
-                                     settings.temporal_layers, encoded)
-                      : encode_with_model(mesh, context.header, std::move(coded),
-                                          settings.temporal_layers, encoded);
-  return encoded;
+  const SpanUnits units(mesh, context.header, settings.temporal_layers);
+  if (has_followers) return units.with_kept_model(std::move(coded), analysis.rest);
+  return coded.gofs.size() == 1 ? units.alone(std::move(coded))
+                                : units.with_model(std::move(coded));
 }
 
 }  // namespace rlpc

@@ -68,7 +68,8 @@ SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames
                                   const SkinnedAnalysis* before = nullptr);
 
 // Quantises the trajectories and writes the units. step: quantiser step, grid units.
+// has_followers: with a skinned model that later spans may use.
 EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
-                              const SkinnedSettings& settings, double step);
+                              const SkinnedSettings& settings, double step, bool has_followers);
 
 }  // namespace rlpc

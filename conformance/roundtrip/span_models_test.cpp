@@ -1,0 +1,221 @@
+// Sequences of several spans, of which later ones use skinned models of earlier ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "conformance/roundtrip/small_animation.h"
+#include "decoder/rlpc_decoder.h"
+#include "encoder/frame_encoder.h"
+#include "encoder/sequence/choices/grid_choice.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kRings = 60;
+constexpr std::uint32_t kSides = 8;
+
+using Move = std::function<std::array<double, 3>(double x, double y, double z, double f)>;
+
+// A tube along x whose parts move by themselves.
+MemoryFrames moving_tube(std::uint32_t num_frames, const Move& move) {
+  FrameSource::Shape shape;
+  shape.frame_rate = {24, 1};
+  shape.triangles = tube_triangles(kRings, kSides);
+  std::vector<std::vector<float>> frames;
+  for (std::uint32_t f = 0; f < num_frames; ++f) {
+    std::vector<float> xyz;
+    for (std::uint32_t v = 0; v < kRings * kSides; ++v) {
+      const double turn = 0.785398 * (v % kSides);
+      const double radius = 0.2 + 0.02 * std::sin(1.7 * v);
+      const auto p = move(4.0 * (v / kSides) / kRings - 2.0, radius * std::cos(turn),
+                          radius * std::sin(turn), f);
+      for (const double c : p) xyz.push_back(static_cast<float>(c));
+    }
+    frames.push_back(std::move(xyz));
+  }
+  return {std::move(shape), std::move(frames)};
+}
+
+// Repeats itself about every 31 frames, but not exactly.
+std::array<double, 3> bent(double x, double y, double z, double f) {
+  const double bend = 0.8 * std::sin(0.2 * f) * std::tanh(4.0 * x);
+  const double swell = 1.0 + 0.2 * std::sin(0.4 * f + 2.0 * x);
+  return {std::cos(bend) * x - std::sin(bend) * y * swell + 0.01 * f,
+          std::sin(bend) * x + std::cos(bend) * y * swell, z * swell};
+}
+
+// From some frame on, another deformation is added.
+Move changing(double from) {
+  return [from](double x, double y, double z, double f) {
+    auto p = bent(x, y, z, f);
+    if (f >= from) p[2] += 0.15 * std::sin(0.33 * f) * std::sin(3.0 * x + 0.05 * f);
+    return p;
+  };
+}
+
+EncoderSettings settings_of(std::uint32_t gof_frames, std::uint32_t threads = 1) {
+  EncoderSettings settings;
+  settings.profile = Profile::kHigh;
+  settings.preset = Preset::kFast;
+  settings.target = {Target::kKg, 0.3};
+  settings.gof_frames = gof_frames;
+  settings.hash_mode = HashMode::kFrame;
+  settings.threads = threads;
+  return settings;
+}
+
+StreamBytes encode_frames(FrameSource& source, const EncoderSettings& settings,
+                          std::uint32_t held) {
+  FrameFormat format;
+  format.num_vertices = source.num_vertices();
+  format.num_frames = source.num_frames();
+  format.triangles = source.triangles();
+  format.max_held_frames = held;
+  const auto extent = measure_extent(source);
+  for (std::size_t c = 0; c < 3; ++c) {
+    format.box_min[c] = static_cast<float>(extent->min[c]);
+    format.box_max[c] = static_cast<float>(extent->max[c]);
+  }
+  StreamBytes bytes;
+  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return true;
+  });
+  if (!encoder) throw std::logic_error(encoder.error().message);
+  std::vector<float> xyz(3 * std::size_t{source.num_vertices()});
+  for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
+    EXPECT_FALSE(source.read_frame(f, xyz));
+    if (const auto error = encoder->add_frame(xyz)) throw std::logic_error(error->message);
+  }
+  const auto report = encoder->finish();
+  if (!report) throw std::logic_error(report.error().message);
+  EXPECT_TRUE(report->target_met);
+  if (settings.target.kind == Target::kKg) {
+    EXPECT_LE(report->metrics.kg_error_percent, settings.target.value);
+  }
+  require_conforming(bytes);
+  return bytes;
+}
+
+std::size_t count(const StreamBytes& bytes, UnitType type) {
+  const auto units = units_of(bytes);
+  return static_cast<std::size_t>(std::count_if(
+      units.begin(), units.end(), [&](const UnitPlace& unit) { return unit.type == type; }));
+}
+
+using Frames = std::vector<std::vector<std::int32_t>>;
+
+// Each frame has a hash, which the decoder compares.
+Frames decode(const StreamBytes& bytes) {
+  auto decoder = Decoder::open(memory_source(bytes));
+  if (!decoder) throw std::logic_error("the stream does not open");
+  Frames frames;
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+  for (auto more = decoder->next_frame(positions); more && *more;
+       more = decoder->next_frame(positions)) {
+    EXPECT_EQ(decoder->compared_frames(), 1U);
+    frames.push_back(positions);
+  }
+  EXPECT_EQ(frames.size(), decoder->header().num_frames);
+  return frames;
+}
+
+TEST(SpanModels, RepeatedMotionHasOneModel) {
+  MemoryFrames source = moving_tube(192, bent);
+  MemoryFrames first = moving_tube(64, bent);
+  const StreamBytes whole = encode_frames(source, settings_of(32), 64);
+  EXPECT_EQ(count(whole, UnitType::kModel), 1U);
+  EXPECT_EQ(count(whole, UnitType::kGof), 6U);
+  // Much less than a model for each span.
+  EXPECT_LT(whole.size(),
+            2.2 * static_cast<double>(encode_frames(first, settings_of(32), 64).size()));
+  EXPECT_EQ(decode(whole).size(), 192U);
+}
+
+// A span of a single GOF has vertices of its own where nothing follows, but a model otherwise.
+TEST(SpanModels, SpansMayBeSingleGofs) {
+  MemoryFrames source = moving_tube(96, bent);
+  const StreamBytes bytes = encode_frames(source, settings_of(32), 32);
+  EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
+  EXPECT_EQ(count(bytes, UnitType::kGof), 3U);
+  EXPECT_EQ(decode(bytes).size(), 96U);
+}
+
+// Little more than if the parts were sequences of their own.
+TEST(SpanModels, ChangedMotionIsCodedAsWell) {
+  MemoryFrames source = moving_tube(128, changing(64.0));
+  MemoryFrames first = moving_tube(64, bent);
+  const StreamBytes whole = encode_frames(source, settings_of(64), 64);
+  const StreamBytes before = encode_frames(first, settings_of(64), 64);
+  MemoryFrames late = moving_tube(64, [](double x, double y, double z, double f) {
+    return changing(0.0)(x, y, z, f + 64.0);
+  });
+  const StreamBytes after = encode_frames(late, settings_of(64), 64);
+  EXPECT_LT(whole.size(), before.size() + after.size());
+  EXPECT_EQ(decode(whole).size(), 128U);
+}
+
+TEST(SpanModels, SeeksReachLaterSpans) {
+  MemoryFrames source = moving_tube(128, changing(96.0));
+  // Enough GOFs for an index.
+  const StreamBytes bytes = encode_frames(source, settings_of(4), 32);
+  EXPECT_GE(count(bytes, UnitType::kGofIndex), 1U);
+  EXPECT_LT(count(bytes, UnitType::kModel), 4U);
+  const Frames frames = decode(bytes);
+  std::vector<std::int32_t> positions(frames[0].size());
+  for (const std::uint32_t f : {127U, 40U, 65U, 3U, 100U, 31U, 32U}) {
+    auto decoder = Decoder::open(memory_source(bytes));
+    ASSERT_TRUE(decoder);
+    ASSERT_TRUE(decoder->seek(f));
+    ASSERT_TRUE(*decoder->next_frame(positions)) << f;
+    EXPECT_EQ(positions, frames[f]) << f;
+  }
+}
+
+TEST(SpanModels, ThreadsGiveTheSameBytes) {
+  MemoryFrames source = moving_tube(96, changing(50.0));
+  EXPECT_EQ(encode_frames(source, settings_of(16, 1), 32),
+            encode_frames(source, settings_of(16, 2), 32));
+}
+
+TEST(SpanModels, MeetOtherTargets) {
+  MemoryFrames source = moving_tube(96, changing(70.0));
+  for (const Target& target : {Target{Target::kMaxError, 0.01}, Target{Target::kBpvf, 2.0}}) {
+    EncoderSettings settings = settings_of(32);
+    settings.target = target;
+    EXPECT_EQ(decode(encode_frames(source, settings, 32)).size(), 96U);
+  }
+}
+
+// encode() with as little memory as it accepts.
+class LittleMemory : public testing::Test {
+ protected:
+  static EncoderSettings settings(std::uint32_t threads) {
+    EncoderSettings settings = settings_of(100, threads);
+    settings.max_memory_bytes = std::uint64_t{40} << 20;
+    return settings;
+  }
+  MemoryFrames source = moving_tube(600, changing(500.0));
+};
+
+TEST_F(LittleMemory, LaterSpansUseTheModel) {
+  EncodeReport report;
+  const StreamBytes bytes = encode_to_memory(source, settings(1), &report);
+  ASSERT_FALSE(bytes.empty());
+  EXPECT_TRUE(report.target_met);
+  EXPECT_LE(report.metrics.kg_error_percent, 0.3);
+  EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
+  EXPECT_GT(count(bytes, UnitType::kGof), 2U);
+  EXPECT_EQ(decode(bytes).size(), 600U);
+  EXPECT_EQ(bytes, encode_to_memory(source, settings(2)));
+}
+
+}  // namespace
+}  // namespace rlpc
