@@ -245,11 +245,14 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
   });
 }
 
-// Fits the bone motions of all frames. Each frame starts from the motions in the last sampled
-// frame up to it.
+// Fits the bone motions of all frames. Each frame starts from the motions in the frame before
+// or, if it is in the sample, from those found there.
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
   constexpr std::size_t kTogether = 16;  // fixed: frames of a pass
+  // tuned (off: 1): Rounds that fit the poses of a frame, of each of two methods. Poses that
+  // have not converged leave more to trajectories.
+  constexpr int kPoseRounds = 4;
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   for_ranges(frames_.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
@@ -264,11 +267,17 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
     std::vector<Motion> now(n);
     std::size_t nearest = 0;
     for (std::size_t f = first; f < end; ++f) {
-      while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) ++nearest;
       const std::vector<Motion> wanted = targets.of_frame(f - first);
-      for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
-      for (int i = 0; i < 2 * kRounds; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kRounds - 1; ++i) solve_poses(moments, wanted, now);
+      bool starts = f == first;
+      while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) {
+        ++nearest;
+        starts = true;
+      }
+      if (starts) {
+        for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
+      }
+      for (int i = 0; i < kPoseRounds; ++i) refine_poses(moments, wanted, now);
+      for (int i = 0; i < kPoseRounds; ++i) solve_poses(moments, wanted, now);
       for (std::size_t b = 0; b < n; ++b) {
         result[b][f] = now[b];
         result[b][f].col(3) += centre_[f];
