@@ -78,13 +78,22 @@ double BoneSearch::translation_cost(double step) const {
   return rlpc::expected_cost(translation_, frames_.num_vertices, frames_.num_frames, step);
 }
 
+double BoneSearch::one_bone_cost(double step) const {
+  return actual_to_expected_ * translation_cost(step);
+}
+
+// Bones are tried if they are expected to cost less.
+double BoneSearch::worth_trying(double step) const {
+  return (1.0 - kTryMargin) * one_bone_cost(step);
+}
+
 double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bones,
                                  double step) const {
   return growth.fit->expected_cost(bones.state, bones.spectrum, step);
 }
 
 // Fits bones of each number, ascending, as long as there is a prospect that they are worth
-// their bits: more than a single bone, and others with the same number.
+// their bits: more than a single bone, others with the same number, and those before.
 void BoneSearch::grow_all(double step) {
   // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there
   // is none.
@@ -99,12 +108,14 @@ void BoneSearch::grow_all(double step) {
              : kFewBones;
   std::vector<Growth*> growing;
   for (Growth& growth : growths_) growing.push_back(&growth);
-  double least = translation_cost(step);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<double> before(growing.size(), kNone);  // costs of the number before
+  double last = kNone;
   for (std::size_t i = 0; i < counts.size() && !growing.empty(); ++i) {
     std::vector<double> cost(growing.size());
     for_each(growing.size(), [&](std::size_t k) {
       Growth& growth = *growing[k];
-      cost[k] = std::numeric_limits<double>::infinity();
+      cost[k] = kNone;
       if (!growth.fit->grow(counts[i])) return;
       growth.fit->settle();
       growth.bones.push_back(
@@ -112,16 +123,26 @@ void BoneSearch::grow_all(double step) {
       cost[k] = expected_cost(growth, growth.bones.back(), step);
     });
     const double of_count = *std::min_element(cost.begin(), cost.end());
-    least = std::min(least, of_count);
+    const double next = of_count - (last - of_count);  // if it gains as much again
+    last = of_count;
     const bool telling = !all && i + 1 >= kTelling;
+    const bool promising = of_count < worth_trying(step);
+    if (telling && promising && !fast && !one_) {
+      one_ = try_one_bone(SkinnedTrials(context_, frames_, step), nullptr);
+    }
     std::vector<Growth*> still;
+    std::vector<double> of_still;
     for (std::size_t k = 0; k < growing.size(); ++k) {
       const bool ended = growing[k]->bones.back().count != counts[i];
       const bool hopeless = telling && cost[k] > (1.0 + kTryMargin) * of_count;
-      if (!ended && !hopeless) still.push_back(growing[k]);
+      const bool rises = telling && cost[k] > before[k];
+      if (ended || hopeless || rises) continue;
+      still.push_back(growing[k]);
+      of_still.push_back(cost[k]);
     }
     growing = std::move(still);
-    if (telling && least >= translation_cost(step)) break;
+    before = std::move(of_still);
+    if (telling && std::min(next, of_count) >= worth_trying(step)) break;
   }
 }
 
@@ -151,14 +172,19 @@ SkinnedCandidate BoneSearch::one_bone(double step) {
 }
 
 SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
-  if (context_.settings.preset != Preset::kSlow) {
-    return trials.run(one_bone(trials.step()), one);
+  start_all();
+  const bool is_slow = context_.settings.preset == Preset::kSlow;
+  SkinnedTrial best =
+      trials.run(is_slow ? SkinnedCandidate{translation_rig(frames_), {}, settings_}
+                         : one_bone(trials.step()),
+                 is_slow ? nullptr : one);
+  if (is_slow) {
+    const Growth& any = growths_.front();
+    const Rig turning = any.fit->rig(any.bones.front().state, 1, trials.step());
+    best = *cheaper(std::move(best), trials.run({turning, {}, settings_}));
   }
-  const Growth& any = growths_.front();
-  SkinnedTrial best = trials.run({translation_rig(frames_), {}, settings_});
-  return std::move(*cheaper(
-      std::move(best),
-      trials.run({any.fit->rig(any.bones.front().state, 1, trials.step()), {}, settings_})));
+  actual_to_expected_ = std::min(best.cost / translation_cost(trials.step()), 1.0);
+  return best;
 }
 
 SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
@@ -188,10 +214,9 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
     return a.expected < b.expected;
   });
   if (context_.settings.preset == Preset::kSlow) return list;
-  const double translation = translation_cost(step);
   const auto is_unlikely = [&](const Candidate& c) {
-    return c.expected >= std::min((1.0 - kTryMargin) * translation,
-                                  (1.0 + kTryMargin) * list.front().expected);
+    return c.expected >=
+           std::min(worth_trying(step), (1.0 + kTryMargin) * list.front().expected);
   };
   list.erase(std::find_if(list.begin(), list.end(), is_unlikely), list.end());
   if (list.size() > kDrafts) list.erase(list.begin() + kDrafts, list.end());
@@ -219,7 +244,7 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
-  const double most = (fast ? kWithoutTrial : 1.0) * translation_cost(step);
+  const double most = (fast ? kWithoutTrial : 1.0) * one_bone_cost(step);
   if (list.empty() || list.front().expected >= most) return one_bone(step);
   Growth& growth = growths_[list.front().growth];
   return candidate(growth, growth.bones[list.front().bones], step);
@@ -230,16 +255,16 @@ double BoneSearch::squared_spread() const { return growths_.front().fit->squared
 SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
   grow_all(trials.step());
+  std::vector<BestTrial> drafts;
+  drafts.emplace_back(try_one_bone(trials, one != nullptr ? one
+                                           : one_         ? &one_->analysis
+                                                          : nullptr));
   const std::vector<Candidate> list = candidates(trials.step());
-  std::vector<BestTrial> drafts(list.size() + 1);
-  for_each(drafts.size(), [&](std::size_t i) {
-    if (i == 0) {
-      drafts[0] = try_one_bone(trials, one);
-      return;
-    }
-    Growth& growth = growths_[list[i - 1].growth];
-    Growth::Bones& bones = growth.bones[list[i - 1].bones];
-    drafts[i] = trials.run(candidate(growth, bones, trials.step()));
+  drafts.resize(list.size() + 1);
+  for_each(list.size(), [&](std::size_t i) {
+    Growth& growth = growths_[list[i].growth];
+    Growth::Bones& bones = growth.bones[list[i].bones];
+    drafts[i + 1] = trials.run(candidate(growth, bones, trials.step()));
   });
   std::size_t best = 0;
   for (std::size_t i = 1; i < drafts.size(); ++i) {

@@ -42,8 +42,8 @@ class BoneSearch {
     std::uint32_t influences;
     std::unique_ptr<BoneFit> fit;
     struct Bones {
-      std::uint32_t count;  // that were asked for
-      BoneSolver state;     // while they can be exchanged
+      std::uint32_t count = 0;  // that were asked for
+      BoneSolver state;         // while they can be exchanged
       ResidualSpectrum spectrum;
       std::optional<BoneSolver> settled = {};  // the same, with the best rest positions
       bool polished = false;  // there is nothing to gain from further exchanges
@@ -60,13 +60,15 @@ class BoneSearch {
   void start_all();
   void grow_all(double step);
   double translation_cost(double step) const;
+  double one_bone_cost(double step) const;
+  double worth_trying(double step) const;
   double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
   SkinnedCandidate one_bone(double step);
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
   SkinnedTrial try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
   std::vector<Candidate> candidates(double step);
-  BestTrial polish(const SkinnedTrials& trials, const Candidate& candidate);
+  BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
 
   const SkinnedContext& context_;
   const GofFrames& frames_;
@@ -75,6 +77,10 @@ class BoneSearch {
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
   std::vector<Growth> growths_;
   ResidualSpectrum translation_;  // of a single bone that only translates
+  // Of a single bone, of which the expected cost leaves out what adaptive weights predict; at
+  // most 1, as other errors of the estimate are those of all bones.
+  double actual_to_expected_ = 1.0;
+  BestTrial one_;  // a single bone, once others are promising
 };
 
 }  // namespace rlpc
