@@ -91,8 +91,9 @@ struct MainTools {
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
-// The error or rate that the encoder aims for. It stays at most 2 % below, if possible, and
-// exceeds the target only if that cannot be met (EncodeReport::target_met).
+// The error or rate that the encoder aims for. It stays at most 2 % below, if possible, or with
+// a KG error in the High profile, 4 %; and exceeds the target only if that cannot be met
+// (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {
     kNone,  // no search; quantisers as set

@@ -31,6 +31,10 @@ class BestEncoding {
   }
   bool met() const { return met_; }      // an encoding does not exceed the target
   bool close() const { return close_; }  // one is also within the tolerance
+  // The best does not exceed the target, and is at most this fraction below.
+  bool met_within(double fraction) const {
+    return met_ && measured_ >= target_.value * (1.0 - fraction);
+  }
 
  private:
   // Among encodings that meet the target, the one closest to it usually wins. But errors jump

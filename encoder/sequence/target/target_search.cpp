@@ -116,8 +116,13 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
-  constexpr int kUsualTrials = 4;  // fixed: a promise about time
-  const bool enough = was_interpolated_ && best_.met() && trials_ >= kUsualTrials;
+  constexpr int kUsualTrials = 4;     // fixed: a promise about time
+  constexpr int kDearTrials = 3;      // fixed: a promise about time
+  constexpr double kFarBelow = 0.04;  // fixed: of the target; a promise to users
+  const bool enough_of_dear = is_dear_ && target_.kind == Target::kKg &&
+                              trials_ >= kDearTrials && best_.met_within(kFarBelow);
+  const bool enough =
+      (was_interpolated_ && best_.met() && trials_ >= kUsualTrials) || enough_of_dear;
   if (best_.close() || enough || trials_ >= kMaxTrials) {
     finished_ = true;
     return;

@@ -243,6 +243,28 @@ TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
   EXPECT_LE(outcome.trials, 7);
 }
 
+// Errors that are powers of the step are within 4 % by then.
+TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreDear) {
+  for (const double power : {0.3, 0.5, 0.8, 1.0, 1.3}) {
+    for (const double factor : {0.02, 1.0, 30.0}) {
+      SCOPED_TRACE(testing::Message() << power << " " << factor);
+      TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
+      s.set_dear();
+      s.begin_at(100.0 * factor);
+      int trials = 0;
+      double best = 0.0;
+      while (!s.finished() && trials < kEnough) {
+        const double measured = 0.1 * std::pow(s.step() / (110.0 * factor), power);
+        ++trials;
+        if (s.report(measured, bytes_with(s.step()))) best = measured;
+      }
+      EXPECT_LE(trials, 3);
+      EXPECT_LE(best, 0.1);
+      EXPECT_GE(best, 0.096);
+    }
+  }
+}
+
 TEST(TargetSearch, EndsWithTheSmallestErrorIfTheTargetIsUnreachable) {
   for (const double floor : {0.11, 3.0}) {
     const Outcome outcome =
