@@ -27,7 +27,8 @@ class CounterpartSearch {
     Counterpart choice;
     double gain = 0.0;  // estimate of the bits that it saves at later vertices
   };
-  // The best new counterpart of v, if there is one.
+  // The best new counterpart of v, if there is one. Takes a bounded time on average: after a
+  // long search, none is found for some vertices.
   std::optional<Found> find(std::uint32_t v, const Counterparts& counterparts);
   // After the search at v, once it has been coded.
   void add(std::uint32_t v);
@@ -48,7 +49,7 @@ class CounterpartSearch {
   Cell cell_of(std::uint32_t v, const Hinge& hinge) const;
   static std::uint64_t key_of(const Cell& cell);
   bool has_shape_of(std::uint32_t v, const Hinge& own, const Entry& entry, bool mirrored) const;
-  double error_of(std::uint32_t v, const HingePairs& pairs) const;
+  double error_of(std::uint32_t v, const HingePairs& pairs);
   double growth(std::uint32_t v, const HingePairs& pairs, const Counterparts& counterparts);
 
   const RestOrder& order_;
@@ -58,6 +59,7 @@ class CounterpartSearch {
   ListOfLists<std::uint32_t> dependents_;  // [v]: vertices with v in a hinge
   std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;
   std::uint32_t num_listed_ = 0;
+  std::int64_t allowance_ = 0;  // predictions that may be made; may fall below 0
   // Of growth(), kNone in between:
   std::vector<std::uint32_t> assumed_;  // [num_vertices]
   std::vector<std::uint8_t> seen_;      // [num_vertices]
