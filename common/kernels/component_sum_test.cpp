@@ -105,8 +105,9 @@ TEST(SpatialFactors, TilesHaveTheNormalisedFactors) {
   const std::vector<int> bits{5, 16, 13, 24};
   SpatialFactors factors(kValues);
   const auto value = [&](std::size_t component, std::size_t i) {
-    const auto limit = std::int32_t{1} << (bits[component] - 1);
-    return static_cast<std::int32_t>((i * 7919 + component) % (2 * limit)) - limit;
+    const std::size_t limit = std::size_t{1} << (bits[component] - 1);
+    return static_cast<std::int32_t>((i * 7919 + component) % (2 * limit)) -
+           static_cast<std::int32_t>(limit);
   };
   for (std::size_t k = 0; k < bits.size(); ++k) {
     std::vector<std::int32_t> spatial;

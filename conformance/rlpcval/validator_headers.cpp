@@ -221,7 +221,8 @@ bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
   if (levels == 0) return true;
   const std::int64_t layers = r.u(3, "num_temporal_layers_minus1") + 1;
   temporal_layers = static_cast<std::uint32_t>(layers);
-  return r.require(layers <= levels + 1, "R-TRK-01", at_most(levels));
+  return r.require(layers <= levels + 1, "R-TRK-01",
+                   at_most(static_cast<std::uint64_t>(levels)));
 }
 
 // 6.13.1 tracks_of_gof( )

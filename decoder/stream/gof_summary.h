@@ -42,10 +42,10 @@ struct SliceTotals {
 // A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
 // JSON. only_many: shown in JSON, and elsewhere if it is greater than 1.
 struct GofFigure {
-  const char* key;  // in JSON
-  const char* one;
-  const char* many;
-  std::uint32_t value;
+  const char* key = nullptr;  // in JSON
+  const char* one = nullptr;
+  const char* many = nullptr;
+  std::uint32_t value = 0;
   bool only_many = false;
 };
 

@@ -90,7 +90,7 @@ Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t compute
 
 Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
   const std::uint64_t needed_bytes = memory_.bytes_in_use + unit.size;
-  if (needed_bytes > memory_.max_bytes || unit.size > kMaxPayloadBytes) {
+  if (needed_bytes > memory_.max_bytes || std::uint64_t{unit.size} > kMaxPayloadBytes) {
     return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
   }
   trace_header(unit);

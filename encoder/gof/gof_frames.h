@@ -43,8 +43,8 @@ double squared_error(const GofFrames& frames, const Decode& decode,
     std::vector<std::int32_t> positions(values);
     for (std::size_t i = first; i < end; ++i) {
       // The middles of equal parts.
-      const auto frame = static_cast<std::uint32_t>((2 * std::uint64_t{i} + 1) *
-                                                    frames.num_frames / (2 * count));
+      const auto frame = static_cast<std::uint32_t>(
+          (2 * std::uint64_t{i} + 1) * frames.num_frames / (2 * std::uint64_t{count}));
       decode(frame, std::span<std::int32_t>(positions));
       const double* original = frames.at(frame, 0);
       double sum = 0.0;

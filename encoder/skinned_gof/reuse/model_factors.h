@@ -9,8 +9,8 @@
 #include "encoder/gof/gof_frames.h"
 #include "encoder/math/principal_components.h"
 #include "encoder/math/symmetric_system.h"
-#include "encoder/skinned_gof/quantise/mean_motion.h"
 #include "encoder/skinned_gof/quantise/kept_model.h"
+#include "encoder/skinned_gof/quantise/mean_motion.h"
 
 namespace rlpc {
 

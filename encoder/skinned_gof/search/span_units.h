@@ -10,8 +10,8 @@
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/gof/gof_coder.h"
-#include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
 #include "encoder/skinned_gof/quantise/kept_model.h"
+#include "encoder/skinned_gof/quantise/skinned_gof_encoder.h"
 
 namespace rlpc {
 
