@@ -325,7 +325,7 @@ TEST(SkinnedGofParser, TemporalLayersCanBeLeftOutWhereNothingNeedsThem) {
     std::uint32_t group = 0;
     for (std::size_t i = 0; i < payloads.slices.size() && is_legal; ++i) {
       const std::uint32_t layer = payloads.temporal_layer_idx[i];
-      group = layer > 0 && payloads.temporal_layer_idx[i - 1] == layer ? group + 1 : 0;
+      group = layer > 0 && i > 0 && payloads.temporal_layer_idx[i - 1] == layer ? group + 1 : 0;
       if (layer > 0 && random() % 6 == 0) continue;
       if (layer > 0) {
         is_legal = kept[group] + 1 == layer && (group == 0 || kept[group - 1] >= layer);

@@ -224,14 +224,14 @@ TEST_F(GltfSourceTest, ListsWhatItDrops) {
   EXPECT_TRUE(open(builder)->notes().empty());
   Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["NORMAL"] = attributes["POSITION"];
-  builder.json["materials"] = {Json::object()};
+  builder.json["materials"] = Json::array({Json::object()});
   EXPECT_EQ(open(builder)->notes(), (std::vector<std::string>{"dropped: normals, materials"}));
   for (const char* name : {"TEXCOORD_0", "TANGENT", "COLOR_0"}) {
     attributes[name] = attributes["POSITION"];
   }
-  builder.json["textures"] = {Json::object()};
-  builder.json["cameras"] = {Json::object()};
-  builder.json["skins"] = {{{"joints", {0}}}};
+  builder.json["textures"] = Json::array({Json::object()});
+  builder.json["cameras"] = Json::array({Json::object()});
+  builder.json["skins"] = Json::parse(R"([{"joints": [0]}])");
   builder.json["extensions"]["KHR_lights_punctual"] = Json::object();
   builder.json["nodes"][0]["name"] = "Hips";
   EXPECT_EQ(
