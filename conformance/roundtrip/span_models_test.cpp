@@ -34,8 +34,9 @@ MemoryFrames moving_tube(std::uint32_t num_frames, const Move& move) {
     for (std::uint32_t v = 0; v < kRings * kSides; ++v) {
       const double turn = 0.785398 * (v % kSides);
       const double radius = 0.2 + 0.02 * std::sin(1.7 * v);
-      const auto p = move(4.0 * (v / kSides) / kRings - 2.0, radius * std::cos(turn),
-                          radius * std::sin(turn), f);
+      const std::uint32_t ring = v / kSides;
+      const auto p =
+          move(4.0 * ring / kRings - 2.0, radius * std::cos(turn), radius * std::sin(turn), f);
       for (const double c : p) xyz.push_back(static_cast<float>(c));
     }
     frames.push_back(std::move(xyz));
@@ -202,19 +203,19 @@ class LittleMemory : public testing::Test {
     settings.max_memory_bytes = std::uint64_t{40} << 20;
     return settings;
   }
-  MemoryFrames source = moving_tube(600, changing(500.0));
+  MemoryFrames source_ = moving_tube(600, changing(500.0));
 };
 
 TEST_F(LittleMemory, LaterSpansUseTheModel) {
   EncodeReport report;
-  const StreamBytes bytes = encode_to_memory(source, settings(1), &report);
+  const StreamBytes bytes = encode_to_memory(source_, settings(1), &report);
   ASSERT_FALSE(bytes.empty());
   EXPECT_TRUE(report.target_met);
   EXPECT_LE(report.metrics.kg_error_percent, 0.3);
   EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
   EXPECT_GT(count(bytes, UnitType::kGof), 2U);
   EXPECT_EQ(decode(bytes).size(), 600U);
-  EXPECT_EQ(bytes, encode_to_memory(source, settings(2)));
+  EXPECT_EQ(bytes, encode_to_memory(source_, settings(2)));
 }
 
 }  // namespace
