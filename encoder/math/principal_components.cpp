@@ -113,39 +113,4 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
   return result;
 }
 
-ComponentsByRow project_rows(const TrajectoryRows& rows, const ComponentsByRow& of_some) {
-  const std::size_t count = of_some.temporal.size();
-  const std::size_t width = rows.num_frames;
-  ComponentsByRow result;
-  std::vector<double> temporal(count * width);  // [component][frame]
-  std::size_t done = 0;
-  for_some_rows(rows, [&](std::span<const double> some) {
-    for (const double x : some) result.total_energy += x * x;
-    const std::size_t num_rows = some.size() / width;
-    std::vector<double> across(count * num_rows);  // of the spatial vectors
-    for (std::size_t r = 0; r < num_rows; ++r) {
-      for (std::size_t l = 0; l < count; ++l) {
-        across[l * num_rows + r] = of_some.spatial[(done + r) * count + l];
-      }
-    }
-    add_matrix_product(across, num_rows, some, width, temporal);
-    done += num_rows;
-  });
-  // Moves the norms of the temporal to the spatial vectors, which have the norm sigma so far.
-  std::vector<float> scale;
-  for (std::size_t l = 0; l < count; ++l) {
-    const std::span<double> of_l = std::span(temporal).subspan(l * width, width);
-    double square = 0.0;
-    for (const double x : of_l) square += x * x;
-    const double norm = std::sqrt(square);
-    for (double& x : of_l) x = norm > 0.0 ? x / norm : 0.0;
-    result.temporal.emplace_back(of_l.begin(), of_l.end());
-    result.energy.push_back(square / of_some.energy[l]);
-    scale.push_back(static_cast<float>(norm / of_some.energy[l]));
-  }
-  result.spatial = of_some.spatial;
-  for (std::size_t i = 0; i < result.spatial.size(); ++i) result.spatial[i] *= scale[i % count];
-  return result;
-}
-
 }  // namespace rlpc

@@ -37,8 +37,7 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
 struct TrajectoryRows {
   std::size_t num_values = 0;
   std::size_t num_frames = 0;
-  // Fills `rows` with consecutive rows, starting with row `first`; called up to twice for each
-  // row.
+  // Fills `rows` with consecutive rows, starting with row `first`; called twice for each row.
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };
 
@@ -52,9 +51,5 @@ struct ComponentsByRow {
 
 ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_components,
                                   double min_energy);
-
-// About the leading components of a matrix, from those of some of its columns: in the span of
-// their spatial vectors. Spatial vectors stay orthogonal; temporal ones have norm 1.
-ComponentsByRow project_rows(const TrajectoryRows& rows, const ComponentsByRow& of_some);
 
 }  // namespace rlpc

@@ -222,15 +222,17 @@ TEST(PrincipalComponents, AreFiniteForRepeatedTrajectories) {
   }
 }
 
+TrajectoryRows rows_of(const TrajectoryMatrix& m) {
+  return {m.num_values, m.num_frames, [&m](std::size_t first, auto some) {
+            std::copy_n(m.a.data() + first * m.num_frames, some.size(), some.begin());
+          }};
+}
+
 TEST(ComponentsByRow, AreThePrincipalComponents) {
   for (const Size size : {Size{20, 10}, Size{1300, 40}, Size{30, 90}, Size{0, 4}, Size{4, 0}}) {
     const TrajectoryMatrix m = random_matrix(8, size.num_values, size.num_frames, 6);
     const PrincipalComponents pc = principal_components(m, 4, 0.0);
-    const TrajectoryRows rows{m.num_values, m.num_frames, [&](std::size_t first, auto some) {
-                                std::copy_n(m.a.data() + first * m.num_frames, some.size(),
-                                            some.begin());
-                              }};
-    const ComponentsByRow same = components_by_row(rows, 4, 0.0);
+    const ComponentsByRow same = components_by_row(rows_of(m), 4, 0.0);
     EXPECT_EQ(same.temporal, pc.temporal);
     EXPECT_EQ(same.energy, pc.energy);
     ASSERT_EQ(same.spatial.size(), size.num_values * pc.spatial.size());

@@ -118,7 +118,11 @@ class SkinnedAnalyser {
       found_.pc = before_->pc;
       found_.step_of_components = before_->step_of_components;
     } else {
-      found_.pc = components();
+      // A component of less energy than the error of quantising its factors is not worth a
+      // trajectory. Steps that are tried later may be finer.
+      const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
+      const double least = finest * finest / 12.0 * frames_.num_vertices;
+      found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
       found_.step_of_components = step_;
     }
     found_.spatial_left = find_spatial_left(mesh_, found_.pc);
@@ -269,46 +273,20 @@ class SkinnedAnalyser {
     }
   }
 
-  // The principal components of the residual of bone motion. Those of a draft are found in a
-  // sample of the frames, unless they are too many for it.
-  ComponentsByRow components() {
-    // tuned (off: 100000): Frames from which the components of drafts are found. More take time
-    // in proportion to the square.
-    constexpr std::uint32_t kDraftFrames = 96;
-    constexpr std::size_t kMostPart = 3;  // fixed: more are limited by the sample
-    // A component of less energy than the error of quantising its factors is not worth a
-    // trajectory. Steps that are tried later may be finer.
-    const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
-    const double least = finest * finest / 12.0 * frames_.num_vertices;
-    const std::uint32_t stride = (frames_.num_frames + kDraftFrames - 1) / kDraftFrames;
-    if (settings_.draft && stride > 1) {
-      const TrajectoryRows some = displacement(stride);
-      const ComponentsByRow of_some =
-          components_by_row(some, settings_.max_trajectories, least / stride);
-      if (of_some.temporal.size() * kMostPart <= some.num_frames) {
-        return project_rows(displacement(1), of_some);
-      }
-    }
-    return components_by_row(displacement(1), settings_.max_trajectories, least);
-  }
-
-  // The residual of bone motion in every stride-th frame: frames minus skinned rest positions.
-  TrajectoryRows displacement(std::uint32_t stride) {
-    std::vector<std::uint32_t> chosen;
-    for (std::uint32_t f = 0; f < frames_.num_frames; f += stride) chosen.push_back(f);
-    const std::size_t width = 3 * chosen.size();
-    return {
-        frames_.num_vertices, width,
-        [this, width, chosen = std::move(chosen)](std::size_t first, std::span<double> rows) {
-          std::vector<MeanMotion> motion;
-          for (std::size_t i = 0; i * width < rows.size(); ++i) {
-            const auto v = static_cast<std::uint32_t>(first + i);
-            const auto mean = motions_.of(found_.model.influences[v], found_.model.weight_bits);
-            motion.clear();
-            for (const std::uint32_t f : chosen) motion.push_back(mean[f]);
-            write_displacement(frames_, chosen, v, motion, rest_of(v), &rows[i * width]);
-          }
-        }};
+  // The residual of bone motion: frames minus skinned rest positions.
+  TrajectoryRows displacement() {
+    const std::size_t width = 3 * std::size_t{frames_.num_frames};
+    return {frames_.num_vertices, width,
+            [this, width, chosen = numbers_from(0, frames_.num_frames)](
+                std::size_t first, std::span<double> rows) {
+              for (std::size_t i = 0; i * width < rows.size(); ++i) {
+                const auto v = static_cast<std::uint32_t>(first + i);
+                write_displacement(
+                    frames_, chosen, v,
+                    motions_.of(found_.model.influences[v], found_.model.weight_bits),
+                    rest_of(v), &rows[i * width]);
+              }
+            }};
   }
 
   // As decoded, in grid units.
