@@ -250,9 +250,6 @@ void BoneFit::fit_vertices(const BoneSolver& solver, std::size_t max_influences,
 BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                                 const Rig& rig) const {
   constexpr std::size_t kTogether = 16;  // fixed: frames of a pass
-  // tuned (off: 1): Rounds that fit the poses of a frame, of each of two methods. Poses that
-  // have not converged leave more to trajectories.
-  constexpr int kPoseRounds = 4;
   const std::size_t n = motions.size();
   BoneMotions result(n, std::vector<Motion>(frames_.num_frames));
   for_ranges(frames_.num_frames, kTogether, [&](std::size_t first, std::size_t end) {
@@ -276,8 +273,7 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
       if (starts) {
         for (std::size_t b = 0; b < n; ++b) now[b] = motions[b][nearest];
       }
-      for (int i = 0; i < kPoseRounds; ++i) refine_poses(moments, wanted, now);
-      for (int i = 0; i < kPoseRounds; ++i) solve_poses(moments, wanted, now);
+      fit_poses(moments, wanted, now);
       for (std::size_t b = 0; b < n; ++b) {
         result[b][f] = now[b];
         result[b][f].col(3) += centre_[f];

@@ -234,4 +234,13 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
   }
 }
 
+void fit_poses(const SkinMoments& moments, std::span<const Motion> targets,
+               std::vector<Motion>& motions) {
+  // tuned (off: 1): Rounds that fit the poses of a frame, of each of two methods. Poses that
+  // have not converged leave more to trajectories.
+  constexpr int kPoseRounds = 4;
+  for (int i = 0; i < kPoseRounds; ++i) refine_poses(moments, targets, motions);
+  for (int i = 0; i < kPoseRounds; ++i) solve_poses(moments, targets, motions);
+}
+
 }  // namespace rlpc

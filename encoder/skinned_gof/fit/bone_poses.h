@@ -63,4 +63,8 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions);
 
+// Both in turn, until the motions have converged. They may start from those of a frame nearby.
+void fit_poses(const SkinMoments& moments, std::span<const Motion> targets,
+               std::vector<Motion>& motions);
+
 }  // namespace rlpc

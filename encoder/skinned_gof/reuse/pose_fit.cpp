@@ -143,8 +143,7 @@ void PoseFit::fit_some(const GofFrames& frames, std::span<const std::uint32_t> c
   Motions now = rigid_motions(frames, chosen.front(), centres.front());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::vector<Motion> wanted = targets.of_frame(i);
-    for (int k = 0; k < 2 * kRounds; ++k) refine_poses(moments_, wanted, now);
-    for (int k = 0; k < kRounds - 1; ++k) solve_poses(moments_, wanted, now);
+    fit_poses(moments_, wanted, now);
     motions[i] = now;
     for (int k = 0; k < kRounds && !is_free_; ++k) keep_joints(wanted, centres[i], motions[i]);
     for (Motion& m : motions[i]) m.col(3) += centres[i] - m.leftCols<3>() * rest_centre_;
