@@ -28,6 +28,11 @@ inline constexpr double kAnalysisServes = 1.44;
 // this factor.
 inline constexpr double kDraftServes = 3.0;
 
+// Whether two steps are within a factor of each other.
+constexpr bool is_within(double factor, double a, double b) {
+  return a < factor * b && b < factor * a;
+}
+
 // The model_idx of all skinned models: each replaces the one before.
 inline constexpr std::uint32_t kModelIdx = 0;  // fixed: any would do
 

@@ -23,8 +23,6 @@ constexpr double kComponentsServe = 1.2;
 // tuned: With bones, the squared error is about this power of the step, if these follow it.
 constexpr double kErrorPower = 1.7;
 
-bool is_within(double factor, double a, double b) { return a < factor * b && b < factor * a; }
-
 }  // namespace
 
 // The expected squared error of a trial at another step.
@@ -78,7 +76,7 @@ void SkinnedGofCoder::choose(double step) {
   }
   const SkinnedTrials trials(context_, frames_, step);
   const bool keeps = first && first->analysis.model.bones.size() == 1 &&
-                     first->step < kDraftServes * step && step < kDraftServes * first->step;
+                     is_within(kDraftServes, first->step, step);
   SkinnedTrial best =
       search_tools(context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
   choice_ = std::move(best.candidate);

@@ -255,10 +255,12 @@ double BoneSearch::squared_spread() const { return growths_.front().fit->squared
 SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
   grow_all(trials.step());
+  if (one == nullptr && one_ &&
+      is_within(kDraftServes, one_->analysis.step_of_components, trials.step())) {
+    one = &one_->analysis;
+  }
   std::vector<BestTrial> drafts;
-  drafts.emplace_back(try_one_bone(trials, one != nullptr ? one
-                                           : one_         ? &one_->analysis
-                                                          : nullptr));
+  drafts.emplace_back(try_one_bone(trials, one));
   const std::vector<Candidate> list = candidates(trials.step());
   drafts.resize(list.size() + 1);
   for_each(list.size(), [&](std::size_t i) {
