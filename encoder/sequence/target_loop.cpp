@@ -49,7 +49,7 @@ bool fits_level(const TargetTask& task, const BatchTrial& trial) {
 InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
                                        std::uint32_t trials_before) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
-  if (task.header.profile_idc >= kProfileHigh) search.set_dear();
+  if (task.header.profile_idc >= kProfileHigh) search.set_costly();
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {

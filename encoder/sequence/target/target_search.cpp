@@ -117,12 +117,12 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
   constexpr int kUsualTrials = 4;     // fixed: a promise about time
-  constexpr int kDearTrials = 3;      // fixed: a promise about time
+  constexpr int kCostlyTrials = 3;    // fixed: a promise about time
   constexpr double kFarBelow = 0.04;  // fixed: of the target; a promise to users
-  const bool enough_of_dear = is_dear_ && target_.kind == Target::kKg &&
-                              trials_ >= kDearTrials && best_.met_within(kFarBelow);
+  const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&
+                                trials_ >= kCostlyTrials && best_.met_within(kFarBelow);
   const bool enough =
-      (was_interpolated_ && best_.met() && trials_ >= kUsualTrials) || enough_of_dear;
+      (was_interpolated_ && best_.met() && trials_ >= kUsualTrials) || enough_of_costly;
   if (best_.close() || enough || trials_ >= kMaxTrials) {
     finished_ = true;
     return;

@@ -39,7 +39,7 @@ class TargetSearch {
   // which the target is expected. expected: from analyses made for analysis_step().
   void begin_at(const Expected& expected);
   // Encodings take long: a KG error of up to 4 % below the target ends the search after three.
-  void set_dear() { is_dear_ = true; }
+  void set_costly() { is_costly_ = true; }
   double step() const { return step_; }
   // The step to analyse for. Near the target it is kept as long as it is valid for step(),
   // because the measured value jumps from one analysis to the next.
@@ -75,7 +75,7 @@ class TargetSearch {
   BestEncoding best_;
   Bracket bracket_;
   PowerLaw power_law_;
-  bool is_dear_ = false;
+  bool is_costly_ = false;
   int trials_ = 0;
   bool was_interpolated_ = false;  // the current step, in a narrow bracket
   double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling

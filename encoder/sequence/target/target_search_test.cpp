@@ -244,12 +244,12 @@ TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
 }
 
 // Errors that are powers of the step are within 4 % by then.
-TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreDear) {
+TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreCostly) {
   for (const double power : {0.3, 0.5, 0.8, 1.0, 1.3}) {
     for (const double factor : {0.02, 1.0, 30.0}) {
       SCOPED_TRACE(testing::Message() << power << " " << factor);
       TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
-      s.set_dear();
+      s.set_costly();
       s.begin_at(100.0 * factor);
       int trials = 0;
       double best = 0.0;
