@@ -22,12 +22,8 @@ Encoded encoded(MemoryFrames& source, EncoderSettings settings) {
   settings.profile = Profile::kMain;
   settings.keep_order = true;
   Encoded result;
-  auto report = encode(source, settings, [&](std::span<const std::uint8_t> more) {
-    result.bytes.insert(result.bytes.end(), more.begin(), more.end());
-    return true;
-  });
-  EXPECT_TRUE(report) << report.error().message;
-  if (report) result.report = std::move(*report);
+  result.bytes = encode_to_memory(source, settings, &result.report);
+  EXPECT_FALSE(result.bytes.empty());
   return result;
 }
 

@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/roundtrip/frame_by_frame.h"
 #include "conformance/roundtrip/small_animation.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/frame_encoder.h"
-#include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {
 namespace {
@@ -72,37 +71,14 @@ EncoderSettings settings_of(std::uint32_t gof_frames, std::uint32_t threads = 1)
   return settings;
 }
 
-StreamBytes encode_frames(FrameSource& source, const EncoderSettings& settings,
-                          std::uint32_t held) {
-  FrameFormat format;
-  format.num_vertices = source.num_vertices();
-  format.num_frames = source.num_frames();
-  format.triangles = source.triangles();
-  format.max_held_frames = held;
-  const auto extent = measure_extent(source);
-  for (std::size_t c = 0; c < 3; ++c) {
-    format.box_min[c] = static_cast<float>(extent->min[c]);
-    format.box_max[c] = static_cast<float>(extent->max[c]);
-  }
-  StreamBytes bytes;
-  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  });
-  if (!encoder) throw std::logic_error(encoder.error().message);
-  std::vector<float> xyz(3 * std::size_t{source.num_vertices()});
-  for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
-    EXPECT_FALSE(source.read_frame(f, xyz));
-    if (const auto error = encoder->add_frame(xyz)) throw std::logic_error(error->message);
-  }
-  const auto report = encoder->finish();
-  if (!report) throw std::logic_error(report.error().message);
-  EXPECT_TRUE(report->target_met);
+StreamBytes stream_of(FrameSource& source, const EncoderSettings& settings,
+                      std::uint32_t held) {
+  const Encoded encoded = encode_frames(source, settings, held);
+  EXPECT_TRUE(encoded.report.target_met);
   if (settings.target.kind == Target::kKg) {
-    EXPECT_LE(report->metrics.kg_error_percent, settings.target.value);
+    EXPECT_LE(encoded.report.metrics.kg_error_percent, settings.target.value);
   }
-  require_conforming(bytes);
-  return bytes;
+  return encoded.bytes;
 }
 
 std::size_t count(const StreamBytes& bytes, UnitType type) {
@@ -131,19 +107,19 @@ Frames decode(const StreamBytes& bytes) {
 TEST(SpanModels, RepeatedMotionHasOneModel) {
   MemoryFrames source = moving_tube(192, bent);
   MemoryFrames first = moving_tube(64, bent);
-  const StreamBytes whole = encode_frames(source, settings_of(32), 64);
+  const StreamBytes whole = stream_of(source, settings_of(32), 64);
   EXPECT_EQ(count(whole, UnitType::kModel), 1U);
   EXPECT_EQ(count(whole, UnitType::kGof), 6U);
   // Much less than a model for each span.
   EXPECT_LT(whole.size(),
-            2.2 * static_cast<double>(encode_frames(first, settings_of(32), 64).size()));
+            2.2 * static_cast<double>(stream_of(first, settings_of(32), 64).size()));
   EXPECT_EQ(decode(whole).size(), 192U);
 }
 
 // A span of a single GOF has vertices of its own where nothing follows, but a model otherwise.
 TEST(SpanModels, SpansMayBeSingleGofs) {
   MemoryFrames source = moving_tube(96, bent);
-  const StreamBytes bytes = encode_frames(source, settings_of(32), 32);
+  const StreamBytes bytes = stream_of(source, settings_of(32), 32);
   EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
   EXPECT_EQ(count(bytes, UnitType::kGof), 3U);
   EXPECT_EQ(decode(bytes).size(), 96U);
@@ -153,12 +129,12 @@ TEST(SpanModels, SpansMayBeSingleGofs) {
 TEST(SpanModels, ChangedMotionIsCodedAsWell) {
   MemoryFrames source = moving_tube(128, changing(64.0));
   MemoryFrames first = moving_tube(64, bent);
-  const StreamBytes whole = encode_frames(source, settings_of(64), 64);
-  const StreamBytes before = encode_frames(first, settings_of(64), 64);
+  const StreamBytes whole = stream_of(source, settings_of(64), 64);
+  const StreamBytes before = stream_of(first, settings_of(64), 64);
   MemoryFrames late = moving_tube(64, [](double x, double y, double z, double f) {
     return changing(0.0)(x, y, z, f + 64.0);
   });
-  const StreamBytes after = encode_frames(late, settings_of(64), 64);
+  const StreamBytes after = stream_of(late, settings_of(64), 64);
   EXPECT_LT(whole.size(), before.size() + after.size());
   EXPECT_EQ(decode(whole).size(), 128U);
 }
@@ -166,7 +142,7 @@ TEST(SpanModels, ChangedMotionIsCodedAsWell) {
 TEST(SpanModels, SeeksReachLaterSpans) {
   MemoryFrames source = moving_tube(128, changing(96.0));
   // Enough GOFs for an index.
-  const StreamBytes bytes = encode_frames(source, settings_of(4), 32);
+  const StreamBytes bytes = stream_of(source, settings_of(4), 32);
   EXPECT_GE(count(bytes, UnitType::kGofIndex), 1U);
   EXPECT_LT(count(bytes, UnitType::kModel), 4U);
   const Frames frames = decode(bytes);
@@ -182,8 +158,8 @@ TEST(SpanModels, SeeksReachLaterSpans) {
 
 TEST(SpanModels, ThreadsGiveTheSameBytes) {
   MemoryFrames source = moving_tube(96, changing(50.0));
-  EXPECT_EQ(encode_frames(source, settings_of(16, 1), 32),
-            encode_frames(source, settings_of(16, 2), 32));
+  EXPECT_EQ(stream_of(source, settings_of(16, 1), 32),
+            stream_of(source, settings_of(16, 2), 32));
 }
 
 TEST(SpanModels, MeetOtherTargets) {
@@ -191,7 +167,7 @@ TEST(SpanModels, MeetOtherTargets) {
   for (const Target& target : {Target{Target::kMaxError, 0.01}, Target{Target::kBpvf, 2.0}}) {
     EncoderSettings settings = settings_of(32);
     settings.target = target;
-    EXPECT_EQ(decode(encode_frames(source, settings, 32)).size(), 96U);
+    EXPECT_EQ(decode(stream_of(source, settings, 32)).size(), 96U);
   }
 }
 

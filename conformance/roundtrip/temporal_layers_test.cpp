@@ -8,21 +8,15 @@
 
 #include "common/io/float_position.h"
 #include "conformance/roundtrip/cut_streams_test.h"
+#include "conformance/roundtrip/frame_by_frame.h"
 #include "conformance/roundtrip/small_animation.h"
 #include "conformance/roundtrip/stream_summary_test.h"
 #include "decoder/stream/gof_summary.h"
-#include "encoder/frame_encoder.h"
-#include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kFrames = 60;
-
-struct Encoded {
-  StreamBytes bytes;
-  EncodeReport report;
-};
 
 EncoderSettings settings_with(std::uint32_t layers, std::uint32_t gof_frames) {
   EncoderSettings settings;
@@ -38,43 +32,14 @@ EncoderSettings settings_with(std::uint32_t layers, std::uint32_t gof_frames) {
 Encoded encoded(const EncoderSettings& settings) {
   MemoryFrames source = bending_tube(16, kFrames);
   Encoded result;
-  auto report = encode(source, settings, [&](std::span<const std::uint8_t> more) {
-    result.bytes.insert(result.bytes.end(), more.begin(), more.end());
-    return true;
-  });
-  EXPECT_TRUE(report) << report.error().message;
-  if (report) result.report = std::move(*report);
-  require_conforming(result.bytes);
+  result.bytes = encode_to_memory(source, settings, &result.report);
+  EXPECT_FALSE(result.bytes.empty());
   return result;
 }
 
 Encoded encoded_by_frames(const EncoderSettings& settings) {
   MemoryFrames source = bending_tube(16, kFrames);
-  FrameFormat format;
-  format.num_vertices = source.num_vertices();
-  format.num_frames = source.num_frames();
-  format.triangles = source.triangles();
-  const auto extent = measure_extent(source);
-  for (std::size_t c = 0; c < 3; ++c) {
-    format.box_min[c] = static_cast<float>(extent->min[c]);
-    format.box_max[c] = static_cast<float>(extent->max[c]);
-  }
-  Encoded out;
-  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
-    out.bytes.insert(out.bytes.end(), more.begin(), more.end());
-    return true;
-  });
-  EXPECT_TRUE(encoder) << encoder.error().message;
-  std::vector<float> xyz(3 * std::size_t{source.num_vertices()});
-  for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
-    EXPECT_FALSE(source.read_frame(f, xyz));
-    EXPECT_FALSE(encoder->add_frame(xyz));
-  }
-  auto report = encoder->finish();
-  EXPECT_TRUE(report);
-  if (report) out.report = std::move(*report);
-  require_conforming(out.bytes);
-  return out;
+  return encode_frames(source, settings);
 }
 
 // The KG error of a stream in the order of the input.

@@ -46,7 +46,7 @@ class WavingStrip final : public FrameSource {
 
 SequenceHeader header_of(FrameSource& source, const EncoderSettings& settings) {
   SequenceHeader header;
-  header.profile_idc = settings.profile == Profile::kMain ? kProfileMain : kProfileBaseline;
+  header.profile_idc = static_cast<std::uint32_t>(settings.profile);
   header.num_vertices = source.num_vertices();
   header.num_triangles = static_cast<std::uint32_t>(source.triangles().size());
   header.num_frames = source.num_frames();
@@ -113,16 +113,19 @@ TEST(GofBatch, NumbersFramesFromItsFirst) {
   EXPECT_TRUE(b->gofs[0].frame);
 }
 
-// In the High profile, spans follow each other; how many are encoded at a time, and on how many
-// threads, affects time and memory only.
-TEST(GofBatch, LaterSpansUseModelsOfEarlierOnes) {
+EncoderSettings high_settings() {
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
   settings.preset = Preset::kFast;
+  return settings;
+}
+
+// In the High profile, spans follow each other; how many are encoded at a time, and on how many
+// threads, affects time and memory only.
+TEST(GofBatch, LaterSpansUseModelsOfEarlierOnes) {
+  const EncoderSettings settings = high_settings();
   WavingStrip source(96);
-  SequenceHeader header = header_of(source, settings);
-  header.profile_idc = kProfileHigh;
-  const SequenceCoding coding(header, settings, source.triangles());
+  const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
   const std::vector<GofSpan> spans{{0, 24}, {24, 24, 2}, {48, 24}, {72, 24}};
   std::vector<std::vector<std::uint8_t>> first;  // bytes of the spans, step by step
   for (const std::uint32_t together : {1U, 2U, 4U, 1U}) {
@@ -154,13 +157,9 @@ TEST(GofBatch, LaterSpansUseModelsOfEarlierOnes) {
 
 // A batch can start from the model of the one before.
 TEST(GofBatch, TakesTheModelInForce) {
-  EncoderSettings settings;
-  settings.profile = Profile::kHigh;
-  settings.preset = Preset::kFast;
+  const EncoderSettings settings = high_settings();
   WavingStrip source(48);
-  SequenceHeader header = header_of(source, settings);
-  header.profile_idc = kProfileHigh;
-  const SequenceCoding coding(header, settings, source.triangles());
+  const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
   GofBatch before(coding, source, {{0, 24}}, {.keep_decoded = true, .has_followers = true});
   const auto first = before.encode(2000.0, 2000.0, {});
   ASSERT_TRUE(first);
