@@ -22,8 +22,8 @@ class GofEncoder {
   // encoding by the kinds tried so far. None: this kind certainly costs more than best.
   virtual std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
                                               double step) const = 0;
-  // Encodes the frames with a skinned model of an earlier span. none: that certainly costs more
-  // than `most`, or the kind has no models.
+  // Encodes the frames with the skinned model of an earlier span. None: that costs at least
+  // `most`, or is expected to, or the kind has no models.
   virtual std::optional<EncodedGof> encode_with(const KeptModel& /*model*/,
                                                 const GofFrames& /*frames*/, double /*step*/,
                                                 double /*most*/) const {

@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// None: the span certainly costs more than `most`, or no less. step: quantiser step, grid
-// units. Does not depend on anything else that was encoded.
+// None: it costs at least `most` (Lagrangian cost), or is expected to cost far more. step:
+// quantiser step, grid units.
 std::optional<EncodedGof> encode_with_model(const SkinnedContext& context,
                                             const KeptModel& kept, const GofFrames& frames,
                                             double step, double most);
