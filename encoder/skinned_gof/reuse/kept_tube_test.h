@@ -57,8 +57,9 @@ class KeptTube {
       for (std::uint32_t v = 0; v < kVertices; ++v) {
         const double angle = 6.283185307 * (v % kSides) / kSides;
         const double radius = 2500.0 + 300.0 * std::sin(1.7 * v);
+        const std::uint32_t ring = v / kSides;
         const Point p =
-            move({600.0 * (v / kSides), radius * std::cos(angle), radius * std::sin(angle)}, f);
+            move({600.0 * ring, radius * std::cos(angle), radius * std::sin(angle)}, f);
         list.xyz.insert(list.xyz.end(), p.begin(), p.end());
       }
     }
