@@ -1,8 +1,10 @@
 // Implements encode() of encoder/rlpc_encoder.h: encodes a whole sequence to its target.
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "encoder/math/det_math.h"
 #include "encoder/parallel/for_each.h"
@@ -226,33 +228,50 @@ InputResult<TargetResult> SequenceEncoder::find() {
   return best;
 }
 
-// Whether the result of a slow search is at least as good as that of the usual one.
-bool is_as_good(const TargetResult& slow, const TargetResult& usual, Target::Kind kind) {
-  if (kind == Target::kNone || slow.met != usual.met) return kind == Target::kNone || slow.met;
-  if (kind != Target::kBpvf) return slow.trial.gof_bytes <= usual.trial.gof_bytes;
-  return slow.trial.metrics.kg_error_percent <= usual.trial.metrics.kg_error_percent;
+// Whether a result is at least as good as another.
+bool is_as_good(const TargetResult& result, const TargetResult& other, Target::Kind kind) {
+  if (result.met != other.met) return result.met;
+  if (kind != Target::kBpvf) return result.trial.gof_bytes <= other.trial.gof_bytes;
+  return result.trial.metrics.kg_error_percent <= other.trial.metrics.kg_error_percent;
 }
 
-// Preset slow also searches as preset medium does, and keeps the better result: choices that
-// are better for each GOF may by chance be worse at the target.
+// The searches of preset slow. Its own choices, which are better for each GOF, may by chance be
+// worse at the target than those of preset medium; and one GOF worse than several.
+std::vector<EncoderSettings> slow_searches(const EncoderSettings& settings,
+                                           std::uint32_t num_frames) {
+  std::vector<EncoderSettings> searches{settings};
+  if (settings.gof_frames >= num_frames && num_frames > 1) {
+    EncoderSettings& several = searches.emplace_back(settings);
+    several.gof_frames = 0;
+    several.gof_frames = std::min(longest_gof(several), num_frames - num_frames / 2);
+  }
+  std::vector<EncoderSettings> usual = searches;
+  for (EncoderSettings& search : usual) search.preset = Preset::kMedium;
+  searches.insert(searches.end(), usual.begin(), usual.end());
+  return searches;
+}
+
+// Preset slow keeps the best result of several searches.
 InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettings& settings,
                                         const ByteSink& sink, const Progress& progress) {
-  constexpr double kUsualPart = 0.25;  // fixed: of the time, about
-  EncoderSettings usual_settings = settings;
-  usual_settings.preset = Preset::kMedium;
-  const Progress first = [&](double done) { progress(kUsualPart * done); };
-  const Progress second = [&](double done) {
-    progress(kUsualPart + (1.0 - kUsualPart) * done);
-  };
-  SequenceEncoder usual(source, usual_settings, progress ? first : progress);
-  auto of_usual = usual.find();
-  if (!of_usual) return of_usual.error();
-  SequenceEncoder slow(source, settings, progress ? second : progress);
-  auto of_slow = slow.find();
-  if (!of_slow) return of_slow.error();
-  return is_as_good(*of_slow, *of_usual, settings.target.kind)
-             ? slow.write(std::move(*of_slow), sink)
-             : usual.write(std::move(*of_usual), sink);
+  const std::vector<EncoderSettings> searches = slow_searches(settings, source.num_frames());
+  const auto count = static_cast<double>(searches.size());
+  double before = 0.0;
+  const Progress of_search = [&](double done) { progress((before + done) / count); };
+  std::unique_ptr<SequenceEncoder> best;
+  std::optional<TargetResult> result;
+  for (const EncoderSettings& search : searches) {
+    auto encoder =
+        std::make_unique<SequenceEncoder>(source, search, progress ? of_search : progress);
+    auto found = encoder->find();
+    if (!found) return found.error();
+    if (!result || !is_as_good(*result, *found, settings.target.kind)) {
+      best = std::move(encoder);
+      result = std::move(*found);
+    }
+    before += 1.0;
+  }
+  return best->write(std::move(*result), sink);
 }
 
 }  // namespace
