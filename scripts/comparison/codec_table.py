@@ -13,6 +13,7 @@ import subprocess
 # {out}: decoded point cache. A step is run as one process.
 RLPC_ENCODE = ("rlpcenc {mesh} --points {points} -o {file} --order-map {order} --gof {gof} "
                "--quiet {setting}",)
+DEFAULT_GOF_ENCODE = tuple(step.replace("--gof {gof} ", "") for step in RLPC_ENCODE)
 RLPC_DECODE = ("rlpcdec {file} -o {out} --quiet",)
 XZ, ZSTD = "--lzma2=preset=9e,lc=4,pb=0", "--ultra -22"
 
@@ -90,11 +91,15 @@ CODECS = (
           options="--profile main --preset fast", line="dashed"),
     Codec("main-slow", "Main, slow", "#444444", "the same, --preset slow",
           options="--profile main --preset slow", line="dashed"),
+    Codec("main-default-gofs", "Main, default GOFs", "#333333", "the same, without --gof",
+          encode=DEFAULT_GOF_ENCODE, options="--profile main", line="dashed"),
     HIGH,
     Codec("high-fast", "High, fast", "#ef8a62", "the same, --preset fast",
           options="--profile high --preset fast", line="dashed"),
     Codec("high-slow", "High, slow", "#67001f", "the same, --preset slow",
           options="--profile high --preset slow", line="dashed"),
+    Codec("high-default-gofs", "High, default GOFs", "#d6604d", "the same, without --gof",
+          encode=DEFAULT_GOF_ENCODE, options="--profile high", line="dashed"),
     Codec("baseline", "Baseline", "#0072b2", "RLPC, profile Baseline",
           options="--profile baseline"),
     paper("rlpca", "RLPCA", "#56b4e9",
@@ -118,7 +123,8 @@ CODECS = (
 )
 DEFAULT = ("main", "baseline", "rlpca", "orlpca", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz",
            "draco")
-README = ("main", "baseline", "coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz", "draco")
+README = ("main", "main-default-gofs", "high", "high-default-gofs", "baseline", "coddyac",
+          "lorenzo-xz", "meshopt-zstd", "zfp-xz", "draco")
 NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 12 does not package "
                 "them.")
 
