@@ -24,7 +24,8 @@ MemoryFrames changing_tube(std::uint32_t modes) {
   for (std::uint32_t f = 0; f < kFrames; ++f) {
     std::vector<float> xyz;
     for (std::uint32_t v = 0; v < 5 * kRings; ++v) {
-      double along = v / 5;
+      const std::uint32_t ring = v / 5;
+      double along = ring;
       double radius = 1.0;
       for (std::uint32_t m = 0; m < modes; ++m) {
         const double speed = 0.3 + 0.17 * m;
