@@ -9,8 +9,8 @@
 
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
+#include "common/parallel/for_each.h"
 #include "encoder/gof/gof_span.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 

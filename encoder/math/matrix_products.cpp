@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/widest.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {

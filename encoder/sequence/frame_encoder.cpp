@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/math/det_math.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/grid_choice.h"

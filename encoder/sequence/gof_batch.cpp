@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/gof/lagrangian.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {

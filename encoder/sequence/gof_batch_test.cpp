@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/parallel/for_each.h"
+#include "common/parallel/for_each.h"
 #include "encoder/sequence/choices/grid_choice.h"
 
 namespace rlpc {

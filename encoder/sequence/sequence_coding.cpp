@@ -7,10 +7,10 @@
 #include "common/bitstream/crc32.h"
 #include "common/io/float_position.h"
 #include "common/io/messages.h"
+#include "common/parallel/for_each.h"
 #include "encoder/cluster_gof/cluster_gof_kind.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/sequence/choices/gof_kinds.h"
 
 namespace rlpc {

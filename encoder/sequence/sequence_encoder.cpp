@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/det_math.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"

@@ -17,10 +17,10 @@ def _of_kinds(folder):
 _BITS = {"common", "common/bitstream"}
 _MESH = _BITS | {"common/mesh"}
 _GOFS = _MESH | {"common/syntax", "common/components"} | _of_kinds("common/{}")
-_RECON = {"common/kernels", "common/mesh_prediction"} | _of_kinds("common/{}/recon")
+_RECON = {"common/kernels", "common/mesh_prediction", "common/parallel"} | _of_kinds("common/{}/recon")
 _PARSE = {"decoder/parse", "decoder/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
-_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/parallel",
+_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math",
                             "encoder/write"}
 
 ROOMS = {
@@ -32,6 +32,7 @@ ROOMS = {
     "common/syntax": _GOFS,
     **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components"}),
     "common/kernels": {"common", "common/components"},
+    "common/parallel": set(),
     "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
     "common/c_api": {"common"},
@@ -46,7 +47,7 @@ ROOMS = {
     # Structures to positions.
     "decoder/recon": _GOFS | _RECON | {"decoder/stream"},
     "decoder/stream": _GOFS | _PARSE | _PUBLIC_DECODER,
-    "decoder": _GOFS | {"common/io", "decoder/stream", "decoder/recon"},
+    "decoder": _GOFS | {"common/io", "common/parallel", "decoder/stream", "decoder/recon"},
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output"} | _PUBLIC_DECODER,
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
@@ -62,8 +63,7 @@ ROOMS = {
     # Floating point, decisions, structures to bits.
     "encoder": {"common/mesh", "common/skinned_gof", "common/syntax", "encoder/input",
                 "encoder/metrics"},
-    "encoder/parallel": set(),
-    "encoder/math": {"encoder/parallel"},
+    "encoder/math": {"common/parallel"},
     "encoder/metrics": {"common/mesh", "encoder/math"},
     "encoder/write": _GOFS | {"encoder/math/det_math.h"},
     "encoder/gof": _ENCODER,

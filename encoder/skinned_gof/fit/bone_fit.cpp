@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/gof/lagrangian.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_estimate.h"
 #include "encoder/skinned_gof/fit/bone_tree.h"
 #include "encoder/skinned_gof/fit/skin_sums.h"

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/skinned_gof.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
 namespace rlpc {

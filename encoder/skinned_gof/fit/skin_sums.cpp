@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/matrix_products.h"
 #include "encoder/math/small_system.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/det_math.h"
-#include "encoder/parallel/for_each.h"
 #include "encoder/skinned_gof/fit/bone_solver.h"
 #include "encoder/skinned_gof/quantise/mean_motion.h"
 

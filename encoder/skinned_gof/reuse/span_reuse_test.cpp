@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "encoder/parallel/for_each.h"
+#include "common/parallel/for_each.h"
 #include "encoder/skinned_gof/reuse/kept_tube_test.h"
 
 namespace rlpc {

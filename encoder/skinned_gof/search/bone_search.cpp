@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/gof/component_cost.h"
-#include "encoder/parallel/for_each.h"
 
 namespace rlpc {
 namespace {

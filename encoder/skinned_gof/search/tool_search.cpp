@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "encoder/parallel/for_each.h"
+#include "common/parallel/for_each.h"
 
 namespace rlpc {
 namespace {

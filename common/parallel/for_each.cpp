@@ -1,4 +1,4 @@
-#include "encoder/parallel/for_each.h"
+#include "common/parallel/for_each.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -10,28 +10,27 @@
 
 namespace rlpc {
 
-class Threads::Pool {
+class ThreadPool::Impl {
  public:
-  explicit Pool(std::uint32_t count) : outer_(std::exchange(pool_of_thread, this)) {
+  explicit Impl(std::uint32_t count) {
     others_.reserve(count - 1);
     try {
       while (others_.size() + 1 < count) others_.emplace_back([this] { help(); });
     } catch (const std::exception&) {  // with the threads that there are
     }
   }
-  ~Pool() {
+  ~Impl() {
     {
       const std::lock_guard lock(mutex_);
       ends_ = true;
     }
     changed_.notify_all();
     for (std::thread& other : others_) other.join();
-    pool_of_thread = outer_;
   }
-  Pool(const Pool&) = delete;
-  Pool& operator=(const Pool&) = delete;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
-  static Pool* current() { return pool_of_thread; }
+  static thread_local Impl* of_thread;  // the pool that it uses
   bool has_others() const { return !others_.empty(); }
 
   void run(std::size_t count, const std::function<void(std::size_t)>& pass) {
@@ -98,7 +97,7 @@ class Threads::Pool {
   }
 
   void help() {
-    pool_of_thread = this;
+    of_thread = this;
     std::unique_lock lock(mutex_);
     for (;;) {
       Loop* const loop = innermost(0);
@@ -112,10 +111,8 @@ class Threads::Pool {
     }
   }
 
-  static thread_local Pool* pool_of_thread;
   static thread_local std::size_t depth_of_thread;  // of the pass that it is in
 
-  Pool* outer_;
   std::mutex mutex_;
   std::condition_variable changed_;  // a loop began, or its last pass is done; or ends_
   std::vector<Loop*> loops_;         // those that are open
@@ -123,25 +120,23 @@ class Threads::Pool {
   std::vector<std::thread> others_;
 };
 
-thread_local Threads::Pool* Threads::Pool::pool_of_thread = nullptr;
-thread_local std::size_t Threads::Pool::depth_of_thread = 0;
+thread_local ThreadPool::Impl* ThreadPool::Impl::of_thread = nullptr;
+thread_local std::size_t ThreadPool::Impl::depth_of_thread = 0;
 
-Threads::Threads(std::uint32_t count) : pool_(std::make_unique<Pool>(count)) {}
-Threads::~Threads() = default;
+ThreadPool::ThreadPool(std::uint32_t count) : impl_(std::make_unique<Impl>(count)) {}
+ThreadPool::~ThreadPool() = default;
+
+ThreadPool::Use::Use(ThreadPool& pool)
+    : before_(std::exchange(Impl::of_thread, pool.impl_.get())) {}
+ThreadPool::Use::~Use() { Impl::of_thread = before_; }
 
 void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
-  Threads::Pool* const pool = Threads::Pool::current();
+  ThreadPool::Impl* const pool = ThreadPool::Impl::of_thread;
   if (pool == nullptr || count < 2 || !pool->has_others()) {
     for (std::size_t i = 0; i < count; ++i) pass(i);
   } else {
     pool->run(count, pass);
   }
-}
-
-void for_ranges(std::size_t count, std::size_t together,
-                const std::function<void(std::size_t first, std::size_t end)>& range) {
-  for_each((count + together - 1) / together,
-           [&](std::size_t i) { range(i * together, std::min((i + 1) * together, count)); });
 }
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-#include "encoder/parallel/for_each.h"
+#include "common/parallel/for_each.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,18 @@
+// The same where there are no threads (pages in browsers).
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+
+class ThreadPool::Impl {};
+
+ThreadPool::ThreadPool(std::uint32_t /*count*/) {}
+ThreadPool::~ThreadPool() = default;
+
+ThreadPool::Use::Use(ThreadPool& /*pool*/) : before_(nullptr) {}
+ThreadPool::Use::~Use() = default;
+
+void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
+  for (std::size_t i = 0; i < count; ++i) pass(i);
+}
+
+}  // namespace rlpc
