@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel/for_each.h"
 #include "decoder/recon/frame_band.h"
 #include "decoder/recon/hash_check.h"
 #include "decoder/recon/prefetch.h"
@@ -23,12 +24,14 @@ class Decoder::Impl {
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
       : stream_(std::move(source), options),
         models_(stream_.context()),
-        threads_(std::clamp(options.threads, 1U, kMaxThreads)),
-        band_(threads_) {
+        num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
+        threads_(num_threads_),
+        band_(num_threads_) {
     stream_.models().when_dropped([this] { models_.erase_unused(); });
     // A trace follows the order of the stream.
-    if (threads_ > 1 && options.trace == nullptr) {
-      prefetch_.emplace(stream_, models_, options.limits.max_memory_bytes / threads_);
+    if (num_threads_ > 1 && options.trace == nullptr) {
+      prefetch_.emplace(stream_, models_, threads_,
+                        options.limits.max_memory_bytes / num_threads_);
     }
   }
 
@@ -62,7 +65,8 @@ class Decoder::Impl {
 
   StreamReader stream_;
   ModelRecons models_;
-  std::uint32_t threads_;
+  std::uint32_t num_threads_;
+  ThreadPool threads_;
   std::optional<PreparedGof> gof_;
   HashCheck hash_check_;
   FrameBand band_;
@@ -94,10 +98,10 @@ Result<bool> Decoder::Impl::load_gof() {
 Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   const std::uint32_t first_frame = stream_.next_first_frame();
   if (prefetch_) {
-    prefetch_->fill(unit.offset, first_frame, threads_);
+    prefetch_->fill(unit.offset, first_frame, num_threads_);
     if (auto found = prefetch_->take(unit.offset, first_frame)) {
       stream_.go_past(unit, found->gof.header.num_frames, found->end);
-      prefetch_->fill(stream_.offset(), stream_.next_first_frame(), threads_ - 1);
+      prefetch_->fill(stream_.offset(), stream_.next_first_frame(), num_threads_ - 1);
       return std::move(found->gof);
     }
   }
@@ -124,6 +128,7 @@ void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
   assert(positions.size() == 3 * std::size_t{stream_.header().num_vertices});
   if (failure_) return *failure_;
+  const ThreadPool::Use use(threads_);
   const auto more = decode_frame(positions);
   if (!more) fail(more.error());
   return more;
@@ -146,6 +151,7 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
   assert(frame < stream_.header().num_frames);
+  const ThreadPool::Use use(threads_);
   failure_.reset();
   if (!has_frame(frame)) {
     auto ok = stream_.seek(frame);

@@ -54,8 +54,8 @@ struct DecoderOptions {
   DecodeLimits limits;
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
-  // With more than one, GOFs are prefetched and frames reconstructed in parallel; positions and
-  // errors are the same. Each further thread may take memory for a GOF and the skinned models
+  // With more than one, GOFs are prefetched, and the vertices of a layer and several frames are
+  // reconstructed in parallel; positions and errors are the same. Each further thread may take memory for a GOF and the skinned models
   // before it, up to max_memory_bytes / threads, and for four frames. Clamped to 1 to
   // kMaxThreads.
   std::uint32_t threads = 1;

@@ -15,7 +15,7 @@
 namespace rlpc {
 
 // The weights of all vertices. start() begins a pass over the mesh: each vertex, in the order
-// of the mesh or, within a layer, in any order and on any thread, has its values predicted by a
+// of the mesh or, within a layer above the base, in any order and on any thread, is predicted by a
 // VertexAdaptation.
 class AdaptiveWeights {
  public:

@@ -43,7 +43,10 @@ void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t
     slots_ = next->models;
     gofs_.push_back(std::move(*next));
     Ahead& ahead = gofs_.back();
-    ahead.done = run_async([this, &ahead] { ahead.gof = parse(ahead); });
+    ahead.done = run_async([this, &ahead] {
+      const ThreadPool::Use use(threads_);
+      ahead.gof = parse(ahead);
+    });
   }
 }
 

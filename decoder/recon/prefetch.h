@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/parallel/for_each.h"
 #include "decoder/recon/gof_recon.h"
 #include "decoder/recon/model_recons.h"
 #include "decoder/stream/stream_reader.h"
@@ -33,9 +34,14 @@ class Prefetch {
     std::uint64_t end;  // of its units, bytes from the start of the stream
   };
 
-  // Stream and models must outlive it. max_memory_bytes: of each GOF.
-  Prefetch(StreamReader& stream, ModelRecons& models, std::uint64_t max_memory_bytes)
-      : stream_(stream), models_(models), max_memory_bytes_(max_memory_bytes) {}
+  // Stream, models and threads must outlive it. threads: for loops within a GOF.
+  // max_memory_bytes: of each GOF.
+  Prefetch(StreamReader& stream, ModelRecons& models, ThreadPool& threads,
+           std::uint64_t max_memory_bytes)
+      : stream_(stream),
+        models_(models),
+        threads_(threads),
+        max_memory_bytes_(max_memory_bytes) {}
 
   // Keeps up to `count` GOFs ready or in progress, from a byte offset on; the first of them
   // begins with first_frame. Drops earlier ones.
@@ -79,6 +85,7 @@ class Prefetch {
 
   StreamReader& stream_;
   ModelRecons& models_;
+  ThreadPool& threads_;
   std::uint64_t max_memory_bytes_;
   Slots slots_;  // those alive after the last of the GOFs
   std::deque<Ahead> gofs_;

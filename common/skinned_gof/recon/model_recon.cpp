@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/influences.h"
 #include "common/skinned_gof/recon/rest_recon.h"
 
@@ -12,6 +13,55 @@ namespace rlpc {
 namespace {
 
 constexpr std::size_t kPadding = 3;  // kernels may read one vector past the end
+
+// The values of the factors of a group.
+struct ValueRecon {
+  const SkinnedModel& model;
+  std::span<const int> bits;  // [factor]
+  std::span<const std::int32_t> residuals;
+  const ValuePrediction& prediction;
+  AdaptiveWeights* weights;
+  bool is_rest;
+  std::span<std::int32_t> values;  // [num_vertices][factor]
+
+  // Vertices that follow each other in the order or, within a layer above the base, any.
+  void vertices(const CodedMesh& mesh, std::span<const std::uint32_t> list) const {
+    std::vector<std::int64_t> predicted(bits.size());
+    std::optional<VertexAdaptation> adaptation;
+    if (weights != nullptr) adaptation.emplace(*weights);
+    for (const std::uint32_t v : list) {
+      const int layer_step = model.layer_step[mesh.layer_of(v)];
+      if (adaptation && adaptation->start(v, values)) {
+        adaptive_values(v, layer_step, *adaptation);
+      } else {
+        prediction.predict(v, values, predicted);
+        predicted_values(v, layer_step, predicted);
+      }
+    }
+  }
+
+ private:
+  void adaptive_values(std::uint32_t v, int layer_step, VertexAdaptation& adaptation) const {
+    const std::size_t n = bits.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int64_t of_weights = adaptation.predict();
+      values[v * n + k] = clip_signed(
+          bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
+      adaptation.add(of_weights, values[v * n + k]);
+    }
+    adaptation.finish();
+  }
+  void predicted_values(std::uint32_t v, int layer_step,
+                        std::span<const std::int64_t> predicted) const {
+    const std::size_t n = bits.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t residual = residuals[v * n + k];
+      const std::int64_t difference = is_rest ? rest_difference(model, residual, layer_step)
+                                              : factor_difference(residual, layer_step);
+      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
+    }
+  }
+};
 
 }  // namespace
 
@@ -21,38 +71,22 @@ std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel
                                        const ValuePrediction& prediction,
                                        AdaptiveWeights* weights) {
   const FactorGroup factors = factor_group(model, group);
-  const std::size_t n = factors.size();
   const std::vector<std::int32_t>& residuals = model.vertex_residual[group];
-  std::vector<int> bits(n, rest_bits(position_bits));
-  for (std::size_t k = 0; k < n && group > 0; ++k) {
+  std::vector<int> bits(factors.size(), rest_bits(position_bits));
+  for (std::size_t k = 0; k < bits.size() && group > 0; ++k) {
     bits[k] = model.trajectories[factors.first + k - kRestFactors].spatial_bits;
   }
   std::vector<std::int32_t> values(residuals.size());
-  std::vector<std::int64_t> predicted(n);
-  std::optional<VertexAdaptation> adaptation;
-  if (weights != nullptr) {
-    weights->start(factors.first - kRestFactors, n);
-    adaptation.emplace(*weights);
-  }
-  for (const std::uint32_t v : mesh.order()) {
-    const int layer_step = model.layer_step[mesh.layer_of(v)];
-    if (adaptation && adaptation->start(v, values)) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const std::int64_t of_weights = adaptation->predict();
-        values[v * n + k] = clip_signed(
-            bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
-        adaptation->add(of_weights, values[v * n + k]);
-      }
-      adaptation->finish();
-      continue;
-    }
-    prediction.predict(v, values, predicted);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::int32_t residual = residuals[v * n + k];
-      const std::int64_t difference = group == 0 ? rest_difference(model, residual, layer_step)
-                                                 : factor_difference(residual, layer_step);
-      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
-    }
+  if (weights != nullptr) weights->start(factors.first - kRestFactors, bits.size());
+  ValueRecon recon{model, bits, residuals, prediction, weights, group == 0, values};
+  // Vertices of the base, or of a mesh without layers, are predicted from each other.
+  recon.vertices(mesh, mesh.vertices_of_layers(0, 1));
+  constexpr std::size_t kTogether = 16;  // vertices of a pass
+  for (std::uint32_t layer = 1; layer < mesh.num_layers(); ++layer) {
+    const std::span<const std::uint32_t> list = mesh.vertices_of_layers(layer, layer + 1);
+    for_ranges(list.size(), kTogether, [&](std::size_t first, std::size_t end) {
+      recon.vertices(mesh, list.subspan(first, end - first));
+    });
   }
   return values;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/recon/rest_recon.h"
 #include "common/testing/filter_of_text_test.h"
 #include "common/testing/random_skinned_gof.h"
@@ -216,6 +217,29 @@ TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   for (const int count : predictions) EXPECT_GT(count, 50);
   EXPECT_GT(absent, 100);
   EXPECT_GT(in_order, 100);
+}
+
+// The vertices of a layer are shared between threads.
+TEST(SkinnedRecon, DoesNotDependOnThreads) {
+  int shared = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomSkinnedGof from(seed, {.max_vertices = 500, .max_frames = 1});
+    const CodedMesh mesh = from.coded_mesh();
+    const bool adapts = from.gof.weights.num_adaptive_factors > 0;
+    for (std::uint32_t layer = 0; layer < mesh.num_layers() && adapts; ++layer) {
+      if (mesh.vertices_of_layers(layer, layer + 1).size() > 32) ++shared;
+    }
+    const auto positions = [&] {
+      std::vector<std::int32_t> frame(3 * std::size_t{from.header.num_vertices});
+      SkinnedRecon(mesh, from.gof, from.header.position_bits).frame(0, frame);
+      return frame;
+    };
+    const std::vector<std::int32_t> alone = positions();
+    const Threads threads(3);
+    ASSERT_EQ(positions(), alone);
+  }
+  EXPECT_GT(shared, 10);
 }
 
 TEST(RecoveredValues, OfRestPositionsAreAsSpecified) {
