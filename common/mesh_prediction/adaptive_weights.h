@@ -15,8 +15,8 @@
 namespace rlpc {
 
 // The weights of all vertices. start() begins a pass over the mesh: each vertex, in the order
-// of the mesh or, within a layer above the base, in any order and on any thread, is predicted by a
-// VertexAdaptation.
+// of the mesh or, within a layer above the base, in any order and on any thread, has its values
+// predicted by a VertexAdaptation.
 class AdaptiveWeights {
  public:
   // settings.num_adaptive_factors is at least 1; rest: as of GeometryWeights. Mesh and rest are
