@@ -55,9 +55,9 @@ struct DecoderOptions {
   bool verify_hashes = true;  // compare decoded positions with the stream's hash units
   Trace* trace = nullptr;     // not owned; receives every syntax element
   // With more than one, GOFs are prefetched, and the vertices of a layer and several frames are
-  // reconstructed in parallel; positions and errors are the same. Each further thread may take memory for a GOF and the skinned models
-  // before it, up to max_memory_bytes / threads, and for four frames. Clamped to 1 to
-  // kMaxThreads.
+  // reconstructed in parallel; positions and errors are the same. Each further thread may take
+  // memory for a GOF and the skinned models before it, up to max_memory_bytes / threads, and
+  // for four frames. Clamped to 1 to kMaxThreads.
   std::uint32_t threads = 1;
   // Decodes as if slices outside the cut were absent, which saves their time: only their CRC
   // and indices are checked. The hashes of GOFs that lose slices no longer match, and are not

@@ -91,14 +91,14 @@ CODECS = (
           options="--profile main --preset fast", line="dashed"),
     Codec("main-slow", "Main, slow", "#444444", "the same, --preset slow",
           options="--profile main --preset slow", line="dashed"),
-    Codec("main-default-gofs", "Main, default GOFs", "#333333", "the same, without --gof",
+    Codec("main-gofs", "Main, default GOFs", "#333333", "the same, without --gof",
           encode=DEFAULT_GOF_ENCODE, options="--profile main", line="dashed"),
     HIGH,
     Codec("high-fast", "High, fast", "#ef8a62", "the same, --preset fast",
           options="--profile high --preset fast", line="dashed"),
     Codec("high-slow", "High, slow", "#67001f", "the same, --preset slow",
           options="--profile high --preset slow", line="dashed"),
-    Codec("high-default-gofs", "High, default GOFs", "#d6604d", "the same, without --gof",
+    Codec("high-gofs", "High, default GOFs", "#d6604d", "the same, without --gof",
           encode=DEFAULT_GOF_ENCODE, options="--profile high", line="dashed"),
     Codec("baseline", "Baseline", "#0072b2", "RLPC, profile Baseline",
           options="--profile baseline"),
@@ -126,7 +126,7 @@ DEFAULT = ("main", "baseline", "rlpca", "orlpca", "coddyac", "lorenzo-xz", "mesh
 PEERS = ("coddyac", "lorenzo-xz", "meshopt-zstd", "zfp-xz", "draco")
 # In README.md: of the bundled animations, which are too short for several GOFs; of others.
 README = ("main", "high", "baseline", *PEERS)
-README_OTHERS = ("main", "main-default-gofs", "high", "high-default-gofs", "baseline", *PEERS)
+README_OTHERS = ("main", "main-gofs", "high", "high-gofs", "baseline", *PEERS)
 NOT_PACKAGED = ("FAMC (MPEG-4 Part 16), SSLPC and SZ3 are not compared: Debian 12 does not package "
                 "them.")
 
