@@ -22,6 +22,9 @@ _PARSE = {"decoder/parse", "decoder/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
 _ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math",
                             "encoder/write"}
+_QUANTISE = {"encoder/skinned_gof/fit", "encoder/skinned_gof/tracks", "encoder/skinned_gof/rest"}
+_SKINNED = _QUANTISE | {"encoder/skinned_gof/quantise", "encoder/skinned_gof/search",
+                        "encoder/skinned_gof/reuse"}
 
 ROOMS = {
     # Integers only, shared by readers and writers of streams.
@@ -68,15 +71,12 @@ ROOMS = {
     "encoder/write": _GOFS | {"encoder/math/det_math.h"},
     "encoder/gof": _ENCODER,
     **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER),
-    "encoder/skinned_gof": _ENCODER | {"encoder/skinned_gof/fit", "encoder/skinned_gof/quantise",
-                                       "encoder/skinned_gof/search", "encoder/skinned_gof/reuse"},
-    "encoder/skinned_gof/fit": _ENCODER,
-    "encoder/skinned_gof/quantise": _ENCODER | {"encoder/skinned_gof/fit"},
-    "encoder/skinned_gof/search": _ENCODER | {"encoder/skinned_gof/fit",
-                                              "encoder/skinned_gof/quantise"},
-    "encoder/skinned_gof/reuse": _ENCODER | {"encoder/skinned_gof/fit",
-                                             "encoder/skinned_gof/quantise",
-                                             "encoder/skinned_gof/search"},
+    "encoder/skinned_gof": _ENCODER | _SKINNED,
+    **dict.fromkeys(("encoder/skinned_gof/fit", "encoder/skinned_gof/tracks",
+                     "encoder/skinned_gof/rest"), _ENCODER),
+    "encoder/skinned_gof/quantise": _ENCODER | _QUANTISE,
+    "encoder/skinned_gof/search": _ENCODER | _QUANTISE | {"encoder/skinned_gof/quantise"},
+    "encoder/skinned_gof/reuse": _ENCODER | _SKINNED - {"encoder/skinned_gof/reuse"},
     "encoder/sequence/choices": _ENCODER | _of_kinds("encoder/{}") | {"encoder/input"},
     "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
     "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {

@@ -12,7 +12,7 @@
 #include "common/skinned_gof/skinned_gof.h"
 #include "encoder/gof/gof_frames.h"
 #include "encoder/skinned_gof/fit/rig.h"
-#include "encoder/skinned_gof/quantise/track_coding.h"
+#include "encoder/skinned_gof/tracks/track_coding.h"
 
 namespace rlpc {
 

@@ -14,7 +14,7 @@
 #include "encoder/math/principal_components.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/skinned_gof/fit/rig.h"
-#include "encoder/skinned_gof/quantise/track_coding.h"
+#include "encoder/skinned_gof/tracks/track_coding.h"
 
 namespace rlpc {
 

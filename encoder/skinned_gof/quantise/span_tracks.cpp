@@ -8,7 +8,7 @@
 #include "common/kernels/component_sum.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/math/det_math.h"
-#include "encoder/skinned_gof/quantise/track_coding.h"
+#include "encoder/skinned_gof/tracks/track_coding.h"
 
 namespace rlpc {
 

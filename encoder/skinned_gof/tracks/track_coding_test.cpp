@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/track_coding.h"
+#include "encoder/skinned_gof/tracks/track_coding.h"
 
 #include <gtest/gtest.h>
 

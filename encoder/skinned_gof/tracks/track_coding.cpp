@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/track_coding.h"
+#include "encoder/skinned_gof/tracks/track_coding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
-#include "encoder/skinned_gof/quantise/residual_search.h"
-#include "encoder/skinned_gof/quantise/track_series.h"
+#include "encoder/skinned_gof/tracks/residual_search.h"
+#include "encoder/skinned_gof/tracks/track_series.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 

@@ -8,7 +8,7 @@
 
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/skinned_gof.h"
-#include "encoder/skinned_gof/quantise/track_state.h"
+#include "encoder/skinned_gof/tracks/track_state.h"
 
 namespace rlpc {
 

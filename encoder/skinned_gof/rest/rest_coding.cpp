@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/rest_coding.h"
+#include "encoder/skinned_gof/rest/rest_coding.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
-#include "encoder/skinned_gof/quantise/counterpart_search.h"
+#include "encoder/skinned_gof/rest/counterpart_search.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 #include "encoder/write/write_rest.h"

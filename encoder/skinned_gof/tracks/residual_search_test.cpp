@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/residual_search.h"
+#include "encoder/skinned_gof/tracks/residual_search.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "encoder/skinned_gof/quantise/track_series.h"
+#include "encoder/skinned_gof/tracks/track_series.h"
 #include "encoder/write/write_track.h"
 
 namespace rlpc {

@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/track_series.h"
+#include "encoder/skinned_gof/tracks/track_series.h"
 
 #include <algorithm>
 

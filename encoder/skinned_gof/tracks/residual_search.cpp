@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/residual_search.h"
+#include "encoder/skinned_gof/tracks/residual_search.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/rest_coding.h"
+#include "encoder/skinned_gof/rest/rest_coding.h"
 
 #include <gtest/gtest.h>
 

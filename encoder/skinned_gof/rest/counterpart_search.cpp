@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/quantise/counterpart_search.h"
+#include "encoder/skinned_gof/rest/counterpart_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -23,7 +23,7 @@
 #include "common/components/track_models.h"
 #include "common/components/track_order.h"
 #include "common/mesh/mesh.h"
-#include "encoder/skinned_gof/quantise/track_state.h"
+#include "encoder/skinned_gof/tracks/track_state.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 
