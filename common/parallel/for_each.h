@@ -11,6 +11,7 @@
 
 namespace rlpc {
 
+// Threads that share the passes of loops.
 class ThreadPool {
   class Impl;
 
@@ -23,7 +24,8 @@ class ThreadPool {
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   // While it exists, for_each() on the thread that made it shares its passes with the threads
-  // of the pool. Several threads may use a pool at a time.
+  // of the pool. Several threads may use a pool at a time. Uses on a thread end in reverse
+  // order.
   class Use {
    public:
     explicit Use(ThreadPool& pool);

@@ -9,7 +9,7 @@ ThreadPool::ThreadPool(std::uint32_t /*count*/) {}
 ThreadPool::~ThreadPool() = default;
 
 ThreadPool::Use::Use(ThreadPool& /*pool*/) : before_(nullptr) {}
-ThreadPool::Use::~Use() = default;
+ThreadPool::Use::~Use() { static_cast<void>(before_); }
 
 void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
   for (std::size_t i = 0; i < count; ++i) pass(i);

@@ -1,12 +1,14 @@
-// Preset slow is never larger than preset medium, nor one GOF with it than several.
+// Preset slow is never larger than preset medium, nor one GOF with it than two.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "common/parallel/for_each.h"
 #include "conformance/roundtrip/small_animation.h"
 
 namespace rlpc {
@@ -48,11 +50,11 @@ std::size_t bytes_of(std::uint32_t modes, const EncoderSettings& settings) {
   return encode_to_memory(source, settings).size();
 }
 
-class PresetSlow : public testing::TestWithParam<Profile> {};
-INSTANTIATE_TEST_SUITE_P(EachProfile, PresetSlow,
+class EachProfile : public testing::TestWithParam<Profile> {};
+INSTANTIATE_TEST_SUITE_P(PresetSlow, EachProfile,
                          testing::Values(Profile::kMain, Profile::kHigh));
 
-TEST_P(PresetSlow, KeepsTheSmallestOfItsSearches) {
+TEST_P(EachProfile, KeepsTheSmallestOfItsSearches) {
   for (const std::uint32_t modes : {2U, 6U, 7U, 8U}) {
     SCOPED_TRACE(testing::Message() << modes << " modes");
     EncoderSettings settings;
@@ -66,6 +68,21 @@ TEST_P(PresetSlow, KeepsTheSmallestOfItsSearches) {
     EXPECT_LE(one_gof, bytes_of(modes, settings));
     settings.gof_frames = EncoderSettings::kWholeSequence;
     EXPECT_LE(one_gof, bytes_of(modes, settings));
+  }
+}
+
+// The searches have threads of their own, of which none must be left to the caller.
+TEST_P(EachProfile, LeavesNoThreadsBehind) {
+  for (const std::uint32_t modes : {2U, 6U, 7U, 8U}) {
+    EncoderSettings settings;
+    settings.profile = GetParam();
+    settings.preset = Preset::kSlow;
+    settings.gof_frames = EncoderSettings::kWholeSequence;
+    settings.threads = 3;
+    EXPECT_GT(bytes_of(modes, settings), 0U);
+    std::atomic<int> passes = 0;
+    for_each(10, [&](std::size_t) { ++passes; });
+    EXPECT_EQ(passes, 10);
   }
 }
 

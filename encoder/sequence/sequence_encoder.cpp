@@ -55,7 +55,7 @@ class SequenceEncoder {
   const Progress& progress_;
   bool keeps_analyses_ = true;
   std::uint32_t num_threads_ = 1;
-  std::optional<Threads> threads_;
+  std::optional<ThreadPool> threads_;  // used in find() and write()
   Extent extent_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
@@ -72,6 +72,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   header.frame_rate = source_.frame_rate();
   if (auto error = allot_memory(header)) return error;
   threads_.emplace(num_threads_);
+  const ThreadPool::Use use(*threads_);
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;
@@ -177,6 +178,7 @@ std::optional<InputError> SequenceEncoder::search_on_finer_grid(TargetResult& be
 }
 
 InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSink& sink) {
+  const ThreadPool::Use use(*threads_);
   SequenceHeader header = coding_->header();
   EncodeReport report;
   for (const CodedGof& gof : best.trial.gofs) {
@@ -221,6 +223,7 @@ std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
 
 InputResult<TargetResult> SequenceEncoder::find() {
   if (auto error = prepare()) return *error;
+  const ThreadPool::Use use(*threads_);
   auto best = search();
   if (best && settings_.target.kind == Target::kBpvf) {
     if (auto error = search_on_finer_grid(*best)) return *error;
@@ -255,12 +258,20 @@ std::vector<EncoderSettings> slow_searches(const EncoderSettings& settings,
 InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettings& settings,
                                         const ByteSink& sink, const Progress& progress) {
   const std::vector<EncoderSettings> searches = slow_searches(settings, source.num_frames());
-  const auto count = static_cast<double>(searches.size());
+  constexpr double kSlowPart = 3.0;  // fixed: of the time, about, in usual searches
+  const auto part_of = [](const EncoderSettings& search) {
+    return search.preset == Preset::kSlow ? kSlowPart : 1.0;
+  };
+  double all = 0.0;
+  for (const EncoderSettings& search : searches) all += part_of(search);
   double before = 0.0;
-  const Progress of_search = [&](double done) { progress((before + done) / count); };
+  double part = 0.0;
+  const Progress of_search = [&](double done) { progress((before + part * done) / all); };
   std::unique_ptr<SequenceEncoder> best;
   std::optional<TargetResult> result;
   for (const EncoderSettings& search : searches) {
+    before += part;
+    part = part_of(search);
     auto encoder =
         std::make_unique<SequenceEncoder>(source, search, progress ? of_search : progress);
     auto found = encoder->find();
@@ -269,7 +280,6 @@ InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettin
       best = std::move(encoder);
       result = std::move(*found);
     }
-    before += 1.0;
   }
   return best->write(std::move(*result), sink);
 }
