@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "common/mesh/vertex_layers.h"
@@ -93,9 +94,11 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
   by_ends_.resize(edges_.size());
   std::iota(by_ends_.begin(), by_ends_.end(), 0U);
   for (std::size_t low = 0; low < place_.size(); ++low) {
-    std::sort(
-        by_ends_.begin() + first_edge_[low], by_ends_.begin() + first_edge_[low + 1],
-        [this](std::uint32_t i, std::uint32_t j) { return edges_[i].high < edges_[j].high; });
+    const auto from_low =
+        std::span(by_ends_).subspan(first_edge_[low], first_edge_[low + 1] - first_edge_[low]);
+    std::sort(from_low.begin(), from_low.end(), [this](std::uint32_t i, std::uint32_t j) {
+      return edges_[i].high < edges_[j].high;
+    });
   }
 }
 
@@ -150,8 +153,8 @@ void RestOrder::make_order() {
   std::vector<Hinge> hinges;
   hinges.reserve(hinges_in_order.size());
   for (std::size_t v = 0; v < place_.size(); ++v) {
-    const auto begin = hinges_in_order.begin() + begin_of[v];
-    hinges.insert(hinges.end(), begin, begin + count_of[v]);
+    const auto of_vertex = std::span(hinges_in_order).subspan(begin_of[v], count_of[v]);
+    hinges.insert(hinges.end(), of_vertex.begin(), of_vertex.end());
     first_hinge[v + 1] = static_cast<std::uint32_t>(hinges.size());
   }
   hinges_of_vertex_ = {std::move(first_hinge), std::move(hinges)};
@@ -163,9 +166,8 @@ void RestOrder::make_rings(const Topology& topology) {
   std::vector<std::uint32_t> items;
   for (std::uint32_t v = 0; v < place_.size(); ++v) {
     const auto add_once = [&](std::uint32_t u) {
-      if (std::find(items.begin() + first.back(), items.end(), u) == items.end()) {
-        items.push_back(u);
-      }
+      const auto ring = std::span(items).subspan(first.back());
+      if (std::find(ring.begin(), ring.end(), u) == ring.end()) items.push_back(u);
     };
     for (const Hinge& hinge : hinges(v)) {
       add_once(hinge.a);
@@ -184,12 +186,12 @@ void RestOrder::make_rings(const Topology& topology) {
 
 std::optional<VertexOfHinge> RestOrder::across(const Hinge& hinge) const {
   const auto [low, high] = std::minmax(hinge.a, hinge.b);
-  const auto begin = by_ends_.begin() + first_edge_[low];
-  const auto end = by_ends_.begin() + first_edge_[low + 1];
+  const auto from_low =
+      std::span(by_ends_).subspan(first_edge_[low], first_edge_[low + 1] - first_edge_[low]);
   const auto found =
-      std::lower_bound(begin, end, high,
+      std::lower_bound(from_low.begin(), from_low.end(), high,
                        [this](std::uint32_t i, std::uint32_t h) { return edges_[i].high < h; });
-  if (found == end || edges_[*found].high != high) return std::nullopt;
+  if (found == from_low.end() || edges_[*found].high != high) return std::nullopt;
   const Edge& edge = edges_[*found];
   for (std::size_t k = 0; k < 2; ++k) {
     if (edge.corners[1 - k] != hinge.c) continue;
