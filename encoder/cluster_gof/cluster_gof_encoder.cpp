@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/parallel/for_each.h"
 #include "encoder/cluster_gof/local_motion.h"
 #include "encoder/cluster_gof/rate_allocation.h"
 #include "encoder/gof/lagrangian.h"
@@ -258,7 +260,7 @@ ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames
   const std::vector<Track> tracks = recon_seed_tracks(gof, position_bits);
   const ClusterMembers members = cluster_members(gof);
   analysis.clusters.resize(gof.clusters.size());
-  for (std::size_t i = 0; i < gof.clusters.size(); ++i) {
+  for_each(gof.clusters.size(), [&](std::size_t i) {
     ClusterAnalysis& cluster = analysis.clusters[i];
     cluster.prediction.emplace(mesh.topology, members.vertices[i], gof.cluster_of_vertex,
                                members.local_index);
@@ -266,7 +268,7 @@ ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames
     cluster.lcf = recovered_frames(gof, gof.clusters[i], tracks);
     cluster.pc = principal_components(local_trajectories(frames, cluster),
                                       settings.max_components, settings.min_energy);
-  }
+  });
   return analysis;
 }
 
@@ -276,8 +278,8 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
   const std::size_t count = analysis.clusters.size();
   std::vector<std::vector<QuantisedComponent>> components(count);
   std::vector<RdCurve> curves(count);
-  double budget = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<double> rates(count);
+  for_each(count, [&](std::size_t i) {
     const ClusterAnalysis& cluster = analysis.clusters[i];
     std::size_t candidates = cluster.pc.spatial.size();
     if (settings.allocation == Allocation::kFixed) {
@@ -290,8 +292,8 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
     }
     curves[i] =
         rd_curve(cluster, components[i], settings.allocation == Allocation::kVectorBudget);
-    budget += curves[i][std::min<std::size_t>(settings.components, candidates)].rate;
-  }
+    rates[i] = curves[i][std::min<std::size_t>(settings.components, candidates)].rate;
+  });
   std::vector<std::size_t> chosen(count);
   if (settings.allocation == Allocation::kSlope) {
     const double lambda = rlpc::lambda(settings.step);
@@ -299,12 +301,12 @@ ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& a
   } else if (settings.allocation == Allocation::kFixed) {
     for (std::size_t i = 0; i < count; ++i) chosen[i] = components[i].size();
   } else {
-    chosen = allocate_within(curves, budget);
+    chosen = allocate_within(curves, std::accumulate(rates.begin(), rates.end(), 0.0));
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  for_each(count, [&](std::size_t i) {
     components[i].resize(chosen[i]);
     refit_temporal(frames, analysis.clusters[i], components[i], settings.dead_zone);
-  }
+  });
   ClusterGof gof = analysis.gof;
   gof.fraction_bits = choose_fraction_bits(components);
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,10 +1,10 @@
 #include "encoder/cluster_gof/cluster_gof_kind.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "encoder/cluster_gof/cluster_gof_search.h"
-#include "encoder/gof/lagrangian.h"
 #include "encoder/gof/split_coder.h"
 #include "encoder/gof/step_cache.h"
 
@@ -47,24 +47,11 @@ class ClusterGofKind : public GofEncoder {
     return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames));
   }
 
-  // Encodes each GOF once, with many small clusters.
-  std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
-                                      double step) const override {
-    const std::uint32_t most = std::min(frames.num_vertices, 3 * frames.num_frames);
-    if (best.components < kHighRank * most) return std::nullopt;
-    double cost = 0.0;
-    for (const GofSpan& gof : frames.gofs()) cost += estimate(frames_of_gof(frames, gof), step);
-    return cost;
+  bool may_win(const GofFrames& frames, std::uint32_t components) const override {
+    return components >= kHighRank * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
  private:
-  double estimate(const GofFrames& frames, double step) const {
-    const ClusterGofCoding coding(mesh_, settings_, frames);
-    const std::uint32_t count = usual_clusters(frames.num_vertices);
-    MotionClusters motion = coding.motion();
-    return lagrangian_cost(coding.encode(step, {count, false}, motion), frames, step);
-  }
-
   const SequenceMesh& mesh_;
   const EncoderSettings& settings_;
 };

@@ -71,12 +71,10 @@ class ClusterSearch {
     const std::uint32_t usual =
         tools.clusters > 0 ? tools.clusters : usual_clusters(coding_.frames().num_vertices);
     if (coding_.settings().preset == Preset::kFast) return {usual, world_requested};
-    // Beside skinned GOFs, which are usually better, only the extremes are tried.
+    // A single cluster is seldom better than a skinned GOF.
     if (coding_.settings().preset != Preset::kSlow &&
         coding_.settings().profile != Profile::kBaseline) {
-      const ClusterChoice many{usual, false};
-      const ClusterChoice single{1, true};
-      return cost(single) < cost(many) ? single : many;
+      return {usual, false};
     }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
@@ -100,7 +98,7 @@ FoundClusters search_clusters(const ClusterGofCoding& coding, double step) {
 
 std::uint32_t usual_clusters(std::uint32_t num_vertices) {
   // tuned: The number of clusters has this many vertices to each, where it is not searched:
-  // with the fast preset, and in the estimate that decides whether clusters are tried at all.
+  // with the fast preset, and beside skinned GOFs.
   constexpr std::uint32_t kVerticesOfCluster = 56;
   constexpr std::uint32_t kFewestClusters = 2;  // fixed: of several
   return std::clamp(num_vertices / kVerticesOfCluster, kFewestClusters,

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/cluster_gof/local_motion.h"
 
 namespace rlpc {
@@ -160,7 +161,12 @@ std::vector<double> MotionClusters::motion_in(const Seed& seed) const {
 }
 
 Clustering MotionClusters::clusters(std::uint32_t count) {
-  while (seeds_.size() < count && add_seed()) motion_.push_back(motion_in(seeds_.back()));
+  const std::size_t before = seeds_.size();
+  while (seeds_.size() < count && add_seed()) {
+  }
+  motion_.resize(seeds_.size());
+  for_each(seeds_.size() - before,
+           [&](std::size_t i) { motion_[before + i] = motion_in(seeds_[before + i]); });
   const std::size_t found = std::min<std::size_t>(seeds_.size(), count);
   Clustering clustering;
   clustering.seeds.assign(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(found));
@@ -183,12 +189,18 @@ void MotionClusters::assign(Clustering& clustering, std::size_t i,
 
 Clustering MotionClusters::spread_clusters(std::uint32_t count) {
   Clustering clustering = clusters(count);
-  for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
-    clustering.seeds[i] = spread_seed(clustering, i);
-  }
+  constexpr std::size_t kTogether = 16;  // fixed: memory
+  const Clustering before = clustering;
   std::vector<double> least(frames_.num_vertices, std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
-    assign(clustering, i, motion_in(clustering.seeds[i]), least);
+  for (std::size_t first = 0; first < before.seeds.size(); first += kTogether) {
+    std::vector<std::vector<double>> motion(std::min(kTogether, before.seeds.size() - first));
+    for_each(motion.size(), [&](std::size_t i) {
+      clustering.seeds[first + i] = spread_seed(before, first + i);
+      motion[i] = motion_in(clustering.seeds[first + i]);
+    });
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      assign(clustering, first + i, motion[i], least);
+    }
   }
   return clustering;
 }

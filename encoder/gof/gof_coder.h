@@ -71,6 +71,9 @@ class GofCoder {
   // Estimates the squared error of encode(step) from the last analysis. The ratio of actual to
   // estimated error is almost independent of the step. None: no estimate is available.
   virtual std::optional<double> expected_error(double /*step*/) const { return std::nullopt; }
+  // The number of components, or trajectories, that encode() is expected to use, from the last
+  // analysis.
+  virtual std::uint32_t expected_components() const { return 0; }
   // Whether encode() would read the frames; if not, the caller may have freed them.
   virtual bool needs_frames(double step, double analysis_step) const = 0;
   // step: quantiser step, in grid steps. analysis_step: the nearby step to analyse for; an

@@ -1,6 +1,7 @@
 // The interface of a kind of GOF (clusters or a skinned mesh); each kind has its own folder.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,10 +19,10 @@ class GofEncoder {
   virtual ~GofEncoder() = default;
   // The coder keeps a reference to the frames.
   virtual std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const = 0;
-  // Quick estimate of the Lagrangian cost of coding the frames with this kind. best: the best
-  // encoding by the kinds tried so far. None: this kind certainly costs more than best.
-  virtual std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
-                                              double step) const = 0;
+  // Whether this kind may code the frames at less cost than the likeliest kind.
+  //
+  //   components  that the likeliest kind is expected to need
+  virtual bool may_win(const GofFrames& frames, std::uint32_t components) const = 0;
   // Encodes the frames with the skinned model of an earlier span. None: that costs at least
   // `most`, or is expected to, or the kind has no models.
   virtual std::optional<EncodedGof> encode_with(const KeptModel& /*model*/,

@@ -1,8 +1,10 @@
 #include "encoder/gof/gof_kind_search.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
-#include "encoder/gof/component_cost.h"
+#include "common/parallel/for_each.h"
 #include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
@@ -27,25 +29,29 @@ EncodedGof GofKindSearch::encode(double step, double analysis_step) {
                         : coders_[chosen_]->encode(step, analysis_step);
 }
 
-bool GofKindSearch::may_win(const GofEncoder& kind, const EncodedGof& best, double step) const {
-  if (preset_ == Preset::kSlow) return true;
-  const auto expected = kind.estimate_cost(frames_, best, step);
-  return expected && *expected < (1.0 + kTryMargin) * lagrangian_cost(best, frames_, step);
-}
-
 EncodedGof GofKindSearch::compare(double step, double analysis_step) {
   is_compared_ = true;
-  EncodedGof best = coders_.front()->encode(step, analysis_step);
+  coders_.front()->analyse(analysis_step);
+  const std::uint32_t components = coders_.front()->expected_components();
+  std::vector<std::size_t> tried{0};
   for (std::size_t k = 1; k < kinds_.size(); ++k) {
-    if (!may_win(*kinds_[k], best, step)) continue;
-    auto coder = kinds_[k]->make_coder(frames_);
-    EncodedGof other = coder->encode(step, analysis_step);
-    if (lagrangian_cost(other, frames_, step) >= lagrangian_cost(best, frames_, step)) continue;
-    best = std::move(other);
-    coders_[k] = std::move(coder);
-    chosen_ = k;
+    if (preset_ != Preset::kSlow && !kinds_[k]->may_win(frames_, components)) continue;
+    coders_[k] = kinds_[k]->make_coder(frames_);
+    tried.push_back(k);
   }
-  return best;
+  std::vector<EncodedGof> encoded(tried.size());
+  std::vector<double> cost(tried.size());
+  for_each(tried.size(), [&](std::size_t i) {
+    encoded[i] = coders_[tried[i]]->encode(step, analysis_step);
+    cost[i] = tried.size() > 1 ? lagrangian_cost(encoded[i], frames_, step) : 0.0;
+  });
+  const auto best =
+      static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+  chosen_ = tried[best];
+  for (const std::size_t k : tried) {
+    if (k != chosen_ && k > 0) coders_[k].reset();
+  }
+  return std::move(encoded[best]);
 }
 
 void GofKindSearch::release_analysis() {

@@ -11,9 +11,9 @@
 
 namespace rlpc {
 
-// Encodes the GOF by the first kind, and by each further one that may cost less. The choice
-// stands for further steps: comparing again where these move far gains 0.1 % for a fifth more
-// time.
+// Encodes the GOF by the first kind and, on other threads, by each that may cost less. The
+// choice stands for further steps: comparing again where these move far gains 0.1 % for a fifth
+// more time.
 class GofKindSearch : public GofCoder {
  public:
   // kinds: at least one, the most likely first. Keeps references to kinds and frames.
@@ -27,7 +27,6 @@ class GofKindSearch : public GofCoder {
 
  private:
   bool must_compare() const { return kinds_.size() > 1 && !is_compared_; }
-  bool may_win(const GofEncoder& kind, const EncodedGof& best, double step) const;
   EncodedGof compare(double step, double analysis_step);
 
   const GofKinds& kinds_;

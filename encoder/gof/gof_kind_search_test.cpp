@@ -4,18 +4,16 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
-
-#include "encoder/gof/lagrangian.h"
 
 namespace rlpc {
 namespace {
 
 // Counts the calls of a kind and its coders.
 struct Calls {
-  int estimates = 0;
+  int questions = 0;
   int encodings = 0;
   int released = 0;
 };
@@ -24,6 +22,7 @@ struct Calls {
 class FakeCoder : public GofCoder {
  public:
   FakeCoder(std::size_t bytes, Calls& calls) : bytes_(bytes), calls_(calls) {}
+  std::uint32_t expected_components() const override { return 10; }
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
   EncodedGof encode(double /*step*/, double /*analysis_step*/) override {
     ++calls_.encodings;
@@ -41,29 +40,27 @@ class FakeCoder : public GofCoder {
 
 class FakeKind : public GofEncoder {
  public:
-  // expected: the estimate, relative to the best cost so far.
-  FakeKind(std::size_t bytes, std::optional<double> expected, Calls& calls)
-      : bytes_(bytes), expected_(expected), calls_(calls) {}
+  // least: components of the likeliest kind from which it may win.
+  FakeKind(std::size_t bytes, std::uint32_t least, Calls& calls)
+      : bytes_(bytes), least_(least), calls_(calls) {}
   std::unique_ptr<GofCoder> make_coder(const GofFrames& /*frames*/) const override {
     return std::make_unique<FakeCoder>(bytes_, calls_);
   }
-  std::optional<double> estimate_cost(const GofFrames& frames, const EncodedGof& best,
-                                      double step) const override {
-    ++calls_.estimates;
-    if (!expected_) return std::nullopt;
-    return *expected_ * lagrangian_cost(best, frames, step);
+  bool may_win(const GofFrames& /*frames*/, std::uint32_t components) const override {
+    ++calls_.questions;
+    return components >= least_;
   }
 
  private:
   std::size_t bytes_;
-  std::optional<double> expected_;
+  std::uint32_t least_;
   Calls& calls_;
 };
 
 struct Fixture {
-  void add(std::size_t bytes, std::optional<double> expected) {
+  void add(std::size_t bytes, std::uint32_t least) {
     calls.push_back(std::make_unique<Calls>());
-    kinds.push_back(std::make_unique<FakeKind>(bytes, expected, *calls.back()));
+    kinds.push_back(std::make_unique<FakeKind>(bytes, least, *calls.back()));
   }
   static std::size_t bytes(GofCoder& search, double step) {
     return search.encode(step, step).units.front().payload.size();
@@ -76,9 +73,9 @@ struct Fixture {
 
 TEST(GofKindSearch, TakesTheCheapestKind) {
   Fixture f;
-  f.add(100, std::nullopt);
-  f.add(80, 1.0);
-  f.add(90, 1.0);
+  f.add(100, 0);
+  f.add(80, 10);
+  f.add(90, 10);
   GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
   // At a nearby step the choice is kept.
@@ -90,43 +87,43 @@ TEST(GofKindSearch, TakesTheCheapestKind) {
 
 TEST(GofKindSearch, EncodesOnlyKindsThatMayWin) {
   Fixture f;
-  f.add(100, std::nullopt);
-  f.add(50, 1.12);
-  f.add(50, std::nullopt);
+  f.add(100, 0);
+  f.add(50, 11);
+  f.add(60, 10);
   GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
-  EXPECT_EQ(Fixture::bytes(search, 10.0), 100U);
-  EXPECT_EQ(f.calls[1]->estimates, 1);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 60U);
+  EXPECT_EQ(f.calls[1]->questions, 1);
   EXPECT_EQ(f.calls[1]->encodings, 0);
-  EXPECT_EQ(f.calls[2]->estimates, 1);
-  EXPECT_EQ(f.calls[2]->encodings, 0);
+  EXPECT_EQ(f.calls[2]->questions, 1);
+  EXPECT_EQ(f.calls[2]->encodings, 1);
 }
 
-TEST(GofKindSearch, SlowPresetEncodesAllKindsWithoutEstimates) {
+TEST(GofKindSearch, SlowPresetEncodesAllKinds) {
   Fixture f;
-  f.add(100, std::nullopt);
-  f.add(50, 9.0);
+  f.add(100, 0);
+  f.add(50, 99);
   GofKindSearch search(f.kinds, f.frames, Preset::kSlow);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 50U);
-  EXPECT_EQ(f.calls[1]->estimates, 0);
+  EXPECT_EQ(f.calls[1]->questions, 0);
 }
 
 TEST(GofKindSearch, ComparesOnce) {
   Fixture f;
-  f.add(100, std::nullopt);
-  f.add(50, 1.05);
+  f.add(100, 0);
+  f.add(50, 9);
   GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_TRUE(search.needs_frames(10.0, 10.0));
   Fixture::bytes(search, 10.0);
   EXPECT_FALSE(search.needs_frames(20.0, 20.0));
   EXPECT_EQ(Fixture::bytes(search, 20.0), 50U);
   EXPECT_EQ(f.calls[0]->encodings, 1);
-  EXPECT_EQ(f.calls[1]->estimates, 1);
+  EXPECT_EQ(f.calls[1]->questions, 1);
 }
 
 TEST(GofKindSearch, ReleasesTheAnalysesOfItsCoders) {
   Fixture f;
-  f.add(100, std::nullopt);
-  f.add(80, 1.0);
+  f.add(100, 0);
+  f.add(80, 10);
   GofKindSearch search(f.kinds, f.frames, Preset::kMedium);
   search.release_analysis();
   EXPECT_EQ(f.calls[0]->released, 1);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/parallel/for_each.h"
+
 namespace rlpc {
 
 GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof) {
@@ -40,17 +42,20 @@ bool SplitCoder::needs_frames(double step, double analysis_step) const {
 }
 
 EncodedGof SplitCoder::encode(double step, double analysis_step) {
-  EncodedGof all;
-  std::vector<DecodeFrame> decoders;
-  std::vector<DecodeCut> cuts;
   const std::vector<GofSpan> gofs = frames_.gofs();
-  for (std::size_t g = 0; g < gofs.size(); ++g) {
+  std::vector<EncodedGof> encoded_parts(gofs.size());
+  for_each(gofs.size(), [&](std::size_t g) {
     Part& part = *parts_[g];
     if (part.coder->needs_frames(step, analysis_step)) {
       part.frames = frames_of_gof(frames_, gofs[g]);
     }
-    EncodedGof encoded = part.coder->encode(step, analysis_step);
+    encoded_parts[g] = part.coder->encode(step, analysis_step);
     part.frames.xyz = {};
+  });
+  EncodedGof all;
+  std::vector<DecodeFrame> decoders;
+  std::vector<DecodeCut> cuts;
+  for (EncodedGof& encoded : encoded_parts) {
     for (auto& unit : encoded.units) all.units.push_back(std::move(unit));
     if (encoded.cut) cuts.push_back(std::move(encoded.cut));
     decoders.push_back(std::move(encoded.frame));

@@ -39,12 +39,12 @@ double SkinnedGofCoder::error_at(double step, const Draft& draft) {
 SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest, double step) const {
   if (likeliest.rig.bones.size() > 1) {
     SkinnedTrial trial = SkinnedTrials(context_, frames_, step).run(std::move(likeliest));
-    return {step, trial.error, std::move(trial.analysis), true};
+    return {step, trial.error, std::move(trial.analysis), trial.num_trajectories, true};
   }
   likeliest.settings.draft = true;
   SkinnedAnalysis analysis = analyse_candidate(context_, frames_, likeliest, step);
   const double error = expected_squared_error(analysis, step);
-  return {step, error, std::move(analysis), false};
+  return {step, error, std::move(analysis), 0, false};
 }
 
 double SkinnedGofCoder::step_of_error(double wanted, const Draft& draft) {
@@ -81,7 +81,7 @@ void SkinnedGofCoder::choose(double step) {
       search_tools(context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
-  draft_ = Draft{step, best.error, std::move(best.analysis), true};
+  draft_ = Draft{step, best.error, std::move(best.analysis), best.num_trajectories, true};
   bones_.release();
 }
 
@@ -129,6 +129,10 @@ std::optional<double> SkinnedGofCoder::expected_error(double step) const {
   }
   if (!choice_ || follows_step() || analysis_.last() == nullptr) return std::nullopt;
   return expected_squared_error(*analysis_.last(), step);
+}
+
+std::uint32_t SkinnedGofCoder::expected_components() const {
+  return draft_ ? static_cast<std::uint32_t>(draft_->num_trajectories) : 0;
 }
 
 EncodedGof SkinnedGofCoder::encode(double step, double analysis_step) {

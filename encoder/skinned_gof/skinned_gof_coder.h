@@ -1,6 +1,8 @@
 // Encodes one GOF as a skinned mesh, at varying quantiser steps.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "encoder/gof/gof_coder.h"
@@ -23,6 +25,7 @@ class SkinnedGofCoder : public GofCoder {
 
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
+  std::uint32_t expected_components() const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedGof encode(double step, double analysis_step) override;
   void release_analysis() override;
@@ -33,7 +36,8 @@ class SkinnedGofCoder : public GofCoder {
     double step = 0.0;
     double error = 0.0;
     SkinnedAnalysis analysis;
-    bool is_encoded = false;  // otherwise, the error is what its components let expect
+    std::size_t num_trajectories = 0;  // if it is encoded
+    bool is_encoded = false;           // otherwise, the error is what its components let expect
   };
 
   static double error_at(double step, const Draft& draft);

@@ -24,9 +24,8 @@ class SkinnedGofKind : public GofEncoder {
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.
-  std::optional<double> estimate_cost(const GofFrames& /*frames*/, const EncodedGof& /*best*/,
-                                      double /*step*/) const override {
-    return std::nullopt;
+  bool may_win(const GofFrames& /*frames*/, std::uint32_t /*components*/) const override {
+    return false;
   }
 
  private:
