@@ -42,7 +42,9 @@ SkinnedGofCoder::Draft SkinnedGofCoder::survey(SkinnedCandidate likeliest, doubl
     return {step, trial.error, std::move(trial.analysis), trial.num_trajectories, true};
   }
   likeliest.settings.draft = true;
-  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, likeliest, step);
+  SkinnedAnalysis analysis = bones_.analysis_of_one() != nullptr
+                                 ? *bones_.analysis_of_one()
+                                 : analyse_candidate(context_, frames_, likeliest, step);
   const double error = expected_squared_error(analysis, step);
   return {step, error, std::move(analysis), 0, false};
 }
@@ -75,10 +77,7 @@ void SkinnedGofCoder::choose(double step) {
     step = step_of_error(part * part * bones_.squared_spread(), *first);
   }
   const SkinnedTrials trials(context_, frames_, step);
-  const bool keeps = first && first->analysis.model.bones.size() == 1 &&
-                     is_within(kDraftServes, first->step, step);
-  SkinnedTrial best =
-      search_tools(context_, trials, bones_.search(trials, keeps ? &first->analysis : nullptr));
+  SkinnedTrial best = search_tools(context_, trials, bones_.search(trials));
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
   draft_ = Draft{step, best.error, std::move(best.analysis), best.num_trajectories, true};

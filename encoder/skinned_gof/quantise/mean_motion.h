@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "common/skinned_gof/recon/bones.h"
@@ -30,17 +29,19 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone, std::size_t first,
 // The same of a bone that is not quantised. pivot: 1/16 grid units.
 std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses);
 
+using MotionsOfBones = std::vector<std::vector<MeanMotion>>;  // [bone][frame]
+
 // The motions of the vertices that follow some bones.
 class MeanMotions {
  public:
-  // motion [frame]: of the next bone.
-  void add(std::vector<MeanMotion> motion) { motions_.push_back(std::move(motion)); }
+  // Keeps a reference to the motions.
+  explicit MeanMotions(const MotionsOfBones& motions) : motions_(motions) {}
   // The weighted mean of the motions of the bones of a vertex, [frame]; valid until the next
   // call.
   std::span<const MeanMotion> of(const Influences& influences, int weight_bits);
 
  private:
-  std::vector<std::vector<MeanMotion>> motions_;  // [bone][frame]
+  const MotionsOfBones& motions_;
   std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
   Influences mean_of_;
 };

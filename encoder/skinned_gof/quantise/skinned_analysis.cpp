@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/math/det_math.h"
@@ -24,6 +25,7 @@ constexpr double kFinerLayer = 0.9;
 // tuned (off: 1): Smallest quantiser step of a layer relative to that of the finest layer.
 // Coarser layers have so few vertices that their errors hardly count.
 constexpr double kFinestLayer = 0.4;
+constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass
 
 std::uint32_t step_idx(double step) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
@@ -110,7 +112,7 @@ class SkinnedAnalyser {
       }
     }
     for (const BoneMotion& bone : found_.bones) {
-      motions_.add(motions_of(bone, 0, frames_.num_frames));
+      motions_.push_back(motions_of(bone, 0, frames_.num_frames));
     }
     code_rest();
     if (before_ != nullptr) {
@@ -186,8 +188,8 @@ class SkinnedAnalyser {
   }
 
   // The least-squares rest position for the decoded bones.
-  Point fit_rest(std::uint32_t v) {
-    const auto mean = motions_.of(found_.model.influences[v], found_.model.weight_bits);
+  Point fit_rest(std::uint32_t v, MeanMotions& motions) const {
+    const auto mean = motions.of(found_.model.influences[v], found_.model.weight_bits);
     SmallSystem<3> m;
     for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
       const MeanMotion& motion = mean[f];
@@ -263,8 +265,11 @@ class SkinnedAnalyser {
     model.rest_step = static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
     const std::uint32_t n = frames_.num_vertices;
-    std::vector<Point> wanted;
-    for (std::uint32_t v = 0; v < n; ++v) wanted.push_back(fit_rest(v));
+    std::vector<Point> wanted(n);
+    for_ranges(n, kTogether, [&](std::size_t v, std::size_t end) {
+      MeanMotions motions(motions_);
+      for (; v < end; ++v) wanted[v] = fit_rest(static_cast<std::uint32_t>(v), motions);
+    });
     std::vector<std::int32_t> values = code_rest_in_layers(wanted);
     if (settings_.rest != RestTools::kPrediction) code_rest_in_order_of_its_own(wanted, values);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -279,13 +284,16 @@ class SkinnedAnalyser {
     return {frames_.num_vertices, width,
             [this, width, chosen = numbers_from(0, frames_.num_frames)](
                 std::size_t first, std::span<double> rows) {
-              for (std::size_t i = 0; i * width < rows.size(); ++i) {
-                const auto v = static_cast<std::uint32_t>(first + i);
-                write_displacement(
-                    frames_, chosen, v,
-                    motions_.of(found_.model.influences[v], found_.model.weight_bits),
-                    rest_of(v), &rows[i * width]);
-              }
+              for_ranges(rows.size() / width, kTogether, [&](std::size_t i, std::size_t end) {
+                MeanMotions motions(motions_);
+                for (; i < end; ++i) {
+                  const auto v = static_cast<std::uint32_t>(first + i);
+                  write_displacement(
+                      frames_, chosen, v,
+                      motions.of(found_.model.influences[v], found_.model.weight_bits),
+                      rest_of(v), &rows[i * width]);
+                }
+              });
             }};
   }
 
@@ -304,7 +312,7 @@ class SkinnedAnalyser {
   double step_;
   const SkinnedAnalysis* before_;
   SkinnedAnalysis found_;
-  MeanMotions motions_;
+  MotionsOfBones motions_;
 };
 
 }  // namespace

@@ -92,21 +92,26 @@ void ModelRemainder::set_temporal(std::vector<double> temporal) {
   negative_ = std::move(temporal);
 }
 
-TrajectoryRows ModelRemainder::rows() {
+TrajectoryRows ModelRemainder::rows() const {
   return {frames_.num_vertices, width(),
           [this](std::size_t first, std::span<double> rows) { write(first, rows); }};
 }
 
-void ModelRemainder::write(std::size_t first, std::span<double> rows) {
+void ModelRemainder::write(std::size_t first, std::span<double> rows) const {
   const std::size_t size = rows.size() / width();
+  constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass
   const SkinnedModel& model = *kept_.model;
-  for (std::size_t i = 0; i < size; ++i) {
-    const auto v = static_cast<std::uint32_t>(first + i);
-    Point rest;
-    for (std::size_t c = 0; c < 3; ++c) rest[c] = kept_.rest[c][v] / kPointScale;
-    write_displacement(frames_, chosen_, v, motions_.of(model.influences[v], model.weight_bits),
-                       rest, &rows[i * width()]);
-  }
+  for_ranges(size, kTogether, [&](std::size_t i, std::size_t end) {
+    MeanMotions motions(motions_);
+    for (; i < end; ++i) {
+      const auto v = static_cast<std::uint32_t>(first + i);
+      Point rest;
+      for (std::size_t c = 0; c < 3; ++c) rest[c] = kept_.rest[c][v] / kPointScale;
+      write_displacement(frames_, chosen_, v,
+                         motions.of(model.influences[v], model.weight_bits), rest,
+                         &rows[i * width()]);
+    }
+  });
   if (negative_.empty()) return;
   add_matrix_product(factors_.of(first, size), factors_.count(), negative_, width(), rows);
 }

@@ -41,7 +41,7 @@ class ModelRemainder {
  public:
   // motions: of the bones in the chosen frames. Keeps references to model, factors and frames.
   ModelRemainder(const KeptModel& kept, const ModelFactors& factors, const GofFrames& frames,
-                 std::vector<std::uint32_t> chosen, MeanMotions motions)
+                 std::vector<std::uint32_t> chosen, MotionsOfBones motions)
       : kept_(kept),
         factors_(factors),
         frames_(frames),
@@ -52,16 +52,16 @@ class ModelRemainder {
   // [trajectory][width()]: for each coordinate, the chosen frames.
   void set_temporal(std::vector<double> temporal);
   // By vertex; valid as long as the object.
-  TrajectoryRows rows();
+  TrajectoryRows rows() const;
 
  private:
-  void write(std::size_t first, std::span<double> rows);
+  void write(std::size_t first, std::span<double> rows) const;
 
   const KeptModel& kept_;
   const ModelFactors& factors_;
   const GofFrames& frames_;
   std::vector<std::uint32_t> chosen_;
-  MeanMotions motions_;
+  MotionsOfBones motions_;
   std::vector<double> negative_;  // of the temporal values; empty: none
 };
 

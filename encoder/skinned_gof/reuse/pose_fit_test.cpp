@@ -56,13 +56,14 @@ struct Arm {
 
   GofFrames moved(const std::vector<std::vector<WantedPose>>& poses) const {
     GofFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
-    MeanMotions motions;
+    MotionsOfBones motions;
     for (std::size_t b = 0; b < 2; ++b) {
-      motions.add(motions_of(model.bones[b].pivot, poses[b]));
+      motions.push_back(motions_of(model.bones[b].pivot, poses[b]));
     }
     frames.xyz.resize(std::size_t{3} * kVertices * frames.num_frames);
+    MeanMotions means(motions);
     for (std::uint32_t v = 0; v < kVertices; ++v) {
-      const auto mean = motions.of(model.influences[v], model.weight_bits);
+      const auto mean = means.of(model.influences[v], model.weight_bits);
       for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
           double x = mean[f].shift[c];

@@ -92,9 +92,9 @@ double SpanReuse::expected_cost() const {
     const auto of_frame = poses_.fit(frames_, std::span(&f, 1));
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b].push_back(of_frame[b].front());
   }
-  MeanMotions motions;
+  MotionsOfBones motions;
   for (std::size_t b = 0; b < poses.size(); ++b) {
-    motions.add(motions_of(model_.bones[b].pivot, poses[b]));
+    motions.push_back(motions_of(model_.bones[b].pivot, poses[b]));
   }
   ModelRemainder left(kept_, factors_, frames_, chosen, std::move(motions));
   left.set_temporal(factors_.fit(left.rows()));
@@ -127,8 +127,9 @@ void SpanReuse::code_bones() {
 }
 
 ModelRemainder SpanReuse::remainder(const GofSpan& span, bool has_temporal) const {
-  MeanMotions motions;
-  for (const BoneMotion& bone : bones_) motions.add(motions_of(bone, span.first, span.count));
+  MotionsOfBones motions;
+  for (const BoneMotion& bone : bones_)
+    motions.push_back(motions_of(bone, span.first, span.count));
   ModelRemainder left(kept_, factors_, frames_, numbers_from(span.first, span.count),
                       std::move(motions));
   if (!has_temporal || factors_.count() == 0) return left;

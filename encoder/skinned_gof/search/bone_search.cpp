@@ -113,7 +113,17 @@ void BoneSearch::grow_all(double step) {
   double last = kNone;
   for (std::size_t i = 0; i < counts.size() && !growing.empty(); ++i) {
     std::vector<double> cost(growing.size());
-    for_each(growing.size(), [&](std::size_t k) {
+    // A single bone is analysed in any case: to compare bones with it, or to survey it.
+    std::optional<SkinnedCandidate> one;
+    if (!all && !fast && i + 1 == kTelling) {
+      one = one_bone(step);
+      one->settings.draft = true;
+    }
+    for_each(growing.size() + (one ? 1 : 0), [&](std::size_t k) {
+      if (k == growing.size()) {
+        one_ = analyse_candidate(context_, frames_, *one, step);
+        return;
+      }
       Growth& growth = *growing[k];
       cost[k] = kNone;
       if (!growth.fit->grow(counts[i])) return;
@@ -127,8 +137,9 @@ void BoneSearch::grow_all(double step) {
     last = of_count;
     const bool telling = !all && i + 1 >= kTelling;
     const bool promising = of_count < worth_trying(step);
-    if (telling && promising && !fast && !one_) {
-      one_ = try_one_bone(SkinnedTrials(context_, frames_, step), nullptr);
+    if (telling && promising && one_ && !is_compared_) {
+      is_compared_ = true;
+      try_one_bone(SkinnedTrials(context_, frames_, step));
     }
     std::vector<Growth*> still;
     std::vector<double> of_still;
@@ -171,13 +182,14 @@ SkinnedCandidate BoneSearch::one_bone(double step) {
   return {guess_one_bone(step), {}, settings_};
 }
 
-SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
+SkinnedTrial BoneSearch::try_one_bone(const SkinnedTrials& trials) {
   start_all();
+  const bool keeps = one_ && is_within(kDraftServes, one_->step_of_components, trials.step());
   const bool is_slow = context_.settings.preset == Preset::kSlow;
   SkinnedTrial best =
       trials.run(is_slow ? SkinnedCandidate{translation_rig(frames_), {}, settings_}
                          : one_bone(trials.step()),
-                 is_slow ? nullptr : one);
+                 keeps ? &*one_ : nullptr);
   if (is_slow) {
     const Growth& any = growths_.front();
     const Rig turning = any.fit->rig(any.bones.front().state, 1, trials.step());
@@ -252,15 +264,11 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
 
 double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
 
-SkinnedTrial BoneSearch::search(const SkinnedTrials& trials, const SkinnedAnalysis* one) {
+SkinnedTrial BoneSearch::search(const SkinnedTrials& trials) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
   grow_all(trials.step());
-  if (one == nullptr && one_ &&
-      is_within(kDraftServes, one_->analysis.step_of_components, trials.step())) {
-    one = &one_->analysis;
-  }
   std::vector<BestTrial> drafts;
-  drafts.emplace_back(try_one_bone(trials, one));
+  drafts.emplace_back(try_one_bone(trials));
   const std::vector<Candidate> list = candidates(trials.step());
   drafts.resize(list.size() + 1);
   for_each(list.size(), [&](std::size_t i) {

@@ -27,14 +27,18 @@ class BoneSearch {
   Rig guess_one_bone(double step);
   // What is expected to be the cheapest.
   SkinnedCandidate likeliest(double step);
-  // The cheapest trial over all numbers of bones. one: an analysis of a single bone for a step
-  // nearby, or null.
-  SkinnedTrial search(const SkinnedTrials& trials, const SkinnedAnalysis* one);
+  // The analysis of a draft of one_bone(), if likeliest() needed one; or null.
+  const SkinnedAnalysis* analysis_of_one() const { return one_ ? &*one_ : nullptr; }
+  // The cheapest trial over all numbers of bones.
+  SkinnedTrial search(const SkinnedTrials& trials);
   // The sum of squared distances of all vertices from the centres of their frames, about; after
   // a trial.
   double squared_spread() const;
   // Frees the fitted bones; for after the last search.
-  void release() { growths_.clear(); }
+  void release() {
+    growths_.clear();
+    one_.reset();
+  }
 
  private:
   // Bones of different numbers, with a maximum number of them for each vertex.
@@ -65,7 +69,7 @@ class BoneSearch {
   double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
   SkinnedCandidate one_bone(double step);
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
-  SkinnedTrial try_one_bone(const SkinnedTrials& trials, const SkinnedAnalysis* one);
+  SkinnedTrial try_one_bone(const SkinnedTrials& trials);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
   std::vector<Candidate> candidates(double step);
   BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
@@ -80,7 +84,8 @@ class BoneSearch {
   // Of a single bone, of which the expected cost leaves out what adaptive weights predict; at
   // most 1, as other errors of the estimate are those of all bones.
   double actual_to_expected_ = 1.0;
-  BestTrial one_;  // a single bone, once others are promising
+  bool is_compared_ = false;            // that is known
+  std::optional<SkinnedAnalysis> one_;  // of a draft of a single bone
 };
 
 }  // namespace rlpc

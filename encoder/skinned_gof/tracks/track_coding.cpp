@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/components/track_order.h"
+#include "common/parallel/for_each.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
@@ -221,23 +222,23 @@ std::vector<std::pair<const Way<Header>*, TrackTask>> likely_ways(
     TrackState& state) {
   const auto num_frames = static_cast<std::uint32_t>(wanted.size());
   std::array<std::vector<typename Series::Value>, 3> ideal;
-  std::vector<std::pair<const Way<Header>*, TrackTask>> tasks;
-  std::vector<std::pair<double, std::size_t>> order;
-  for (const Way<Header>& way : ways) {
-    const Series series(wanted, way.header);
-    for (std::size_t c = 0; c < (Series::kCoupled ? 1 : 3) && tasks.empty(); ++c) {
-      for (std::uint32_t f = 0; f < num_frames; ++f) ideal[c].push_back(series.ideal(f, c));
-    }
+  const Series any(wanted, ways.front().header);
+  for (std::size_t c = 0; c < (Series::kCoupled ? 1 : 3); ++c) {
+    for (std::uint32_t f = 0; f < num_frames; ++f) ideal[c].push_back(any.ideal(f, c));
+  }
+  std::vector<std::pair<const Way<Header>*, TrackTask>> tasks(ways.size());
+  std::vector<std::pair<double, std::size_t>> order(ways.size());
+  for_each(ways.size(), [&](std::size_t i) {
+    const Way<Header>& way = ways[i];
     BitEstimate between;
     write_between(between, state.between, way.between, options.track_levels);
-    tasks.push_back({&way,
-                     {track_order(num_frames, options.track_levels, way.between), &state,
-                      way.bits + between.bits()}});
-    order.emplace_back(
-        expected_bits(series, tasks.back().second,
-                      std::span<const std::vector<typename Series::Value>>(ideal)),
-        order.size());
-  }
+    tasks[i] = {&way,
+                {track_order(num_frames, options.track_levels, way.between), &state,
+                 way.bits + between.bits()}};
+    order[i] = {expected_bits(Series(wanted, way.header), tasks[i].second,
+                              std::span<const std::vector<typename Series::Value>>(ideal)),
+                i};
+  });
   std::sort(order.begin(), order.end());
   std::vector<std::pair<const Way<Header>*, TrackTask>> likely;
   std::array<std::size_t, kMaxBetween + 1> tried{};
@@ -264,22 +265,33 @@ CodedTrack<typename Series::Value> code_best(Wanted wanted, std::span<const Way<
   };
   std::vector<Candidate> best;  // the cheapest first
   const std::size_t count = options.fast ? 1 : kSearched;
-  for (auto& [way, task] : likely_ways<Series>(wanted, ways, options, state)) {
-    const double limit =
-        best.size() < count ? std::numeric_limits<double>::infinity() : best.back().cost();
-    auto coded = code_greedily(Series(wanted, way->header), task, limit, options.nearest);
-    if (!coded) continue;
-    if (best.size() == count) best.pop_back();
-    Candidate candidate{way, std::move(task), std::move(*coded)};
-    const auto place = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
-      return candidate.cost() < other.cost();
+  auto likely = likely_ways<Series>(wanted, ways, options, state);
+  const auto limit = [&] {
+    return best.size() < count ? std::numeric_limits<double>::infinity() : best.back().cost();
+  };
+  for (std::size_t first = 0; first < likely.size(); first += count) {
+    std::vector<std::optional<CodedTrack<typename Series::Value>>> coded(
+        std::min(count, likely.size() - first));
+    for_each(coded.size(), [&](std::size_t i) {
+      const auto& [way, task] = likely[first + i];
+      coded[i] = code_greedily(Series(wanted, way->header), task, limit(), options.nearest);
     });
-    best.insert(place, std::move(candidate));
+    for (std::size_t i = 0; i < coded.size(); ++i) {
+      if (!coded[i] || lagrangian_cost(coded[i]->cost) >= limit()) continue;
+      if (best.size() == count) best.pop_back();
+      auto& [way, task] = likely[first + i];
+      Candidate candidate{way, std::move(task), std::move(*coded[i])};
+      const auto place = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
+        return candidate.cost() < other.cost();
+      });
+      best.insert(place, std::move(candidate));
+    }
   }
-  for (Candidate& candidate : best) {
-    if (options.nearest || options.draft) break;
-    search_residuals(Series(wanted, candidate.way->header), candidate.task, options.fast,
-                     candidate.coded);
+  if (!options.nearest && !options.draft) {
+    for_each(best.size(), [&](std::size_t i) {
+      search_residuals(Series(wanted, best[i].way->header), best[i].task, options.fast,
+                       best[i].coded);
+    });
   }
   Candidate& chosen = *std::min_element(
       best.begin(), best.end(),
@@ -378,8 +390,18 @@ BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* paren
                      Bone& bone) {
   std::vector<Quaternion> relative(wanted.size(), kNoRotation);
   std::vector<Vec3l> offset(wanted.size());
-  if (bone.rotation_flag) relative = code_rotations(wanted, parent, options, rotations, bone);
-  if (bone.origin_flag) offset = code_offsets(wanted, parent, options, origins, bone);
+  Bone shifted = bone;
+  for_each(2, [&](std::size_t i) {
+    if (i == 0 && bone.rotation_flag) {
+      relative = code_rotations(wanted, parent, options, rotations, bone);
+    }
+    if (i == 1 && bone.origin_flag) {
+      offset = code_offsets(wanted, parent, options, origins, shifted);
+    }
+  });
+  bone.origin_order = shifted.origin_order;
+  bone.origin_between = shifted.origin_between;
+  bone.origin_residual = std::move(shifted.origin_residual);
   return move_bone(bone, parent, relative, offset);
 }
 
