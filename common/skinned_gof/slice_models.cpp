@@ -17,9 +17,10 @@ static_assert(kMaxReciprocal * (kMaxReciprocal * 255 * 256) < (std::uint64_t{1} 
 }  // namespace
 
 VertexContexts::VertexContexts(const CodedMesh& mesh, std::size_t num_factors)
-    : mesh_(mesh),
+    : mesh_(&mesh),
       mean_(num_factors, 256),
-      magnitudes_(mesh.num_vertices() * num_factors),
+      magnitudes_(
+          std::make_shared<std::vector<std::uint8_t>>(mesh.num_vertices() * num_factors)),
       sums_(num_factors),
       ring_mean_(num_factors),
       outer_mean_(num_factors) {}
@@ -30,8 +31,8 @@ void VertexContexts::start(std::uint32_t v) {
   latest_mean_ = 0;
   activity_sum_ = 256;
   activity_mean_ = 256;
-  mean_magnitudes(mesh_.ring(v), mean_, ring_mean_);
-  mean_magnitudes(mesh_.outer_ring(v), ring_mean_, outer_mean_);
+  mean_magnitudes(mesh_->ring(v), mean_, ring_mean_);
+  mean_magnitudes(mesh_->outer_ring(v), ring_mean_, outer_mean_);
 }
 
 void VertexContexts::mean_magnitudes(std::span<const std::uint32_t> ring,
@@ -44,7 +45,7 @@ void VertexContexts::mean_magnitudes(std::span<const std::uint32_t> ring,
   const std::size_t n = means.size();
   std::fill(sums_.begin(), sums_.end(), std::uint16_t{0});
   for (const std::uint32_t u : ring) {
-    const std::uint8_t* const magnitudes = magnitudes_.data() + std::size_t{u} * n;
+    const std::uint8_t* const magnitudes = magnitudes_->data() + std::size_t{u} * n;
     for (std::size_t k = 0; k < n; ++k) {
       sums_[k] = static_cast<std::uint16_t>(sums_[k] + magnitudes[k]);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,7 +44,8 @@ struct SliceModels {
   std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
 };
 
-// 9.8.4 Expected magnitude of a spatial residual, for those of one component group.
+// 9.8.4 Expected magnitude of a spatial residual, for those of one component group. Copies
+// share the magnitudes: on threads of their own, they go on with different vertices of a layer.
 class VertexContexts {
  public:
   VertexContexts(const CodedMesh& mesh, std::size_t num_factors);
@@ -69,9 +71,13 @@ class VertexContexts {
     activity_mean_ += mean_[next_] - (activity_mean_ >> 4);
     latest_mean_ = update_mean(latest_mean_, magnitude, 2);
     mean_[next_] = update_mean(mean_[next_], magnitude, 5);
-    magnitudes_[std::size_t{vertex_} * mean_.size() + next_] =
+    (*magnitudes_)[std::size_t{vertex_} * mean_.size() + next_] =
         static_cast<std::uint8_t>(std::min<std::uint32_t>(magnitude, 255));
     ++next_;
+  }
+  // Adapts the mean of a factor to a residual that a copy has passed.
+  void follow(std::size_t factor, std::int32_t residual) {
+    mean_[factor] = update_mean(mean_[factor], magnitude_of(residual), 5);
   }
 
  private:
@@ -79,10 +85,11 @@ class VertexContexts {
                        std::span<const std::uint32_t> otherwise,
                        std::span<std::uint32_t> means);
 
-  const CodedMesh& mesh_;
-  std::vector<std::uint32_t> mean_;       // ComponentMean, [num_factors]
-  std::vector<std::uint8_t> magnitudes_;  // ResidualMagnitude, [num_vertices][num_factors]
-  std::vector<std::uint16_t> sums_;       // [num_factors]
+  const CodedMesh* mesh_;
+  std::vector<std::uint32_t> mean_;  // ComponentMean, [num_factors]
+  // ResidualMagnitude, [num_vertices][num_factors]
+  std::shared_ptr<std::vector<std::uint8_t>> magnitudes_;
+  std::vector<std::uint16_t> sums_;  // [num_factors]
   // State of the current vertex:
   std::uint32_t vertex_ = 0;
   std::size_t next_ = 0;                   // next factor

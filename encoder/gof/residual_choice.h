@@ -5,7 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <span>
+#include <vector>
 
 #include "common/bitstream/residual_models.h"
 #include "common/mesh/coded_mesh.h"
@@ -49,26 +50,45 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
 }
 
 // Chooses the residuals of vertex factors, with contexts as if the GOF were a single slice.
+// Copies go on with different vertices of a layer, as of VertexContexts.
 class VertexResidualChoice {
  public:
   VertexResidualChoice(const CodedMesh& mesh, std::size_t num_factors)
-      : contexts_(mesh, num_factors), models_(std::make_unique<VertexModels>()) {}
+      : contexts_(mesh, num_factors), models_(1) {}
+
+  // A residual, with the contexts that it was chosen in.
+  struct Chosen {
+    std::int32_t residual = 0;
+    std::uint32_t expected = 0;
+    std::uint32_t activity = 0;
+  };
 
   void start(std::uint32_t v) { contexts_.start(v); }
-  // Chooses the residual of the next factor and adapts the models; wanted: in steps.
-  std::int32_t next(double wanted) {
-    ResidualModels& models = (*models_)[contexts_.activity()];
-    const std::uint32_t expected = contexts_.expected();
-    const std::int32_t residual = cheaper_residual(models, expected, wanted);
-    BitCost cost;  // unused: writing adapts the models
-    write_residual(cost, models, expected, residual);
-    contexts_.update(residual);
-    return residual;
+  // Chooses the residual of the next factor and adapts to it; wanted: in steps.
+  Chosen next(double wanted) {
+    Chosen chosen{0, contexts_.expected(), static_cast<std::uint32_t>(contexts_.activity())};
+    ResidualModels& models = models_.front()[chosen.activity];
+    chosen.residual = cheaper_residual(models, chosen.expected, wanted);
+    adapt(chosen);
+    contexts_.update(chosen.residual);
+    return chosen;
+  }
+  // Adapts to what a copy has chosen for a vertex, of all factors.
+  void follow(std::span<const Chosen> vertex) {
+    for (std::size_t k = 0; k < vertex.size(); ++k) {
+      adapt(vertex[k]);
+      contexts_.follow(k, vertex[k].residual);
+    }
   }
 
  private:
+  void adapt(const Chosen& chosen) {
+    BitCost unused;  // writing adapts the models
+    write_residual(unused, models_.front()[chosen.activity], chosen.expected, chosen.residual);
+  }
+
   VertexContexts contexts_;
-  std::unique_ptr<VertexModels> models_;
+  std::vector<VertexModels> models_;  // one, too large for the stack
 };
 
 }  // namespace rlpc

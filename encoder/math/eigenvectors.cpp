@@ -132,6 +132,7 @@ class SubspaceIteration {
     constexpr std::size_t kFirstCount = 16;
     constexpr double kMargin = 0.5;  // of `least`; the block grows until a value is below
     constexpr std::size_t kMoreCount = 8;
+    constexpr std::size_t kTelling = 32;  // the fewest values to extrapolate from
     const std::size_t most = width_ / kFewPart;
     for (std::size_t count = kFirstCount; count <= most; count *= 2) {
       widen(count);
@@ -142,7 +143,10 @@ class SubspaceIteration {
         for (auto& v : pairs.vectors) fix_sign(v);
         return pairs;
       }
-      if (least > 0.0 && at_this_rate(pairs.values, least) > static_cast<double>(most)) break;
+      if (count >= kTelling && least > 0.0 &&
+          at_this_rate(pairs.values, least) > static_cast<double>(most)) {
+        break;
+      }
     }
     return std::nullopt;
   }
@@ -151,12 +155,15 @@ class SubspaceIteration {
   static constexpr int kRounds = 6;
 
   // Extrapolates the number of values above `least` from how fast the second half of the values
-  // falls.
+  // falls: between an exponential fall and a power law.
   static double at_this_rate(const std::vector<double>& values, double least) {
     const std::size_t half = values.size() / 2;
     const double fall = det_log2(values[half] / values.back());
     const double left = det_log2(values.back() / least);
-    return static_cast<double>(values.size()) + static_cast<double>(half) * left / fall;
+    const auto count = static_cast<double>(values.size());
+    const double exponential = count + static_cast<double>(half) * left / fall;
+    const double power = count * det_exp2(std::min(left / fall, 40.0));
+    return std::sqrt(std::max(exponential, 1.0) * power);
   }
 
   // Appends pseudo-random vectors.

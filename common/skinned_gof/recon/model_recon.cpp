@@ -109,9 +109,7 @@ std::vector<Influences> complete_influences(const CodedMesh& mesh, const Skinned
 ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
                        bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
-  const auto rest = model.rest.order_flag
-                        ? recon_rest(mesh.rest_order(), model, position_bits)
-                        : recon_values(mesh, model, 0, position_bits, {mesh, true, nullptr});
+  const std::vector<std::int32_t> rest = recon_rest(model);
   add_influences(model, rest);
   if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
   factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);
@@ -119,6 +117,24 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
   weights_.reset();
   adaptive_.reset();
   rest_ = {};
+}
+
+ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+                       std::span<const std::int32_t> values)
+    : mesh_(mesh), position_bits_(position_bits) {
+  add_influences(model, recon_rest(model));
+  auto factors = std::make_shared<SpatialFactors>(num_vertices());
+  const std::size_t count = model.trajectories.size();
+  for (std::size_t l = 0; l < count; ++l) {
+    factors->add(values.subspan(l), model.trajectories[l].spatial_bits, count);
+  }
+  factors_ = std::move(factors);
+}
+
+std::vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
+  return model.rest.order_flag
+             ? rlpc::recon_rest(mesh_.rest_order(), model, position_bits_)
+             : recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
 }
 
 void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {

@@ -53,6 +53,10 @@ class ModelRecon {
   // local_factors() will be called. Cannot fail.
   ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
              bool has_more_groups);
+  // The same where the spatial values of all trajectories are known,
+  // [num_vertices][trajectory].
+  ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+             std::span<const std::int32_t> values);
   ModelRecon(const ModelRecon&) = delete;
   ModelRecon& operator=(const ModelRecon&) = delete;
 
@@ -78,6 +82,7 @@ class ModelRecon {
     std::uint32_t end;
   };
 
+  std::vector<std::int32_t> recon_rest(const SkinnedModel& model) const;
   void add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest);
   void start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest);
   std::shared_ptr<const SpatialFactors> recon_factors(const SkinnedModel& model,

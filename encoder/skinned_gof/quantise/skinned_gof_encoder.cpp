@@ -136,6 +136,7 @@ CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis
       for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
         coded.gofs[g].trajectories = std::move(temporal.of_gof[g]);
       }
+      if (settings.draft) coded.values = std::move(spatial.values);
       return {std::move(spatial.residual), std::move(cuts)};
     }
     limits.least_eighths =

@@ -28,6 +28,8 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 struct CodedSpan {
   SkinnedModel model;
   std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
+  // Of a draft: spatial values as decoded, [num_vertices][trajectory].
+  std::vector<std::int32_t> values = {};
 };
 
 // Quantises the trajectories and completes the span. step: quantiser step, grid units.

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "common/int_math.h"
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/matrix_products.h"
@@ -90,24 +93,127 @@ std::optional<AdaptiveWeights> start_weights(const CodedMesh& mesh, const Skinne
       std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
 }
 
-// Rounds the residuals of vertices, trajectory by trajectory, as the settings require.
-class ResidualRounding {
+// Vertices that are coded one after the other.
+struct Pass {
+  std::optional<VertexResidualChoice> choice;
+  bool keeps_chosen = false;
+  std::vector<VertexResidualChoice::Chosen> chosen;  // [vertex][trajectory]
+  std::vector<std::int32_t> largest;                 // [trajectory], magnitude of a value
+  double most = 0.0;                                 // magnitude of a wanted value
+};
+
+class SpatialCoder {
  public:
-  ResidualRounding(const CodedMesh& mesh, std::size_t count, Rounding rounding)
-      : round_up_(rounding == Rounding::kNearest ? 0.5 : 0.5 - kDeadZone) {
-    if (rounding == Rounding::kCheapest) choice_.emplace(mesh, count);
+  SpatialCoder(const CodedMesh& mesh, const SkinnedModel& model, FittedFactors factors,
+               const ValuePrediction& prediction, AdaptiveWeights* adaptive, std::size_t count,
+               Rounding rounding, double step)
+      : mesh_(mesh),
+        model_(model),
+        factors_(std::move(factors)),
+        prediction_(prediction),
+        adaptive_(adaptive),
+        count_(count),
+        rounding_(rounding),
+        per_step_(kMaxLayerStep / step) {
+    result_.residual.resize(mesh.num_vertices() * count);
+    result_.values.resize(result_.residual.size());
   }
-  void start(std::uint32_t v) {
-    if (choice_) choice_->start(v);
-  }
-  // The residual of the next trajectory; wanted: in steps.
-  std::int32_t next(double wanted) {
-    return choice_ ? choice_->next(wanted) : rounded_residual(wanted, round_up_);
+
+  SpatialValues code() {
+    Pass all{{}, false, {}, std::vector<std::int32_t>(count_)};
+    if (rounding_ == Rounding::kCheapest) all.choice.emplace(mesh_, count_);
+    // Vertices of the base, or of a mesh without layers, are predicted from each other.
+    code(mesh_.vertices_of_layers(0, 1), all);
+    for (std::uint32_t layer = 1; layer < mesh_.num_layers(); ++layer) {
+      code_layer(mesh_.vertices_of_layers(layer, layer + 1), all);
+    }
+    result_.largest = std::move(all.largest);
+    result_.excess = all.most / kMostSpatial;
+    return std::move(result_);
   }
 
  private:
-  double round_up_;
-  std::optional<VertexResidualChoice> choice_;
+  // Shares passes of a few vertices among threads. Each goes on from the rates before them.
+  void code_layer(std::span<const std::uint32_t> list, Pass& all) {
+    constexpr std::size_t kOfPass = 16;    // fixed: vertices
+    constexpr std::size_t kTogether = 16;  // fixed: passes
+    for (std::size_t first = 0; first < list.size(); first += kOfPass * kTogether) {
+      const auto some = list.subspan(first, std::min(kOfPass * kTogether, list.size() - first));
+      std::vector<Pass> passes((some.size() + kOfPass - 1) / kOfPass);
+      for_ranges(some.size(), kOfPass, [&](std::size_t begin, std::size_t end) {
+        Pass& pass = passes[begin / kOfPass];
+        pass = {all.choice, true, {}, all.largest, all.most};
+        code(some.subspan(begin, end - begin), pass);
+      });
+      for (const Pass& pass : passes) {
+        for (std::size_t i = 0; i < pass.chosen.size(); i += count_) {
+          all.choice->follow(std::span(pass.chosen).subspan(i, count_));
+        }
+        all.most = std::max(all.most, pass.most);
+        for (std::size_t l = 0; l < count_; ++l) {
+          all.largest[l] = std::max(all.largest[l], pass.largest[l]);
+        }
+      }
+    }
+  }
+
+  void code(std::span<const std::uint32_t> list, Pass& pass) {
+    constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
+    std::optional<VertexAdaptation> adaptation;
+    if (adaptive_ != nullptr) adaptation.emplace(*adaptive_);
+    std::vector<std::int64_t> predicted(count_);
+    for (std::size_t first = 0; first < list.size(); first += kTogether) {
+      const auto some = list.subspan(first, std::min(kTogether, list.size() - first));
+      const std::vector<double> factors = factors_.of(some);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const bool adapts = adaptation && adaptation->start(some[i], result_.values);
+        if (!adapts) prediction_.predict(some[i], result_.values, predicted);
+        code(some[i], std::span(factors).subspan(i * count_, count_), predicted,
+             adapts ? &*adaptation : nullptr, pass);
+      }
+    }
+  }
+
+  // predicted: unless weights adapt.
+  void code(std::uint32_t v, std::span<const double> factors,
+            std::span<const std::int64_t> predicted, VertexAdaptation* adaptation, Pass& pass) {
+    const int layer_step = model_.layer_step[mesh_.layer_of(v)];
+    if (pass.choice) pass.choice->start(v);
+    for (std::size_t l = 0; l < count_; ++l) {
+      const double wanted = factors[l] * per_step_;
+      pass.most = std::max(pass.most, std::abs(wanted));
+      const std::int64_t of_weights =
+          adaptation != nullptr ? adaptation->predict() : predicted[l];
+      const std::int32_t residual =
+          rounded((wanted - static_cast<double>(of_weights)) / layer_step, pass);
+      result_.residual[v * count_ + l] = residual;
+      const std::int32_t value =
+          clip_signed(kMaxSpatialBits, of_weights + factor_difference(residual, layer_step));
+      if (adaptation != nullptr) adaptation->add(of_weights, value);
+      result_.values[v * count_ + l] = value;
+      pass.largest[l] = std::max(pass.largest[l], value < 0 ? ~value : value);
+    }
+  }
+
+  // The residual of the next trajectory; wanted: in steps.
+  std::int32_t rounded(double wanted, Pass& pass) const {
+    if (pass.choice) {
+      const VertexResidualChoice::Chosen chosen = pass.choice->next(wanted);
+      if (pass.keeps_chosen) pass.chosen.push_back(chosen);
+      return chosen.residual;
+    }
+    return rounded_residual(wanted, rounding_ == Rounding::kNearest ? 0.5 : 0.5 - kDeadZone);
+  }
+
+  const CodedMesh& mesh_;
+  const SkinnedModel& model_;
+  FittedFactors factors_;
+  const ValuePrediction& prediction_;
+  AdaptiveWeights* adaptive_;
+  std::size_t count_;
+  Rounding rounding_;
+  double per_step_;
+  SpatialValues result_;
 };
 
 }  // namespace
@@ -117,7 +223,6 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& mod
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end,
                                   const ModelRecon* shared, Rounding rounding, double step) {
-  constexpr std::size_t kTogether = 16;  // fixed: vertices whose factors are found at a time
   const std::size_t count = temporal.size();
   std::optional<GeometryWeights> weights;
   if (model.prediction == Prediction::kLayers) {
@@ -128,49 +233,13 @@ SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& mod
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
   std::optional<AdaptiveWeights> adaptive =
       start_weights(mesh, model, analysis, weights, shared);
-  std::optional<VertexAdaptation> adaptation;
   if (adaptive) {
     const std::size_t before = shared != nullptr ? shared->factors()->num_components() : 0;
     adaptive->start(before, count, group_end);
-    adaptation.emplace(*adaptive);
   }
-  const FittedFactors all_factors(analysis.pc, temporal);
-  ResidualRounding residuals(mesh, count, rounding);
-  SpatialValues result;
-  result.residual.resize(mesh.num_vertices() * count);
-  result.largest.assign(count, 0);
-  std::vector<std::int32_t> values(result.residual.size());
-  std::vector<double> factors;
-  std::vector<std::int64_t> predicted(count);
-  double most = 0.0;
-  const double per_step = kMaxLayerStep / step;
-  const std::span<const std::uint32_t> order = mesh.order();
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t v = order[i];
-    const bool adapts = adaptation && adaptation->start(v, values);
-    if (!adapts) prediction.predict(v, values, predicted);
-    const std::size_t place = i % kTogether;
-    if (place == 0) {
-      factors = all_factors.of(order.subspan(i, std::min(kTogether, order.size() - i)));
-    }
-    const int layer_step = model.layer_step[mesh.layer_of(v)];
-    residuals.start(v);
-    for (std::size_t l = 0; l < count; ++l) {
-      const double wanted = factors[place * count + l] * per_step;
-      most = std::max(most, std::abs(wanted));
-      if (adapts) predicted[l] = adaptation->predict();
-      const std::int32_t residual =
-          residuals.next((wanted - static_cast<double>(predicted[l])) / layer_step);
-      result.residual[v * count + l] = residual;
-      const std::int32_t value =
-          clip_signed(kMaxSpatialBits, predicted[l] + factor_difference(residual, layer_step));
-      if (adapts) adaptation->add(predicted[l], value);
-      values[v * count + l] = value;
-      result.largest[l] = std::max(result.largest[l], value < 0 ? ~value : value);
-    }
-  }
-  result.excess = most / kMostSpatial;
-  return result;
+  return SpatialCoder(mesh, model, {analysis.pc, temporal}, prediction,
+                      adaptive ? &*adaptive : nullptr, count, rounding, step)
+      .code();
 }
 
 }  // namespace rlpc

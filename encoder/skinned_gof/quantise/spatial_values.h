@@ -14,6 +14,7 @@ namespace rlpc {
 
 struct SpatialValues {
   std::vector<std::int32_t> residual;  // [num_vertices][trajectory]
+  std::vector<std::int32_t> values;    // [num_vertices][trajectory], as decoded
   std::vector<std::int32_t> largest;   // [trajectory], largest magnitude of its values
   double excess = 0.0;  // largest wanted value / largest legal value; above 1 it does not fit
 };

@@ -56,9 +56,18 @@ void count(const SkinnedModel& model, std::uint64_t num_vertices,
 
 }  // namespace
 
+// values: known, or empty.
+SpanUnits::SharedRecon SpanUnits::recon_of(const SkinnedModel& model,
+                                           std::span<const std::int32_t> values) const {
+  return values.empty()
+             ? std::make_shared<ModelRecon>(mesh_, model, header_.position_bits, false)
+             : std::make_shared<ModelRecon>(mesh_, model, header_.position_bits, values);
+}
+
 EncodedGof SpanUnits::alone(CodedSpan coded) const {
   EncodedGof encoded;
   count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
+  const std::vector<std::int32_t> values = std::move(coded.values);
   auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
   set_temporal_layers(temporal_layers_, *gof);
   add_units(write_skinned_gof(*gof, mesh_, header_), UnitType::kGof, encoded);
@@ -68,7 +77,7 @@ EncodedGof SpanUnits::alone(CodedSpan coded) const {
           std::make_shared<SkinnedRecon>(mesh, without_layers(*gof, layers), position_bits));
     };
   }
-  encoded.frame = frames_of(std::make_shared<SkinnedRecon>(mesh_, *gof, header_.position_bits));
+  encoded.frame = frames_of(std::make_shared<SkinnedRecon>(recon_of(*gof, values), *gof));
   return encoded;
 }
 
@@ -102,8 +111,7 @@ EncodedGof SpanUnits::with_model(CodedSpan coded) const {
   count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
   const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
   write_model(*model, encoded);
-  const auto recon =
-      std::make_shared<const ModelRecon>(mesh_, *model, header_.position_bits, false);
+  const SharedRecon recon = recon_of(*model, coded.values);
   for (SkinnedGof& gof : coded.gofs) use_model(model, gof);
   write_gofs(recon, std::move(coded.gofs), encoded);
   return encoded;

@@ -35,6 +35,8 @@ class SpanUnits {
  private:
   using SharedRecon = std::shared_ptr<const ModelRecon>;
 
+  SharedRecon recon_of(const SkinnedModel& model, std::span<const std::int32_t> values) const;
+
   void write_model(const SkinnedModel& model, EncodedGof& encoded) const;
   void write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
                   EncodedGof& encoded) const;
