@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/inverse_iteration.h"
 #include "encoder/math/matrix_products.h"
@@ -100,7 +101,7 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
   solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
   EigenPairs pairs{descending_values(solver), {}};
   const std::size_t wanted = num_wanted(pairs.values, max_count, least);
-  if (4 * wanted >= 3 * width) return std::nullopt;
+  if (wanted >= width) return std::nullopt;
   if (wanted == 0) return pairs;
   const auto vectors =
       tridiagonal_eigenvectors({diagonal.data(), width}, {beside.data(), width - 1},
@@ -111,7 +112,11 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
     columns.col(columns.cols() - 1 - k) = Eigen::Map<const Eigen::VectorXd>(
         (*vectors)[static_cast<std::size_t>(k)].data(), diagonal.size());
   }
-  columns.applyOnTheLeft(reduced.matrixQ());
+  constexpr std::size_t kTogether = 32;  // columns of a pass
+  for_ranges(wanted, kTogether, [&](std::size_t first, std::size_t end) {
+    columns.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(end - first))
+        .applyOnTheLeft(reduced.matrixQ());
+  });
   pairs.vectors = last_columns(columns, wanted);
   return pairs;
 }

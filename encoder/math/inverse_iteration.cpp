@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/math/matrix_products.h"
 
 namespace rlpc {
@@ -67,34 +68,69 @@ class ShiftedFactors {
   std::vector<Row> rows_;
 };
 
-// Orthonormal vectors, stored both as rows and as columns.
-class Basis {
- public:
-  Basis(std::size_t width, std::size_t most) : width_(width), most_(most) {
-    rows_.reserve(width * most);
-    columns_.resize(width * most);
+// The inverse of the upper Cholesky factor of a matrix, [count][count], of which the lower
+// triangle is given. None if a pivot is hardly above 0.
+std::optional<std::vector<double>> inverse_of_factor(std::vector<double> lower,
+                                                     std::size_t count) {
+  constexpr double kLeastPivot = 1e-8;
+  for (std::size_t i = 0; i < count; ++i) {
+    double* const row = &lower[i * count];
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double* const other = &lower[j * count];
+      double sum = row[j];
+      for (std::size_t k = 0; k < j; ++k) sum -= row[k] * other[k];
+      if (j == i && !(sum > kLeastPivot)) return std::nullopt;
+      row[j] = j == i ? std::sqrt(sum) : sum / other[j];
+    }
   }
+  std::vector<double> inverse(count * count, 0.0);  // [k][j], k <= j
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t j = k; j < count; ++j) {
+      double sum = j == k ? 1.0 : 0.0;
+      for (std::size_t i = k; i < j; ++i) sum -= lower[j * count + i] * inverse[k * count + i];
+      inverse[k * count + j] = sum / lower[j * count + j];
+    }
+  }
+  return inverse;
+}
 
-  // Subtracts from x its projection onto the vectors.
-  void remove_projection(std::vector<double>& x) const {
-    if (count_ == 0) return;
-    const std::vector<double> parts = matrix_product(x, width_, columns_, most_);
-    const std::vector<double> sum = matrix_product(parts, most_, rows_, width_);
-    for (std::size_t i = 0; i < width_; ++i) x[i] -= sum[i];
+// The same for a matrix that differs so little from the identity that squares of the
+// differences vanish by rounding.
+std::vector<double> inverse_near_identity(std::span<const double> lower, std::size_t count) {
+  std::vector<double> inverse(count * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) inverse[j * count + i] = -lower[i * count + j];
+    inverse[i * count + i] = 1.5 - 0.5 * lower[i * count + i];
   }
-  void add(const std::vector<double>& x) {
-    rows_.insert(rows_.end(), x.begin(), x.end());
-    for (std::size_t i = 0; i < width_; ++i) columns_[i * most_ + count_] = x[i];
-    ++count_;
-  }
+  return inverse;
+}
 
- private:
-  std::size_t width_;
-  std::size_t most_;
-  std::size_t count_ = 0;
-  std::vector<double> rows_;
-  std::vector<double> columns_;
-};
+double largest_beside_diagonal(std::span<const double> lower, std::size_t count) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      largest = std::max(largest, std::abs(lower[i * count + j]));
+    }
+  }
+  return largest;
+}
+
+// Orthonormalises the columns of a matrix [n][count], which are of unit length and almost
+// orthogonal unless their values are equal. False if one of them depends on those before.
+bool orthonormalise(std::vector<double>& columns, std::size_t count) {
+  constexpr double kNear = 1e-9;
+  constexpr int kMost = 4;  // usually, one or two are enough
+  for (int i = 0; i < kMost; ++i) {
+    const std::vector<double> gram = gram_matrix(columns, count);
+    const bool is_near = largest_beside_diagonal(gram, count) < kNear;
+    const auto inverse = is_near ? std::optional(inverse_near_identity(gram, count))
+                                 : inverse_of_factor(gram, count);
+    if (!inverse) return false;
+    columns = matrix_product(columns, count, *inverse, count);
+    if (is_near) return true;
+  }
+  return false;
+}
 
 // False if the vector is zero or not finite.
 bool normalise(std::vector<double>& x) {
@@ -109,6 +145,16 @@ bool normalise(std::vector<double>& x) {
   const double scale = 1.0 / std::sqrt(square);
   for (double& v : x) v *= scale;
   return true;
+}
+
+std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {
+  std::uint64_t random = (seed + 1) * 0x9E3779B97F4A7C15U;
+  std::vector<double> x(size);
+  for (double& v : x) {
+    random = random * 6364136223846793005U + 1442695040888963407U;
+    v = static_cast<double>(random >> 40) * 0x1p-24 - 0.5;
+  }
+  return x;
 }
 
 // The largest magnitude of an element of (matrix - value) x.
@@ -134,36 +180,40 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
       1e-11;  // residual relative to the largest element of the matrix
   constexpr double kApart =
       8.0;  // in units of rounding: equal values are separated by this much
+  constexpr std::size_t kTogether = 8;  // values of a pass
   const std::size_t n = diagonal.size();
+  const std::size_t count = values.size();
   double size = 0.0;
   for (const double x : diagonal) size = std::max(size, std::abs(x));
   for (const double x : beside) size = std::max(size, std::abs(x));
   const double rounding = std::max(size * std::numeric_limits<double>::epsilon(),
                                    std::numeric_limits<double>::min());
-  std::vector<std::vector<double>> vectors;
-  Basis basis(n, values.size());
-  std::uint64_t random = 1;
+  std::vector<double> shifts;
   double shift = std::numeric_limits<double>::infinity();
   for (const double value : values) {
     shift = std::min(value, shift - kApart * rounding);
-    const ShiftedFactors factors(diagonal, beside, shift, rounding);
-    std::vector<double> x(n);
-    for (double& v : x) {
-      random = random * 6364136223846793005U + 1442695040888963407U;
-      v = static_cast<double>(random >> 40) * 0x1p-24 - 0.5;
+    shifts.push_back(shift);
+  }
+  std::vector<std::vector<double>> vectors(count);
+  std::vector<std::uint8_t> failed(count, 0);
+  for_ranges(count, kTogether, [&](std::size_t l, std::size_t end) {
+    for (; l < end; ++l) {
+      const ShiftedFactors factors(diagonal, beside, shifts[l], rounding);
+      vectors[l] = random_vector(n, l);
+      for (int round = 0; round < kRounds && failed[l] == 0; ++round) {
+        factors.solve(vectors[l]);
+        if (!normalise(vectors[l])) failed[l] = 1;
+      }
     }
-    for (int round = 0; round < kRounds; ++round) {
-      factors.solve(x);
-      if (!normalise(x)) return std::nullopt;
-      basis.remove_projection(x);
-      if (!normalise(x)) return std::nullopt;
-    }
-    basis.remove_projection(x);  // again because of rounding
-    if (!normalise(x) || residual(diagonal, beside, value, x) > kConverged * size) {
+  });
+  if (std::find(failed.begin(), failed.end(), 1) != failed.end()) return std::nullopt;
+  std::vector<double> columns = as_columns(vectors, n);
+  if (!orthonormalise(columns, count)) return std::nullopt;
+  for (std::size_t l = 0; l < count; ++l) {
+    for (std::size_t i = 0; i < n; ++i) vectors[l][i] = columns[i * count + l];
+    if (residual(diagonal, beside, values[l], vectors[l]) > kConverged * size) {
       return std::nullopt;
     }
-    basis.add(x);
-    vectors.push_back(std::move(x));
   }
   return vectors;
 }

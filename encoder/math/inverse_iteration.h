@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Inverse iteration (Wilkinson 1965); each vector is orthogonalised against those before it.
+// Inverse iteration (Wilkinson 1965), after which the vectors are orthonormalised together.
 // None if a vector does not converge, for example because a value is not an eigenvalue.
 //
 //   diagonal  [n], n > 0

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "encoder/skinned_gof/search/temporal_cut.h"
 #include "encoder/write/write_skinned_gof.h"
@@ -70,14 +71,20 @@ EncodedGof SpanUnits::alone(CodedSpan coded) const {
   const std::vector<std::int32_t> values = std::move(coded.values);
   auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
   set_temporal_layers(temporal_layers_, *gof);
-  add_units(write_skinned_gof(*gof, mesh_, header_), UnitType::kGof, encoded);
+  SkinnedGofPayloads payloads;
+  std::shared_ptr<const SkinnedRecon> recon;
+  for_each(2, [&](std::size_t i) {
+    if (i == 0) recon = std::make_shared<SkinnedRecon>(recon_of(*gof, values), *gof);
+    if (i == 1) payloads = write_skinned_gof(*gof, mesh_, header_);
+  });
+  add_units(std::move(payloads), UnitType::kGof, encoded);
   if (temporal_layers_ > 1) {
     encoded.cut = [&mesh = mesh_, gof, position_bits = header_.position_bits](int layers) {
       return frames_of(
           std::make_shared<SkinnedRecon>(mesh, without_layers(*gof, layers), position_bits));
     };
   }
-  encoded.frame = frames_of(std::make_shared<SkinnedRecon>(recon_of(*gof, values), *gof));
+  encoded.frame = frames_of(std::move(recon));
   return encoded;
 }
 
