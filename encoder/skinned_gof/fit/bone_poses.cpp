@@ -1,10 +1,10 @@
 #include "encoder/skinned_gof/fit/bone_poses.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 
 #include "encoder/math/matrix_products.h"
-#include "encoder/math/small_system.h"
 
 namespace rlpc {
 namespace {
@@ -169,21 +169,7 @@ class StepEquations {
 
   // Unknowns without a pivot stay 0.
   void add_inverse(const Block& block) {
-    Block inverse;
-    for (std::size_t k = 0; k < 6; ++k) {
-      SmallSystem<6> m;
-      for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t j = 0; j < 6; ++j) {
-          m.a[i][j] = block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-        }
-      }
-      m.b[k] = 1.0;
-      const auto column = solve_small(m).x;
-      for (std::size_t i = 0; i < 6; ++i) {
-        inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = column[i];
-      }
-    }
-    inverse_.push_back(inverse);
+    inverse_.push_back(block.ldlt().solve(Block::Identity()));
   }
   std::vector<Vector> times_inverse(const std::vector<Vector>& x) const {
     std::vector<Vector> result(x.size());
