@@ -46,10 +46,16 @@ bool fits_level(const TargetTask& task, const BatchTrial& trial) {
   });
 }
 
+// In the High profile. fixed: promises to users about errors and time.
+constexpr TargetSearch::Patience kPatient{3, 0.04};
+constexpr TargetSearch::Patience kImpatient{1, 0.08};
+
 InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
                                        std::uint32_t trials_before) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
-  if (task.header.profile_idc >= kProfileHigh) search.set_costly();
+  if (task.header.profile_idc >= kProfileHigh) {
+    search.set_patience(task.settings.preset == Preset::kFast ? kImpatient : kPatient);
+  }
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {
