@@ -270,8 +270,8 @@ TEST(TargetSearch, EndsAfterOneEncodingIfThatMayDo) {
   for (const double off : {0.965, 1.0, 1.035}) {
     TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
     s.set_patience({1, 0.08});
-    s.begin_at([](double step) { return 1e-5 * step; });
-    const double measured = off * 1e-5 * s.step();
+    s.begin_at([](double step) { return 1e-3 * step; });
+    const double measured = off * 1e-3 * s.step();
     EXPECT_TRUE(s.report(measured, bytes_with(s.step())));
     EXPECT_NEAR(measured, off * 0.096, 1e-6);
     EXPECT_TRUE(s.finished()) << off;
