@@ -99,9 +99,9 @@ TrajectoryRows ModelRemainder::rows() const {
 
 void ModelRemainder::write(std::size_t first, std::span<double> rows) const {
   const std::size_t size = rows.size() / width();
-  constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass
+  constexpr std::size_t kOfPass = 32;  // fixed: vertices of a pass
   const SkinnedModel& model = *kept_.model;
-  for_ranges(size, kTogether, [&](std::size_t i, std::size_t end) {
+  for_ranges(size, kOfPass, [&](std::size_t i, std::size_t end) {
     MeanMotions motions(motions_);
     for (; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(first + i);
