@@ -395,7 +395,7 @@ BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* paren
     if (i == 0 && bone.rotation_flag) {
       relative = code_rotations(wanted, parent, options, rotations, bone);
     }
-    if (i == 1 && bone.origin_flag) {
+    if (i == 1 && shifted.origin_flag) {
       offset = code_offsets(wanted, parent, options, origins, shifted);
     }
   });
