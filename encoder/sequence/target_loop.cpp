@@ -46,9 +46,9 @@ bool fits_level(const TargetTask& task, const BatchTrial& trial) {
   });
 }
 
-// In the High profile. fixed: promises to users about errors and time.
-constexpr TargetSearch::Patience kPatient{3, 0.04};
-constexpr TargetSearch::Patience kImpatient{1, 0.08};
+// In the High profile, where encodings take long.
+constexpr TargetSearch::Patience kPatient{3, 0.04};    // fixed: a promise to users
+constexpr TargetSearch::Patience kImpatient{1, 0.08};  // fixed: likewise, with preset fast
 
 InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
                                        std::uint32_t trials_before) {
