@@ -84,8 +84,8 @@ struct CodedTrack {
 // A way to code a track: its order, and what precedes it.
 struct TrackTask {
   std::vector<TrackPlace> order;
-  const TrackState* before;
-  double header_bits;
+  const TrackState* before = nullptr;
+  double header_bits = 0.0;
 };
 
 // Codes the track in closed loop; none, early, if it costs at least `limit`. choose(wanted,
