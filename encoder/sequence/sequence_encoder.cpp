@@ -30,6 +30,17 @@ bool keeps_analyses(const SequenceHeader& header) {
          kKeepBytes;
 }
 
+// Spans that are encoded at the same time: one for each thread, but no more positions than
+// this, as each is held with what it is made into. Threads also share a single span.
+constexpr std::uint64_t kPositionsTogether = std::uint64_t{1} << 25;  // fixed: memory
+
+std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest,
+                             std::uint32_t num_threads) {
+  const std::uint64_t most =
+      kPositionsTogether / (std::uint64_t{header.num_vertices} * longest);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, num_threads));
+}
+
 class SequenceEncoder {
  public:
   SequenceEncoder(FrameSource& source, const EncoderSettings& settings,
@@ -145,7 +156,8 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
 InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
   GofBatch batch(*coding_, source_, spans_,
-                 {.keep_analyses = keeps_analyses_, .together = num_threads_});
+                 {.keep_analyses = keeps_analyses_,
+                  .together = spans_together(header, longest_gof_of(spans_), num_threads_)});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
                             .header = header,

@@ -71,13 +71,15 @@ void SkinnedGofCoder::choose(double step) {
   }
   const Target& target = context_.settings.target;
   std::optional<Draft> first;
+  std::optional<double> wanted_error;
   if (target.kind == Target::kKg && context_.settings.main.bones == 0) {
     first = survey(bones_.likeliest(step), step);
     const double part = target.value / 100.0;
-    step = step_of_error(part * part * bones_.squared_spread(), *first);
+    wanted_error = part * part * bones_.squared_spread();
+    step = step_of_error(*wanted_error, *first);
   }
   const SkinnedTrials trials(context_, frames_, step);
-  SkinnedTrial best = search_tools(context_, trials, bones_.search(trials));
+  SkinnedTrial best = search_tools(context_, trials, bones_.search(trials, wanted_error));
   choice_ = std::move(best.candidate);
   choice_->settings.draft = false;
   draft_ = Draft{step, best.error, std::move(best.analysis), best.num_trajectories, true};

@@ -7,6 +7,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/gof/component_cost.h"
+#include "encoder/math/det_math.h"
 
 namespace rlpc {
 namespace {
@@ -46,6 +47,16 @@ Rig translation_rig(const GofFrames& frames) {
     rig.bones[0].poses.push_back(pose);
   }
   return rig;
+}
+
+constexpr double kLeastError = 1e-6;  // fixed: above zero
+
+// Bits at equal error, about, for comparison at one step. Lagrangian costs take the rate for a
+// line, which favours small errors where errors differ much.
+double bits_at_equal_error(double bits, double error) {
+  // tuned (off: 0): The rate is about this power of the squared error.
+  constexpr double kRateOfError = -0.25;
+  return bits * det_exp2(-kRateOfError * det_log2(std::max(error, kLeastError)));
 }
 
 }  // namespace
@@ -264,7 +275,50 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
 
 double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
 
-SkinnedTrial BoneSearch::search(const SkinnedTrials& trials) {
+// Whether the second draft takes fewer bits than the first if both are encoded whole, each at
+// the step at which the wanted error is expected: drafts do not show how well the tracks of
+// bones can be coded.
+bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first,
+                           const SkinnedTrials& trials, double wanted_error) const {
+  constexpr double kErrorPower = 1.7;  // fixed: of the step, as in the search for the target
+  constexpr double kFarthest = 1e3;    // fixed: a guard against drafts that are far off
+  const std::array<const SkinnedTrial*, 2> drafts{&first, &second};
+  std::array<double, 2> bits{};
+  for_each(2, [&](std::size_t i) {
+    const double error = std::max(drafts[i]->error, kLeastError);
+    const double ratio = std::clamp(wanted_error / error, 1.0 / kFarthest, kFarthest);
+    const SkinnedTrials at_error(context_, frames_,
+                                 trials.step() * det_exp2(det_log2(ratio) / kErrorPower));
+    const SkinnedTrial whole = at_error.whole(drafts[i]->candidate);
+    bits[i] = bits_at_equal_error(at_error.bits_of(whole), whole.error);
+  });
+  return bits[1] < bits[0];
+}
+
+// The draft of the fewest bits at equal error. One that is about as good is compared with it.
+std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const SkinnedTrials& trials,
+                                std::optional<double> wanted_error) const {
+  std::vector<double> bits;
+  for (const BestTrial& draft : drafts) {
+    bits.push_back(bits_at_equal_error(trials.bits_of(*draft), draft->error));
+  }
+  const auto first =
+      static_cast<std::size_t>(std::min_element(bits.begin(), bits.end()) - bits.begin());
+  std::size_t second = first;
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    const bool is_close = bits[i] <= (1.0 + kTryMargin) * bits[first] ||
+                          drafts[i]->cost <= (1.0 + kTryMargin) * drafts[first]->cost;
+    if (i == first || !is_close) continue;
+    if (second == first || bits[i] < bits[second]) second = i;
+  }
+  if (second == first) return first;
+  const double error =
+      wanted_error.value_or(std::min(drafts[first]->error, drafts[second]->error));
+  return is_better(*drafts[second], *drafts[first], trials, error) ? second : first;
+}
+
+SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
+                                std::optional<double> wanted_error) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
   grow_all(trials.step());
   std::vector<BestTrial> drafts;
@@ -276,10 +330,7 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials) {
     Growth::Bones& bones = growth.bones[list[i].bones];
     drafts[i + 1] = trials.run(candidate(growth, bones, trials.step()));
   });
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < drafts.size(); ++i) {
-    if (drafts[i]->cost < drafts[best]->cost) best = i;
-  }
+  const std::size_t best = best_of(drafts, trials, wanted_error);
   BestTrial cheapest = std::move(drafts[best]);
   if (best > 0 && context_.settings.preset == Preset::kSlow) {
     BestTrial polished = polish(trials, list[best - 1]);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "encoder/gof/gof_frames.h"
@@ -29,8 +30,8 @@ class BoneSearch {
   SkinnedCandidate likeliest(double step);
   // The analysis of a draft of one_bone(), if likeliest() needed one; or null.
   const SkinnedAnalysis* analysis_of_one() const { return one_ ? &*one_ : nullptr; }
-  // The cheapest trial over all numbers of bones.
-  SkinnedTrial search(const SkinnedTrials& trials);
+  // The best trial over all numbers of bones. wanted_error: squared, if it is the target.
+  SkinnedTrial search(const SkinnedTrials& trials, std::optional<double> wanted_error);
   // The sum of squared distances of all vertices from the centres of their frames, about; after
   // a trial.
   double squared_spread() const;
@@ -72,6 +73,10 @@ class BoneSearch {
   SkinnedTrial try_one_bone(const SkinnedTrials& trials);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
   std::vector<Candidate> candidates(double step);
+  bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,
+                 const SkinnedTrials& trials, double wanted_error) const;
+  std::size_t best_of(std::span<const BestTrial> drafts, const SkinnedTrials& trials,
+                      std::optional<double> wanted_error) const;
   BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
 
   const SkinnedContext& context_;

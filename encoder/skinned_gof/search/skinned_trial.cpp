@@ -63,8 +63,8 @@ SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis a
   const EncodedGof encoded =
       encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
-  return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits_of(encoded),
-          error, encoded.components};
+  return {std::move(candidate), std::move(analysis),
+          error + lambda(step_) * rlpc::bits_of(encoded), error, encoded.components};
 }
 
 SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate,
@@ -72,6 +72,17 @@ SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate,
   candidate.settings.draft = true;
   SkinnedAnalysis analysis = analyse_candidate(context_, frames_, candidate, step_, before);
   return encode(std::move(candidate), std::move(analysis));
+}
+
+SkinnedTrial SkinnedTrials::whole(const SkinnedCandidate& candidate) const {
+  SkinnedCandidate copy = candidate;
+  copy.settings.draft = false;
+  SkinnedAnalysis analysis = analyse_candidate(context_, frames_, copy, step_);
+  return encode(std::move(copy), std::move(analysis));
+}
+
+double SkinnedTrials::bits_of(const SkinnedTrial& trial) const {
+  return (trial.cost - trial.error) / lambda(step_);
 }
 
 SkinnedTrial SkinnedTrials::again(const SkinnedTrial& trial,

@@ -49,6 +49,9 @@ class SkinnedTrials {
   double step() const { return step_; }
   // before: of analyse_skinned_gof().
   SkinnedTrial run(SkinnedCandidate candidate, const SkinnedAnalysis* before = nullptr) const;
+  // A whole encoding of the candidate, not a draft.
+  SkinnedTrial whole(const SkinnedCandidate& candidate) const;
+  double bits_of(const SkinnedTrial& trial) const;
   // The candidate with other settings.
   SkinnedTrial again(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
   // Tries the candidate with other settings; none if that is not cheaper.
