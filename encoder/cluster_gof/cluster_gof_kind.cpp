@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "encoder/cluster_gof/cluster_gof_search.h"
 #include "encoder/gof/split_coder.h"
@@ -23,6 +24,11 @@ class ClusterGofCoder : public GofCoder {
   EncodedGof encode(double step, double analysis_step) override {
     if (!clusters_) clusters_ = search_clusters(coding_, step);
     return coding_.encode(step, analysis_.get(analysis_step, [&] {
+      if (clusters_->analysis) {
+        ClusterGofAnalysis analysis = std::move(*clusters_->analysis);
+        clusters_->analysis.reset();
+        return analysis;
+      }
       return coding_.analyse(analysis_step, clusters_->choice.world, clusters_->clustering);
     }));
   }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <utility>
 
+#include "common/parallel/for_each.h"
 #include "encoder/gof/count_at.h"
 #include "encoder/gof/lagrangian.h"
 
@@ -21,16 +24,39 @@ class ClusterSearch {
       : coding_(coding), step_(step), motion_(coding.motion()) {}
 
   FoundClusters run() {
+    const BaselineTools& tools = coding_.settings().baseline;
+    const bool is_free = tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto;
+    // Beside skinned GOFs, which are usually better, only the extremes are tried.
+    if (is_free && coding_.settings().preset == Preset::kMedium &&
+        coding_.settings().profile != Profile::kBaseline) {
+      return better_extreme();
+    }
     const ClusterChoice choice = choose();
     return {choice, coding_.cluster(motion_, choice.clusters)};
   }
 
  private:
-  double cost(const ClusterChoice& choice) {
-    const EncodedGof encoded = coding_.encode(step_, choice, motion_);
+  FoundClusters better_extreme() {
+    std::array<FoundClusters, 2> found;
+    found[0].choice = {usual_clusters(coding_.frames().num_vertices), false};
+    found[1].choice = {1, true};
+    for (FoundClusters& of : found)
+      of.clustering = coding_.cluster(motion_, of.choice.clusters);
+    std::array<double, 2> costs{};
+    for_each(2, [&](std::size_t i) {
+      found[i].analysis = coding_.analyse(step_, found[i].choice.world, found[i].clustering);
+      costs[i] = cost(coding_.encode(step_, *found[i].analysis));
+    });
+    return std::move(found[costs[1] < costs[0] ? 1 : 0]);
+  }
+
+  double cost(const EncodedGof& encoded) const {
     const double error = squared_error(coding_.frames(), encoded.frame);
     const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
     return error + lambda(step_) * bits;
+  }
+  double cost(const ClusterChoice& choice) {
+    return cost(coding_.encode(step_, choice, motion_));
   }
 
   // The last number that leaves vertices beside those of seeds.
@@ -71,11 +97,6 @@ class ClusterSearch {
     const std::uint32_t usual =
         tools.clusters > 0 ? tools.clusters : usual_clusters(coding_.frames().num_vertices);
     if (coding_.settings().preset == Preset::kFast) return {usual, world_requested};
-    // A single cluster is seldom better than a skinned GOF.
-    if (coding_.settings().preset != Preset::kSlow &&
-        coding_.settings().profile != Profile::kBaseline) {
-      return {usual, false};
-    }
     const auto best_of = [&](bool world) {
       return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
     };

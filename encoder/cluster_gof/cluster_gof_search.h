@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "encoder/cluster_gof/cluster_gof_coding.h"
 
@@ -10,6 +11,7 @@ namespace rlpc {
 struct FoundClusters {
   ClusterChoice choice{};
   Clustering clustering;
+  std::optional<ClusterGofAnalysis> analysis = {};  // for the step, if the search made one
 };
 
 // The clusters with the lowest cost at a step (grid steps), among those that the settings

@@ -124,6 +124,7 @@ class SpatialCoder {
     if (rounding_ == Rounding::kCheapest) all.choice.emplace(mesh_, count_);
     // Vertices of the base, or of a mesh without layers, are predicted from each other.
     code(mesh_.vertices_of_layers(0, 1), all);
+    num_coded_ = mesh_.vertices_of_layers(0, 1).size();
     for (std::uint32_t layer = 1; layer < mesh_.num_layers(); ++layer) {
       code_layer(mesh_.vertices_of_layers(layer, layer + 1), all);
     }
@@ -133,12 +134,17 @@ class SpatialCoder {
   }
 
  private:
-  // Shares passes of a few vertices among threads. Each goes on from the rates before them.
+  // Shares passes of a few vertices among threads. Each goes on from the rates before them, so
+  // that few are coded at a time while rates are not settled.
   void code_layer(std::span<const std::uint32_t> list, Pass& all) {
-    constexpr std::size_t kOfPass = 16;    // fixed: vertices
-    constexpr std::size_t kTogether = 16;  // fixed: passes
-    for (std::size_t first = 0; first < list.size(); first += kOfPass * kTogether) {
-      const auto some = list.subspan(first, std::min(kOfPass * kTogether, list.size() - first));
+    constexpr std::size_t kOfPass = 16;  // fixed: vertices
+    constexpr std::size_t kMost = 256;   // fixed: vertices at a time, for as many threads
+    constexpr std::size_t kPart = 8;     // fixed: of those that are coded
+    std::size_t together = 0;
+    for (std::size_t first = 0; first < list.size(); first += together) {
+      together = std::clamp(num_coded_ / kPart, kOfPass, kMost);
+      const auto some = list.subspan(first, std::min(together, list.size() - first));
+      num_coded_ += some.size();
       std::vector<Pass> passes((some.size() + kOfPass - 1) / kOfPass);
       for_ranges(some.size(), kOfPass, [&](std::size_t begin, std::size_t end) {
         Pass& pass = passes[begin / kOfPass];
@@ -213,6 +219,7 @@ class SpatialCoder {
   std::size_t count_;
   Rounding rounding_;
   double per_step_;
+  std::size_t num_coded_ = 0;  // vertices
   SpatialValues result_;
 };
 
