@@ -92,8 +92,8 @@ struct MainTools {
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
 // The error or rate that the encoder aims for. It stays at most 2 % below, if possible, or with
-// a KG error in the High profile, 4 % (preset fast: 8 %); and exceeds the target only if that
-// cannot be met (EncodeReport::target_met).
+// a KG error in the High profile, 4 %; and exceeds the target only if that cannot be met
+// (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {
     kNone,  // no search; quantisers as set

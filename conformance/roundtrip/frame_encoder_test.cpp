@@ -76,7 +76,7 @@ TEST_P(EachProfile, EveryGofMeetsTheKgError) {
   const Measured measured = measure(source, encoded, 20);
   for (const Metrics& gof : measured.gofs) {
     EXPECT_LE(gof.kg_error_percent, 0.5);
-    EXPECT_GE(gof.kg_error_percent, (GetParam() == Profile::kHigh ? 0.92 : 0.98) * 0.5);
+    EXPECT_GE(gof.kg_error_percent, (GetParam() == Profile::kHigh ? 0.96 : 0.98) * 0.5);
   }
   EXPECT_LE(measured.whole.kg_error_percent, 0.5);
 }

@@ -75,8 +75,7 @@ typedef struct rlpc_encode_options {
   size_t struct_size;  // rlpc_encode_options_init sets it
   uint32_t profile;    // default RLPC_MAIN
   uint32_t preset;     // default RLPC_MEDIUM
-  // Default RLPC_TARGET_KG; approached from below, within 2 % (High: 4 %; fast: 8 %) if
-  // possible.
+  // Default RLPC_TARGET_KG; approached from below, within 2 % (High: 4 %) if possible.
   uint32_t target;
   double target_value;  // default 0.1; above zero and finite
   // Maximum frames per GOF; 0: 128, or 256 in the High profile; UINT32_MAX: one GOF of all.

@@ -46,16 +46,10 @@ bool fits_level(const TargetTask& task, const BatchTrial& trial) {
   });
 }
 
-// In the High profile, where encodings take long.
-constexpr TargetSearch::Patience kPatient{3, 0.04};    // fixed: a promise to users
-constexpr TargetSearch::Patience kImpatient{1, 0.08};  // fixed: likewise, with preset fast
-
 InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
                                        std::uint32_t trials_before) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
-  if (task.header.profile_idc >= kProfileHigh) {
-    search.set_patience(task.settings.preset == Preset::kFast ? kImpatient : kPatient);
-  }
+  if (task.header.profile_idc >= kProfileHigh) search.set_costly();
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {

@@ -90,13 +90,7 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   return better;
 }
 
-// The middle of what ends the search.
-double TargetSearch::aim() const {
-  const bool first_may_do = patience_ && patience_->trials == 1 && trials_ == 0;
-  const double below =
-      first_may_do && target_.kind == Target::kKg ? patience_->below : kTolerance;
-  return target_.value * (1.0 - 0.5 * below);
-}
+double TargetSearch::aim() const { return target_.value * (1.0 - 0.5 * kTolerance); }
 
 // Whether the current analysis is valid for the step at which the target is expected.
 bool TargetSearch::is_near(double measured) const {
@@ -122,10 +116,11 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
-  constexpr int kUsualTrials = 4;  // fixed: a promise about time
-  const bool enough_of_costly = patience_ && target_.kind == Target::kKg &&
-                                trials_ >= patience_->trials &&
-                                best_.met_within(patience_->below);
+  constexpr int kUsualTrials = 4;     // fixed: a promise about time
+  constexpr int kCostlyTrials = 3;    // fixed: a promise about time
+  constexpr double kFarBelow = 0.04;  // fixed: of the target; a promise to users
+  const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&
+                                trials_ >= kCostlyTrials && best_.met_within(kFarBelow);
   const bool enough =
       (was_interpolated_ && best_.met() && trials_ >= kUsualTrials) || enough_of_costly;
   if (best_.close() || enough || trials_ >= kMaxTrials) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/target/step_search.h"
@@ -39,13 +38,8 @@ class TargetSearch {
   // Before the first encoding, if the target is an error: sets the first step to the one at
   // which the target is expected. expected: from analyses made for analysis_step().
   void begin_at(const Expected& expected);
-  // Encodings take long: a KG error of at most this fraction below the target ends the search
-  // after some trials.
-  struct Patience {
-    int trials;
-    double below;
-  };
-  void set_patience(const Patience& patience) { patience_ = patience; }
+  // Encodings take long: a KG error of up to 4 % below the target ends the search after three.
+  void set_costly() { is_costly_ = true; }
   double step() const { return step_; }
   // The step to analyse for. Near the target it is kept as long as it is valid for step(),
   // because the measured value jumps from one analysis to the next.
@@ -81,7 +75,7 @@ class TargetSearch {
   BestEncoding best_;
   Bracket bracket_;
   PowerLaw power_law_;
-  std::optional<Patience> patience_;
+  bool is_costly_ = false;
   int trials_ = 0;
   bool was_interpolated_ = false;  // the current step, in a narrow bracket
   double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling

@@ -249,7 +249,7 @@ TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreCostly) {
     for (const double factor : {0.02, 1.0, 30.0}) {
       SCOPED_TRACE(testing::Message() << power << " " << factor);
       TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
-      s.set_patience({3, 0.04});
+      s.set_costly();
       s.begin_at(100.0 * factor);
       int trials = 0;
       double best = 0.0;
@@ -262,19 +262,6 @@ TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreCostly) {
       EXPECT_LE(best, 0.1);
       EXPECT_GE(best, 0.096);
     }
-  }
-}
-
-// The first encoding aims at the middle of what it may be below the target.
-TEST(TargetSearch, EndsAfterOneEncodingIfThatMayDo) {
-  for (const double off : {0.965, 1.0, 1.035}) {
-    TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
-    s.set_patience({1, 0.08});
-    s.begin_at([](double step) { return 1e-3 * step; });
-    const double measured = off * 1e-3 * s.step();
-    EXPECT_TRUE(s.report(measured, bytes_with(s.step())));
-    EXPECT_NEAR(measured, off * 0.096, 1e-6);
-    EXPECT_TRUE(s.finished()) << off;
   }
 }
 
