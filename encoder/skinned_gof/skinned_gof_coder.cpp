@@ -20,8 +20,6 @@ constexpr double kBonesServe = 1.03;
 // factor, unless the preset is fast: they hold the errors of bones and rest positions, which
 // are coded anew.
 constexpr double kComponentsServe = 1.2;
-// tuned: With bones, the squared error is about this power of the step, if these follow it.
-constexpr double kErrorPower = 1.7;
 
 }  // namespace
 

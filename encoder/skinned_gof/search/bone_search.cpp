@@ -53,10 +53,10 @@ constexpr double kLeastError = 1e-6;  // fixed: above zero
 
 // Bits at equal error, about, for comparison at one step. Lagrangian costs take the rate for a
 // line, which favours small errors where errors differ much.
-double bits_at_equal_error(double bits, double error) {
+double bits_at_equal_error(const SkinnedTrial& trial) {
   // tuned (off: 0): The rate is about this power of the squared error.
   constexpr double kRateOfError = -0.25;
-  return bits * det_exp2(-kRateOfError * det_log2(std::max(error, kLeastError)));
+  return trial.bits * det_exp2(-kRateOfError * det_log2(std::max(trial.error, kLeastError)));
 }
 
 }  // namespace
@@ -150,7 +150,7 @@ void BoneSearch::grow_all(double step) {
     const bool promising = of_count < worth_trying(step);
     if (telling && promising && one_ && !is_compared_) {
       is_compared_ = true;
-      try_one_bone(SkinnedTrials(context_, frames_, step));
+      try_one_bone(SkinnedTrials(context_, frames_, step));  // what it costs, not the trial
     }
     std::vector<Growth*> still;
     std::vector<double> of_still;
@@ -280,8 +280,7 @@ double BoneSearch::squared_spread() const { return growths_.front().fit->squared
 // bones can be coded.
 bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first,
                            const SkinnedTrials& trials, double wanted_error) const {
-  constexpr double kErrorPower = 1.7;  // fixed: of the step, as in the search for the target
-  constexpr double kFarthest = 1e3;    // fixed: a guard against drafts that are far off
+  constexpr double kFarthest = 1e3;  // fixed: a guard against drafts that are far off
   const std::array<const SkinnedTrial*, 2> drafts{&first, &second};
   std::array<double, 2> bits{};
   for_each(2, [&](std::size_t i) {
@@ -290,7 +289,7 @@ bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first
     const SkinnedTrials at_error(context_, frames_,
                                  trials.step() * det_exp2(det_log2(ratio) / kErrorPower));
     const SkinnedTrial whole = at_error.whole(drafts[i]->candidate);
-    bits[i] = bits_at_equal_error(at_error.bits_of(whole), whole.error);
+    bits[i] = bits_at_equal_error(whole);
   });
   return bits[1] < bits[0];
 }
@@ -300,7 +299,7 @@ std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const Skinned
                                 std::optional<double> wanted_error) const {
   std::vector<double> bits;
   for (const BestTrial& draft : drafts) {
-    bits.push_back(bits_at_equal_error(trials.bits_of(*draft), draft->error));
+    bits.push_back(bits_at_equal_error(*draft));
   }
   const auto first =
       static_cast<std::size_t>(std::min_element(bits.begin(), bits.end()) - bits.begin());

@@ -63,8 +63,9 @@ SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis a
   const EncodedGof encoded =
       encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
-  return {std::move(candidate), std::move(analysis),
-          error + lambda(step_) * rlpc::bits_of(encoded), error, encoded.components};
+  const double bits = bits_of(encoded);
+  return {std::move(candidate), std::move(analysis), error + lambda(step_) * bits, error, bits,
+          encoded.components};
 }
 
 SkinnedTrial SkinnedTrials::run(SkinnedCandidate candidate,
@@ -79,10 +80,6 @@ SkinnedTrial SkinnedTrials::whole(const SkinnedCandidate& candidate) const {
   copy.settings.draft = false;
   SkinnedAnalysis analysis = analyse_candidate(context_, frames_, copy, step_);
   return encode(std::move(copy), std::move(analysis));
-}
-
-double SkinnedTrials::bits_of(const SkinnedTrial& trial) const {
-  return (trial.cost - trial.error) / lambda(step_);
 }
 
 SkinnedTrial SkinnedTrials::again(const SkinnedTrial& trial,
