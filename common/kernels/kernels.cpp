@@ -49,8 +49,8 @@ void positions(const std::int64_t* places, const std::int64_t* displacements,
   }
 }
 
-constexpr Kernels kPlain{sum_products, add_weighted,   weighted_places,
-                         positions,    predict_offset, adapt};
+constexpr Kernels kPlain{sum_products,   add_weighted, weighted_places, positions,
+                         predict_offset, adapt,        adapt_to_frame};
 
 }  // namespace
 
@@ -62,7 +62,8 @@ std::span<const Kernels> kernels() {
 #elif defined(RLPC_HAVE_WASM_KERNELS)
   static constexpr std::array<Kernels, 2> kLoops{
       kPlain,
-      {sum_products_wasm, add_weighted, weighted_places, positions, predict_offset, adapt}};
+      {sum_products_wasm, add_weighted, weighted_places, positions, predict_offset, adapt,
+       adapt_to_frame}};
   return kLoops;
 #else
   static constexpr std::array<Kernels, 1> kLoops{kPlain};

@@ -56,8 +56,10 @@ struct Kernels {
   void (*positions)(const std::int64_t* places, const std::int64_t* displacements,
                     const PositionWidths& widths, std::int32_t* positions);
   // 8.15.2 and 8.15.3: predict_offset() and adapt() of weight_filter.h.
-  std::int64_t (*predict_offset)(const WeightFilter& filter, const std::int32_t* offsets);
-  void (*adapt)(WeightFilter& filter, const std::int32_t* offsets, std::int64_t error);
+  std::int64_t (*predict_offset)(const FilterState& filter, const std::int32_t* offsets);
+  void (*adapt)(const FilterState& filter, const std::int32_t* offsets, std::int64_t error);
+  void (*adapt_to_frame)(const FilterState& filter, const std::int32_t* offsets,
+                         std::int64_t error, std::int64_t variance);
 };
 
 // The kernels that this machine supports: the plain ones first, the fastest last.

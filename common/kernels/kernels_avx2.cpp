@@ -142,8 +142,8 @@ RLPC_AVX2 void positions(const std::int64_t* places, const std::int64_t* displac
 
 }  // namespace
 
-const Kernels kKernelsAvx2{sum_products, add_weighted,        weighted_places,
-                           positions,    predict_offset_avx2, adapt_avx2};
+const Kernels kKernelsAvx2{sum_products,        add_weighted, weighted_places,    positions,
+                           predict_offset_avx2, adapt_avx2,   adapt_to_frame_avx2};
 
 }  // namespace rlpc
 

@@ -1,4 +1,5 @@
-// 8.15 Adaptive weights: the filter that adapts the weights of one vertex.
+// 8.15 Adaptive weights: the filter that adapts the weights of one vertex, also to the frames
+// of a GOF of frames (8.19).
 #pragma once
 
 #include <array>
@@ -12,23 +13,48 @@ inline constexpr std::size_t kMaxFilterSize = 32;  // neighbours, and padding to
 inline constexpr std::size_t kFilterVector = 8;    // neighbours of a vector
 inline constexpr int kAdaptiveFractionBits = 16;   // of weights
 inline constexpr std::int32_t kMaxAdaptiveWeight = (1 << 19) - 1;
-inline constexpr std::int32_t kMaxSpread = (1 << 22) - 1;
+inline constexpr int kSpreadFractionBits = 28;
+inline constexpr int kOffsetLog2 = 9;  // of the largest offset, shifted
+inline constexpr int kGainBits = 14;
 inline constexpr int kSpreadShift = 12;      // of the first spread, from a step of the walk
 inline constexpr int kLaterSpreadShift = 9;  // likewise, at later component groups
-inline constexpr int kOffsetLog2 = 9;        // of the largest offset, shifted
-inline constexpr std::int32_t kMaxFilterError = 1024;
-inline constexpr int kGainShift = 7;
-inline constexpr std::int64_t kMinScale = 1 << 21;
-inline constexpr int kGainBits = 14;
 
-// Lists are padded with zeros to `stride`, a multiple of kFilterVector.
+// 8.15.3: the ranges of a filter. The scale has spread_fraction - gain_shift fractional bits.
+struct FilterForm {
+  std::int32_t max_spread;
+  int gain_shift;
+  std::int32_t max_error;
+
+  constexpr int scale_bits() const { return kSpreadFractionBits - gain_shift; }
+};
+// 8.15: of spatial factors. The variance of a residual, after the shifts, is 1.
+inline constexpr FilterForm kFactorFilter{(1 << 22) - 1, 7, 1 << 10};
+inline constexpr std::int64_t kFactorNoise = std::int64_t{1} << kFactorFilter.scale_bits();
+// 8.19: of positions. The variance of a residual is given with 16 fractional bits.
+inline constexpr FilterForm kFrameFilter{1 << 26, 11, 1 << 14};
+inline constexpr int kVarianceFractionBits = 16;
+inline constexpr std::int64_t kMinFrameNoise = std::int64_t{1} << 14;
+inline constexpr std::int64_t kMaxFrameNoise = std::int64_t{1} << 41;
+
+// The filter of one vertex: lists of `size` neighbours, padded with zeros to `stride`, a
+// multiple of kFilterVector.
+struct FilterState {
+  std::size_t size = 0;
+  std::size_t stride = 0;
+  std::int32_t* weight = nullptr;      // AdaptiveWeights[ v ]
+  const std::int32_t* walk = nullptr;  // RandomWalk( v, i )
+  std::int32_t* spread = nullptr;      // rows, [size][stride]
+};
+
+// A filter with room for the largest.
 struct WeightFilter {
   std::size_t size = 0;  // neighbours, ring first
   std::size_t stride = 0;
-  alignas(32) std::array<std::int32_t, kMaxFilterSize> weight{};  // AdaptiveWeights[ v ]
-  alignas(32) std::array<std::int32_t, kMaxFilterSize> walk{};    // RandomWalk( v, i )
-  alignas(32) std::array<std::int32_t, kMaxFilterSize * kMaxFilterSize> spread{};  // rows
+  alignas(32) std::array<std::int32_t, kMaxFilterSize> weight{};
+  alignas(32) std::array<std::int32_t, kMaxFilterSize> walk{};
+  alignas(32) std::array<std::int32_t, kMaxFilterSize * kMaxFilterSize> spread{};
 
+  FilterState state() { return {size, stride, weight.data(), walk.data(), spread.data()}; }
   // 8.15.1 StartSpread( ): weights are those of `size` neighbours, the first ring_size of them
   // in the ring; shift: kSpreadShift or kLaterSpreadShift.
   void start(std::span<const std::int32_t> weights, std::size_t ring_size, int shift);
@@ -41,13 +67,19 @@ struct FilterShifts {
   int spreading;
   std::int32_t inverse;
 
-  // scale: of 8.15.3, before it is raised; largest: magnitude of the gains, at least 1.
-  FilterShifts(std::int64_t scale, std::uint32_t largest);
+  // scale: of 8.15.3; largest: magnitude of the gains, at least 1.
+  FilterShifts(const FilterForm& form, std::int64_t scale, std::uint32_t largest);
 };
 
-// 8.15.2 PredictOffset( ); offsets [stride], |offset| <= 2^24.
-std::int64_t predict_offset(const WeightFilter& filter, const std::int32_t* offsets);
-// 8.15.3 Adapt( ); |offset| <= 2^29, |error| < 2^34.
-void adapt(WeightFilter& filter, const std::int32_t* offsets, std::int64_t error);
+// 8.19.4: the variance of a residual after a shift of offsets, in the unit of the scale.
+std::int64_t frame_noise(std::int64_t variance, int shift);
+
+// 8.15.2 PredictOffset( ); offsets [stride], |offset| < 2^31.
+std::int64_t predict_offset(const FilterState& filter, const std::int32_t* offsets);
+// 8.15.3 Adapt( ), of spatial factors; |offset| <= 2^29, |error| < 2^34.
+void adapt(const FilterState& filter, const std::int32_t* offsets, std::int64_t error);
+// The same for positions; |offset| < 2^31 - 2^20, |error| < 2^40; variance: of the residual.
+void adapt_to_frame(const FilterState& filter, const std::int32_t* offsets, std::int64_t error,
+                    std::int64_t variance);
 
 }  // namespace rlpc

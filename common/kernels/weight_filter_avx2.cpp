@@ -67,8 +67,7 @@ RLPC_AVX2 __m256i clipped(__m256i x, std::int32_t most) {
 }
 
 template <std::size_t kVectors>
-RLPC_AVX2 std::int64_t predict_vectors(const WeightFilter& filter,
-                                       const std::int32_t* offsets) {
+RLPC_AVX2 std::int64_t predict_vectors(const FilterState& filter, const std::int32_t* offsets) {
   __m256i sums = _mm256_setzero_si256();
   for (std::size_t k = 0; k < kVectors; ++k) {
     const std::size_t i = kFilterVector * k;
@@ -78,20 +77,21 @@ RLPC_AVX2 std::int64_t predict_vectors(const WeightFilter& filter,
 }
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): vectors are filled before they are read.
-template <std::size_t kVectors>
-RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
-                             std::int64_t error) {
+template <std::size_t kVectors, const FilterForm& kForm, class Noise>
+RLPC_AVX2 void adapt_vectors(const FilterState& filter, const std::int32_t* offsets,
+                             std::int64_t error, const Noise& noise) {
   constexpr std::size_t kStride = kFilterVector * kVectors;
   const std::size_t n = filter.size;
   Vectors<kVectors> offset;
   for (std::size_t k = 0; k < kVectors; ++k) offset[k] = load(offsets + kFilterVector * k);
   const int shift = std::max(floor_log2(bits_of(offset)) - kOffsetLog2, 0);
   const auto e = static_cast<std::int32_t>(
-      std::clamp<std::int64_t>(round2(error, shift), -kMaxFilterError, kMaxFilterError));
+      std::clamp<std::int64_t>(round2(error, shift), -kForm.max_error, kForm.max_error));
   alignas(32) std::array<std::int32_t, kStride> numbers;
   // Sums of 64 bits; AVX2 lacks their arithmetic shift, so that they are made positive. Only
   // the lower halves of gains are used, where the bias, a multiple of 2^32, is gone.
-  constexpr std::int64_t kBias = std::int64_t{1} << 40;
+  constexpr int kGainShift = kForm.gain_shift;
+  constexpr std::int64_t kBias = std::int64_t{1} << (33 + kGainShift);
   Vectors<kVectors> even;
   Vectors<kVectors> odd;
   for (std::size_t k = 0; k < kVectors; ++k) {
@@ -115,7 +115,9 @@ RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
                                  _mm256_slli_epi64(odd[k], 32 - kGainShift), kOddHalves);
     sums = _mm256_add_epi64(sums, product_sums(gain[k], offset[k]));
   }
-  const FilterShifts shifts(kMinScale + sum_of(sums), bits_of(gain));
+  const std::int64_t least_scale = noise(shift);
+  const FilterShifts shifts(kForm, least_scale + std::max<std::int64_t>(sum_of(sums), 0),
+                            bits_of(gain));
   // Gain and change have 16 bits each, interleaved: a product of pairs is that of 8.15.3.
   Vectors<kVectors> pairs;
   const __m256i inverse = _mm256_set1_epi32(shifts.inverse);
@@ -138,16 +140,31 @@ RLPC_AVX2 void adapt_vectors(WeightFilter& filter, const std::int32_t* offsets,
       const __m256i product = _mm256_madd_epi16(pairs[k], pair);
       const __m256i spread =
           _mm256_sub_epi32(load(row + kFilterVector * k), rounded(product, shifts.spreading));
-      store(row + kFilterVector * k, clipped(spread, kMaxSpread));
+      store(row + kFilterVector * k, clipped(spread, kForm.max_spread));
     }
-    row[i] = std::clamp(row[i] + filter.walk[i], 1, kMaxSpread);
+    row[i] = std::clamp(row[i] + filter.walk[i], 1, kForm.max_spread);
   }
 }
 // NOLINTEND(cppcoreguidelines-pro-type-member-init)
 
+template <const FilterForm& kForm, class Noise>
+RLPC_AVX2 void adapt_filter(const FilterState& filter, const std::int32_t* offsets,
+                            std::int64_t error, const Noise& noise) {
+  switch (filter.stride / kFilterVector) {
+    case 1:
+      return adapt_vectors<1, kForm>(filter, offsets, error, noise);
+    case 2:
+      return adapt_vectors<2, kForm>(filter, offsets, error, noise);
+    case 3:
+      return adapt_vectors<3, kForm>(filter, offsets, error, noise);
+    default:
+      return adapt_vectors<4, kForm>(filter, offsets, error, noise);
+  }
+}
+
 }  // namespace
 
-std::int64_t predict_offset_avx2(const WeightFilter& filter, const std::int32_t* offsets) {
+std::int64_t predict_offset_avx2(const FilterState& filter, const std::int32_t* offsets) {
   switch (filter.stride / kFilterVector) {
     case 1:
       return predict_vectors<1>(filter, offsets);
@@ -160,17 +177,14 @@ std::int64_t predict_offset_avx2(const WeightFilter& filter, const std::int32_t*
   }
 }
 
-void adapt_avx2(WeightFilter& filter, const std::int32_t* offsets, std::int64_t error) {
-  switch (filter.stride / kFilterVector) {
-    case 1:
-      return adapt_vectors<1>(filter, offsets, error);
-    case 2:
-      return adapt_vectors<2>(filter, offsets, error);
-    case 3:
-      return adapt_vectors<3>(filter, offsets, error);
-    default:
-      return adapt_vectors<4>(filter, offsets, error);
-  }
+void adapt_avx2(const FilterState& filter, const std::int32_t* offsets, std::int64_t error) {
+  adapt_filter<kFactorFilter>(filter, offsets, error, [](int) { return kFactorNoise; });
+}
+
+void adapt_to_frame_avx2(const FilterState& filter, const std::int32_t* offsets,
+                         std::int64_t error, std::int64_t variance) {
+  adapt_filter<kFrameFilter>(filter, offsets, error,
+                             [&](int shift) { return frame_noise(variance, shift); });
 }
 
 }  // namespace rlpc

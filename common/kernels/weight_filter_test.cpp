@@ -30,12 +30,29 @@ class EachFilter : public testing::TestWithParam<std::size_t> {
     text_.start_spread(shift);
   }
 
-  void step(const FilterOfText::List& offsets, std::int64_t error) {
+  // 8.19: the last five of `size` are not neighbours.
+  void start_of_frames(std::size_t ring, std::size_t size, std::mt19937_64& random) {
+    start(ring, size, kSpreadShift, random);
+    text_.is_of_frames = true;
+    text_.neighbours = size - 5;
+    text_.start_spread(19);
+    for (std::size_t i = 0; i < size; ++i) {
+      filter_.walk[i] = static_cast<std::int32_t>(text_.random_walk(i));
+      filter_.spread[i * filter_.stride + i] = static_cast<std::int32_t>(text_.spread[i][i]);
+    }
+  }
+
+  void step(const FilterOfText::List& offsets, std::int64_t error, std::int64_t variance = 0) {
     std::vector<std::int32_t> padded(kMaxFilterSize, 0);
     std::copy(offsets.begin(), offsets.end(), padded.begin());
-    ASSERT_EQ(loops().predict_offset(filter_, padded.data()), text_.predict_offset(offsets));
-    loops().adapt(filter_, padded.data(), error);
-    ASSERT_NO_FATAL_FAILURE(text_.adapt(offsets, error));
+    ASSERT_EQ(loops().predict_offset(filter_.state(), padded.data()),
+              text_.predict_offset(offsets));
+    if (text_.is_of_frames) {
+      loops().adapt_to_frame(filter_.state(), padded.data(), error, variance);
+    } else {
+      loops().adapt(filter_.state(), padded.data(), error);
+    }
+    ASSERT_NO_FATAL_FAILURE(text_.adapt(offsets, error, variance));
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       ASSERT_EQ(filter_.weight[i], text_.weight[i]) << "weight " << i;
       for (std::size_t j = 0; j < offsets.size(); ++j) {
@@ -103,6 +120,29 @@ TEST_P(EachFilter, AdaptsToOffsetsThatHardlyDiffer) {
   }
 }
 
+// 8.19: offsets, errors and variances of any size; directions that repeat.
+TEST_P(EachFilter, AdaptsToAnyFrames) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const std::size_t ring = random() % 8;
+    start_of_frames(ring, ring + random() % 13 + 5, random);
+    const std::size_t size = filter_.size;
+    FilterOfText::List offsets(size);
+    for (int k = 0; k < 60; ++k) {
+      if (seed % 3 != 0 || k == 0) {
+        const int bits = static_cast<int>(random() % 31);
+        for (std::int64_t& x : offsets) x = number(random, bits);
+      } else {
+        for (std::int64_t& x : offsets) x = -x;
+      }
+      const std::int64_t error = number(random, static_cast<int>(random() % 40));
+      const std::int64_t variance = std::int64_t{1} << random() % 61;
+      ASSERT_NO_FATAL_FAILURE(step(offsets, error, variance)) << "step " << k;
+    }
+  }
+}
+
 // An example worked by hand: two neighbours of the ring, one of the outer ring.
 TEST_P(EachFilter, TakesTheStepOfTheText) {
   filter_.start(std::vector<std::int32_t>{32768, 32768, 0}, 2, kSpreadShift);
@@ -110,8 +150,8 @@ TEST_P(EachFilter, TakesTheStepOfTheText) {
   offsets[0] = 16;
   offsets[1] = -16;
   offsets[2] = 8;
-  EXPECT_EQ(loops().predict_offset(filter_, offsets.data()), 0);
-  loops().adapt(filter_, offsets.data(), 10);
+  EXPECT_EQ(loops().predict_offset(filter_.state(), offsets.data()), 0);
+  loops().adapt(filter_.state(), offsets.data(), 10);
   // Spread is 1/256 and 1/1024, gain = (16, -16, 2) / 256, scale = 1 + 2.0625, and weights
   // change by gain * 10 / scale = (0.20408, -0.20408, 0.02551), times 2^16.
   EXPECT_EQ(filter_.weight[0], 32768 + 13375);

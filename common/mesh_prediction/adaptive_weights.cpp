@@ -112,8 +112,8 @@ void VertexAdaptation::adapt_to_rest() {
       shifted[i] = static_cast<std::int32_t>(shift_by(offset[c][i], shift));
     }
     const std::int64_t error =
-        shift_by(gap[c], shift) - kernels_.predict_offset(filter_, shifted.data());
-    kernels_.adapt(filter_, shifted.data(), error);
+        shift_by(gap[c], shift) - kernels_.predict_offset(filter_.state(), shifted.data());
+    kernels_.adapt(filter_.state(), shifted.data(), error);
   }
 }
 
@@ -135,13 +135,14 @@ void VertexAdaptation::gather(std::span<const std::int32_t> values) {
   }
 }
 
-std::int64_t VertexAdaptation::predict() const {
-  return mean_[next_] + kernels_.predict_offset(filter_, &offsets_[next_ * filter_.stride]);
+std::int64_t VertexAdaptation::predict() {
+  return mean_[next_] +
+         kernels_.predict_offset(filter_.state(), &offsets_[next_ * filter_.stride]);
 }
 
 void VertexAdaptation::add(std::int64_t prediction, std::int32_t value) {
   if (next_ < weights_.adaptive_count_) {
-    kernels_.adapt(filter_, &offsets_[next_ * filter_.stride], value - prediction);
+    kernels_.adapt(filter_.state(), &offsets_[next_ * filter_.stride], value - prediction);
   }
   ++next_;
   const auto& ends = weights_.group_end_;

@@ -54,7 +54,7 @@ class VertexAdaptation {
   // not adapt; its values are predicted as of 8.11.
   bool start(std::uint32_t v, std::span<const std::int32_t> values);
   // 8.15.2, for the next factor of the pass.
-  std::int64_t predict() const;
+  std::int64_t predict();
   // Adapts, while factors are adaptive, to the decoded value of the factor.
   void add(std::int64_t prediction, std::int32_t value);
   // After the last factor: keeps the weights.
