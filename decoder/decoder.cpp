@@ -24,6 +24,7 @@ class Decoder::Impl {
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
       : stream_(std::move(source), options),
         models_(stream_.context()),
+        verify_hashes_(options.verify_hashes),
         num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
         threads_(num_threads_),
         band_(num_threads_) {
@@ -65,6 +66,7 @@ class Decoder::Impl {
 
   StreamReader stream_;
   ModelRecons models_;
+  bool verify_hashes_;
   std::uint32_t num_threads_;
   ThreadPool threads_;
   std::optional<PreparedGof> gof_;
@@ -88,8 +90,9 @@ Result<bool> Decoder::Impl::load_gof() {
   gof_ = std::move(*gof);
   was_cut_ = was_cut_ || gof_->is_cut;
   hash_check_ = {};
-  if (gof_->hash && !gof_->is_cut) {
-    hash_check_ = {std::move(*gof_->hash), gof_->header.num_frames};
+  if (!gof_->is_cut) {
+    if (!verify_hashes_) gof_->frame_crcs.clear();
+    hash_check_ = {std::move(gof_->hash), std::move(gof_->frame_crcs), gof_->header.num_frames};
   }
   return true;
 }
@@ -142,7 +145,9 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
   const std::uint32_t f = position_ - gof_->header.first_frame;
   const auto decoded = band_.frame(*gof_->recon, f, positions.size());
   if (!hash_check_.add_frame(f, decoded)) {
-    return Error{Errc::kInvalid, "R-HSH-02", "position_crc", stream_.offset() * 8};
+    const auto at = hash_check_.failed_at();
+    return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
+                 at.value_or(stream_.offset() * 8)};
   }
   to_output_order(decoded, positions);
   ++position_;

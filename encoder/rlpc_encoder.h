@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "common/frame_gof/frame_gof.h"
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
@@ -88,6 +89,19 @@ struct MainTools {
   bool operator==(const MainTools&) const = default;
 };
 
+// Kinds of GOF that the encoder chooses from. kAuto: all that profile and settings allow, the
+// cheapest for each GOF.
+enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
+
+// Parameters of GOFs of frames, of the High profile.
+struct FrameTools {
+  // What each frame is predicted from: the one before, or the first of the GOF.
+  FrameReference reference = FrameReference::kPrevious;
+  bool learning = true;  // weights of prediction learned from the frames before
+
+  bool operator==(const FrameTools&) const = default;
+};
+
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
@@ -120,6 +134,9 @@ struct EncoderSettings {
   std::uint32_t components = 0;
   BaselineTools baseline;  // must be left at its defaults unless profile is kBaseline
   MainTools main;          // must be left at its defaults if profile is kBaseline
+  // kBones: Main and High profile; kFrames: High profile, main left at its defaults.
+  KindChoice kinds = KindChoice::kAuto;
+  FrameTools frames;  // must be left at its defaults unless profile is kHigh
   // Maximum frames per GOF; 0: 128, or 256 in the High profile; kWholeSequence: one GOF.
   std::uint32_t gof_frames = 0;
   bool keep_order = false;  // restore the vertex order of the input

@@ -152,16 +152,20 @@ class VertexWeights {
 }  // namespace
 
 GeometryWeights::GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
-                                 const std::array<std::span<const std::int32_t>, 3>& rest)
+                                 const std::array<std::span<const std::int32_t>, 3>& rest,
+                                 const VertexLists* outer)
     : first_(std::size_t{mesh.num_vertices()} + 1, 0) {
+  const auto outer_of = [&](std::uint32_t v) {
+    return outer == nullptr ? mesh.outer_ring(v) : (*outer)[v];
+  };
   std::size_t count = 0;
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
-    count += mesh.ring(v).size() + mesh.outer_ring(v).size();
+    count += mesh.ring(v).size() + outer_of(v).size();
   }
   weights_.reserve(count);
   VertexWeights vertex(settings, rest);
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
-    for (const std::int64_t w : vertex.find(v, mesh.ring(v), mesh.outer_ring(v))) {
+    for (const std::int64_t w : vertex.find(v, mesh.ring(v), outer_of(v))) {
       weights_.push_back(static_cast<std::int32_t>(w));
     }
     first_[v + 1] = static_cast<std::uint32_t>(weights_.size());

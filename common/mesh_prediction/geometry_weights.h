@@ -18,11 +18,12 @@ inline constexpr int kWeightFractionBits = 14;
 class GeometryWeights {
  public:
   // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh must
-  // have layers.
+  // have layers. outer: vertices that take the place of the outer rings; null: none do.
   GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
-                  const std::array<std::span<const std::int32_t>, 3>& rest);
+                  const std::array<std::span<const std::int32_t>, 3>& rest,
+                  const VertexLists* outer = nullptr);
 
-  // The weights of the vertices of the ring of v, then of its outer ring.
+  // The weights of the vertices of the ring of v, then of those outside it.
   std::span<const std::int32_t> operator[](std::uint32_t v) const {
     return std::span(weights_).subspan(first_[v], first_[v + 1] - first_[v]);
   }

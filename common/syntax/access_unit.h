@@ -1,4 +1,4 @@
-// One GOF of a stream as parsed: the GOF unit, its slice units, and its hash. Made by
+// One GOF of a stream as parsed: the GOF unit, its slice or frame units, and its hash. Made by
 // AccessUnitParser (decoder/parse), inspected by all programs, decoded by make_recon()
 // (decoder/recon/gof_recon.h).
 #pragma once
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/frame_gof/frame_gof.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/gof_hash.h"
 #include "common/syntax/gof_header.h"
@@ -16,16 +17,20 @@
 namespace rlpc {
 
 // A GOF of any kind.
-using AnyGof = std::variant<ClusterGof, SkinnedGof>;
+using AnyGof = std::variant<ClusterGof, SkinnedGof, FrameGof>;
 
-// 6.12 slice_unit( )
+// 6.12 slice_unit( ), 6.14.1 frame_unit( )
 struct SliceEntry {
   std::uint32_t component_group_idx = 0;
   std::uint32_t layer_group_idx = 0;
   std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
   std::uint64_t bytes = 0;             // size of the unit
   std::uint32_t temporal_layer_idx = 0;
+  std::uint32_t frame_idx = 0;  // of a frame unit
 };
+
+// 7.14.1: those of the frames of a GOF that have one; empty if the GOF has none.
+using FrameCrcs = std::vector<std::optional<FrameCrc>>;
 
 struct AccessUnit {
   AnyGof gof;
@@ -36,6 +41,13 @@ struct AccessUnit {
   // not match the remaining positions.
   bool is_cut = false;
 
+  FrameCrcs frame_crcs() const {
+    FrameCrcs crcs;
+    const auto* const gof_of_frames = std::get_if<FrameGof>(&gof);
+    if (gof_of_frames == nullptr || !gof_of_frames->frame_hash_flag) return crcs;
+    for (const CodedFrame& frame : *gof_of_frames->frames) crcs.push_back(frame.frame_crc);
+    return crcs;
+  }
   const GofHeader& header() const {
     return std::visit([](const auto& g) -> const GofHeader& { return g; }, gof);
   }

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+
+#include "common/syntax/stream_format.h"
 
 namespace rlpc {
 
@@ -10,15 +13,22 @@ enum class GofKind : std::uint8_t {
   kClusters,  // 6.5: clusters in local coordinate frames
   kSkinned,   // 6.11: bones, and trajectories for the residual
   kTracks,    // 6.13.1: the same, with the vertices of a skinned model
+  kFrames,    // 6.14: frames predicted from frames
 };
 
 // The adjective of a kind, for messages: "a cluster GOF".
 constexpr const char* kind_name(GofKind kind) {
+  if (kind == GofKind::kFrames) return "frame";
   return kind == GofKind::kClusters ? "cluster" : "skinned";
 }
 
-// 6.12: whether slice units may follow the GOF unit.
-constexpr bool has_slices(GofKind kind) { return kind != GofKind::kClusters; }
+// Table 7-1: the type of the units that may follow the GOF unit in its access unit, other than
+// its hash: slice units or frame units. None: there are no such units.
+constexpr std::optional<UnitType> slice_type(GofKind kind) {
+  if (kind == GofKind::kClusters) return std::nullopt;
+  return kind == GofKind::kFrames ? UnitType::kFrame : UnitType::kSlice;
+}
+constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
 
 struct GofHeader {
   GofKind kind = GofKind::kClusters;

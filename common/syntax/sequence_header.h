@@ -30,20 +30,21 @@ struct Level {
   std::uint32_t max_triangles;
   std::uint32_t max_gof_frames;
   std::uint32_t max_clusters;
-  std::uint32_t max_components;       // per cluster, or trajectories
-  std::uint64_t max_gof_values;       // vertices x frames per GOF
-  std::uint64_t max_gof_factors;      // spatial and temporal values per GOF
-  std::uint64_t max_unit_bytes;       // payload of a critical unit
-  std::uint64_t max_adaptive_values;  // adaptive factors of a GOF or skinned model x vertices
+  std::uint32_t max_components;         // per cluster, or trajectories
+  std::uint64_t max_gof_values;         // vertices x frames per GOF
+  std::uint64_t max_gof_factors;        // spatial and temporal values per GOF
+  std::uint64_t max_unit_bytes;         // payload of a critical unit
+  std::uint64_t max_adaptive_values;    // adaptive factors of a GOF or skinned model x vertices
+  std::uint32_t max_learning_vertices;  // of a mesh whose frames learn weights
 };
 
 consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
 
 inline constexpr std::array<Level, 4> kLevels{{
-    {1U << 14, 1U << 15, 512, 256, 512, pow2(22), pow2(23), pow2(25), pow2(21)},
-    {1U << 17, 1U << 18, 1024, 512, 1024, pow2(25), pow2(26), pow2(28), pow2(24)},
-    {1U << 20, 1U << 21, 4096, 1024, 1024, pow2(28), pow2(29), pow2(31), pow2(27)},
-    {1U << 23, 1U << 24, 16384, 1024, 1024, pow2(31), pow2(32), pow2(32), pow2(30)},
+    {1U << 14, 1U << 15, 512, 256, 512, pow2(22), pow2(23), pow2(25), pow2(21), 1U << 14},
+    {1U << 17, 1U << 18, 1024, 512, 1024, pow2(25), pow2(26), pow2(28), pow2(24), 1U << 17},
+    {1U << 20, 1U << 21, 4096, 1024, 1024, pow2(28), pow2(29), pow2(31), pow2(27), 1U << 19},
+    {1U << 23, 1U << 24, 16384, 1024, 1024, pow2(31), pow2(32), pow2(32), pow2(30), 1U << 21},
 }};
 inline constexpr std::uint32_t kMaxLevelIdc = static_cast<std::uint32_t>(kLevels.size());
 

@@ -28,10 +28,24 @@ enum class UnitType : std::uint8_t {
   kEndOfSequence = 0x05,
   kSlice = 0x06,
   kModel = 0x07,
+  kFrame = 0x08,
   kGofIndex = 0x81,
   kGofHash = 0x82,
   kMetadata = 0x83,
 };
+
+// Units that belong to the GOF or skinned model unit before them.
+constexpr bool is_slice_type(UnitType type) {
+  return type == UnitType::kSlice || type == UnitType::kFrame;
+}
+
+// 6.2 IsKnownType( type ), of critical units.
+constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
+  constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
+                                          UnitType::kFrame};
+  return type >= UnitType::kSequenceHeader &&
+         type <= kLast[version_minor < 2 ? version_minor : 2];
+}
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;
 

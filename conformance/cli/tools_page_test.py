@@ -93,9 +93,9 @@ class Pages(PageTest):
 
     def test_both_kinds_of_gofs_are_listed(self):
         page = self.inform(ROOT / "streams/v1.1/accept/MIX/MIX-0201a.rlpc")
-        for words in ("<th>bones</th>", "<th>clusters</th>", "Slices of frames 4 – 8"):
+        for words in ("<th>bones</th>", "<th>clusters</th>", "Units of frames 4 – 8"):
             self.has(words, page)
-        self.has("Slices of frames 0", page, False)
+        self.has("Units of frames 0", page, False)
         self.encode(self.path("a.rlpc"), "--kg", 5, "--profile", "baseline")
         page = self.inform(self.path("a.rlpc"))
         self.has("<th>clusters</th>", page)

@@ -16,6 +16,7 @@ class HighPlan(random_main.MainPlan):
         self.tracks_percent = n.pick([50, 100])  # of the GOFs that can use a skinned model
         self.present_percent = n.pick([100, 70, 0])  # trajectories that occur in a GOF
         self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
+        self.frames_percent = n.pick([0, 0, 30, 100])  # share of GOFs of frames
 
 
 class HighSource(random_main.MainSource):
@@ -55,6 +56,8 @@ class HighSource(random_main.MainSource):
         return self.numbers.between(0, len(ns["HingeList"]) - 1)
 
     def _gof_kind(self, ns, indices, arguments):
+        if self.numbers.chance(self.plan.frames_percent):
+            return 3
         if _kept(ns) and self.numbers.chance(self.plan.tracks_percent):
             return 2
         return self._bones_flag(ns, indices, arguments)
@@ -63,6 +66,29 @@ class HighSource(random_main.MainSource):
         if self.unit_code == ns["MODEL"]:
             return self.numbers.pick([0, 0, 1, self.numbers.between(0, 7)])
         return self.numbers.pick(_kept(ns))
+
+    def _frame_reference_idc(self, ns, indices, arguments):
+        return self.numbers.between(0, 1)
+
+    _exact_flag = _frame_hash_flag = _frame_reference_idc
+
+    def _frame_step_minus1(self, ns, indices, arguments):
+        return self.near(0, 65535)
+
+    def _learning_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(70))
+
+    def _prime_log2(self, ns, indices, arguments):
+        return self.near(0, 15)
+
+    def _frame_idx(self, ns, indices, arguments):
+        return self.slice[0]
+
+    def _frame_crc(self, ns, indices, arguments):
+        return None  # the right one
+
+    def _frame_residual(self, ns, indices, arguments):
+        return self.residual()
 
     def _num_local_groups(self, ns, indices, arguments):
         return min(self.plan.local_groups, 255 - ns["num_component_groups"])
@@ -105,11 +131,24 @@ class HighSequence(random_main.MainSequence):
 
     def _slices(self):
         ns = self._writer.ns
+        if self._writer.source.unit_code == ns["GOF"] and ns["gof_kind"] == 3:
+            return self._frames()
         if ns["HasVertices"] == 0:
             self._tracks()
         else:
             super()._slices()
         self._temporal_layers()
+
+    def _frames(self):
+        """The frame units of a GOF; from some frame on, fewer layer groups, or none."""
+        ns = self._writer.ns
+        most = ns["num_layer_groups_minus1"] + 1
+        for frame in range(ns["NumGofFrames"]):
+            if self._n.chance(self._plan.cut_percent):
+                most = self._n.between(0, most)
+            for group in range(most):
+                self._writer.source.slice = frame, group
+                self._unit("FRAME")
 
     def _temporal_layers(self):
         """The slices of the temporal layers but the first, some of them cut off."""

@@ -200,6 +200,10 @@ def inferred(writer, name, indices):
     if name == "position_crc":
         hashes = writer.hash_of_gof(ns["per_frame_flag"])
         return hashes[indices[0]] if indices[0] < len(hashes) else 0
+    if name == "frame_crc":
+        return None  # known once the frame has been written
+    if name == "layer_group_idx" and writer.source.unit_code == ns["FRAME"]:
+        return sum(frames > ns["frame_idx"] for frames in ns["FramesOfGroup"])
     if name in _SLICES:
         return _SLICES[name](ns)
     if name in writer.inferred:
@@ -226,7 +230,14 @@ def _next_layers(ns):
     return ns["SliceLayers"][group] if group < len(ns["SliceLayers"]) else 0
 
 
+def _next_frame(ns):
+    """The frame of the next frame unit, if none is left out: all layer groups of one first."""
+    frames = ns["FramesOfGroup"]
+    return frames[0] if frames[-1] == frames[0] else frames[0] - 1
+
+
 _SLICES = {"component_group_idx": _next_group, "layer_group_idx": _next_layers,
+           "frame_idx": _next_frame,
            "bone_pivot": lambda ns: 1 << (ns["position_bits"] + 4),
            "extra_bone": lambda ns: next((b for b in range(ns["NumBones"])
                                           if ns["IsNewBone"](b)), 0)}

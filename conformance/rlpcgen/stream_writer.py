@@ -148,7 +148,7 @@ class StreamWriter:
                       ("ae", "bypass", "byte_alignment", "CheckOverrun", "EndSection")}
         self.ns.update(ae=self._ae, bypass=self._bypass, byte_alignment=self._byte_alignment,
                        CheckOverrun=lambda: None, EndSection=self._end_section,
-                       CheckHash=self._collect_hash)
+                       CheckHash=self._collect_hash, CheckFrameCrc=lambda f: None)
         self._watch_tracks()
         self.ns["StartReading"]()
         self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
@@ -161,6 +161,8 @@ class StreamWriter:
         self._model_pending = False  # a skinned model that is not decoded yet
         self.frame_hashes = []
         self.running_hash = 0
+        self._crc_at = None  # of a frame, which is known once its residuals are written
+        self._decoded_frames = 0  # of a GOF of frames
 
     # Bits.
 
@@ -223,6 +225,8 @@ class StreamWriter:
         if self._reading:
             return self.ns[descriptor](*arguments)
         value = self.source.value(self, name, tuple(indices), descriptor, arguments)
+        if name == "frame_crc" and value is None:
+            self._crc_at, value = len(self.data), 0
         if descriptor in BIT_DESCRIPTORS:
             self._put_code(name, value, descriptor, arguments)
         else:
@@ -317,6 +321,10 @@ class StreamWriter:
             if self._range is not None:
                 self._end_section()
         self._bins.clear()
+        if code == ns["GOF"]:
+            self._decoded_frames = 0
+        if self._crc_at is not None:
+            self._put_frame_crc()
         if finish is not None:
             changed = finish(bytes(self.data[start + 5:]))
             del self.data[start + 5:]
@@ -372,6 +380,8 @@ class StreamWriter:
             return False  # such as a slice in 1.0
         if code == self.ns["SLICE"]:
             return "SliceLayers" in self.ns  # after a GOF or skinned model
+        if code == self.ns["FRAME"]:
+            return "FramesOfGroup" in self.ns  # after a GOF of frames
         if code == self.ns["MODEL"]:
             return "EarlierNeighbours" in self.ns  # after the connectivity
         return True
@@ -393,6 +403,18 @@ class StreamWriter:
         self.data[start + 1:start + 5] = claimed.to_bytes(4, "big")
         crc = self.source.override("unit_crc", zlib.crc32(self.data[start:]))
         self.put_bytes(crc.to_bytes(4, "big"))
+
+    def _put_frame_crc(self):
+        """The hash of the frame whose last frame unit has been written."""
+        frame = self.ns["frame_idx"]
+        while self._decoded_frames <= frame:
+            self.ns["DecodeFrame"](self._decoded_frames)
+            self._decoded_frames += 1
+        self.ns["RoundFrame"]()
+        crc = self.ns["HashOfPositions"](0)
+        self.data[self._crc_at:self._crc_at + 4] = crc.to_bytes(4, "big")
+        self.ns["FrameCrc"][frame][0] = crc
+        self._crc_at = None
 
     def _start_model(self):
         self.model_indices.append(self.ns["model_idx"])

@@ -38,6 +38,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "slice";
     case UnitType::kModel:
       return "skinned model";
+    case UnitType::kFrame:
+      return "frame";
     case UnitType::kGof:
       return "GOF";
     case UnitType::kEndOfSequence:

@@ -93,6 +93,20 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "stream; or a unit was inserted after it was computed.",
      "Write the size of the whole GOF index unit (payload + 9), or 0 if there is none, and the "
      "index directly before the end."},
+    {"R-FRM-01", "7.14", "The step of a GOF of frames is above 2^12 grid units.",
+     "The step was written in other units than 1/16 grid units.",
+     "Write the step in 1/16 grid units, minus 1."},
+    {"R-FRM-02", "7.14.1", "A frame unit has a frame or a layer group that its GOF lacks.",
+     "frame_idx counts from the start of the sequence, or reading is out of step.",
+     "Count frames from the start of the GOF, and layer groups from the coarsest, both from "
+     "0."},
+    {"R-FRM-03", "7.14.1", "A frame unit does not continue its GOF.",
+     "A unit was lost or left out while later ones of its layer group stayed, or units of "
+     "frames "
+     "were mixed.",
+     "Write frames in order, each with its layer groups from the coarsest on; once a frame "
+     "lacks "
+     "a layer group, so do all later ones of the GOF."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",
@@ -143,9 +157,6 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The temporal factor needs more than 26 bits after scaling, or the difference was taken "
      "from another component.",
      "Use fewer fraction bits or a smaller ScaleIdx; the first difference is from 1."},
-    {"R-GOF-13", "7.5", "The kind of a GOF is not known to this version.",
-     "The stream is of a later version, or reading is out of step.",
-     "Write gof_kind 0 (clusters), 1 (bones) or 2 (tracks), or validate with a later version."},
     {"R-HDR-01", "7.3", "The profile is not known to this version.",
      "The stream is of a later version, or reserved values were used.",
      "Write profile_idc 0 (Baseline) with version 1.0, 1 (Main) with version 1.1, or validate "
@@ -233,6 +244,9 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "There are more adaptive trajectories times vertices than the level allows.",
      "num_adaptive_factors was chosen without regard to the size of the mesh.",
      "Let fewer of the trajectories adapt the weights, or raise level_idc (Table B-1)."},
+    {"R-LVL-10", "7.14", "The mesh has too many vertices for learned weights.",
+     "learning_flag is 1 whatever the size of the mesh.",
+     "Write learning_flag 0 for meshes this large, or raise level_idc."},
     {"R-MET-01", "7.10", "The metadata is larger than 1 MiB.",
      "More than a description was put into the metadata.",
      "Keep metadata below 1048576 bytes; large data belongs outside the stream."},

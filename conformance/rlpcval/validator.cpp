@@ -111,6 +111,11 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
       return units_.version_minor() > 0 &&
              ((gof_.unit && gof_.may_have_slices) || model_.unit || behind_slice);
     }
+    case UnitType::kFrame: {
+      const bool behind_frame = !previous_ || previous_->type() == UnitType::kFrame;
+      return units_.version_minor() > 1 &&
+             ((gof_.unit && gof_.may_have_frames) || behind_frame);
+    }
     case UnitType::kEndOfSequence:  // without a GOF, R-END-01
       return seen(UnitType::kGof) || seen(UnitType::kModel);
     default:
@@ -136,7 +141,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   ++report_.units;
   ++seen_[unit.type_byte];
   previous_ = unit;
-  const bool is_slice = unit.type() == UnitType::kSlice;
+  const bool is_slice = is_slice_type(unit.type());
   if (!is_slice && unit.type() != UnitType::kGof) gof_.unit.reset();
   if (!is_slice && unit.type() != UnitType::kModel) model_.unit.reset();
   const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
@@ -148,7 +153,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
 
 // 6.2 unit_body( )
 bool StreamValidator::visit(const UnitHeader& unit) {
-  if (unit.type() != UnitType::kSlice) end_slices();
+  if (!is_slice_type(unit.type())) end_slices();
   findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
   const bool known = unsupported_ || check_place(unit);
   const bool is_gof = unit.type() == UnitType::kGof;

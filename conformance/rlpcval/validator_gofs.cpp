@@ -36,6 +36,7 @@ class GofWarnings {
   void add(const ClusterGof& gof);
   void add(const SkinnedGof& gof);
   void add(const SkinnedModel& model);
+  void add(const FrameGof& gof);
 
  private:
   std::uint64_t num_vertices() const { return context_.header.num_vertices; }
@@ -47,6 +48,11 @@ class GofWarnings {
   FindingList& findings_;
   Level& needed_;
 };
+
+void GofWarnings::add(const FrameGof& gof) {
+  raise(needed_.max_gof_values, num_vertices() * gof.num_frames);
+  if (gof.learning_flag) raise(needed_.max_learning_vertices, num_vertices());
+}
 
 void GofWarnings::add(const ClusterGof& gof) {
   std::vector<std::uint64_t> coded(gof.clusters.size(), 0);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/frame_gof/frame_gof.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
@@ -142,6 +143,24 @@ bool check_clusters(ElementReader& r, const SequenceHeader& header) {
   return check_alignment(r) && good;
 }
 
+// 6.11 layer_groups( ). False if it is not known where it ends.
+bool check_layer_groups(ElementReader& r, std::uint32_t num_layers,
+                        std::uint32_t& layer_groups) {
+  const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;
+  if (num_layers == 0) return false;
+  const std::string has = "the mesh has " + std::to_string(num_layers) + " layers";
+  if (!r.require(groups <= num_layers, "R-BON-03", has)) return false;
+  std::int64_t left = num_layers;
+  for (std::int64_t after = groups - 1; after > 0; --after) {
+    left -= r.ue("layer_group_layers_minus1") + 1;
+    const std::string due = has + "; " + std::to_string(after) + " of " +
+                            std::to_string(groups) + " layer groups are to follow";
+    if (!r.require(left >= after, "R-BON-03", due)) return false;
+  }
+  layer_groups = static_cast<std::uint32_t>(groups);
+  return r.readable();
+}
+
 // 6.11 layers_of_rig( ). False if it is not known where it ends.
 bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   std::uint32_t& layer_groups) {
@@ -161,19 +180,8 @@ bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t 
                                    " adaptive trajectories times vertices"));
     }
   }
-  const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;
-  if (num_layers == 0) return false;
-  const std::string has = "the mesh has " + std::to_string(num_layers) + " layers";
-  if (!r.require(groups <= num_layers, "R-BON-03", has)) return false;
-  std::int64_t left = num_layers;
-  for (std::int64_t after = groups - 1; after > 0; --after) {
-    left -= r.ue("layer_group_layers_minus1") + 1;
-    const std::string due = has + "; " + std::to_string(after) + " of " +
-                            std::to_string(groups) + " layer groups are to follow";
-    if (!r.require(left >= after, "R-BON-03", due)) return false;
-  }
+  if (!check_layer_groups(r, num_layers, layer_groups)) return false;
   for (std::uint32_t i = 0; i < num_layers; ++i) (void)r.u(4, "layer_step_minus1");
-  layer_groups = static_cast<std::uint32_t>(groups);
   return r.readable();
 }
 
@@ -261,15 +269,45 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
   return good && good_rig;
 }
 
-// Nothing if it could not be read, or is of a later version.
+// 6.14 frames_of_gof( )
+bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
+                  GofHeaderCheck& gof) {
+  const Level& level = header.level();
+  (void)r.u(1, "frame_reference_idc");
+  const bool is_exact = r.u(1, "exact_flag") != 0;
+  bool good = true;
+  if (!is_exact) {
+    const std::int64_t step = r.ue("frame_step_minus1");
+    good =
+        r.require(step < std::int64_t{kMaxFrameStep}, "R-FRM-01", at_most(kMaxFrameStep - 1));
+  }
+  (void)r.u(4, "damping_log2");
+  (void)r.u(4, "outer_weight");
+  (void)r.u(4, "outer_scale");
+  if (r.u(1, "learning_flag") != 0) {
+    good &= r.require(header.num_vertices <= level.max_learning_vertices, "R-LVL-10",
+                      level_allows(header.level_idc, level.max_learning_vertices,
+                                   " vertices with learned weights"));
+    (void)r.u(4, "prime_log2");
+  }
+  (void)r.u(1, "frame_hash_flag");
+  SliceCounts counts;
+  counts.frames = gof.num_frames;
+  if (!check_layer_groups(r, num_layers, counts.layer_groups)) return false;
+  for (std::uint32_t i = 0; !is_exact && i < num_layers; ++i) {
+    (void)r.u(4, "layer_step_minus1");
+  }
+  if (gof.num_frames > 0) gof.slices = counts;
+  good &= check_alignment(r);
+  r.expect_end();
+  return good && r.readable();
+}
+
+// Nothing if it could not be read.
 std::optional<GofKind> check_kind(ElementReader& r, const SequenceHeader& header) {
   std::int64_t kind = 0;
   if (header.profile_idc == kProfileMain) kind = r.u(1, "bones_flag");
-  if (header.profile_idc >= kProfileHigh) {
-    constexpr auto kLast = static_cast<std::int64_t>(GofKind::kTracks);
-    kind = r.u(2, "gof_kind");
-    if (!r.supported(kind <= kLast, "R-GOF-13", at_most(kLast))) return std::nullopt;
-  }
+  if (header.profile_idc >= kProfileHigh) kind = r.u(2, "gof_kind");
   if (!r.readable()) return std::nullopt;
   return static_cast<GofKind>(kind);
 }
@@ -293,6 +331,9 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
       break;
     case GofKind::kTracks:
       gof.section_readable = check_tracks(r, models, gof);
+      break;
+    case GofKind::kFrames:
+      gof.section_readable = check_frames(r, header, num_layers, gof);
   }
   gof.section_readable &= good;
   return gof;
@@ -309,8 +350,24 @@ ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& head
   return model;
 }
 
+namespace {
+
+// 6.14.1 frame_unit( )
+bool check_frame_header(ElementReader& r, const SliceCounts& counts) {
+  const std::int64_t frame = r.ue("frame_idx");
+  bool good = r.require(frame < counts.frames, "R-FRM-02",
+                        "the GOF has " + std::to_string(counts.frames) + " frames");
+  const std::int64_t layers = r.ue("layer_group_idx");
+  good &= r.require(layers < counts.layer_groups, "R-FRM-02",
+                    "the GOF has " + std::to_string(counts.layer_groups) + " layer groups");
+  return good && r.readable();
+}
+
+}  // namespace
+
 // 6.12 slice_unit( )
 bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
+  if (slices.frames > 0) return check_frame_header(r, slices);
   bool good = true;
   std::int64_t temporal_layer = 0;
   if (slices.temporal_layers > 1) {

@@ -28,6 +28,7 @@ struct SliceCounts {
   std::uint32_t component_groups = 0;  // and the influences, which are not factors
   std::uint32_t layer_groups = 1;
   std::uint32_t temporal_layers = 1;
+  std::uint32_t frames = 0;  // of a GOF of frames; 0: there are slice units
 };
 
 struct GofHeaderCheck {
@@ -35,7 +36,7 @@ struct GofHeaderCheck {
   std::uint32_t num_frames = 0;       // 0: not known
   std::optional<GofKind> kind;        // if it could be read, or inferred
   bool section_readable = false;      // only first_frame may be wrong
-  std::optional<SliceCounts> slices;  // of a skinned GOF, if known
+  std::optional<SliceCounts> slices;  // of the units that follow, if known
   bool model_suspect = false;         // its skinned model may be wrong
 };
 
@@ -55,7 +56,7 @@ struct ModelHeaderCheck {
 ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& header,
                                     std::uint32_t num_layers);
 
-// 6.12 slice_unit( ), its indices. True if they are legal.
+// 6.12 slice_unit( ) or 6.14.1 frame_unit( ), its indices. True if they are legal.
 bool check_slice_header(ElementReader& r, const SliceCounts& slices);
 
 struct GofIndexCheck {

@@ -72,14 +72,6 @@ TEST(ValidatorModels, ReportsTooManyLocalGroups) {
   EXPECT_TRUE(is_in(found(254), "R-BON-02"));
 }
 
-TEST(ValidatorModels, ReportsGofsOfALaterKind) {
-  const ValidationReport report =
-      validate(with_payload_of(model_stream(), UnitType::kGof, tracks(3, 0, 0)));
-  EXPECT_EQ(ids(report), Ids{"R-GOF-13"});
-  EXPECT_EQ(report.count(Severity::kUnsupported), 1U);
-  EXPECT_EQ(report.gofs, 7U);
-}
-
 TEST(ValidatorModels, ReportsTooManyAdaptiveValues) {
   SequenceHeader header;
   header.profile_idc = kProfileHigh;

@@ -54,6 +54,7 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
     case UnitType::kGof:
       return gof(unit, *payload);
     case UnitType::kSlice:
+    case UnitType::kFrame:
       return slice(unit, *payload);
     case UnitType::kModel:
       return model(unit, *payload);
@@ -152,7 +153,7 @@ void StreamValidator::begin_gof(const UnitHeader& unit) {
   gof_ = {};
   gof_.unit = unit;
   gof_.place = {report_.units, unit.type_byte, unit.offset};
-  gof_.may_have_slices = true;
+  gof_.may_have_slices = gof_.may_have_frames = true;
   gof_.expected_first_frame = std::exchange(next_frame_, std::nullopt);
 }
 
@@ -169,7 +170,9 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   const GofHeaderCheck header =
       check_gof_header(r, lead_.header->header,
                        surplus ? std::nullopt : gof_.expected_first_frame, num_layers, models_);
-  gof_.may_have_slices = damaged || !header.kind || has_slices(*header.kind);
+  const bool may_be_any = damaged || !header.kind;
+  gof_.may_have_slices = may_be_any || slice_type(*header.kind) == UnitType::kSlice;
+  gof_.may_have_frames = may_be_any || slice_type(*header.kind) == UnitType::kFrame;
   gof_.slice_counts = header.slices;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
   gof_.num_frames = header.num_frames;
@@ -184,7 +187,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   gof_body(unit, payload, header);
 }
 
-// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( )
+// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( ), 6.14 frames_of_gof( )
 void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
                                const GofHeaderCheck& header) {
   const bool on_grid = header.kind == GofKind::kClusters || lead_.header->positions;
@@ -205,7 +208,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
   }
 }
 
-// 6.12 slice_unit( )
+// 6.12 slice_unit( ), 6.14.1 frame_unit( )
 void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   if (model_.unit) return slice_of(model_, unit, payload);
@@ -215,7 +218,9 @@ void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
 template <class Parser>
 void StreamValidator::slice_of(Current<Parser>& current, const UnitHeader& unit,
                                const Payload& payload) {
-  if (!current.unit || !current.slice_counts) {
+  const bool is_frame = unit.type() == UnitType::kFrame;
+  if (!current.unit || !current.slice_counts ||
+      is_frame != (current.slice_counts->frames > 0)) {
     report_.complete = false;
     return;
   }
@@ -256,6 +261,7 @@ void StreamValidator::end_gof() {
   if (const auto* skinned = std::get_if<SkinnedGof>(&gof_.access_unit->gof)) {
     use_model(*skinned);
   }
+  if (lead_.header->positions) compare_frame_crcs(*gof_.access_unit);
 }
 
 // 6.7 gof_hash( )
@@ -281,6 +287,24 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
     compare_hashes(unit, *hash);
   } else {
     report_.complete = false;
+  }
+}
+
+// 8.19.1 CheckFrameCrc( f )
+void StreamValidator::compare_frame_crcs(const AccessUnit& access_unit) {
+  const FrameCrcs crcs = access_unit.frame_crcs();
+  if (crcs.empty()) return;
+  const auto recon = make_recon(access_unit, lead_.context, *recons_);
+  std::vector<std::int32_t> positions(3 * std::size_t{lead_.header->header.num_vertices});
+  for (std::uint32_t f = 0; f < crcs.size(); ++f) {
+    if (!crcs[f]) continue;
+    recon->frame(f, positions);
+    const std::uint32_t crc = crc32_of_positions(positions);
+    if (crc == crcs[f]->crc) continue;
+    const std::uint32_t frame = access_unit.header().first_frame + f;
+    return findings_.error({Errc::kInvalid, "R-HSH-02", "frame_crc", crcs[f]->bit_pos},
+                           "of frame " + std::to_string(frame) + ": frame_crc is " +
+                               hex(crcs[f]->crc) + ", the decoded positions give " + hex(crc));
   }
 }
 

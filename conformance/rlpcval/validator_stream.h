@@ -57,6 +57,7 @@ class StreamValidator {
   void gof(const UnitHeader& unit, const Payload& payload);
   void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
+  void compare_frame_crcs(const AccessUnit& access_unit);
   // No further slice can follow: the skinned model is complete, or the access unit except for
   // its hash.
   void end_slices();
@@ -129,6 +130,7 @@ class StreamValidator {
     std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
     std::uint32_t num_frames = 0;                       // 0: not known
     bool may_have_slices = false;                       // it is a skinned GOF, or unknown
+    bool may_have_frames = false;                       // it is a GOF of frames, or unknown
     std::optional<AccessUnit> access_unit;              // if all units could be read
   };
   CurrentGof gof_;

@@ -95,7 +95,8 @@ void StreamValidator::warn_of_level() {
         needed_.max_gof_values <= level.max_gof_values &&
         needed_.max_gof_factors <= level.max_gof_factors &&
         needed_.max_unit_bytes <= level.max_unit_bytes &&
-        needed_.max_adaptive_values <= level.max_adaptive_values) {
+        needed_.max_adaptive_values <= level.max_adaptive_values &&
+        needed_.max_learning_vertices <= level.max_learning_vertices) {
       findings_.warning("W-LVL-01", "level_idc", lead_.header_bit_pos + 8,
                         "level_idc is " + std::to_string(h.level_idc) + ", level " +
                             std::to_string(level_idc) + " would do");

@@ -44,11 +44,8 @@ bool StreamUnits::possible_type(std::uint8_t type_byte) const {
 }
 
 bool StreamUnits::known_type(UnitType type) const {
-  constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
-                                          UnitType::kModel};
   const auto code = static_cast<std::uint8_t>(type);
-  return (code & kAncillaryFlag) != 0 ||
-         (code >= 1 && type <= kLast[std::min(version_minor_, 2U)]);
+  return (code & kAncillaryFlag) != 0 || is_known_type(type, version_minor_);
 }
 
 bool StreamUnits::read(std::uint64_t offset, std::span<std::uint8_t> out, const char* element) {

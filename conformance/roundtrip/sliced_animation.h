@@ -15,6 +15,7 @@
 #include "conformance/roundtrip/small_animation.h"
 #include "encoder/write/write_cluster_gof.h"
 #include "encoder/write/write_connectivity.h"
+#include "encoder/write/write_frame_gof.h"
 #include "encoder/write/write_skinned_gof.h"
 #include "encoder/write/write_stream.h"
 
@@ -201,6 +202,12 @@ class SlicedAnimation {
     append(bytes, UnitType::kGof, payloads.first);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
+  }
+  void append_gof(StreamBytes& bytes, const FrameGof& gof) const {
+    const CodedMesh mesh(Prediction::kLayers, topology_, layers_);
+    const FrameGofPayloads payloads = write_frame_gof(gof, mesh);
+    append(bytes, UnitType::kGof, payloads.first);
+    for (const Bytes& frame : payloads.frames) append(bytes, UnitType::kFrame, frame);
   }
   void append_gof(StreamBytes& bytes, const ClusterGof& gof) const {
     append(bytes, UnitType::kGof, write_cluster_gof(gof, header_, topology_));

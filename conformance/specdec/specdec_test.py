@@ -248,7 +248,7 @@ class MainWidths(unittest.TestCase):
             spread = 1 << r.randint(0, 28)
             v["SpatialFactors"] = [[self.extreme(spread) for _ in range(n + m + 1)]
                                    for _ in range(3)]
-            v.update(Ring=[list(range(1, n + 1))], OuterRing=[list(range(n + 1, n + m + 1))],
+            v.update(Ring=[list(range(1, n + 1))], OuterNeighbours=[list(range(n + 1, n + m + 1))],
                      RingWeights=[], OuterWeights=[], outer_weight=r.randint(0, 15),
                      outer_scale=r.randint(0, 15), damping_log2=r.randint(0, 15))
             v["PlainWeights"](0)

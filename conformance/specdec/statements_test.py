@@ -91,19 +91,23 @@ class Statements(unittest.TestCase):
             v[name](*(0, 1, 5, 3)[:inner.__code__.co_argcount])
             self.assertEqual(depth[1], 2, name)
 
-    def test_names_that_serve_both_kinds_of_gof(self):
+    def test_names_that_serve_several_kinds_of_gof(self):
         calls = self.calls()
-        of_clusters = self.reached(calls, {"clusters_of_gof", "DecodeGof"}, {"DecodeBones"})
-        of_bones = self.reached(calls, {"bones_of_gof", "slice_unit", "DecodeBones"})
-        both = self.set_in(of_clusters) & self.set_in(of_bones)
+        of_clusters = self.set_in(self.reached(calls, {"clusters_of_gof", "DecodeGof"},
+                                               {"DecodeBones", "DecodeFrames"}))
+        of_bones = self.set_in(self.reached(calls, {"bones_of_gof", "slice_unit", "DecodeBones"}))
+        of_frames = self.set_in(self.reached(calls, {"frames_of_gof", "frame_unit",
+                                                     "DecodeFrames"}))
         annex = (ROOT / "spec" / "annex-e-state.md").read_text(encoding="utf-8")
         tables, stated = annex.split("## E.3")
         shared = {name for life, names in re.findall(r"^\| ([^|]+) \|.*\| ([^|]+) \|$", tables,
                                                      re.MULTILINE)
                   if not re.match("the stream|a section|a GOF, from its last slice", life)
                   for name in names.split(", ")}
-        names = stated.split("\n\n")[1].split(" are used in ")[0].replace(" and ", ", ")
-        self.assertEqual(set(re.split(r",\s+", names)), both & shared)
+        for paragraph, several in zip(stated.split("\n\n")[1:],
+                                      (of_clusters & of_bones, of_bones & of_frames)):
+            names = paragraph.split(" are used in ")[0].replace(" and ", ", ")
+            self.assertEqual(set(re.split(r",\s+", names)), several & shared)
 
     def set_in(self, functions):
         return {part.id for name in functions for part in ast.walk(PROGRAM.functions[name][0])

@@ -122,6 +122,7 @@ Result<Bytes> SubStreamExtractor::next_unit() {
     case UnitType::kGof:
       return gof(*unit);
     case UnitType::kSlice:
+    case UnitType::kFrame:
       return slice(*unit);
     case UnitType::kGofHash:
       return hash(*unit);

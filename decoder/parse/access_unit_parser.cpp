@@ -5,6 +5,7 @@
 
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_cluster_gof.h"
+#include "decoder/parse/parse_frame_gof.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/parse_skinned_gof.h"
@@ -16,7 +17,7 @@ class GofParser {
   virtual ~GofParser() = default;
   // The GOF unit after its header.
   virtual Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) = 0;
-  // Adds the slice, without its bytes, unless the cut drops it.
+  // A slice or frame unit: adds it, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              std::vector<SliceEntry>& slices);
   virtual bool is_cut() const { return false; }
@@ -75,6 +76,33 @@ class SkinnedParser final : public GofParser {
   SkinnedGofParser parser_;
 };
 
+class FramesParser final : public GofParser {
+ public:
+  FramesParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut)
+      : context_(context), memory_(memory), cut_(cut) {}
+
+  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
+    memory_.bytes_in_use += memory_of_models(models);
+    parser_.emplace(context_.header, (*context_.meshes)[Prediction::kLayers], memory_, cut_);
+    return parser_->gof(r, header);
+  }
+  Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
+                     std::vector<SliceEntry>& slices) override {
+    if (auto ok = parser_->frame(r, unit_bit_pos); !ok) return ok;
+    if (parser_->last_unit()) slices.push_back(*parser_->last_unit());
+    return true;
+  }
+  bool is_cut() const override { return parser_->is_cut(); }
+  std::uint64_t memory_bytes() const override { return parser_->memory_bytes(); }
+  AnyGof finish() override { return parser_->finish(); }
+
+ private:
+  const StreamContext& context_;
+  MemoryLimit memory_;
+  SliceCut cut_;
+  std::optional<FrameGofParser> parser_;
+};
+
 }  // namespace
 
 AccessUnitParser::AccessUnitParser(const StreamContext& context, const MemoryLimit& memory,
@@ -90,6 +118,8 @@ std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
     case GofKind::kSkinned:
     case GofKind::kTracks:
       return std::make_unique<SkinnedParser>(context_, memory_, cut_);
+    case GofKind::kFrames:
+      return std::make_unique<FramesParser>(context_, memory_, cut_);
   }
   return nullptr;
 }

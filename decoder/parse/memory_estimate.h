@@ -57,6 +57,22 @@ constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
   return num_vertices * kBytesPerVertex;
 }
 
+// A GOF of frames: frames without their residuals; per vertex the position in several frames,
+// neighbours and weights; with learned weights, errors and a filter; models of layer groups.
+constexpr std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
+                                         std::uint64_t num_layer_groups, bool is_learning) {
+  constexpr std::uint64_t kBytesPerFrame = 120;
+  constexpr std::uint64_t kBytesPerVertex = 400;
+  constexpr std::uint64_t kBytesOfFilter = 2600;
+  constexpr std::uint64_t kBytesPerGroup = 6000;
+  return num_frames * kBytesPerFrame + num_layer_groups * kBytesPerGroup +
+         num_vertices * (kBytesPerVertex + (is_learning ? kBytesOfFilter : 0));
+}
+// The residuals of a frame, of which some are large.
+constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_t num_large) {
+  return 5 * num_vertices + 32 * num_large;
+}
+
 // Skinned models that are kept, with their reconstructions.
 inline std::uint64_t memory_of_model(const SkinnedModel& model) {
   const std::uint64_t num_vertices = model.influences.size();

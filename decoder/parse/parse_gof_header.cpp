@@ -21,13 +21,7 @@ GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
   if (header.profile_idc == kProfileMain) {
     if (r.flag("bones_flag")) gof.kind = GofKind::kSkinned;
   } else if (header.profile_idc >= kProfileHigh) {
-    const std::uint64_t kind_at = r.bit_pos();
-    const std::uint32_t kind = r.u(2, "gof_kind");
-    if (kind > static_cast<std::uint32_t>(GofKind::kTracks)) {
-      r.fail(Errc::kUnsupported, "R-GOF-13", "gof_kind", kind_at);
-    } else {
-      gof.kind = static_cast<GofKind>(kind);
-    }
+    gof.kind = static_cast<GofKind>(r.u(2, "gof_kind"));
   }
   return gof;
 }

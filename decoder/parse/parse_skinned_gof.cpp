@@ -6,6 +6,7 @@
 #include "common/int_math.h"
 #include "decoder/parse/bone_parser.h"
 #include "decoder/parse/memory_estimate.h"
+#include "decoder/parse/parse_layers.h"
 #include "decoder/parse/parse_slice.h"
 #include "decoder/parse/section_reader.h"
 
@@ -41,22 +42,10 @@ void SkinnedGofParser::layers(BitReader& r) {
       r.fail(Errc::kInvalid, "R-LVL-09", "num_adaptive_factors", at);
     }
   }
-  const std::int64_t num_layers = mesh_->num_layers();
-  const std::uint32_t num_groups =
-      r.ue("num_layer_groups_minus1", {0, num_layers - 1}, "R-BON-03") + 1;
-  if (r.error()) return;
-  gof_.layer_group_size.assign(num_groups, 1);
-  std::int64_t left = num_layers;
-  for (std::uint32_t j = 0; j + 1 < num_groups; ++j) {
-    const std::int64_t groups_after = num_groups - j - 1;
-    gof_.layer_group_size[j] =
-        r.ue("layer_group_layers_minus1", {0, left - groups_after - 1}, "R-BON-03") + 1;
-    left -= gof_.layer_group_size[j];
-  }
-  gof_.layer_group_size.back() = static_cast<std::uint32_t>(left);
-  for (std::uint8_t& step : gof_.layer_step) {
-    step = static_cast<std::uint8_t>(r.u(4, "layer_step_minus1") + 1);
-  }
+  const auto groups = parse_layer_groups(r, mesh_->num_layers());
+  if (groups.empty()) return;
+  gof_.layer_group_size = groups;
+  parse_layer_steps(r, gof_.layer_step);
 }
 
 // 6.11 rest_of_rig( )

@@ -137,18 +137,6 @@ TEST(ParseModelRanges, AdaptiveValuesAreBoundedByTheLevel) {
   }
 }
 
-TEST(ParseModelRanges, KindsOfGofsEndWithTracks) {
-  Units units(2);
-  ASSERT_TRUE(units.model({}, 0));
-  units.keep();
-  EXPECT_TRUE(units.gof(SkinnedGofRecipe().tracks_payload(2, 0, 0)));
-  const auto later = units.gof(SkinnedGofRecipe().tracks_payload(3, 0, 0));
-  ASSERT_FALSE(later);
-  EXPECT_EQ(later.error().code, Errc::kUnsupported);
-  EXPECT_STREQ(later.error().rule, "R-GOF-13");
-  EXPECT_EQ(later.error().bit_pos, 2U);
-}
-
 TEST(ParseModelRanges, LocalGroupsAreWithinWhatTheModelLeaves) {
   for (const std::uint32_t of_model : {0U, 1U, 254U, 255U}) {
     Units units(2);

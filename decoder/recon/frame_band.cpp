@@ -15,7 +15,7 @@ std::span<const std::int32_t> FrameBand::frame(const GofRecon& recon, std::uint3
 
 void FrameBand::fill(const GofRecon& recon, std::uint32_t first, std::size_t frame_size) {
   first_ = first;
-  count_ = std::min(next_count_, recon.num_frames() - first);
+  count_ = recon.is_ordered() ? 1 : std::min(next_count_, recon.num_frames() - first);
   next_count_ = std::min(2 * next_count_, most_);
   positions_.resize(count_ * frame_size);
   // Without a loop, which would allocate memory.

@@ -4,6 +4,7 @@
 
 #include "common/cluster_gof/recon/cluster_recon.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
+#include "decoder/recon/ordered_recon.h"
 
 namespace rlpc {
 namespace {
@@ -22,26 +23,35 @@ class ReconOfKind final : public GofRecon {
   Recon recon_;
 };
 
-ClusterRecon recon_of(const ClusterGof& gof, const StreamContext& context, ModelRecons&) {
-  return {context.header, context.topology, gof};
+template <class Recon>
+std::unique_ptr<GofRecon> of_kind(Recon recon) {
+  return std::make_unique<ReconOfKind<Recon>>(std::move(recon));
 }
 
-SkinnedRecon recon_of(const SkinnedGof& gof, const StreamContext& context,
-                      ModelRecons& models) {
-  if (gof.model) return {models.of(gof.model), gof};
-  return {(*context.meshes)[gof.prediction], gof, context.header.position_bits};
+std::unique_ptr<GofRecon> recon_of(const ClusterGof& gof, const StreamContext& context,
+                                   ModelRecons&) {
+  return of_kind(ClusterRecon(context.header, context.topology, gof));
+}
+
+std::unique_ptr<GofRecon> recon_of(const SkinnedGof& gof, const StreamContext& context,
+                                   ModelRecons& models) {
+  if (gof.model) return of_kind(SkinnedRecon(models.of(gof.model), gof));
+  return of_kind(
+      SkinnedRecon((*context.meshes)[gof.prediction], gof, context.header.position_bits));
+}
+
+std::unique_ptr<GofRecon> recon_of(const FrameGof& gof, const StreamContext& context,
+                                   ModelRecons&) {
+  return std::make_unique<OrderedRecon>((*context.meshes)[Prediction::kLayers], gof,
+                                        context.header.position_bits);
 }
 
 }  // namespace
 
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
                                      const StreamContext& context, ModelRecons& models) {
-  return std::visit(
-      [&](const auto& gof) -> std::unique_ptr<GofRecon> {
-        auto recon = recon_of(gof, context, models);
-        return std::make_unique<ReconOfKind<decltype(recon)>>(std::move(recon));
-      },
-      access_unit.gof);
+  return std::visit([&](const auto& gof) { return recon_of(gof, context, models); },
+                    access_unit.gof);
 }
 
 }  // namespace rlpc

@@ -19,6 +19,8 @@ class GofRecon {
   virtual ~GofRecon() = default;
 
   virtual std::uint32_t num_frames() const = 0;
+  // Whether frames are best asked for one by one, in order: each has several threads to itself.
+  virtual bool is_ordered() const { return false; }
   // Frames first to first + count - 1 of the GOF, in decoded order, grid units,
   // [count][num_vertices][3]. Several threads may call it.
   virtual void frames(std::uint32_t first, std::uint32_t count,

@@ -6,8 +6,9 @@
 
 namespace rlpc {
 
-HashCheck::HashCheck(GofHash hash, std::uint32_t num_frames)
-    : hash_(std::move(hash)), num_frames_(num_frames) {}
+HashCheck::HashCheck(std::optional<GofHash> hash, FrameCrcs frame_crcs,
+                     std::uint32_t num_frames)
+    : hash_(std::move(hash)), frame_crcs_(std::move(frame_crcs)), num_frames_(num_frames) {}
 
 void HashCheck::restart() {
   running_crc_ = 0;
@@ -16,6 +17,13 @@ void HashCheck::restart() {
 
 bool HashCheck::add_frame(std::uint32_t f, std::span<const std::int32_t> positions) {
   compared_frames_ = 0;
+  if (f < frame_crcs_.size() && frame_crcs_[f]) {
+    compared_frames_ = 1;
+    if (crc32_of_positions(positions) != frame_crcs_[f]->crc) {
+      failed_at_ = frame_crcs_[f]->bit_pos;
+      return false;
+    }
+  }
   if (!hash_) return true;
   if (hash_->per_frame_flag) {
     compared_frames_ = 1;

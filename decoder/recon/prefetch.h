@@ -22,6 +22,7 @@ namespace rlpc {
 struct PreparedGof {
   GofHeader header;
   std::optional<GofHash> hash;
+  FrameCrcs frame_crcs;
   bool is_cut = false;
   std::unique_ptr<GofRecon> recon;
 };

@@ -38,6 +38,7 @@ const std::array<Part, kNumStreamParts>& parts() {
         "temporal_weight", "temporal_between", "spatial_predictor"}},
       {"temporal factors", {"temporal_residual", "trajectory_residual"}},
       {"spatial factors", {"spatial_residual"}},
+      {"frames", {"frame_residual"}},
       {"hashes, index, metadata", {"other"}},
   }};
   return kParts;
@@ -45,7 +46,7 @@ const std::array<Part, kNumStreamParts>& parts() {
 
 constexpr std::size_t kRestPart = 7;
 constexpr std::size_t kSpatialPart = 12;
-constexpr std::size_t kAncillaryPart = 13;
+constexpr std::size_t kAncillaryPart = 14;
 
 // The part of all other bits of a unit.
 std::size_t part_of_unit(UnitType type) {
@@ -59,6 +60,7 @@ std::size_t part_of_unit(UnitType type) {
     case UnitType::kGof:
     case UnitType::kModel:
     case UnitType::kSlice:
+    case UnitType::kFrame:
       return 4;
     default:
       return kAncillaryPart;
@@ -126,7 +128,7 @@ void BitCounter::close_unit() {
   // Slices belong to the GOF or skinned model before them, hashes to the GOF.
   const bool is_slice = type == UnitType::kSlice && of_model_;
   std::vector<PartSizes>& list = type == UnitType::kModel || is_slice ? model_bits_ : gof_bits_;
-  if (type == UnitType::kGof || type == UnitType::kModel || type == UnitType::kSlice ||
+  if (type == UnitType::kGof || type == UnitType::kModel || is_slice_type(type) ||
       type == UnitType::kGofHash) {
     for (std::size_t p = 0; p < kNumStreamParts && !list.empty(); ++p) {
       list.back()[p] += unit_bits_[p];

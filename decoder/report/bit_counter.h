@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kNumStreamParts = 14;
+inline constexpr std::size_t kNumStreamParts = 15;
 using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
 // Bits of each part, in the order used in all tables.
 const std::array<std::string_view, kNumStreamParts>& stream_part_names();

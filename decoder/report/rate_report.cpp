@@ -18,8 +18,8 @@ constexpr std::size_t kMaxSliceTables = 20;
 // Colours of the parts, in their order, the same on all pages. The usually largest parts have
 // the first colours of the plots of scripts/compare.
 constexpr std::array<const char*, kNumStreamParts> kColours{
-    "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00",
-    "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#c4c9d1"};
+    "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00", "#009e73",
+    "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#1f8a9e", "#c4c9d1"};
 
 // A series per part that occurs, with its bits as the only value.
 std::vector<ChartSeries> part_series(const PartSizes& bits) {
@@ -74,12 +74,13 @@ std::string slice_table(const Summary& summary, const std::string& to_here) {
   }
   html += "<th>" + to_here + "</th></tr></thead>\n";
   // From 1 in a GOF that uses a skinned model.
-  std::uint32_t group = summary.slices.front().component_group_idx;
-  const auto end = std::find_if(summary.slices.begin(), summary.slices.end(),
+  const std::vector<SliceEntry> slices = summary.slices_by_group();
+  std::uint32_t group = slices.front().component_group_idx;
+  const auto end = std::find_if(slices.begin(), slices.end(),
                                 [](const SliceEntry& s) { return s.temporal_layer_idx > 0; });
-  for (auto slice = summary.slices.begin(); slice != end; ++group) {
+  for (auto slice = slices.begin(); slice != end; ++group) {
     html += "<tr>";
-    html += cell(group == 0 ? "influences, rest positions"
+    html += cell(group == 0 ? summary.first_group
                             : "group " + std::to_string(group) +
                                   ", trajectories: " + std::to_string(slice->num_trajectories));
     for (std::size_t layers = 0; layers < columns; ++layers) {
@@ -234,7 +235,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   }
   for (std::size_t g = 0; g < std::min(gofs.size(), kMaxSliceTables); ++g) {
     if (gofs[g].slices.empty()) continue;
-    html += "<details class=\"card\"><summary>Slices of frames " +
+    html += "<details class=\"card\"><summary>Units of frames " +
             escape_html(frames_text(gofs[g])) + "</summary>\n" +
             slice_table(gofs[g], "GOF to here") + "</details>\n";
   }
@@ -243,7 +244,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
       std::string(has_models ? "Each GOF decodes without the others, with its skinned model. "
                              : "GOFs decode independently. ") +
           "Those of bones can be cut to fewer components or "
-          "layers without re-encoding (rlpcinfo --extract).",
+          "layers, those of frames to fewer layers, without re-encoding (rlpcinfo --extract).",
       html);
 }
 

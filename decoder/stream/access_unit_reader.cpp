@@ -19,7 +19,7 @@ Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint3
       return ok.error();
     }
     end_ = unit->end();
-    const auto next = unit_after(*unit, parser.has_slices());
+    const auto next = unit_after(*unit, parser.slice_type());
     if (!next) return next.error();
     unit = *next;
   }
@@ -42,7 +42,7 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
       if (r.error()) return std::nullopt;
     }
     coded.units.push_back({*unit, std::move(*payload)});
-    const auto next = unit_after(*unit, has_slices(coded.gof.kind));
+    const auto next = unit_after(*unit, slice_type(coded.gof.kind));
     if (!next) return std::nullopt;
     unit = *next;
   }
@@ -94,6 +94,7 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
     case UnitType::kGof:
       return parser.gof(r, first_frame, models, unit_bytes);
     case UnitType::kSlice:
+    case UnitType::kFrame:
       return parser.slice(r, unit.offset * 8, unit_bytes);
     default:
       return parser.hash(r);
@@ -165,16 +166,16 @@ Result<std::optional<UnitHeader>> AccessUnitReader::slice_after(const UnitHeader
 
 // The unit that follows `unit` in the same access unit; none if `unit` is the last.
 Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader& unit,
-                                                               bool has_slices) {
+                                                               std::optional<UnitType> slice) {
   using Next = std::optional<UnitHeader>;
-  const bool may_follow = has_slices || wants_hash_;
+  const bool may_follow = slice || wants_hash_;
   if (unit.type() == UnitType::kGofHash || !may_follow || unit.end() == units_.size()) {
     return Next();
   }
   const auto next = units_.header_at(unit.end());
   if (!next) return next.error();
-  const bool follows = (has_slices && next->type() == UnitType::kSlice) ||
-                       (wants_hash_ && next->type() == UnitType::kGofHash);
+  const bool follows =
+      (slice && next->type() == *slice) || (wants_hash_ && next->type() == UnitType::kGofHash);
   return follows ? Next(*next) : Next();
 }
 

@@ -84,7 +84,8 @@ class AccessUnitReader {
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
   // The slice unit that follows `unit`; none if another unit follows.
   Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
-  Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit, bool has_slices);
+  Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit,
+                                               std::optional<UnitType> slice);
 
   UnitReader& units_;
   const StreamContext& context_;

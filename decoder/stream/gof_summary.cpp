@@ -29,6 +29,7 @@ GofFigure temporal_layers_of(const SkinnedGof& gof) {
 // What has vertices in a GOF of bones or skinned model.
 void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
   summary.layer_group_size = rig.layer_group_size;
+  summary.first_group = "influences, rest positions";
   summary.figures = {
       {"num_bones", "bone", "bones", size_of(rig.bones)},
       {"num_trajectories", "trajectory", "trajectories", size_of(rig.trajectories)},
@@ -51,6 +52,18 @@ void add_kind(const SkinnedGof& gof, GofSummary& summary) {
       {"num_local_groups", nullptr, nullptr, gof.num_local_groups},
       {"num_slices", "slice", "slices", size_of(summary.slices)},
       temporal_layers_of(gof)};
+}
+
+void add_kind(const FrameGof& gof, GofSummary& summary) {
+  summary.first_group = "frames";
+  summary.layer_group_size = gof.layer_group_size;
+  summary.figures = {
+      {"frame_reference_idc", nullptr, nullptr, static_cast<std::uint32_t>(gof.reference)},
+      {"exact_flag", nullptr, nullptr, gof.exact_flag ? 1U : 0U},
+      {"learning_flag", nullptr, nullptr, gof.learning_flag ? 1U : 0U},
+      {"num_layers", "layer", "layers", size_of(gof.layer_step)},
+      {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
+      {"num_frame_units", "frame unit", "frame units", size_of(summary.slices)}};
 }
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:
@@ -125,6 +138,26 @@ std::uint32_t SlicedSummary::num_groups() const {
   return groups;
 }
 
+std::vector<SliceEntry> SlicedSummary::slices_by_group() const {
+  std::vector<SliceEntry> groups;
+  for (const SliceEntry& slice : slices) {
+    const auto is_same = [&](const SliceEntry& other) {
+      return other.component_group_idx == slice.component_group_idx &&
+             other.layer_group_idx == slice.layer_group_idx &&
+             other.temporal_layer_idx == slice.temporal_layer_idx;
+    };
+    const auto found = slice.frame_idx == 0
+                           ? groups.end()
+                           : std::find_if(groups.begin(), groups.end(), is_same);
+    if (found == groups.end()) {
+      groups.push_back(slice);
+    } else {
+      found->bytes += slice.bytes;
+    }
+  }
+  return groups;
+}
+
 SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
   SliceTotals totals;
   totals.bytes = bytes;
@@ -135,7 +168,8 @@ SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
     totals.bytes += slice.bytes;
     totals.num_temporal_layers =
         std::max(totals.num_temporal_layers, slice.temporal_layer_idx + 1);
-    if (slice.component_group_idx == 0 && slice.temporal_layer_idx == 0) {
+    if (slice.component_group_idx == 0 && slice.temporal_layer_idx == 0 &&
+        slice.frame_idx == 0) {
       totals.num_layers += layer_group_size[slice.layer_group_idx];
     }
   }

@@ -60,8 +60,11 @@ struct SlicedSummary {
 
   // Of kinds that have slices.
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
-  std::vector<SliceEntry> slices;
+  std::vector<SliceEntry> slices;                  // or frame units
+  const char* first_group = nullptr;               // what component group 0 has
 
+  // The same, with those that differ only in their frames taken together.
+  std::vector<SliceEntry> slices_by_group() const;
   // Component groups up to the last that has a slice, including that of the rest positions.
   std::uint32_t num_groups() const;
   // Temporal layers up to the last that has a slice.

@@ -12,10 +12,7 @@
 namespace rlpc {
 
 Error misplaced(const UnitHeader& unit, std::uint32_t version_minor) {
-  constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
-                                          UnitType::kModel};
-  const bool known = unit.ancillary() || (unit.type() >= UnitType::kSequenceHeader &&
-                                          unit.type() <= kLast[std::min(version_minor, 2U)]);
+  const bool known = unit.ancillary() || is_known_type(unit.type(), version_minor);
   return Error{known ? Errc::kInvalid : Errc::kUnsupported, known ? "R-UNT-05" : "R-UNT-04",
                "unit_type", unit.offset * 8};
 }

@@ -197,11 +197,11 @@ Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
   return header;
 }
 
-Result<bool> StreamReader::skip_slices() {
+Result<bool> StreamReader::skip_slices(UnitType type) {
   while (offset_ < units_.size()) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
-    if (unit->type() != UnitType::kSlice) break;
+    if (unit->type() != type) break;
     offset_ = unit->end();
   }
   return true;
@@ -239,8 +239,9 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     if (!gof) return gof.error();
     if (frame < frames_parsed_ + gof->num_frames) return true;
     go_past(**unit, gof->num_frames, (*unit)->end());
-    if (!has_slices(gof->kind)) continue;
-    if (auto ok = skip_slices(); !ok) return ok;
+    const auto type = slice_type(gof->kind);
+    if (!type) continue;
+    if (auto ok = skip_slices(*type); !ok) return ok;
   }
 }
 

@@ -71,7 +71,7 @@ class StreamReader {
   Result<bool> check_end(const UnitHeader& unit);
   // For a GOF that is skipped: reads only its first bytes.
   Result<GofHeader> gof_header(const UnitHeader& unit);
-  Result<bool> skip_slices();
+  Result<bool> skip_slices(UnitType type);
   void remember_gof(const UnitHeader& unit);
 
   DecodeLimits limits_;

@@ -134,6 +134,11 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
     if (!has_slices(gof.kind)) {
       std::printf("  %s: %s GOF, %" PRIu64 " bytes, kept whole\n", name.c_str(),
                   kind_name(gof.kind), gof.bytes);
+    } else if (gof.kind == GofKind::kFrames) {
+      std::printf("  %s: %u of %u layers, %zu of %zu frame units, %" PRIu64 " of %" PRIu64
+                  " bytes\n",
+                  name.c_str(), after.num_layers, before.num_layers, after.num_slices,
+                  before.num_slices, after.bytes, before.bytes);
     } else if (gof.model) {
       std::printf("  %s, tracks of %s: %u of %u trajectories, %s%zu of %zu slices, %" PRIu64
                   " of %" PRIu64 " bytes\n",

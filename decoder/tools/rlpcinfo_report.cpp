@@ -24,6 +24,12 @@ template <class Summary>
 void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
   for (const SliceEntry& slice : summary.slices) {
+    if (summary.figure("num_frame_units") > 0) {
+      slices.push_back({{"frame_idx", slice.frame_idx},
+                        {"layer_group_idx", slice.layer_group_idx},
+                        {"bytes", slice.bytes}});
+      continue;
+    }
     slices.push_back({{"component_group_idx", slice.component_group_idx},
                       {"layer_group_idx", slice.layer_group_idx},
                       {"temporal_layer_idx", slice.temporal_layer_idx},
@@ -182,19 +188,19 @@ void print_slices(const Summary& summary, const char* to_here) {
   std::printf("  %-40s", "layers");
   for (const std::uint32_t size : summary.layer_group_size) std::printf(" %9u", size);
   std::printf(" %12s\n", to_here);
-  auto slice = summary.slices.begin();
+  const std::vector<SliceEntry> slices = summary.slices_by_group();
+  auto slice = slices.begin();
   for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
     const SliceTotals cut = summary.totals({group + 1, SliceCut::kAll});
     const bool has_rest = slice->component_group_idx == 0 && slice->temporal_layer_idx == 0;
     if (group == 0 && !has_rest) continue;  // a GOF that uses a skinned model
     const std::string name =
-        group == 0 ? "influences, rest positions"
+        group == 0 ? summary.first_group
                    : "group " + std::to_string(group) +
                          ", trajectories: " + std::to_string(slice->num_trajectories);
     std::printf("  %-40s", name.c_str());
     for (std::uint32_t layers = 0; layers < summary.layer_group_size.size(); ++layers) {
-      const bool present = slice != summary.slices.end() &&
-                           slice->component_group_idx == group &&
+      const bool present = slice != slices.end() && slice->component_group_idx == group &&
                            slice->temporal_layer_idx == 0;
       std::printf(" %9s", present ? std::to_string(slice->bytes).c_str() : "");
       if (present) ++slice;
@@ -234,7 +240,8 @@ void print_gof(const GofSummary& gof) {
   const std::string what = gof.model
                                ? "tracks of skinned model " + std::to_string(gof.model->number)
                                : figures_of(gof)[0];  // the table has the others
-  std::printf("%s in %" PRIu64 " bytes; slices in bytes\n", what.c_str(), gof.bytes);
+  const char* units = gof.kind == GofKind::kFrames ? "frame units" : "slices";
+  std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
   print_slices(gof, "GOF to here");
 }
 

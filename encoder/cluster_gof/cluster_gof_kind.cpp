@@ -69,6 +69,10 @@ class ClusterGofKind : public GofEncoder {
 // predict the maximum error, which is usually smaller with bones.
 std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
+  if (settings.kinds == KindChoice::kClusters) {
+    return std::make_unique<ClusterGofKind>(mesh, settings);
+  }
+  if (settings.kinds != KindChoice::kAuto) return nullptr;
   const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&
                           settings.target.kind != Target::kMaxError;
   if (settings.profile != Profile::kBaseline && !suits_main) return nullptr;
@@ -77,7 +81,10 @@ std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
 
 std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
                                              const EncoderSettings& settings) {
-  if (settings.profile == Profile::kBaseline || settings.main != MainTools{}) return nullptr;
+  if (settings.profile == Profile::kBaseline || settings.main != MainTools{} ||
+      settings.kinds != KindChoice::kAuto) {
+    return nullptr;
+  }
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 

@@ -69,6 +69,30 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
+std::optional<InputError> check_kinds(const EncoderSettings& s) {
+  if (s.kinds == KindChoice::kBones && s.profile == Profile::kBaseline) {
+    return InputError{
+        "the Baseline profile has no bones: use --profile main or high, or leave "
+        "out --gof-kind"};
+  }
+  if (s.kinds == KindChoice::kFrames && s.profile != Profile::kHigh) {
+    return InputError{"GOFs of frames need --profile high: use that, or leave out --gof-kind"};
+  }
+  const bool has_bones = s.kinds == KindChoice::kAuto || s.kinds == KindChoice::kBones;
+  if (!has_bones && s.main != MainTools{}) {
+    return InputError{
+        "the settings of bones and trajectories have no effect on GOFs without "
+        "bones: leave them out, or use --gof-kind auto or bones"};
+  }
+  const bool has_frames = s.kinds == KindChoice::kAuto || s.kinds == KindChoice::kFrames;
+  if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
+    return InputError{
+        "--frame-reference and --frame-weights need --profile high and "
+        "--gof-kind frames: use these, or leave them out"};
+  }
+  return std::nullopt;
+}
+
 // Rejects parameters of layers if there are no layers, as they would have no effect.
 std::optional<InputError> check_layers(const MainTools& tools) {
   if (tools.prediction.value_or(Prediction::kLayers) == Prediction::kLayers)
@@ -136,6 +160,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.profile != Profile::kHigh) {
     if (auto error = check_unused(parameters_of_high(s.main), "high")) return error;
   }
+  if (auto error = check_kinds(s)) return error;
   if (auto error = check_baseline(s)) return error;
   if (auto error = check_layers(s.main)) return error;
   if (auto error = check_counts(s)) return error;

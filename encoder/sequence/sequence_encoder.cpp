@@ -125,7 +125,8 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
                       " frames (specification, Annex B), not " +
                       std::to_string(header.num_frames) + "; split it"};
   }
-  if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast) {
+  if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast ||
+      settings_.kinds == KindChoice::kFrames) {
     spans_ = equal_gofs(header.num_frames, longest);
     divide_spans(spans_, longest_gof(settings_));
     return std::nullopt;

@@ -36,7 +36,9 @@ class SkinnedGofKind : public GofEncoder {
 
 std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
-  if (settings.profile == Profile::kBaseline) return nullptr;
+  const bool is_wanted =
+      settings.kinds == KindChoice::kAuto || settings.kinds == KindChoice::kBones;
+  if (settings.profile == Profile::kBaseline || !is_wanted) return nullptr;
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }
 

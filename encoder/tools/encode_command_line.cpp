@@ -203,12 +203,34 @@ void add_method_options(CLI::App& app, EncodeCommandLine& line) {
       {{"high", Profile::kHigh}, {"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
       "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
       ->group(method);
+  add_choice<KindChoice>(app, "--gof-kind", line.options.settings.kinds,
+                         {{"auto", KindChoice::kAuto},
+                          {"clusters", KindChoice::kClusters},
+                          {"bones", KindChoice::kBones},
+                          {"frames", KindChoice::kFrames}},
+                         "Groups of frames: auto (the cheapest, default), clusters, bones, "
+                         "frames (each from decoded ones, High profile)")
+      ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
                  "rate and distortion)")
       ->check(CLI::Range(1, 1024))
       ->option_text("N")
       ->group(method);
+}
+
+void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string frames = "GOFs of frames, High profile";
+  FrameTools& t = line.options.settings.frames;
+  add_choice<FrameReference>(
+      app, "--frame-reference", t.reference,
+      {{"previous", FrameReference::kPrevious}, {"first", FrameReference::kFirst}},
+      "What frames are predicted from: previous (the one before, default), first (of the GOF)")
+      ->group(frames);
+  add_choice<bool>(app, "--frame-weights", t.learning, {{"learned", true}, {"geometry", false}},
+                   "Weights of prediction: learned (from the frames before, default), geometry "
+                   "(from the first; larger, faster)")
+      ->group(frames);
 }
 
 void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
@@ -324,6 +346,7 @@ void add_encode_options(CLI::App& app, EncodeCommandLine& line) {
   add_output_options(app, line);
   add_method_options(app, line);
   add_main_options(app, line);
+  add_frame_options(app, line);
   add_baseline_options(app, line);
   add_help(app,
            {"INPUT [--points CACHE] -o OUT.rlpc [OPTIONS]",

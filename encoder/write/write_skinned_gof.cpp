@@ -13,6 +13,7 @@
 #include "encoder/write/bone_writer.h"
 #include "encoder/write/section_writer.h"
 #include "encoder/write/write_gof_header.h"
+#include "encoder/write/write_layers.h"
 #include "encoder/write/write_rest.h"
 
 namespace rlpc {
@@ -322,11 +323,8 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
     w.u(4, static_cast<std::uint32_t>(model.weights.outer_weight));
     w.u(4, static_cast<std::uint32_t>(model.weights.outer_scale));
     if (profile_idc >= kProfileHigh) w.ue(model.weights.num_adaptive_factors);
-    w.ue(static_cast<std::uint32_t>(model.layer_group_size.size()) - 1);
-    for (std::size_t j = 0; j + 1 < model.layer_group_size.size(); ++j) {
-      w.ue(model.layer_group_size[j] - 1);
-    }
-    for (const std::uint8_t step : model.layer_step) w.u(4, step - 1U);
+    write_layer_groups(w, model.layer_group_size);
+    write_layer_steps(w, model.layer_step);
   }
   if (profile_idc >= kProfileHigh) write_rest_of_rig(w, model.rest);
 }

@@ -36,7 +36,8 @@ ROOMS = {
     **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components"}),
     "common/kernels": {"common", "common/components"},
     "common/parallel": set(),
-    "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels"},
+    "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels",
+                               "common/parallel"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
     "common/c_api": {"common"},
     "common/testing": _GOFS,
@@ -64,7 +65,7 @@ ROOMS = {
     "decoder/fuzz": _GOFS | _RECON | _PARSE | {"common/testing", "decoder/stream"}
                     | _PUBLIC_DECODER,
     # Floating point, decisions, structures to bits.
-    "encoder": {"common/mesh", "common/skinned_gof", "common/syntax", "encoder/input",
+    "encoder": {"common/mesh", "common/frame_gof", "common/skinned_gof", "common/syntax", "encoder/input",
                 "encoder/metrics"},
     "encoder/math": {"common/parallel"},
     "encoder/metrics": {"common/mesh", "encoder/math"},

@@ -4,13 +4,15 @@
 #include <utility>
 
 #include "encoder/cluster_gof/cluster_gof_kind.h"
+#include "encoder/frame_gof/frame_gof_kind.h"
 #include "encoder/skinned_gof/skinned_gof_kind.h"
 
 namespace rlpc {
 namespace {
 
 // A new kind of GOF adds its factory here.
-constexpr std::array<MakeGofKind, 2> kFactories{make_skinned_gof_kind, make_cluster_gof_kind};
+constexpr std::array<MakeGofKind, 3> kFactories{make_skinned_gof_kind, make_cluster_gof_kind,
+                                                make_frame_gof_kind};
 
 }  // namespace
 

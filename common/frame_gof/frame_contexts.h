@@ -1,0 +1,71 @@
+// Models and contexts of a GOF of frames (clause 9.8.6). The parser and the writer drive them
+// in the same way.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/bitstream/residual_models.h"
+#include "common/frame_gof/frame_gof.h"
+#include "common/mesh/coded_mesh.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kFrameClasses = 3;
+
+// Expected magnitudes of the residuals of a GOF of frames.
+class FrameContexts {
+ public:
+  // The mesh must have layers, and outlive it.
+  FrameContexts(const CodedMesh& mesh, std::size_t num_layer_groups);
+
+  // Call at the start of each frame, and before the vertices of each layer group of it.
+  void start_frame(std::uint32_t frame);
+  void start_group(std::size_t layer_group) { group_ = layer_group; }
+  // Call before the residuals of a vertex, which follow axis by axis.
+  void start(std::uint32_t v);
+
+  // The expected magnitude of the next residual, with 4 fractional bits, and its models.
+  std::uint32_t expected() const {
+    const std::uint64_t sum = 64 * std::uint64_t{*layer_mean_} +
+                              51 * std::uint64_t{ring_mean_} + 38 * std::uint64_t{outer_mean_};
+    const std::uint64_t own = axis_ == 0 ? 103 * std::uint64_t{before_mean_}
+                                         : 64 * std::uint64_t{before_mean_} + 39 * latest_mean_;
+    return static_cast<std::uint32_t>((sum + own) >> 12);
+  }
+  ResidualModels& models() { return models_[group_][class_]; }
+  void update(std::int32_t residual);
+
+  // FrameExpected of the vertex, once it has been started.
+  std::uint16_t frame_expected() const {
+    return static_cast<std::uint16_t>(std::min(expected(), kMaxFrameExpected));
+  }
+
+ private:
+  static constexpr std::uint32_t kMaxMagnitude = 4095;
+
+  std::uint32_t mean_magnitude(std::span<const std::uint32_t> ring,
+                               std::uint32_t otherwise) const;
+
+  const CodedMesh& mesh_;
+  std::vector<std::array<ResidualModels, kFrameClasses>> models_;  // [layer group][class]
+  std::vector<std::uint32_t> mean_;                                // LayerMean, [num_layers]
+  std::vector<std::uint16_t> magnitude_;  // of this frame, summed over the axes
+  std::vector<std::uint16_t> before_;     // likewise, of the frame before
+  bool is_first_ = true;
+  std::size_t group_ = 0;
+  // State of the current vertex:
+  std::uint32_t vertex_ = 0;
+  std::size_t class_ = 0;
+  std::size_t axis_ = 0;
+  std::uint32_t* layer_mean_ = nullptr;
+  std::uint32_t ring_mean_ = 0;
+  std::uint32_t outer_mean_ = 0;
+  std::uint32_t before_mean_ = 0;
+  std::uint32_t latest_mean_ = 0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,65 @@
+// 6.14: a GOF of frames, each predicted from decoded ones.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/frame_gof/compact_residuals.h"
+#include "common/mesh/weight_settings.h"
+#include "common/syntax/gof_header.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kMaxFrameStep = 1U << 16;  // 1/16 grid units
+inline constexpr std::uint32_t kExactFrameStep = 16;      // one grid unit
+inline constexpr std::uint32_t kMaxFrameExpected = 1023;  // 7.14.1, 1/16
+
+// 7.14: frame_reference_idc
+enum class FrameReference : std::uint8_t { kPrevious, kFirst };
+inline constexpr std::uint32_t kMaxFrameReference = 1;
+
+// frame_crc, and where it is in the stream.
+struct FrameCrc {
+  std::uint32_t crc = 0;
+  std::uint64_t bit_pos = 0;
+
+  bool operator==(const FrameCrc& other) const { return crc == other.crc; }
+};
+
+// 6.14.1 frame_unit( ): the residuals of a frame.
+struct CodedFrame {
+  std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
+  std::optional<FrameCrc> frame_crc;
+  CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
+  std::vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
+
+  bool operator==(const CodedFrame&) const = default;
+};
+
+struct FrameSettings {
+  FrameReference reference = FrameReference::kPrevious;
+  bool exact_flag = false;  // positions are sums of whole grid units
+  std::uint32_t step = kExactFrameStep;
+  bool learning_flag = false;
+  WeightSettings weights;  // without adaptive factors
+  int prime_log2 = 0;
+  bool frame_hash_flag = false;
+  std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
+  std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to 16
+
+  bool operator==(const FrameSettings&) const = default;
+};
+
+// Copies share the frames.
+struct FrameGof : GofHeader, FrameSettings {
+  std::shared_ptr<const std::vector<CodedFrame>> frames;  // [num_frames]; set once parsed
+
+  bool operator==(const FrameGof& other) const {
+    return static_cast<const GofHeader&>(*this) == other &&
+           static_cast<const FrameSettings&>(*this) == other && *frames == *other.frames;
+  }
+};
+
+}  // namespace rlpc

@@ -1,0 +1,361 @@
+#include "common/frame_gof/recon/frame_recon.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+
+#include "common/fixed_point.h"
+#include "common/int_math.h"
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 128;  // vertices of a pass
+
+constexpr std::int32_t kRingWalk = 64;
+constexpr std::int32_t kNearWalk = 16;
+constexpr std::int32_t kErrorWalk = 128;
+constexpr int kFirstSpreadShift = 19;
+constexpr std::int64_t kMostMotion = std::int64_t{1} << 29;
+constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
+
+// RandomMotionWalk( v, i ), by the sizes of ring and near vertices.
+using Walks =
+    std::array<std::array<std::array<std::int32_t, kMaxMotions>, kMaxNear + 1>, kMaxRing + 1>;
+constexpr Walks kWalks = [] {
+  Walks walks{};
+  for (std::size_t n = 0; n <= kMaxRing; ++n) {
+    for (std::size_t m = 0; m <= kMaxNear; ++m) {
+      for (std::size_t i = 0; i < n + m + kNumEarlierErrors; ++i) {
+        walks[n][m][i] = i < n ? kRingWalk : i < n + m ? kNearWalk : kErrorWalk;
+      }
+    }
+  }
+  return walks;
+}();
+
+template <std::int64_t kCount>
+std::int64_t mean_of(std::int64_t sum) {
+  return div_round(sum, kCount);
+}
+// DivRound( sum, n ), n <= kMaxRing, without a division; 0 if n is 0.
+std::int64_t mean_of(std::int64_t sum, std::size_t n) {
+  switch (n) {
+    case 0:
+      return 0;
+    case 1:
+      return sum;
+    case 2:
+      return mean_of<2>(sum);
+    case 3:
+      return mean_of<3>(sum);
+    case 4:
+      return mean_of<4>(sum);
+    case 5:
+      return mean_of<5>(sum);
+    case 6:
+      return mean_of<6>(sum);
+    default:
+      return mean_of<7>(sum);
+  }
+}
+
+constexpr std::size_t padded(std::size_t size) {
+  return (size + kFilterVector - 1) / kFilterVector * kFilterVector;
+}
+
+}  // namespace
+
+FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int position_bits)
+    : mesh_(mesh),
+      settings_(settings),
+      kernels_(kernels().back()),
+      value_bits_(position_bits + kPointFractionBits + 1),
+      position_bits_(position_bits),
+      values_(3 * std::size_t{mesh.num_vertices()}),
+      before_(values_.size()),
+      reference_(values_.size()),
+      motion_(values_.size()) {}
+
+// 8.19.1 DecodeFrame( f )
+void FrameRecon::decode(const CodedFrame& frame) {
+  start_frame();
+  std::uint32_t layer = 0;
+  for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
+    const bool is_there = j < frame.layer_groups;
+    for (const std::uint32_t end = layer + settings_.layer_group_size[j]; layer < end;
+         ++layer) {
+      const auto vertices = mesh_.vertices_of_layers(layer, layer + 1);
+      const auto decode_range = [&](std::size_t first, std::size_t last) {
+        VertexMotion motion;
+        for (std::size_t i = first; i < last; ++i) {
+          const std::uint32_t v = vertices[i];
+          predict(v, motion);
+          Vec3i residual{};
+          if (is_there) {
+            for (std::size_t c = 0; c < 3; ++c) {
+              residual[c] = frame.residual[3 * std::size_t{v} + c];
+            }
+          }
+          set(v, motion, position(v, motion, residual));
+          if (is_there) adapt(v, motion, frame.expected[v]);
+        }
+      };
+      if (layer == 0 || vertices.size() <= kTogether) {
+        decode_range(0, vertices.size());
+      } else {
+        for_ranges(vertices.size(), kTogether, decode_range);
+      }
+    }
+  }
+  end_frame();
+}
+
+void FrameRecon::positions(std::span<std::int32_t> positions) const {
+  for (std::size_t i = 0; i < before_.size(); ++i) {
+    positions[i] = clip_signed(position_bits_, round2(before_[i], kPointFractionBits));
+  }
+}
+
+void FrameRecon::skip_to(std::uint32_t frame) {
+  if (frame_ == 1) start_motion();
+  if (frame_ == 1) reference_ = before_;
+  frame_ = frame;
+}
+
+void FrameRecon::start_frame() {
+  if (frame_ == 1) start_motion();
+  if (frame_ == 1 || settings_.reference == FrameReference::kPrevious) reference_ = before_;
+}
+
+// 8.19.2 StartMotion( )
+void FrameRecon::start_motion() {
+  near_ = near_vertices(mesh_, before_);
+  std::array<std::vector<std::int32_t>, 3> rest;
+  for (std::size_t c = 0; c < 3; ++c) {
+    rest[c].resize(mesh_.num_vertices());
+    for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = before_[3 * v + c];
+  }
+  weights_.emplace(mesh_, settings_.weights,
+                   std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]},
+                   &near_);
+  if (!settings_.learning_flag) return;
+  for (auto* const errors :
+       {&plain_error_, &plain_error1_, &plain_error2_, &error_, &error1_, &older_error_}) {
+    errors->assign(values_.size(), 0);
+  }
+  start_filters();
+}
+
+// 8.19.4 StartLearning( )
+void FrameRecon::start_filters() {
+  const std::uint32_t num_vertices = mesh_.num_vertices();
+  first_.resize(num_vertices);
+  std::size_t size = 0;
+  for (std::uint32_t v = 0; v < num_vertices; ++v) {
+    first_[v] = size;
+    const std::size_t n = num_neighbours(v) + kNumEarlierErrors;
+    size += padded(n) * (n + 1);
+  }
+  filters_.assign(size, 0);
+  const std::int64_t variance = std::int64_t{1}
+                                << (kVarianceFractionBits + settings_.prime_log2);
+  for_ranges(num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const auto v = static_cast<std::uint32_t>(i);
+      const FilterState state = filter(v);
+      constexpr std::int64_t kFiner = 1 << (kAdaptiveFractionBits - kWeightFractionBits);
+      const auto weights = (*weights_)[v];
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        state.weight[k] = static_cast<std::int32_t>(
+            clip3(-kMaxAdaptiveWeight, kMaxAdaptiveWeight, weights[k] * kFiner));
+      }
+      for (std::size_t k = 0; k < state.size; ++k) {
+        state.spread[k * state.stride + k] = state.walk[k] << kFirstSpreadShift;
+      }
+      if (settings_.prime_log2 > 0 && mesh_.ring(v).size() > 1) prime(v, variance);
+    }
+  });
+}
+
+FilterState FrameRecon::filter(std::uint32_t v) const {
+  FilterState state;
+  state.size = num_neighbours(v) + kNumEarlierErrors;
+  state.stride = padded(state.size);
+  state.weight = &filters_[first_[v]];
+  state.spread = state.weight + state.stride;
+  state.walk = kWalks[mesh_.ring(v).size()][near_[v].size()].data();
+  return state;
+}
+
+// 8.19.4 PrimeFilter( v )
+void FrameRecon::prime(std::uint32_t v, std::int64_t variance) {
+  const auto ring = mesh_.ring(v);
+  const auto near = near_[v];
+  const FilterState state = filter(v);
+  std::array<std::array<std::int64_t, kMaxMotions>, 3> offsets{};
+  Vec3l own{};
+  std::int64_t largest = 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto at = [&](std::uint32_t u) -> std::int64_t {
+      return before_[3 * std::size_t{u} + c];
+    };
+    std::int64_t sum = 0;
+    for (const std::uint32_t u : ring) sum += at(u);
+    const std::int64_t mean = mean_of(sum, ring.size());
+    std::size_t i = 0;
+    for (const std::uint32_t u : ring) offsets[c][i++] = at(u) - mean;
+    for (const std::uint32_t u : near) offsets[c][i++] = at(u) - mean;
+    own[c] = at(v) - mean;
+    largest = std::max(largest, std::abs(own[c]));
+    for (const std::int64_t x : offsets[c]) largest = std::max(largest, std::abs(x));
+  }
+  const int shift = floor_log2(static_cast<std::uint64_t>(largest)) - kOffsetLog2;
+  for (std::size_t c = 0; c < 3; ++c) {
+    alignas(32) std::array<std::int32_t, kMaxMotions> shifted{};
+    for (std::size_t i = 0; i < shifted.size(); ++i) {
+      shifted[i] = static_cast<std::int32_t>(shift_by(offsets[c][i], shift));
+    }
+    const std::int64_t error =
+        shift_by(own[c], shift) - kernels_.predict_offset(state, shifted.data());
+    kernels_.adapt_to_frame(state, shifted.data(), error, variance);
+  }
+}
+
+// 8.19.3 PredictMotion( v, c ), and in the first frame MeanInFrame( v, c, 0 )
+void FrameRecon::predict(std::uint32_t v, VertexMotion& motion) const {
+  const auto ring = mesh_.ring(v);
+  const std::size_t own = 3 * std::size_t{v};
+  if (frame_ == 0) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::int64_t sum = 0;
+      for (const std::uint32_t u : ring) sum += values_[3 * std::size_t{u} + c];
+      motion.prediction[c] = static_cast<std::int32_t>(mean_of(sum, ring.size()));
+    }
+    return;
+  }
+  gather_motion(v, motion);
+  const auto weights = (*weights_)[v];
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      sum += std::int64_t{weights[i]} * motion.offsets[c][i];
+    }
+    motion.plain[c] =
+        clip3(-kMostMotion, kMostMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
+  }
+  Vec3l moved = motion.plain;
+  if (settings_.learning_flag) {
+    gather_errors(v, motion);
+    const FilterState state = filter(v);
+    for (std::size_t c = 0; c < 3; ++c) {
+      moved[c] = motion.mean[c] + kernels_.predict_offset(state, motion.offsets[c].data());
+    }
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    motion.prediction[c] = clip_signed(value_bits_, reference_[own + c] + moved[c]);
+  }
+}
+
+void FrameRecon::gather_motion(std::uint32_t v, VertexMotion& motion) const {
+  const auto ring = mesh_.ring(v);
+  const auto near = near_[v];
+  const std::size_t n = ring.size() + near.size();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int32_t* const motions = &motion_[c];
+    std::int32_t* const offsets = motion.offsets[c].data();
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      offsets[i] = motions[3 * std::size_t{ring[i]}];
+      sum += offsets[i];
+    }
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      offsets[ring.size() + i] = motions[3 * std::size_t{near[i]}];
+    }
+    motion.mean[c] = mean_of(sum, ring.size());
+    const auto mean = static_cast<std::int32_t>(motion.mean[c]);
+    for (std::size_t i = 0; i < n; ++i) offsets[i] -= mean;
+  }
+}
+
+// 8.19.4 AddEarlierErrors( v, c, offsets )
+void FrameRecon::gather_errors(std::uint32_t v, VertexMotion& motion) const {
+  const auto ring = mesh_.ring(v);
+  const std::size_t first = num_neighbours(v);
+  const std::size_t end = padded(first + kNumEarlierErrors);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t own = 3 * std::size_t{v} + c;
+    std::int32_t* offsets = &motion.offsets[c][first];
+    std::int64_t sum = 0;
+    for (const std::uint32_t u : ring) sum += plain_error_[3 * std::size_t{u} + c];
+    offsets[0] = plain_error1_[own];
+    offsets[1] = plain_error2_[own];
+    offsets[2] = static_cast<std::int32_t>(mean_of(sum, ring.size()));
+    offsets[3] = error1_[own];
+    offsets[4] = older_error_[own];
+    std::fill(offsets + kNumEarlierErrors, &motion.offsets[c][0] + end, 0);
+  }
+}
+
+std::int32_t FrameRecon::start_of(const VertexMotion& motion, std::size_t c) const {
+  if (!settings_.exact_flag) return motion.prediction[c];
+  return static_cast<std::int32_t>(round2(motion.prediction[c], kPointFractionBits) *
+                                   (1 << kPointFractionBits));
+}
+
+// 8.19.3 DecodeVertex( f, v )
+Vec3i FrameRecon::position(std::uint32_t v, const VertexMotion& motion,
+                           const Vec3i& residual) const {
+  const std::int64_t of_step = step(v);
+  Vec3i values{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int64_t difference = round2(residual[c] * of_step, kPointFractionBits);
+    values[c] = clip_signed(value_bits_, start_of(motion, c) + difference);
+  }
+  return values;
+}
+
+void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t own = 3 * std::size_t{v} + c;
+    values_[own] = position[c];
+    if (frame_ == 0) continue;
+    motion_[own] = position[c] - reference_[own];
+    if (!settings_.learning_flag) continue;
+    plain_error_[own] = static_cast<std::int32_t>(motion_[own] - motion.plain[c]);
+    error_[own] = position[c] - motion.prediction[c];
+  }
+}
+
+// 8.19.4 LearnFromVertex( f, v )
+void FrameRecon::adapt(std::uint32_t v, const VertexMotion& motion, std::uint32_t expected) {
+  if (frame_ == 0 || !settings_.learning_flag) return;
+  const std::int64_t of_step = step(v);
+  const std::int64_t variance =
+      of_step * of_step * (128 + std::int64_t{expected} * std::int64_t{expected});
+  const FilterState state = filter(v);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int32_t* const offsets = motion.offsets[c].data();
+    const std::int64_t error = motion_[3 * std::size_t{v} + c] - motion.mean[c] -
+                               kernels_.predict_offset(state, offsets);
+    kernels_.adapt_to_frame(state, offsets, error, variance);
+  }
+}
+
+void FrameRecon::end_frame() {
+  before_.swap(values_);
+  if (frame_ > 0 && settings_.learning_flag) {
+    for (std::size_t i = 0; i < older_error_.size(); ++i) {
+      const std::int64_t sum = std::int64_t{older_error_[i]} + error1_[i];
+      older_error_[i] = static_cast<std::int32_t>(
+          clip3(-kMostOlderError, kMostOlderError, round2(3 * sum, 2)));
+    }
+    error1_.swap(error_);
+    plain_error2_.swap(plain_error1_);
+    plain_error1_.swap(plain_error_);
+  }
+  ++frame_;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,87 @@
+#include "common/mesh_prediction/near_vertices.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 1024;  // vertices of a pass
+
+struct NearList {
+  std::array<std::uint32_t, kMaxNear> vertices;
+  std::size_t size = 0;
+};
+
+std::int64_t squared_distance(std::span<const std::int32_t> values, std::uint32_t u,
+                              std::uint32_t v) {
+  std::int64_t sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int64_t difference =
+        std::int64_t{values[3 * std::size_t{u} + c]} - values[3 * std::size_t{v} + c];
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+class NearSearch {
+ public:
+  NearSearch(const CodedMesh& mesh, std::span<const std::int32_t> values)
+      : mesh_(mesh), values_(values) {}
+
+  NearList find(std::uint32_t v) {
+    vertices_.clear();
+    const auto ring = mesh_.ring(v);
+    add(mesh_.outer_ring(v));
+    for (const std::uint32_t r : ring) {
+      add(mesh_.ring(r));
+      add(mesh_.outer_ring(r));
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    found_.clear();
+    for (const std::uint32_t u : vertices_) {
+      if (std::find(ring.begin(), ring.end(), u) != ring.end()) continue;
+      found_.emplace_back(squared_distance(values_, u, v), u);
+    }
+    NearList near;
+    near.size = std::min(found_.size(), kMaxNear);
+    std::partial_sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(near.size),
+                      found_.end());
+    for (std::size_t i = 0; i < near.size; ++i) near.vertices[i] = found_[i].second;
+    return near;
+  }
+
+ private:
+  void add(std::span<const std::uint32_t> list) {
+    vertices_.insert(vertices_.end(), list.begin(), list.end());
+  }
+
+  const CodedMesh& mesh_;
+  std::span<const std::int32_t> values_;
+  std::vector<std::uint32_t> vertices_;
+  std::vector<std::pair<std::int64_t, std::uint32_t>> found_;  // distance, vertex
+};
+
+}  // namespace
+
+VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values) {
+  std::vector<NearList> near(mesh.num_vertices());
+  for_ranges(near.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    NearSearch search(mesh, values);
+    for (std::size_t v = first; v < end; ++v) {
+      near[v] = search.find(static_cast<std::uint32_t>(v));
+    }
+  });
+  VertexLists lists(mesh.num_vertices());
+  for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
+    lists.set(v, std::span(near[v].vertices).first(near[v].size));
+  }
+  return lists;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,20 @@
+// 8.19.2: the vertices near another one in a decoded frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/mesh/coded_mesh.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kMaxNear = 12;
+
+// NearVertices( v ) of all vertices: of those in the outer ring, and in the rings and outer
+// rings of the ring, the nearest that are not in the ring. All come before v in the order.
+//
+//   values  positions [num_vertices][3], within 29 bits
+VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values);
+
+}  // namespace rlpc

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""GOFs of frames, by the tools.
+
+    tools_frames_test.py --bin BUILD/bin [unittest arguments, such as Frames]
+"""
+
+from tools_testing import INPUTS, NAMES, ToolsTest, main
+
+
+class Frames(ToolsTest):
+    def test_the_bundled_animations_meet_their_target(self):
+        for name in NAMES:
+            for how in ((), ("--frame-weights", "geometry"), ("--frame-reference", "first")):
+                stream = self.path("a.rlpc")
+                report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind",
+                                     "frames", *how, name=name)
+                self.assertTrue(report["target_met"], (name, how))
+                self.ok("rlpcdec", stream, "--verify")
+                self.ok("rlpcdec", stream, "--verify", "--threads", 3)
+                gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
+                self.assertTrue(all("num_frame_units" in gof for gof in gofs), (name, how))
+                self.assertEqual(sum(gof["num_frame_units"] for gof in gofs),
+                                 sum(gof["num_frames"] for gof in gofs))
+
+    def test_learned_weights_take_fewer_bytes(self):
+        sizes = {}
+        for weights in ("learned", "geometry"):
+            stream = self.path(weights + ".rlpc")
+            self.encode(stream, "--kg", 0.1, "--profile", "high", "--gof-kind", "frames",
+                        "--frame-weights", weights)
+            sizes[weights] = stream.stat().st_size
+        self.assertLess(sizes["learned"], 0.6 * sizes["geometry"])
+
+    def test_bytes_do_not_depend_on_threads(self):
+        streams = []
+        for threads in (1, 3):
+            stream = self.path(f"{threads}.rlpc")
+            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames",
+                        "--threads", threads)
+            streams.append(stream.read_bytes())
+        self.assertEqual(*streams)
+
+    def test_rlpcinfo_lists_frame_units(self):
+        stream = self.path("a.rlpc")
+        self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high", "--gof-kind", "frames")
+        data, at, sizes = stream.read_bytes(), 10, []
+        while at < len(data):
+            size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
+            if data[at] in (4, 8):
+                sizes.append(size)
+            at += size
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        self.assertEqual([n["bytes"] for g in info["gofs"] for n in (g, *g["slices"])], sizes)
+        self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
+        self.assertGreater(info["bits"]["frames"], 0.5 * 8 * info["bytes"])
+        said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
+        for words in ("frame GOFs: 3, with ", "20 frame units each", "frame units in bytes"):
+            self.assertIn(words, said)
+        page = self.path("a.html")
+        self.ok("rlpcinfo", stream, "--html", page)
+        self.assertIn("Units of frames 20", page.read_text())
+
+    def test_settings_that_contradict(self):
+        for options, words in (
+                (("--gof-kind", "frames"), "need --profile high"),
+                (("--profile", "baseline", "--gof-kind", "bones"), "has no bones"),
+                (("--profile", "high", "--gof-kind", "frames", "--bones", 3), "no effect"),
+                (("--profile", "high", "--gof-kind", "bones", "--frame-weights", "geometry"),
+                 "need --profile high and --gof-kind frames")):
+            self.fails(64, words, "rlpcenc", INPUTS / "elephant.obj", *options, "-o",
+                       self.path("a.rlpc"))
+
+
+if __name__ == "__main__":
+    main()

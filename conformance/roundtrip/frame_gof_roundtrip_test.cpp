@@ -1,0 +1,197 @@
+// GOFs of frames (6.14, 8.19): writer and parser against each other, the encoder against the
+// reconstruction of the decoder, and frames in any order and on any number of threads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bitstream/bit_reader.h"
+#include "common/mesh/coded_meshes.h"
+#include "common/parallel/for_each.h"
+#include "common/testing/random_frame_gof.h"
+#include "common/testing/tube.h"
+#include "decoder/parse/parse_frame_gof.h"
+#include "decoder/parse/parse_gof_header.h"
+#include "decoder/recon/ordered_recon.h"
+#include "encoder/frame_gof/frame_coding.h"
+#include "encoder/write/write_frame_gof.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+
+class FrameGofs : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kFrames = 7;
+
+  // A tube, with some vertices that have no triangle.
+  FrameGofs() { use_tube(14, 9); }
+
+  void use_tube(std::uint32_t rings, std::uint32_t sides) {
+    header_.profile_idc = kProfileHigh;
+    header_.num_vertices = rings * sides + 2;
+    header_.num_frames = kFrames;
+    header_.position_bits = 16;
+    const auto triangles = tube_triangles(rings, sides);
+    header_.num_triangles = static_cast<std::uint32_t>(triangles.size());
+    topology_ = make_topology(header_.num_vertices, triangles);
+    meshes_.emplace(topology_, triangles);
+  }
+  const CodedMesh& mesh() const { return (*meshes_)[Prediction::kLayers]; }
+
+  Result<FrameGof> parsed(const FrameGofPayloads& payloads, const SliceCut& cut = {}) {
+    FrameGofParser parser(header_, mesh(), {kMemory, 0}, cut);
+    BitReader r(payloads.first);
+    const GofHeader gof_header = parse_gof_header(r, header_, 0);
+    if (r.error()) return *r.error();
+    if (const auto ok = parser.gof(r, gof_header); !ok) return ok.error();
+    for (const auto& payload : payloads.frames) {
+      BitReader bits(payload);
+      if (const auto ok = parser.frame(bits, 0); !ok) return ok.error();
+    }
+    return parser.finish();
+  }
+
+  // All frames, one after the other.
+  std::vector<std::int32_t> decoded(const FrameGof& gof, std::uint32_t threads = 1) {
+    const Threads use(threads);
+    const OrderedRecon recon(mesh(), gof, header_.position_bits);
+    std::vector<std::int32_t> positions(kFrames * frame_size());
+    recon.frames(0, kFrames, positions);
+    return positions;
+  }
+  std::size_t frame_size() const { return 3 * std::size_t{header_.num_vertices}; }
+
+  SequenceHeader header_;
+  Topology topology_;
+  std::optional<CodedMeshes> meshes_;
+};
+
+TEST_F(FrameGofs, AreParsedAsTheyWereWritten) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const FrameGof gof = random_frame_gof(seed, mesh(), kFrames);
+    const auto read = parsed(write_frame_gof(gof, mesh()));
+    ASSERT_TRUE(read) << read.error().rule;
+    EXPECT_EQ(static_cast<const FrameSettings&>(*read), gof);
+    for (std::uint32_t f = 0; f < kFrames; ++f) {
+      const CodedFrame& a = (*gof.frames)[f];
+      const CodedFrame& b = (*read->frames)[f];
+      EXPECT_EQ(a.layer_groups, b.layer_groups);
+      EXPECT_EQ(a.frame_crc, b.frame_crc);
+      EXPECT_EQ(a.residual, b.residual) << "frame " << f;
+    }
+  }
+}
+
+TEST_F(FrameGofs, AreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
+  use_tube(40, 30);  // layers of several passes
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto read = parsed(write_frame_gof(random_frame_gof(seed, mesh(), kFrames), mesh()));
+    ASSERT_TRUE(read);
+    const auto positions = decoded(*read);
+    EXPECT_EQ(decoded(*read, 3), positions);
+    const OrderedRecon recon(mesh(), *read, header_.position_bits);
+    for (const std::uint32_t f : {6U, 6U, 0U, 3U, 4U, 2U, 5U}) {
+      std::vector<std::int32_t> frame(frame_size());
+      recon.frame(f, frame);
+      const auto expected = positions.begin() + static_cast<std::ptrdiff_t>(f * frame_size());
+      EXPECT_TRUE(std::equal(frame.begin(), frame.end(), expected)) << "frame " << f;
+    }
+  }
+}
+
+TEST_F(FrameGofs, CutToFewerLayersEqualThoseWithoutTheirUnits) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    FrameGof gof = random_frame_gof(seed, mesh(), kFrames);
+    gof.frame_hash_flag = false;
+    const auto cut = parsed(write_frame_gof(gof, mesh()), {SliceCut::kAll, 1, SliceCut::kAll});
+    ASSERT_TRUE(cut);
+    auto frames = *gof.frames;
+    for (CodedFrame& frame : frames) {
+      frame.layer_groups = std::min(frame.layer_groups, 1U);
+      frame.frame_crc.reset();
+    }
+    gof.frames = std::make_shared<const std::vector<CodedFrame>>(std::move(frames));
+    const auto without = parsed(write_frame_gof(gof, mesh()));
+    ASSERT_TRUE(without);
+    EXPECT_EQ(decoded(*cut), decoded(*without));
+  }
+}
+
+TEST_F(FrameGofs, RefuseMoreMemoryThanAllowed) {
+  const auto payloads = write_frame_gof(random_frame_gof(1, mesh(), kFrames), mesh());
+  FrameGofParser parser(header_, mesh(), {1000, 0});
+  BitReader r(payloads.first);
+  const auto ok = parser.gof(r, parse_gof_header(r, header_, 0));
+  ASSERT_FALSE(ok);
+  EXPECT_EQ(ok.error().code, Errc::kLimitExceeded);
+}
+
+// What the encoder sees as decoded is what a decoder decodes.
+class CodedFrames : public FrameGofs, public testing::WithParamInterface<unsigned> {
+ protected:
+  // A tube that bends and waves.
+  std::vector<double> animation() const {
+    std::vector<double> xyz;
+    for (std::uint32_t f = 0; f < kFrames; ++f) {
+      for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
+        const double along = v / 9;
+        const double around = 0.7 * (v % 9);
+        const double bend = 0.02 * f * along;
+        xyz.push_back(300 * std::cos(around) + 90 * along * bend);
+        xyz.push_back(300 * std::sin(around) + 20 * std::sin(0.5 * f + along));
+        xyz.push_back(150 * along);
+      }
+    }
+    return xyz;
+  }
+};
+
+TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
+  FrameSettings settings;
+  settings.reference = static_cast<FrameReference>(GetParam() & 1U);
+  settings.learning_flag = (GetParam() & 2U) != 0;
+  settings.exact_flag = (GetParam() & 4U) != 0;
+  settings.frame_hash_flag = true;
+  settings.step = settings.exact_flag ? kExactFrameStep : 40;
+  settings.weights = {6, 3, 3, 0};
+  settings.prime_log2 = settings.learning_flag ? 6 : 0;
+  settings.layer_group_size = {1, mesh().num_layers() - 1};
+  settings.layer_step.assign(mesh().num_layers(), 16);
+  const std::vector<double> xyz = animation();
+  FrameGofPayloads payloads;
+  payloads.first = write_frame_gof_unit({GofKind::kFrames, 0, kFrames}, settings);
+  std::vector<std::int32_t> expected(kFrames * frame_size());
+  const Threads use(2);
+  FrameCoding coding(mesh(), settings, header_.position_bits);
+  for (std::uint32_t f = 0; f < kFrames; ++f) {
+    auto units = coding.code(std::span(xyz).subspan(f * frame_size(), frame_size()),
+                             std::span(expected).subspan(f * frame_size(), frame_size()));
+    ASSERT_EQ(units.size(), 2U);
+    for (auto& unit : units) payloads.frames.push_back(std::move(unit.payload));
+  }
+  const auto gof = parsed(payloads);
+  ASSERT_TRUE(gof) << gof.error().rule;
+  EXPECT_EQ(decoded(*gof), expected);
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    if (settings.exact_flag) {
+      ASSERT_EQ(expected[i], std::floor(xyz[i] + 0.5));
+    } else {
+      ASSERT_NEAR(expected[i], xyz[i], 4.0);  // steps of 2.5, and the dead zone
+    }
+  }
+  for (const CodedFrame& frame : *gof->frames) EXPECT_TRUE(frame.frame_crc);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, CodedFrames, testing::Range(0U, 8U));
+
+}  // namespace
+}  // namespace rlpc

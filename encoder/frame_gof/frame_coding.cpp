@@ -1,0 +1,116 @@
+#include "encoder/frame_gof/frame_coding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "common/bitstream/crc32.h"
+#include "common/fixed_point.h"
+#include "common/int_math.h"
+#include "common/parallel/for_each.h"
+#include "encoder/gof/residual_choice.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 128;  // fixed: vertices of a pass
+
+}  // namespace
+
+FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
+                         int position_bits)
+    : mesh_(mesh),
+      settings_(settings),
+      recon_(mesh, settings, position_bits),
+      writer_(mesh, settings) {}
+
+// Vertices of the base depend on each other: they are predicted when they are coded.
+void FrameCoding::predict(Layer& layer, std::uint32_t index) {
+  layer.vertices = mesh_.vertices_of_layers(index, index + 1);
+  layer.motions.resize(layer.vertices.size());
+  layer.expected.resize(layer.vertices.size());
+  if (index == 0) return;
+  for_ranges(layer.vertices.size(), kTogether, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      recon_.predict(layer.vertices[i], layer.motions[i]);
+    }
+  });
+}
+
+void FrameCoding::choose(Layer& layer, std::span<const double> xyz) {
+  constexpr double kPoint = 1 << kPointFractionBits;  // fixed: format
+  constexpr double kStepUnits = 256.0;                // fixed: format
+  FrameContexts& contexts = writer_.contexts();
+  const bool is_base = !layer.vertices.empty() && mesh_.layer_of(layer.vertices[0]) == 0;
+  for (std::size_t i = 0; i < layer.vertices.size(); ++i) {
+    const std::uint32_t v = layer.vertices[i];
+    VertexMotion& motion = layer.motions[i];
+    if (is_base) recon_.predict(v, motion);
+    writer_.start(v);
+    layer.expected[i] = contexts.frame_expected();
+    const double step = static_cast<double>(recon_.step(v)) * (kPoint / kStepUnits);
+    Vec3i residual{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = xyz[3 * std::size_t{v} + c];
+      const double start = recon_.start_of(motion, c);
+      if (settings_.exact_flag) {
+        residual[c] = rounded_residual((std::floor(value + 0.5) * kPoint - start) / step, 0.5);
+      } else {
+        residual[c] = cheaper_residual(contexts.models(), contexts.expected(),
+                                       (value * kPoint - start) / step);
+      }
+      writer_.write(residual[c]);
+    }
+    recon_.set(v, motion, recon_.position(v, motion, residual));
+    if (is_base) recon_.adapt(v, motion, layer.expected[i]);
+  }
+}
+
+void FrameCoding::adapt(const Layer& layer, std::size_t first, std::size_t end) {
+  for (std::size_t i = first; i < end; ++i) {
+    recon_.adapt(layer.vertices[i], layer.motions[i], layer.expected[i]);
+  }
+}
+
+std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
+                                                std::span<std::int32_t> positions) {
+  std::vector<EncodedGof::Unit> units;
+  const std::uint32_t frame = recon_.frame();
+  recon_.start_frame();
+  writer_.start_frame(frame);
+  Layer* current = &layers_[0];
+  Layer* before = &layers_[1];
+  before->vertices = {};
+  std::uint32_t index = 0;
+  for (std::uint32_t j = 0; j < settings_.layer_group_size.size(); ++j) {
+    writer_.start_group(j);
+    for (const std::uint32_t end = index + settings_.layer_group_size[j]; index < end;
+         ++index) {
+      predict(*current, index);
+      // The first pass chooses residuals, one after the other; the others adapt the layer
+      // before. The base has adapted already.
+      const std::size_t passes =
+          index == 1 ? 0 : (before->vertices.size() + kTogether - 1) / kTogether;
+      for_each(1 + passes, [&](std::size_t pass) {
+        if (pass == 0) return choose(*current, xyz);
+        adapt(*before, (pass - 1) * kTogether,
+              std::min(pass * kTogether, before->vertices.size()));
+      });
+      std::swap(current, before);
+    }
+    if (j + 1 == settings_.layer_group_size.size()) {
+      if (index > 1) {
+        for_ranges(before->vertices.size(), kTogether,
+                   [&](std::size_t first, std::size_t end) { adapt(*before, first, end); });
+      }
+      recon_.end_frame();
+      recon_.positions(positions);
+    }
+    const std::uint32_t crc = settings_.frame_hash_flag ? crc32_of_positions(positions) : 0;
+    units.push_back({UnitType::kFrame, writer_.finish_group(crc)});
+  }
+  return units;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,85 @@
+#include "encoder/write/write_frame_gof.h"
+
+#include <cassert>
+#include <utility>
+
+#include "common/bitstream/bit_writer.h"
+#include "encoder/write/write_gof_header.h"
+#include "encoder/write/write_layers.h"
+#include "encoder/write/write_residual.h"
+
+namespace rlpc {
+
+std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
+                                               const FrameSettings& settings) {
+  BitWriter w;
+  write_gof_header(w, gof, kProfileHigh);
+  w.u(1, static_cast<std::uint32_t>(settings.reference));
+  w.flag(settings.exact_flag);
+  if (!settings.exact_flag) w.ue(settings.step - 1);
+  w.u(4, static_cast<std::uint32_t>(settings.weights.damping_log2));
+  w.u(4, static_cast<std::uint32_t>(settings.weights.outer_weight));
+  w.u(4, static_cast<std::uint32_t>(settings.weights.outer_scale));
+  w.flag(settings.learning_flag);
+  if (settings.learning_flag) w.u(4, static_cast<std::uint32_t>(settings.prime_log2));
+  w.flag(settings.frame_hash_flag);
+  write_layer_groups(w, settings.layer_group_size);
+  if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
+  w.byte_alignment();
+  return w.take();
+}
+
+void FrameUnitWriter::start_frame(std::uint32_t frame) {
+  frame_ = frame;
+  contexts_.start_frame(frame);
+}
+
+void FrameUnitWriter::start_group(std::uint32_t layer_group) {
+  layer_group_ = layer_group;
+  contexts_.start_group(layer_group);
+  section_.emplace();
+}
+
+void FrameUnitWriter::write(std::int32_t residual) {
+  section_->residual(contexts_.models(), contexts_.expected(), residual);
+  contexts_.update(residual);
+}
+
+std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc) {
+  BitWriter w;
+  w.ue(frame_);
+  w.ue(layer_group_);
+  w.byte_alignment();
+  const bool is_last = layer_group_ + 1 == settings_.layer_group_size.size();
+  if (settings_.frame_hash_flag && is_last) w.u(32, frame_crc);
+  std::vector<std::uint8_t> payload = w.take();
+  const std::vector<std::uint8_t> section = section_->finish();
+  payload.insert(payload.end(), section.begin(), section.end());
+  return payload;
+}
+
+FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
+  FrameGofPayloads payloads;
+  payloads.first = write_frame_gof_unit(gof, gof);
+  FrameUnitWriter writer(mesh, gof);
+  for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
+    const CodedFrame& frame = (*gof.frames)[f];
+    if (frame.layer_groups == 0) break;
+    writer.start_frame(f);
+    std::uint32_t layer = 0;
+    for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
+      writer.start_group(j);
+      const std::uint32_t end = layer + gof.layer_group_size[j];
+      for (const std::uint32_t v : mesh.vertices_of_layers(layer, end)) {
+        writer.start(v);
+        for (std::size_t c = 0; c < 3; ++c)
+          writer.write(frame.residual[3 * std::size_t{v} + c]);
+      }
+      layer = end;
+      payloads.frames.push_back(writer.finish_group(frame.frame_crc.value_or(FrameCrc{}).crc));
+    }
+  }
+  return payloads;
+}
+
+}  // namespace rlpc

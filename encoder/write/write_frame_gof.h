@@ -1,0 +1,56 @@
+// 6.14: GOFs of frames and their frame units, writing side.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/frame_gof/frame_contexts.h"
+#include "common/frame_gof/frame_gof.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/syntax/sequence_header.h"
+#include "encoder/write/section_writer.h"
+
+namespace rlpc {
+
+// 6.14 frames_of_gof( ): the payload of the GOF unit. Settings must be legal.
+std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
+                                               const FrameSettings& settings);
+
+// Writes frame units, residual by residual: an encoder can choose each by its cost.
+class FrameUnitWriter {
+ public:
+  // Mesh and settings must outlive it.
+  FrameUnitWriter(const CodedMesh& mesh, const FrameSettings& settings)
+      : settings_(settings), contexts_(mesh, settings.layer_group_size.size()) {}
+
+  // Each frame: start_frame(), and for each of its layer groups start_group(), the vertices of
+  // its layers in the order of the mesh, and finish_group().
+  void start_frame(std::uint32_t frame);
+  void start_group(std::uint32_t layer_group);
+  // For each vertex start(), then write() for each axis.
+  void start(std::uint32_t v) { contexts_.start(v); }
+  FrameContexts& contexts() { return contexts_; }
+  void write(std::int32_t residual);
+  // The payload of the unit. frame_crc: used in the last layer group if the GOF has hashes of
+  // frames.
+  std::vector<std::uint8_t> finish_group(std::uint32_t frame_crc = 0);
+
+ private:
+  const FrameSettings& settings_;
+  FrameContexts contexts_;
+  std::uint32_t frame_ = 0;
+  std::uint32_t layer_group_ = 0;
+  std::optional<SectionWriter> section_;
+};
+
+// Payloads of a GOF unit, and of its frame units.
+struct FrameGofPayloads {
+  std::vector<std::uint8_t> first;
+  std::vector<std::vector<std::uint8_t>> frames;
+};
+// The whole GOF, with the layer groups that each frame has.
+FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh);
+
+}  // namespace rlpc
