@@ -26,6 +26,8 @@ constexpr EdgeSet edge(std::size_t i, std::size_t j) {
   return EdgeSet{1} << (kMaxRing * std::min(i, j) + std::max(i, j));
 }
 
+bool are_different(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
 // 8.9.4 Triangulations of a polygon
 struct Triangulation {
   std::size_t num_triangles = 0;
@@ -84,7 +86,7 @@ class Rest {
       : first_(num_vertices, kNone), valence_(num_vertices, 0) {
     corners_.reserve(3 * triangles.size());
     for (const Triangle& t : triangles) {
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      if (!are_different(t)) continue;
       corners_.resize(corners_.size() + 3);
       add(static_cast<std::uint32_t>(corners_.size() / 3 - 1), t);
     }
@@ -135,6 +137,42 @@ class Rest {
   std::vector<std::uint32_t> valence_;  // [num_vertices]
 };
 
+// The triangles that the rest of the mesh has had, and the passes that added and removed them,
+// from 1 on. Of the LayeredTriangles, max_layers is the former, and min_layers the latter, or
+// 0, until layers have been counted.
+class History {
+ public:
+  History(std::span<const Triangle> triangles, LayeredTriangles& all) : all_(all) {
+    all_.clear();
+    all_.reserve(3 * triangles.size());
+    for (const Triangle& t : triangles) {
+      if (are_different(t)) all_.push_back({t, 0, 0});
+    }
+    latest_.resize(all_.size());
+    for (std::uint32_t i = 0; i < latest_.size(); ++i) latest_[i] = i;
+  }
+
+  // i: of the triangle in Rest.
+  void add(std::uint32_t i, const Triangle& t, std::uint8_t pass) {
+    latest_[i] = static_cast<std::uint32_t>(all_.size());
+    all_.push_back({t, 0, pass});
+  }
+  void take(std::uint32_t i, std::uint8_t pass) { all_[latest_[i]].min_layers = pass; }
+
+  // After p passes, num_layers - p layers are left.
+  void count_layers(std::uint32_t num_layers) {
+    for (LayeredTriangle& t : all_) {
+      const std::uint32_t above = t.min_layers == 0 ? 0 : num_layers - t.min_layers;
+      t.min_layers = static_cast<std::uint8_t>(above + 1);
+      t.max_layers = static_cast<std::uint8_t>(num_layers - t.max_layers);
+    }
+  }
+
+ private:
+  LayeredTriangles& all_;
+  std::vector<std::uint32_t> latest_;  // by index in Rest: index in all_
+};
+
 // 8.9.3 Ring of a vertex
 struct Ring {
   std::array<std::uint32_t, kMaxRing> vertices{};
@@ -156,8 +194,10 @@ struct Surroundings {
 // Builds the layers pass by pass.
 class LayerMaker {
  public:
-  LayerMaker(std::uint32_t num_vertices, std::span<const Triangle> triangles)
+  LayerMaker(std::uint32_t num_vertices, std::span<const Triangle> triangles,
+             LayeredTriangles* all)
       : rest_(num_vertices, triangles), locked_in_pass_(num_vertices), place_(num_vertices) {
+    if (all != nullptr) history_.emplace(triangles, *all);
     layers_.layer_of_vertex.resize(num_vertices);
     layers_.ring = VertexLists(num_vertices);
     layers_.outer_ring = VertexLists(num_vertices);
@@ -171,11 +211,15 @@ class LayerMaker {
   const Triangulation* choose_triangulation(const Ring& ring, EdgeSet barred) const;
   void look_around(std::uint32_t v, const Ring& ring);
   bool remove_vertex(std::uint32_t v);
+  // Inlined, it would slow remove_vertex() down where nothing is noted.
+  [[gnu::noinline]] void note_removal(std::span<const std::uint32_t> taken, const Ring& ring,
+                                      const Triangulation& triangulation);
   void set_outer_rings(std::span<const std::uint32_t> removed);
   void order_layers(const std::vector<std::uint32_t>& base);
   void set_base_rings(const std::vector<std::uint32_t>& base);
 
   Rest rest_;
+  std::optional<History> history_;
   VertexLayers layers_;
   std::uint8_t num_passes_ = 0;
   std::vector<std::uint8_t> locked_in_pass_;  // [num_vertices]
@@ -343,9 +387,21 @@ bool LayerMaker::remove_vertex(std::uint32_t v) {
     const auto& [i, k, j] = chosen->triangles[t];
     rest_.add(taken[t], {ring->vertices[i], ring->vertices[k], ring->vertices[j]});
   }
+  if (history_) note_removal(std::span(taken).first(num_taken), *ring, *chosen);
   layers_.layer_of_vertex[v] = num_passes_;
   for (const std::uint32_t u : ring->span()) locked_in_pass_[u] = num_passes_;
   return true;
+}
+
+// taken: the triangles that remove_vertex() has removed, and whose indices the new ones have.
+void LayerMaker::note_removal(std::span<const std::uint32_t> taken, const Ring& ring,
+                              const Triangulation& triangulation) {
+  for (const std::uint32_t i : taken) history_->take(i, num_passes_);
+  for (std::size_t t = 0; t < triangulation.num_triangles; ++t) {
+    const auto& [i, k, j] = triangulation.triangles[t];
+    history_->add(taken[t], {ring.vertices[i], ring.vertices[k], ring.vertices[j]},
+                  num_passes_);
+  }
 }
 
 // 8.9.1 General: RemoveLayer( rest ), one pass; vertices that stay remain in `rest`.
@@ -444,6 +500,7 @@ VertexLayers LayerMaker::make() {
   }
   order_layers(rest);
   set_base_rings(rest);
+  if (history_) history_->count_layers(layers_.num_layers);
   return std::move(layers_);
 }
 
@@ -456,8 +513,9 @@ void VertexLists::set(std::uint32_t v, std::span<const std::uint32_t> items) {
   items_.insert(items_.end(), items.begin(), items.end());
 }
 
-VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
-  return LayerMaker(num_vertices, triangles).make();
+VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles,
+                         LayeredTriangles* all) {
+  return LayerMaker(num_vertices, triangles, all).make();
 }
 
 }  // namespace rlpc

@@ -41,13 +41,27 @@ struct VertexLayers {
   VertexLists outer_ring;  // ascending; in the base: empty
 };
 
+// A triangle that is part of the rest of the mesh while that has min_layers to max_layers
+// layers.
+struct LayeredTriangle {
+  Triangle vertices{};
+  std::uint8_t min_layers = 1;
+  std::uint8_t max_layers = 1;
+};
+// RestTriangles of 8.9.2. A removal adds at most five triangles for each by which it reduces
+// the rest of the mesh, so that a mesh of n triangles has at most 6 * n; closed surfaces have
+// at most 3 * n.
+using LayeredTriangles = std::vector<LayeredTriangle>;
+
 // 8.9 Vertex layers
 //
 //   num_vertices  at most 2^23
 //   triangles     at most 2^24, of any kind; indices < num_vertices
+//   all           unless null, receives RestTriangles, in that order
 //
 // The vertices of ring[v] and outer_ring[v] precede v in layer_order, and are in lower layers
 // unless v is in the base. Time and memory are linear in vertices and triangles.
-VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+VertexLayers make_layers(std::uint32_t num_vertices, std::span<const Triangle> triangles,
+                         LayeredTriangles* all = nullptr);
 
 }  // namespace rlpc
