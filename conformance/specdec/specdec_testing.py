@@ -60,6 +60,20 @@ def stream_of(stream, units):
     return result
 
 
+def coarse_mesh(v, layers):
+    """8.9.8 for a decoder with these variables, whose connectivity has been decoded: the vertices,
+    in decoded order, and the triangles of them. The variables of 8.9 are then not those of
+    MakeLayers( )."""
+    v["MakeLayers"]()
+    rest = list(range(v["NumVertices"]))
+    v["InitRest"]()
+    v.update(RemovedInPass=[0] * len(rest), LockedInPass=[0] * len(rest))
+    for number in range(1, v["NumLayers"] - layers + 1):
+        v["NumPasses"] = number
+        rest = v["RemoveLayer"](rest)
+    return rest, [t for t, is_there in zip(v["RestTriangles"], v["InRest"]) if is_there]
+
+
 def cut_animation(folder, name, frames):
     """The first frames of a bundled animation: (mesh, point cache)."""
     inputs = ROOT / "streams" / "inputs"

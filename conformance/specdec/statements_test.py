@@ -19,8 +19,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import spec_program  # noqa: E402
 import specdec  # noqa: E402
-from specdec_testing import (CRC_BYTES, PROGRAM, ROOT, UNIT_HEADER_BYTES, stream_of,  # noqa: E402
-                             units_of)
+from specdec_testing import (CRC_BYTES, PROGRAM, ROOT, UNIT_HEADER_BYTES,  # noqa: E402
+                             coarse_mesh, stream_of, units_of)
 
 END_OF_SEQUENCE, SLICE, GOF_INDEX, GOF_HASH = 5, 6, 129, 130
 MAIN = ROOT / "streams" / "v1.1" / "accept"
@@ -187,6 +187,87 @@ class Statements(unittest.TestCase):
             v["bypass"] = lambda n: sum(take(False) << k for k in reversed(range(n)))
             self.assertEqual(v["ae_residual"](v["ResidualModels"](), expected), number)
             self.assertEqual(bins, [])
+
+
+class CoarseMeshes(unittest.TestCase):
+    """What 8.9.8 says of them."""
+
+    def decoded(self, data):
+        """The variables of a decoder that has decoded a stream, the (name, value) of its syntax
+        elements, and its frames in decoded order."""
+        elements, frames = [], []
+        decoder = specdec.Decoder(PROGRAM, data, io.BytesIO().write,
+                                  lambda _, name, value: elements.append((name, value)))
+        v = decoder.variables
+        output_frame = v["OutputFrame"]
+        v["OutputFrame"] = lambda: (frames.append(list(v["Positions"])), output_frame())
+        decoder.call("stream")
+        return v, elements, frames
+
+    def first_group(self, elements):
+        """The fewest layers that a first layer group has before another."""
+        sizes, at_first = [], False
+        for name, value in elements:
+            if name == "num_layer_groups_minus1":
+                at_first = True
+            elif name == "layer_group_layers_minus1" and at_first:
+                sizes.append(value + 1)
+                at_first = False
+        return min(sizes, default=0)
+
+    def without_higher_groups(self, data, elements):
+        """The stream without the slices of all layer groups but the first; how many it loses."""
+        groups, units = [], []
+        for name, value in elements:
+            if name == "component_group_idx":
+                groups.append(0)
+            elif name == "layer_group_idx":
+                groups[-1] = value
+        lost = sum(group > 0 for group in groups)
+        for kind, payload in units_of(data):
+            if kind in (GOF_INDEX, GOF_HASH) or (kind == SLICE and groups.pop(0) > 0):
+                continue
+            units.append((kind, bytes(4) if kind == END_OF_SEQUENCE else payload))
+        return stream_of(data, units), lost
+
+    def test_slices_of_higher_layer_groups_are_not_needed(self):
+        lost, coarser = 0, 0
+        for path in sorted([*MAIN.glob("LAY/*.rlpc"), *MAIN.glob("SLI/*.rlpc"),
+                            *HIGH.glob("ADW/*.rlpc"), *HIGH.glob("MDL/*.rlpc"),
+                            *HIGH.glob("RST/*.rlpc"), *HIGH.glob("TPL/*.rlpc")]):
+            data = path.read_bytes()
+            v, elements, frames = self.decoded(data)
+            layers = self.first_group(elements)
+            if layers == 0 or len(data) > 20000:
+                continue
+            cut, count = self.without_higher_groups(data, elements)
+            lost += count > 0
+            fewer = self.decoded(cut)[2]
+            vertices, _ = coarse_mesh(v, layers)
+            coarser += len(vertices) < v["NumVertices"]
+            self.assertEqual(len(frames), len(fewer))
+            for whole, part in zip(frames, fewer):
+                for u in vertices:
+                    self.assertEqual(whole[3 * u:3 * u + 3], part[3 * u:3 * u + 3], path)
+        self.assertGreater(lost, 10)
+        self.assertGreater(coarser, 10)
+
+    def test_the_triangles(self):
+        meshes = 0
+        for path in sorted(MAIN.glob("LAY/*.rlpc")):
+            v = self.decoded(path.read_bytes())[0]
+            plain = [t for t in v["Triangles"] if v["AreDifferent"](t)]
+            v["MakeLayers"]()
+            count, layer = v["NumLayers"], v["LayerOfVertex"]
+            self.assertLessEqual(len(v["RestTriangles"]), 6 * len(plain))
+            self.assertEqual(coarse_mesh(v, count), (list(range(v["NumVertices"])), plain))
+            for layers in range(1, count):
+                vertices, triangles = coarse_mesh(v, layers)
+                self.assertEqual(vertices, [u for u, k in enumerate(layer) if k < layers])
+                self.assertLessEqual({u for t in triangles for u in t}, set(vertices))
+                self.assertTrue(all(v["AreDifferent"](t) for t in triangles))
+                meshes += 1
+        self.assertGreater(meshes, 20)
 
 
 class Access(unittest.TestCase):
