@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/parallel/for_each.h"
+#include "decoder/recon/coarse_output.h"
 #include "decoder/recon/frame_band.h"
 #include "decoder/recon/hash_check.h"
 #include "decoder/recon/prefetch.h"
@@ -25,6 +26,7 @@ class Decoder::Impl {
       : stream_(std::move(source), options),
         models_(stream_.context()),
         verify_hashes_(options.verify_hashes),
+        coarse_layers_(options.coarse_layers),
         num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
         threads_(num_threads_),
         band_(num_threads_) {
@@ -36,12 +38,18 @@ class Decoder::Impl {
     }
   }
 
-  Result<bool> open() { return stream_.open(); }
+  Result<bool> open();
   Result<bool> next_frame(std::span<std::int32_t> positions);
   Result<bool> seek(std::uint32_t frame);
   Result<std::uint32_t> parse_rest();
 
   const StreamReader& stream() const { return stream_; }
+  const std::optional<CoarseOutput>& coarse() const { return coarse_; }
+  std::uint32_t num_vertices() const {
+    return coarse_ ? static_cast<std::uint32_t>(coarse_->vertices().size())
+                   : stream_.header().num_vertices;
+  }
+  std::uint32_t num_layers() const;
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
   std::uint32_t compared_frames() const { return hash_check_.compared_frames(); }
@@ -67,6 +75,8 @@ class Decoder::Impl {
   StreamReader stream_;
   ModelRecons models_;
   bool verify_hashes_;
+  std::uint32_t coarse_layers_;
+  std::optional<CoarseOutput> coarse_;
   std::uint32_t num_threads_;
   ThreadPool threads_;
   std::optional<PreparedGof> gof_;
@@ -77,6 +87,21 @@ class Decoder::Impl {
   std::uint32_t position_ = 0;
   bool was_cut_ = false;
 };
+
+Result<bool> Decoder::Impl::open() {
+  if (auto ok = stream_.open(); !ok) return ok;
+  if (coarse_layers_ != SliceCut::kAll) {
+    coarse_.emplace(stream_.header().num_vertices, stream_.triangles(), stream_.vertex_order(),
+                    coarse_layers_);
+  }
+  return true;
+}
+
+std::uint32_t Decoder::Impl::num_layers() const {
+  if (coarse_) return coarse_->num_layers();
+  const auto& meshes = stream_.context().meshes;
+  return meshes ? (*meshes)[Prediction::kLayers].num_layers() : 0;
+}
 
 Result<bool> Decoder::Impl::load_gof() {
   gof_.reset();
@@ -113,10 +138,14 @@ Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
   return prepare(std::move(*access_unit), stream_.context(), models_);
 }
 
-// 8.6.1 Output order
+// 8.6.1 Output order, or 8.9.8 Coarse meshes
 void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
                                     std::span<std::int32_t> positions) const {
   const auto order = stream_.vertex_order();
+  if (coarse_) {
+    coarse_->pick(decoded, positions);
+    return;
+  }
   if (order.empty()) {
     std::copy(decoded.begin(), decoded.end(), positions.begin());
     return;
@@ -129,7 +158,7 @@ void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
 }
 
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
-  assert(positions.size() == 3 * std::size_t{stream_.header().num_vertices});
+  assert(positions.size() == 3 * std::size_t{num_vertices()});
   if (failure_) return *failure_;
   const ThreadPool::Use use(threads_);
   const auto more = decode_frame(positions);
@@ -143,7 +172,8 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
     if (auto more = load_gof(); !more || !*more) return more;
   }
   const std::uint32_t f = position_ - gof_->header.first_frame;
-  const auto decoded = band_.frame(*gof_->recon, f, positions.size());
+  const std::size_t frame_size = 3 * std::size_t{stream_.header().num_vertices};
+  const auto decoded = band_.frame(*gof_->recon, f, frame_size);
   if (!hash_check_.add_frame(f, decoded)) {
     const auto at = hash_check_.failed_at();
     return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
@@ -189,6 +219,7 @@ Result<std::uint32_t> Decoder::Impl::parse_rest() {
 
 Result<Decoder> Decoder::open(std::unique_ptr<ByteSource> source,
                               const DecoderOptions& options) {
+  assert(options.coarse_layers > 0);
   DecoderOptions for_rest = options;
   std::uint64_t& left = for_rest.limits.max_memory_bytes;
   left -= std::min(left, source->memory_bytes());
@@ -203,7 +234,15 @@ Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;
 
 const SequenceHeader& Decoder::header() const { return impl_->stream().header(); }
-std::span<const Triangle> Decoder::triangles() const { return impl_->stream().triangles(); }
+std::uint32_t Decoder::num_vertices() const { return impl_->num_vertices(); }
+std::span<const Triangle> Decoder::triangles() const {
+  return impl_->coarse() ? impl_->coarse()->triangles() : impl_->stream().triangles();
+}
+std::span<const std::uint32_t> Decoder::coarse_vertices() const {
+  if (!impl_->coarse()) return {};
+  return impl_->coarse()->vertices();
+}
+std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);

@@ -4,7 +4,7 @@
 //   if (!source) return report(source.error());
 //   auto decoder = rlpc::Decoder::open(std::move(*source));
 //   if (!decoder) return report(decoder.error());
-//   std::vector<std::int32_t> positions(3 * decoder->header().num_vertices);
+//   std::vector<std::int32_t> positions(3 * decoder->num_vertices());
 //   for (;;) {
 //     const auto more = decoder->next_frame(positions);
 //     if (!more) return report(more.error());   // rule id, element and bit position
@@ -63,6 +63,11 @@ struct DecoderOptions {
   // and indices are checked. The hashes of GOFs that lose slices no longer match, and are not
   // verified. Cluster GOFs are decoded whole.
   SliceCut cut;
+  // Decodes a coarse mesh (8.9.8) of this many vertex layers, at least 1: triangles() and
+  // frames are its own. kAll, or as many as there are or more: the whole mesh; where it is not
+  // kAll, without degenerate triangles. Slices of layer groups that it does not need are
+  // dropped as by a cut.
+  std::uint32_t coarse_layers = SliceCut::kAll;
 };
 
 class Decoder {
@@ -74,10 +79,19 @@ class Decoder {
   Decoder& operator=(Decoder&&) noexcept;
   ~Decoder();
 
+  // As in the stream: num_vertices and num_triangles are those of the whole mesh.
   const SequenceHeader& header() const;
+  // Of the frames and of triangles(): header().num_vertices, or fewer in a coarse mesh.
+  std::uint32_t num_vertices() const;
   // Vertex indices as in the decoded frames; input order if the stream carries it, otherwise
   // that of the connectivity process.
   std::span<const Triangle> triangles() const;
+  // Of a coarse mesh: the index of each vertex in the whole mesh, ascending. Empty without
+  // DecoderOptions::coarse_layers.
+  std::span<const std::uint32_t> coarse_vertices() const;
+  // Vertex layers of the whole mesh; 0 in the Baseline profile without coarse_layers, because
+  // they have not been made.
+  std::uint32_t num_layers() const;
   bool has_vertex_order() const;
   // JSON text of the last metadata unit so far; empty if there was none.
   const std::string& metadata() const;
@@ -92,7 +106,7 @@ class Decoder {
   Result<std::uint32_t> parse_rest();
   // Index of the frame that next_frame would decode.
   std::uint32_t position() const;
-  // Whether DecoderOptions::cut has dropped slices of a GOF so far.
+  // Whether DecoderOptions::cut or coarse_layers has dropped slices of a GOF so far.
   bool was_cut() const;
   // Number of frames that the last next_frame verified against hashes: 1 if each frame has its
   // own; the whole GOF on its last frame, if decoded in order; otherwise 0. A mismatch is an

@@ -17,22 +17,25 @@ struct SliceCut {
   std::uint32_t max_components = kAll;
   std::uint32_t max_layers = kAll;
   std::uint32_t max_temporal_layers = kAll;  // at least 1
+  // Layer groups with none of the coarsest needed_layers vertex layers are dropped (8.9.8).
+  std::uint32_t needed_layers = kAll;  // at least 1
 
   static constexpr const char* kNoSlices =
       "a stream of the Baseline profile has no slices, and cannot be cut";
   bool cuts() const {
-    return max_components != kAll || max_layers != kAll || max_temporal_layers != kAll;
+    return max_components != kAll || max_layers != kAll || max_temporal_layers != kAll ||
+           needed_layers != kAll;
   }
 };
 
 // layer_group_size: layers of each group, at least one group.
 inline std::uint32_t layer_groups_that_stay(std::span<const std::uint32_t> layer_group_size,
-                                            std::uint32_t max_layers) {
+                                            const SliceCut& cut) {
   std::uint64_t layers = layer_group_size[0];
   std::size_t groups = 1;
-  while (groups < layer_group_size.size()) {
+  while (groups < layer_group_size.size() && layers < cut.needed_layers) {
     layers += layer_group_size[groups];
-    if (layers > max_layers) break;
+    if (layers > cut.max_layers) break;
     ++groups;
   }
   return static_cast<std::uint32_t>(groups);

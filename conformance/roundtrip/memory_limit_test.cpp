@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/mesh/vertex_layers.h"
 #include "conformance/roundtrip/count_memory.h"
 #include "conformance/roundtrip/small_animation.h"
 #include "conformance/tools/make_worst_case.h"
@@ -38,16 +39,18 @@ struct Memory {
 
 // Decodes all frames under the limit of memory.estimate; the error, and the peak of what is
 // allocated.
-std::optional<Error> decode(const StreamBytes& stream, Memory& memory) {
+std::optional<Error> decode(const StreamBytes& stream, Memory& memory,
+                            std::uint32_t coarse_layers = SliceCut::kAll) {
   auto source = memory_source(StreamBytes(stream));
   DecoderOptions options;
+  options.coarse_layers = coarse_layers;
   options.limits.max_memory_bytes = memory.estimate + source->memory_bytes();
   const std::size_t before = memory_count.now;
   memory_count.peak = before;
   const auto result = [&]() -> Result<bool> {
     auto decoder = Decoder::open(std::move(source), options);
     if (!decoder) return decoder.error();
-    std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+    std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
     Result<bool> more = true;
     while (more && *more) more = decoder->next_frame(positions);
     return more;
@@ -58,11 +61,11 @@ std::optional<Error> decode(const StreamBytes& stream, Memory& memory) {
 
 // The least limit with which a stream is decoded: each error names what is needed so far. Also
 // with lower limits, no more is allocated than they allow, apart from the decoder itself.
-Memory memory_for(const StreamBytes& stream) {
+Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = SliceCut::kAll) {
   constexpr std::uint64_t kOfDecoder = 4096;
   Memory memory;
   for (;;) {
-    const auto error = decode(stream, memory);
+    const auto error = decode(stream, memory, coarse_layers);
     EXPECT_LT(memory.peak, memory.estimate + kOfDecoder);
     if (!error) return memory;
     EXPECT_EQ(error->code, Errc::kLimitExceeded) << error->rule << ' ' << error->element;
@@ -191,22 +194,39 @@ std::vector<Triangle> wheels(std::uint32_t num_vertices) {
   return triangles;
 }
 
-// Of some, lists that grow would have just doubled: the nodes of 11,000 triangles apart, the 6
-// * 1,366 edges of tetrahedra.
-TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
+// Meshes with these numbers of vertices. Of some, lists that grow would have just doubled: the
+// nodes of 11,000 triangles apart, the 6 * 1,366 edges of tetrahedra.
+struct Mesh {
+  std::uint32_t num_vertices = 0;
+  std::vector<Triangle> triangles;
+};
+std::vector<Mesh> meshes_of_any_kind() {
   const std::uint32_t few = 3 * kAround;
+  return {{kVertices, {}},
+          {kVertices, tube(kVertices)},
+          {kVertices, triangles_apart(kVertices, 2 * kVertices)},
+          {few, triangles_apart(few, 11000)},
+          {few, tetrahedra(few, 1366)},
+          {kVertices, wheels(kVertices)}};
+}
+
+TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
   for (const Kind kind : {Kind::kClusters, Kind::kBones, Kind::kTracks}) {
     SCOPED_TRACE(static_cast<int>(kind));
-    const auto expect_within = [&](std::uint32_t num_vertices,
-                                   const std::vector<Triangle>& mesh) {
-      expect_within_estimate({1, kind, {num_vertices, 1, 1, 1, 0}, mesh});
-    };
-    expect_within(kVertices, {});
-    expect_within(kVertices, tube(kVertices));
-    expect_within(kVertices, triangles_apart(kVertices, 2 * kVertices));
-    expect_within(few, triangles_apart(few, 11000));
-    expect_within(few, tetrahedra(few, 1366));
-    expect_within(kVertices, wheels(kVertices));
+    for (const Mesh& mesh : meshes_of_any_kind()) {
+      expect_within_estimate({1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles});
+    }
+  }
+}
+
+// A coarse mesh that is nearly the whole mesh takes the most.
+TEST(MemoryLimit, HoldsForCoarseMeshes) {
+  for (const Kind kind : {Kind::kClusters, Kind::kTracks}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    for (const Mesh& mesh : meshes_of_any_kind()) {
+      const Plan plan{1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles};
+      for (const std::uint32_t layers : {1U, kMaxLayers}) memory_for(stream_of(plan), layers);
+    }
   }
 }
 

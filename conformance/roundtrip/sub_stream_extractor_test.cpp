@@ -54,9 +54,21 @@ TEST(LayerGroups, StayWhole) {
   const std::vector<std::uint32_t> sizes{2, 1, 4};
   const std::vector<std::uint32_t> expected{1, 1, 1, 2, 2, 2, 2, 3, 3};
   for (std::uint32_t layers = 0; layers < expected.size(); ++layers) {
-    EXPECT_EQ(layer_groups_that_stay(sizes, layers), expected[layers]) << layers;
+    EXPECT_EQ(layer_groups_that_stay(sizes, {kAll, layers}), expected[layers]) << layers;
   }
-  EXPECT_EQ(layer_groups_that_stay(sizes, kAll), 3U);
+  EXPECT_EQ(layer_groups_that_stay(sizes, {}), 3U);
+}
+
+TEST(LayerGroups, StayIfTheyAreNeeded) {
+  const std::vector<std::uint32_t> sizes{2, 1, 4};
+  const std::vector<std::uint32_t> expected{1, 1, 1, 2, 3, 3, 3, 3};
+  for (std::uint32_t layers = 0; layers < expected.size(); ++layers) {
+    SliceCut cut;
+    cut.needed_layers = layers;
+    EXPECT_EQ(layer_groups_that_stay(sizes, cut), expected[layers]) << layers;
+    cut.max_layers = 3;
+    EXPECT_EQ(layer_groups_that_stay(sizes, cut), std::min(expected[layers], 2U)) << layers;
+  }
 }
 
 // The first GOF has groups of 1 and 2 trajectories, and two layer groups, the first of one

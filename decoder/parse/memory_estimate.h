@@ -22,6 +22,14 @@ inline std::uint64_t memory_of_stream(const SequenceHeader& header, std::uint32_
   return header.num_vertices * of_vertex + std::uint64_t{header.num_triangles} * 120;
 }
 
+// Beyond that, for a coarse mesh (8.9.8): layers and the triangles of all coarse meshes while
+// it is made, then the mesh itself.
+inline std::uint64_t memory_of_coarse_mesh(const SequenceHeader& header) {
+  constexpr std::uint64_t kBytesPerVertex = 300;
+  constexpr std::uint64_t kBytesPerTriangle = 260;
+  return header.num_vertices * kBytesPerVertex + header.num_triangles * kBytesPerTriangle;
+}
+
 // The parts of a skinned GOF or skinned model, parsed and reconstructed.
 //
 // Spatial factors: per value its residual and its magnitude, the value, and two limbs of it for

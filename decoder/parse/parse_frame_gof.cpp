@@ -54,7 +54,7 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size());
   frames_of_group_.assign(gof_.layer_group_size.size(), 0);
-  end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
   return true;
 }
 

@@ -144,7 +144,7 @@ Result<bool> SkinnedGofParser::rig(BitReader& r) {
   // 8.14.1 StartSlices( )
   state_.start(gof_.num_frames, 1);
   kept_.end_component_group = cut_.max_components == 0 ? 1 : gof_.num_component_groups + 1;
-  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_);
   gof_.slice_layers.assign(std::size_t{gof_.num_component_groups} + 1, 0);
   start_temporal_layers();
   gof_.influences.assign(header_.num_vertices, {});
@@ -225,7 +225,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   kept_.end_component_group = cut_.max_components == SliceCut::kAll || is_complete
                                   ? num_groups + 1
                                   : static_cast<std::uint32_t>(gof_.model->group_end.size());
-  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_.max_layers);
+  kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_);
   return true;
 }
 

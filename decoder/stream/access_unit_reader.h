@@ -1,6 +1,7 @@
 // Reads access units and skinned models from a stream: collects their units and parses them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -33,16 +34,18 @@ struct CodedAccessUnit {
 
 class AccessUnitReader {
  public:
-  // units and context must outlive the reader. Uses limits, cut and verify_hashes of the
-  // options. Without verify_hashes, hash units are not read, and the caller finds them as the
-  // next units.
+  // units and context must outlive the reader. Uses limits, cut, coarse_layers and
+  // verify_hashes of the options. Without verify_hashes, hash units are not read, and the
+  // caller finds them as the next units.
   AccessUnitReader(UnitReader& units, const StreamContext& context,
                    const DecoderOptions& options)
       : units_(units),
         context_(context),
         memory_{options.limits.max_memory_bytes, 0},
         cut_(options.cut),
-        wants_hash_(options.verify_hashes) {}
+        wants_hash_(options.verify_hashes) {
+    cut_.needed_layers = std::min(cut_.needed_layers, options.coarse_layers);
+  }
 
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }

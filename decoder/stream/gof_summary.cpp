@@ -177,7 +177,7 @@ SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
 }
 
 SliceGroups ModelSummary::groups_that_stay(const SliceCut& cut) const {
-  SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
+  SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut)};
   add_groups(slices, cut, 0, groups);
   return groups;
 }
@@ -194,7 +194,7 @@ SliceTotals GofSummary::totals(const SliceGroups& groups) const {
 
 // Local component groups follow those of a complete skinned model.
 SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
-  SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut.max_layers)};
+  SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut)};
   std::uint64_t trajectories = 0;
   if (model) groups = model->groups_that_stay(cut);
   groups.temporal_layers = cut.max_temporal_layers;

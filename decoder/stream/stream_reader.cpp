@@ -16,6 +16,7 @@
 namespace rlpc {
 StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : limits_(options.limits),
+      is_coarse_(options.coarse_layers != SliceCut::kAll),
       units_(std::move(source), options.trace, options.limits.max_memory_bytes),
       access_units_(units_, context_, options),
       models_(units_, access_units_) {}
@@ -73,7 +74,8 @@ Result<bool> StreamReader::check_limits() {
   if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
   if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
   if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
-  const std::uint64_t bytes = memory_of_stream(header, kFramesHeld);
+  const std::uint64_t bytes =
+      memory_of_stream(header, kFramesHeld) + (is_coarse_ ? memory_of_coarse_mesh(header) : 0);
   if (bytes > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", bytes);
   units_.set_bytes_in_use(bytes);
   access_units_.set_bytes_in_use(bytes);

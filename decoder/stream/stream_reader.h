@@ -75,6 +75,7 @@ class StreamReader {
   void remember_gof(const UnitHeader& unit);
 
   DecodeLimits limits_;
+  bool is_coarse_;
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;
