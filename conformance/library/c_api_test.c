@@ -525,6 +525,80 @@ static void test_temporal_layers(void) {
   rlpc_encoder_close(encoder);
 }
 
+static rlpc_decoder* open_coarse(const buffer* stream, uint32_t layers) {
+  rlpc_decode_options options;
+  rlpc_decode_options_init(&options, sizeof options);
+  CHECK(options.coarse_layers == RLPC_ALL);
+  options.coarse_layers = layers;
+  rlpc_decoder* decoder;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &decoder) == RLPC_OK);
+  return decoder;
+}
+
+// The frames of a coarse mesh are those of the whole mesh at its vertices.
+static void check_coarse_frames(const buffer* stream, rlpc_decoder* coarse,
+                                const uint32_t* vertices, size_t num_vertices) {
+  rlpc_decoder* whole = open_coarse(stream, RLPC_ALL);
+  int32_t positions[VALUES];
+  int32_t all[VALUES];
+  CHECK(rlpc_decoder_next_positions(coarse, positions, 3 * num_vertices - 1) ==
+        RLPC_BAD_ARGUMENT);
+  for (unsigned f = 0; f < FRAMES; ++f) {
+    CHECK(rlpc_decoder_next_positions(whole, all, VALUES) == RLPC_OK);
+    CHECK(rlpc_decoder_next_positions(coarse, positions, 3 * num_vertices) == RLPC_OK);
+    for (size_t i = 0; i < 3 * num_vertices; ++i) {
+      CHECK(positions[i] == all[3 * vertices[i / 3] + i % 3]);
+    }
+  }
+  CHECK(rlpc_decoder_next_positions(coarse, positions, 3 * num_vertices) == RLPC_END);
+  CHECK(rlpc_decoder_seek(coarse, 0) == RLPC_OK);
+  float xyz[VALUES];
+  CHECK(rlpc_decoder_next_floats(coarse, xyz, 3 * num_vertices) == RLPC_OK);
+  rlpc_decoder_close(whole);
+}
+
+static void test_coarse_meshes(const buffer* stream) {
+  uint32_t vertices[VERTICES];
+  uint32_t indices[3 * TRIANGLES];
+  rlpc_stream_info info;
+  uint32_t num_layers = 2;
+  uint32_t before = 0;
+  for (uint32_t layers = 1; layers <= num_layers; ++layers) {
+    rlpc_decoder* decoder = open_coarse(stream, layers);
+    CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+    num_layers = info.num_layers;
+    CHECK(num_layers > 2 && info.num_vertices > before && info.num_vertices <= VERTICES);
+    before = info.num_vertices;
+    CHECK(rlpc_decoder_triangles(decoder, indices, 3 * info.num_triangles) == RLPC_OK);
+    for (uint32_t i = 0; i < 3 * info.num_triangles; ++i) {
+      CHECK(indices[i] < info.num_vertices);
+    }
+    CHECK(rlpc_decoder_coarse_vertices(decoder, vertices, info.num_vertices) == RLPC_OK);
+    for (uint32_t v = 1; v < info.num_vertices; ++v) CHECK(vertices[v - 1] < vertices[v]);
+    CHECK(rlpc_decoder_coarse_vertices(decoder, vertices, VERTICES + 1) == RLPC_BAD_ARGUMENT);
+    check_coarse_frames(stream, decoder, vertices, info.num_vertices);
+    rlpc_decoder_close(decoder);
+  }
+  CHECK(before == VERTICES && info.num_triangles == TRIANGLES);
+
+  rlpc_decoder* whole = open_coarse(stream, RLPC_ALL);
+  CHECK(rlpc_decoder_info(whole, &info, sizeof info) == RLPC_OK);
+  CHECK(info.num_layers == num_layers && info.num_vertices == VERTICES);
+  CHECK(rlpc_decoder_coarse_vertices(whole, vertices, VERTICES) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(whole), "coarse_layers is RLPC_ALL");
+  rlpc_decoder_close(whole);
+  CHECK(rlpc_decoder_coarse_vertices(NULL, vertices, VERTICES) == RLPC_BAD_ARGUMENT);
+
+  rlpc_decode_options options;
+  rlpc_decode_options_init(&options, sizeof options);
+  options.coarse_layers = 0;
+  rlpc_decoder* none;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &none) ==
+        RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(none), "coarse_layers: 0 is not in the range");
+  rlpc_decoder_close(none);
+}
+
 static void test_texts(void) {
   for (int i = RLPC_OK; i <= RLPC_INTERNAL_ERROR; ++i) {
     CHECK(strcmp(rlpc_status_text(i), "unknown status") != 0);
@@ -543,6 +617,7 @@ int main(void) {
   test_encoder_arguments();
   test_encoder_frames();
   test_temporal_layers();
+  test_coarse_meshes(&stream);
   test_texts();
   if (failures == 0) puts("the library does what its headers say");
   return failures == 0 ? 0 : 1;

@@ -1,5 +1,6 @@
 #include "decoder/c_api/rlpc_decode.h"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -83,6 +84,7 @@ rlpc_decode_options default_options() {
   options.max_components = SliceCut::kAll;
   options.max_layers = SliceCut::kAll;
   options.max_temporal_layers = SliceCut::kAll;
+  options.coarse_layers = SliceCut::kAll;
   return options;
 }
 
@@ -93,6 +95,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   options.verify_hashes = given.verify_hashes != 0;
   options.threads = given.threads;
   options.cut = {given.max_components, given.max_layers, given.max_temporal_layers};
+  options.coarse_layers = given.coarse_layers;
   return options;
 }
 
@@ -112,6 +115,10 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
       return handle->error.break_handle(
           RLPC_BAD_ARGUMENT, "threads: " + std::to_string(options.threads) +
                                  " is not in the range of 1 to " + std::to_string(kMaxThreads));
+    }
+    if (options.coarse_layers < 1) {
+      return handle->error.break_handle(
+          RLPC_BAD_ARGUMENT, "coarse_layers: 0 is not in the range of 1 to RLPC_ALL");
     }
     const DecoderOptions ours = decoder_options(options);
     Result<std::unique_ptr<ByteSource>> source = make_source(ours.limits);
@@ -209,8 +216,8 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
     rlpc_stream_info ours{};
     ours.profile = h.profile_idc;
     ours.level = h.level_idc;
-    ours.num_vertices = h.num_vertices;
-    ours.num_triangles = h.num_triangles;
+    ours.num_vertices = decoder->decoder->num_vertices();
+    ours.num_triangles = static_cast<std::uint32_t>(decoder->decoder->triangles().size());
     ours.num_frames = h.num_frames;
     ours.frame_rate_numerator = h.frame_rate.numerator;
     ours.frame_rate_denominator = h.frame_rate.denominator;
@@ -218,6 +225,7 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
     for (std::size_t c = 0; c < 3; ++c) ours.grid_origin[c] = h.grid.origin[c];
     ours.position_bits = static_cast<std::uint32_t>(h.position_bits);
     ours.has_vertex_order = decoder->decoder->has_vertex_order() ? 1 : 0;
+    ours.num_layers = decoder->decoder->num_layers();
     rlpc::give_struct(ours, info, struct_size);
     return RLPC_OK;
   });
@@ -237,6 +245,22 @@ rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
   });
 }
 
+rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_t* indices,
+                                         size_t num_values) {
+  return rlpc::guarded(decoder, [&] {
+    const auto vertices = decoder->decoder->coarse_vertices();
+    if (vertices.empty()) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT,
+                                "the mesh is not a coarse one: coarse_layers is RLPC_ALL");
+    }
+    if (!rlpc::check_buffer(*decoder, indices, num_values, vertices.size())) {
+      return RLPC_BAD_ARGUMENT;
+    }
+    std::copy(vertices.begin(), vertices.end(), indices);
+    return RLPC_OK;
+  });
+}
+
 const char* rlpc_decoder_metadata(const rlpc_decoder* decoder) {
   const bool open = decoder != nullptr && decoder->decoder;
   return open ? decoder->decoder->metadata().c_str() : "";
@@ -245,7 +269,7 @@ const char* rlpc_decoder_metadata(const rlpc_decoder* decoder) {
 rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* positions,
                                         size_t num_values) {
   return rlpc::guarded(decoder, [&] {
-    const std::size_t wanted = 3 * std::size_t{decoder->decoder->header().num_vertices};
+    const std::size_t wanted = 3 * std::size_t{decoder->decoder->num_vertices()};
     if (!rlpc::check_buffer(*decoder, positions, num_values, wanted)) return RLPC_BAD_ARGUMENT;
     return rlpc::next(*decoder, {positions, num_values});
   });
@@ -254,7 +278,7 @@ rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* position
 rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t num_values) {
   return rlpc::guarded(decoder, [&] {
     const rlpc::SequenceHeader& header = decoder->decoder->header();
-    const std::size_t wanted = 3 * std::size_t{header.num_vertices};
+    const std::size_t wanted = 3 * std::size_t{decoder->decoder->num_vertices()};
     if (!rlpc::check_buffer(*decoder, xyz, num_values, wanted)) return RLPC_BAD_ARGUMENT;
     decoder->positions.resize(wanted);
     const rlpc_status status = rlpc::next(*decoder, decoder->positions);

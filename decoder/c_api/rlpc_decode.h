@@ -62,6 +62,10 @@ typedef struct rlpc_decode_options {
   // High profile: only the first temporal layers, 1 or more; all frames are there. RLPC_ALL:
   // all.
   uint32_t max_temporal_layers;
+  // A coarse mesh of this many vertex layers, 1 or more: num_vertices and num_triangles of
+  // rlpc_stream_info, triangles and frames are its own. RLPC_ALL: the whole mesh. Layer groups
+  // that it does not need are dropped.
+  uint32_t coarse_layers;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
@@ -79,6 +83,9 @@ typedef struct rlpc_stream_info {
   int32_t grid_origin[3];
   uint32_t position_bits;
   uint32_t has_vertex_order;  // 1: vertices are in the order of the encoder's input
+  // Vertex layers of the whole mesh, of which coarse_layers can select fewer; 0 in the Baseline
+  // profile unless coarse_layers is set.
+  uint32_t num_layers;
 } rlpc_stream_info;
 
 // Where a stream is read from. read: fills `out` with num_bytes bytes from `offset`, always
@@ -123,6 +130,10 @@ RLPC_API rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* 
 // Copies the vertex indices, three per triangle. num_values: 3 * num_triangles.
 RLPC_API rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
                                             size_t num_values);
+// Of a coarse mesh: copies the index of each vertex in the whole mesh, ascending. num_values:
+// num_vertices. RLPC_BAD_ARGUMENT without coarse_layers.
+RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_t* indices,
+                                                  size_t num_values);
 // The latest metadata so far, JSON text; "" if there was none. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
