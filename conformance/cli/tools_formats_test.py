@@ -232,10 +232,16 @@ class FormatsOut(ToolsTest):
                 "-o", self.path("a.rlpc"), *ENCODE)
 
     def test_what_is_written_reads_back_exactly(self):
+        self.check_outputs()
+
+    def test_coarse_meshes_read_back_exactly(self):
+        self.check_outputs("--coarse", 4)
+
+    def check_outputs(self, *options):
         streams = []
         for name in OUTPUTS:
             out = self.path(name)
-            self.ok("rlpcdec", self.path("a.rlpc"), "-o", out,
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", out, *options,
                     *(["--ascii"] if "text" in name else []))
             source = [out, "--no-weld"] if name == "a.glb" else [out]
             if name in ("a.pc2", "a.mdd"):

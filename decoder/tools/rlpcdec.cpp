@@ -40,6 +40,7 @@ constexpr const char* kExamples = R"(OUT is one of
 Examples
   rlpcdec walk.rlpc -o walk.pc2
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
+  rlpcdec walk.rlpc -o far.glb --coarse 4
   rlpcdec walk.rlpc --verify
   rlpcdec walk.rlpc --html walk.html)";
 
@@ -54,6 +55,11 @@ Fewer components or layers are faster to decode (not Baseline). The result is
 that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
 Cluster GOFs have no slices: they are decoded whole.
 
+With --coarse, vertex layers are removed from the mesh, the finest first: each
+vertex leaves a hole, which larger triangles fill. The other vertices keep their
+positions. Slices that are not needed for these are not decoded (Main and High
+profiles). rlpcinfo --coarse lists the coarse meshes of a stream.
+
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
   rlpcdec decode IN.rlpc OUT.rlpd [--max-mem BYTES]
@@ -65,6 +71,7 @@ limits; 4 input or output failed; 64 wrong usage.)";
 constexpr const char* kOutput = "Output (one of -o, --html, --verify)";
 constexpr const char* kPage = "Page";
 constexpr const char* kLess = "Less detail (Main and High profiles)";
+constexpr const char* kCoarse = "Coarse mesh";
 constexpr const char* kLimits = "Limits and threads";
 constexpr const char* kReport = "Report";
 
@@ -137,22 +144,38 @@ std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
                           : ", not verified: no hash covers these frames alone";
 }
 
+bool is_coarse(const Options& o) { return o.decoder.coarse_layers != rlpc::SliceCut::kAll; }
+
+std::string coarse_text(const Options& o, const rlpc::Decoder& decoder) {
+  if (!is_coarse(o)) return "";
+  const std::uint32_t layers = std::min(o.decoder.coarse_layers, decoder.num_layers());
+  return " (" + std::to_string(layers) + " of " + std::to_string(decoder.num_layers()) +
+         " vertex layers)";
+}
+
 void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames) {
-  const rlpc::SequenceHeader& h = decoder.header();
+  const std::uint32_t num_vertices = decoder.num_vertices();
+  const auto num_triangles = static_cast<std::uint32_t>(decoder.triangles().size());
   if (o.json) {
-    const nlohmann::ordered_json json = {{"num_vertices", h.num_vertices},
-                                         {"num_triangles", h.num_triangles},
-                                         {"frames", frames.decoded},
-                                         {"frames_compared", frames.compared},
-                                         {"hashes_verified", frames.compared == frames.decoded},
-                                         {"cut", decoder.was_cut()}};
+    nlohmann::ordered_json json = {{"num_vertices", num_vertices},
+                                   {"num_triangles", num_triangles},
+                                   {"frames", frames.decoded},
+                                   {"frames_compared", frames.compared},
+                                   {"hashes_verified", frames.compared == frames.decoded},
+                                   {"cut", decoder.was_cut()}};
+    if (is_coarse(o)) {
+      json["coarse"] = {{"layers", std::min(o.decoder.coarse_layers, decoder.num_layers())},
+                        {"of_layers", decoder.num_layers()},
+                        {"of_vertices", decoder.header().num_vertices},
+                        {"of_triangles", decoder.header().num_triangles}};
+    }
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
-    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s\n",
+    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s%s\n",
                  rlpc::printable(rlpc::name_of_input(o.input)).c_str(), frames.decoded,
-                 plural(frames.decoded), h.num_vertices, h.num_vertices == 1 ? "ex" : "ices",
-                 h.num_triangles, plural(h.num_triangles),
+                 plural(frames.decoded), num_vertices, num_vertices == 1 ? "ex" : "ices",
+                 num_triangles, plural(num_triangles), coarse_text(o, decoder).c_str(),
                  hashes_text(o, decoder, frames).c_str());
   }
 }
@@ -186,7 +209,7 @@ int decode(const Options& o) {
   const std::uint32_t count = span->last - span->first + 1;
   std::unique_ptr<rlpc::FrameSink> sink;
   if (!o.verify_only) {
-    rlpc::SinkOptions options{header.num_vertices,
+    rlpc::SinkOptions options{decoder->num_vertices(),
                               count,
                               header.frame_rate,
                               header.grid,
@@ -204,7 +227,7 @@ int decode(const Options& o) {
   if (span->first > 0) {
     if (const auto ok = decoder->seek(span->first); !ok) return complain(o, ok.error());
   }
-  std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
   FrameCounts frames;
   {
     rlpc::ProgressBar bar("decoding", !o.quiet);
@@ -319,6 +342,15 @@ void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kLess);
+
+  app.add_option("--coarse", o.decoder.coarse_layers,
+                 "Decode a mesh with only the coarsest L vertex layers, and triangles between "
+                 "them: 1 for the fewest vertices; the whole mesh if it has no more layers")
+      ->check(CLI::Range(1U, rlpc::SliceCut::kAll - 1))
+      ->option_text("L")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kCoarse);
 
   app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
                  "Refuse streams that need more, for example 500MB")
