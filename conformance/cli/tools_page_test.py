@@ -43,7 +43,8 @@ class Pages(PageTest):
 
     def test_nothing_comes_from_elsewhere(self):
         self.compare()
-        for page in (self.path("a.html").read_text(), self.inform(self.path("a.rlpc"))):
+        for page in (self.path("a.html").read_text(), self.inform(self.path("a.rlpc")),
+                     self.inform(self.path("a.rlpc"), "--coarse")):
             self.assertEqual(re.findall(r"(?i)[a-z]+://|src=|href=|@import|url\(|fetch\(", page),
                              [])
 

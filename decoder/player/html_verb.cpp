@@ -9,6 +9,7 @@
 #include "common/io/messages.h"
 #include "decoder/describe_error.h"
 #include "decoder/player/player_page.h"
+#include "decoder/tools/borrowed_source.h"
 #include "decoder/tools/exit_code.h"
 
 namespace rlpc {
@@ -23,22 +24,8 @@ int complain(const std::string& input, const Error& error) {
   return complain(input + ": " + describe_error(error), exit_code(error.code));
 }
 
-// A view of a source, for a decoder, which would otherwise own the source.
-class Borrowed final : public ByteSource {
- public:
-  explicit Borrowed(ByteSource& source) : source_(source) {}
-  std::uint64_t size() const override { return source_.size(); }
-  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
-    return source_.read(offset, out);
-  }
-  std::uint64_t memory_bytes() const override { return source_.memory_bytes(); }
-
- private:
-  ByteSource& source_;
-};
-
 Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
-  return Decoder::open(std::make_unique<Borrowed>(source), options);
+  return Decoder::open(std::make_unique<BorrowedSource>(source), options);
 }
 
 // Decodes the whole stream to report damage after the first GOF. The page is written even so,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "decoder/output/base64.h"
+#include "decoder/report/coarse_report.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/mesh_view.h"
 #include "decoder/report/svg_chart.h"
@@ -133,6 +134,57 @@ TEST(Report, ViewsHoldPositionsAndErrorsInLevels) {
             std::string::npos);
   EXPECT_NE(html.find("id=\"mesh-errors\">" + encoded(std::string("\0\xFF", 2)) + "<"),
             std::string::npos);
+}
+
+CoarseMeshes strip_of_squares(std::uint32_t length) {
+  std::vector<Triangle> triangles;
+  for (std::uint32_t v = 0; v + 5 < 4 * length; ++v) {
+    if (v % 4 == 3) continue;
+    triangles.push_back({v, v + 1, v + 5});
+    triangles.push_back({v, v + 5, v + 4});
+  }
+  return {4 * length, triangles};
+}
+
+TEST(Report, PicturesOfCoarseMeshesSpanTheSizesThatFit) {
+  const CoarseMeshes meshes = strip_of_squares(200);
+  const std::vector<std::uint32_t> all = layers_of_pictures(meshes, 1U << 24);
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all.back(), meshes.num_layers());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const std::uint32_t fewer = meshes.size(all[i - 1]).num_triangles;
+    const std::uint32_t more = meshes.size(all[i]).num_triangles;
+    EXPECT_GT(more, 3 * fewer);
+    EXPECT_LT(more, 5 * fewer);
+  }
+  const std::uint32_t most = meshes.size(4).num_triangles;
+  EXPECT_EQ(layers_of_pictures(meshes, most).back(), 4U);
+  EXPECT_EQ(layers_of_pictures(meshes, most - 1).back(), 3U);
+  EXPECT_TRUE(layers_of_pictures(meshes, 0).empty());
+  EXPECT_TRUE(layers_of_pictures(CoarseMeshes(3, {}), 10).empty()) << "points";
+}
+
+TEST(Report, PicturesOfCoarseMeshesShowAllTriangles) {
+  const CoarseMeshes meshes = strip_of_squares(30);
+  std::vector<float> xyz;
+  for (std::uint32_t v = 0; v < 120; ++v) {
+    for (const std::uint32_t x : {v / 4, v % 4, v % 3}) xyz.push_back(static_cast<float>(x));
+  }
+  HtmlPage page("coarse");
+  add_coarse_section(page, meshes, xyz);
+  const std::string html = page.text();
+  std::size_t triangles = 0;
+  for (const std::uint32_t layers : layers_of_pictures(meshes, 6000)) {
+    triangles += meshes.size(layers).num_triangles;
+    EXPECT_NE(html.find(std::to_string(meshes.size(layers).num_vertices) + " vertices, "),
+              std::string::npos);
+  }
+  std::size_t paths = 0;
+  for (auto at = html.find("<path class=\"m"); at != std::string::npos; ++paths) {
+    at = html.find("<path class=\"m", at + 1);
+  }
+  EXPECT_EQ(paths, triangles);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
 }  // namespace

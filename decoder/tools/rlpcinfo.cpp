@@ -3,20 +3,26 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "common/io/float_position.h"
 #include "common/io/interrupts.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/io/standard_output.h"
+#include "common/mesh/coarse_mesh.h"
 #include "common/tools/command_line.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/gof_summary.h"
 #include "decoder/stream/stream_reader.h"
+#include "decoder/tools/borrowed_source.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/extract_verb.h"
 #include "decoder/tools/rlpcinfo_report.h"
@@ -28,6 +34,7 @@ constexpr const char* kExamples = R"(Examples
   rlpcinfo walk.rlpc              contents, and bits per part
   rlpcinfo walk.rlpc --gofs       the same for each GOF and slice
   rlpcinfo walk.rlpc --html walk.html
+  rlpcinfo walk.rlpc --coarse     and the coarse meshes of rlpcdec --coarse
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
 constexpr const char* kDetails =
@@ -49,6 +56,7 @@ struct Options {
   std::string input;
   bool json = false;
   bool gofs = false;
+  bool coarse = false;
   bool trace = false;
   std::string html;
   std::string extract;
@@ -69,6 +77,24 @@ int complain(const Options& o, const rlpc::Error& error) {
 
 int complain(const rlpc::OutputError& error) { return complain(error.message, rlpc::kExitIo); }
 
+// The first frame in decoded order.
+rlpc::Result<std::vector<float>> first_frame(const Options& o, rlpc::ByteSource& source,
+                                             std::span<const std::uint32_t> vertex_order) {
+  rlpc::DecoderOptions options;
+  options.limits.max_memory_bytes = o.max_memory_bytes;
+  options.verify_hashes = false;
+  auto decoder = rlpc::Decoder::open(std::make_unique<rlpc::BorrowedSource>(source), options);
+  if (!decoder) return decoder.error();
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
+  if (const auto more = decoder->next_frame(positions); !more) return more.error();
+  std::vector<float> xyz(positions.size());
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    const std::size_t v = vertex_order.empty() ? i / 3 : vertex_order[i / 3];
+    xyz[i] = rlpc::float_position(decoder->header().grid, i % 3, positions[3 * v + i % 3]);
+  }
+  return xyz;
+}
+
 int inform(const Options& o) {
   std::optional<rlpc::OutputFile> page;
   if (!o.html.empty()) {
@@ -77,20 +103,32 @@ int inform(const Options& o) {
     page.emplace(std::move(*file));
   }
   rlpc::BitCounter counter(o.trace);
-  auto source = rlpc::file_or_standard_input(o.input, o.max_memory_bytes);
+  const auto source = rlpc::file_or_standard_input(o.input, o.max_memory_bytes);
   if (!source) return complain(o, source.error());
   const std::uint64_t bytes = (*source)->size();
   rlpc::DecoderOptions options;
   options.limits.max_memory_bytes = o.max_memory_bytes;
   options.trace = &counter;
-  rlpc::StreamReader stream(std::move(*source), options);
+  // Drops nothing, but counts the memory that coarse meshes take.
+  if (o.coarse) options.coarse_layers = rlpc::kMaxLayers;
+  rlpc::StreamReader stream(std::make_unique<rlpc::BorrowedSource>(**source), options);
   if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
   const auto summary = rlpc::summarise_all(stream);
   if (!summary) return complain(o, summary.error());
   counter.finish(8 * bytes);
-  const rlpc::StreamInfo info{o.input, stream.header(), counter,
-                              bytes,   *summary,        stream.metadata()};
   if (o.trace) return rlpc::kExitDone;
+  rlpc::StreamInfo info{o.input, stream.header(), counter, bytes, *summary, stream.metadata()};
+  std::optional<rlpc::CoarseMeshes> coarse;
+  if (o.coarse) {
+    coarse = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),
+                                           stream.vertex_order());
+    info.coarse = &*coarse;
+  }
+  if (o.coarse && page) {
+    auto frame = first_frame(o, **source, stream.vertex_order());
+    if (!frame) return complain(o, frame.error());
+    info.first_frame = std::move(*frame);
+  }
   if (page) {
     if (const auto error = rlpc::write_and_commit(*page, rlpc::page_text(info)))
       return complain(*error);
@@ -110,6 +148,10 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
   app.add_option("STREAM", o.input, "Stream to inspect; - for standard input")->required();
   auto* json = app.add_flag("--json", o.json, "JSON on standard output")->group(report);
   auto* gofs = app.add_flag("--gofs", o.gofs, "Also list each GOF and slice")->group(report);
+  auto* coarse = app.add_flag("--coarse", o.coarse,
+                              "Also list the coarse meshes of rlpcdec --coarse; with --html, "
+                              "with pictures")
+                     ->group(report);
   auto* html = app.add_option("--html", o.html, "Also write a page with charts")
                    ->option_text("FILE")
                    ->group(report);
@@ -127,8 +169,8 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                                 "With --extract: stream to write; - for standard output")
                      ->option_text("FILE")
                      ->group(cut);
-  trace->excludes(json)->excludes(html);
-  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html);
+  trace->excludes(json)->excludes(html)->excludes(coarse);
+  extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html)->excludes(coarse);
   output->needs(extract);
   rlpc::add_help(app, {"STREAM [OPTIONS]", {report, cut}, kExamples, kDetails}, RLPC_VERSION);
   return extract;

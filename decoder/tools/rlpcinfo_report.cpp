@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/io/messages.h"
+#include "decoder/report/coarse_report.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
 
@@ -80,6 +81,17 @@ nlohmann::ordered_json json_of(const ModelSummary& model) {
   nlohmann::ordered_json json = {{"model_idx", model.model_idx}, {"num_gofs", model.num_gofs}};
   for (const GofFigure& figure : model.figures) json[figure.key] = figure.value;
   add_slices(model, json);
+  return json;
+}
+
+nlohmann::ordered_json json_of(const CoarseMeshes& meshes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (std::uint32_t layers = 1; layers <= meshes.num_layers(); ++layers) {
+    const MeshSize size = meshes.size(layers);
+    json.push_back({{"layers", layers},
+                    {"vertices", size.num_vertices},
+                    {"triangles", size.num_triangles}});
+  }
   return json;
 }
 
@@ -259,6 +271,14 @@ void print_all(const StreamSummary& stream) {
   }
 }
 
+void print_coarse_meshes(const CoarseMeshes& meshes) {
+  std::printf("\n  coarse meshes\n  %8s %10s %10s\n", "layers", "vertices", "triangles");
+  for (std::uint32_t layers = 1; layers <= meshes.num_layers(); ++layers) {
+    const MeshSize size = meshes.size(layers);
+    std::printf("  %8u %10u %10u\n", layers, size.num_vertices, size.num_triangles);
+  }
+}
+
 std::string frame_rate_text(const SequenceHeader& h) {
   const FrameRate& rate = h.frame_rate;
   const std::string numerator = std::to_string(rate.numerator);
@@ -289,6 +309,7 @@ void print_json(const StreamInfo& s) {
       {"bits", bits}};
   for (const auto& model : s.summary.models) json["models"].push_back(json_of(*model));
   for (const GofSummary& gof : s.summary.gofs) json["gofs"].push_back(json_of(gof));
+  if (s.coarse != nullptr) json["coarse_meshes"] = json_of(*s.coarse);
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
@@ -318,6 +339,7 @@ void print_table(const StreamInfo& s, bool with_gofs) {
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   if (!s.metadata.empty())
     std::printf("\n  metadata: %s\n", printable_lines(s.metadata).c_str());
+  if (s.coarse != nullptr) print_coarse_meshes(*s.coarse);
   if (with_gofs) print_all(s.summary);
 }
 
@@ -345,6 +367,7 @@ std::string page_text(const StreamInfo& s) {
                          s.summary.gofs.size() == 1 ? "group of frames" : "groups of frames"}});
   add_rate_section(page, rates);
   add_gof_section(page, rates);
+  if (s.coarse != nullptr) add_coarse_section(page, *s.coarse, s.first_frame);
   return page.text();
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "common/mesh/coarse_mesh.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/stream/gof_summary.h"
@@ -17,6 +19,8 @@ struct StreamInfo {
   std::uint64_t bytes;
   const StreamSummary& summary;
   const std::string& metadata;
+  const CoarseMeshes* coarse = nullptr;  // to be listed; null: not asked for
+  std::vector<float> first_frame{};      // for pictures of them, in decoded order
 };
 
 // Both on standard output.
