@@ -72,12 +72,51 @@ void decode_cut(std::span<const std::uint8_t> stream) {
   }
 }
 
+// For a stream that was decoded as far as the limits allow: a coarse mesh has the positions of
+// the whole mesh.
+void decode_coarse(std::span<const std::uint8_t> stream) {
+  rlpc::DecoderOptions options;
+  options.limits = kLimits;
+  options.verify_hashes = false;
+  options.coarse_layers = static_cast<std::uint32_t>(1 + stream.size() % 4);
+  auto coarse =
+      rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
+  if (!coarse) {
+    rlpc::fuzz_check(coarse.error().code == rlpc::Errc::kLimitExceeded);
+    return;
+  }
+  auto whole = open(stream, false);
+  rlpc::fuzz_check(static_cast<bool>(whole));
+  const auto vertices = coarse->coarse_vertices();
+  for (const rlpc::Triangle& t : coarse->triangles()) {
+    for (const std::uint32_t v : t) rlpc::fuzz_check(v < vertices.size());
+  }
+  Positions all(3 * std::size_t{whole->num_vertices()});
+  Positions some(3 * vertices.size());
+  for (;;) {
+    const auto more = coarse->next_frame(some);
+    const auto expected = whole->next_frame(all);
+    if (!more || !expected) {
+      const rlpc::Errc code = more ? expected.error().code : more.error().code;
+      rlpc::fuzz_check(code == rlpc::Errc::kLimitExceeded);
+      return;
+    }
+    rlpc::fuzz_check(*expected == *more);
+    if (!*more) return;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      rlpc::fuzz_check(some[i] == all[3 * std::size_t{vertices[i / 3]} + i % 3]);
+    }
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> stream(data, size);
-  const std::string_view rule = decode(stream, true);
-  if (rule == "R-HSH-02") decode(stream, false);  // continue past the hash of a mutated GOF
+  std::string_view rule = decode(stream, true);
+  // Continue past the hash of a mutated GOF.
+  if (rule == "R-HSH-02") rule = decode(stream, false);
+  if (rule.empty()) decode_coarse(stream);
   decode_last(stream);
   decode_cut(stream);
   return 0;
