@@ -65,7 +65,7 @@ void choose_seed_predictor(ClusterGof& gof, const GofFrames& frames, int positio
 // Clusters and seed tracks, in the order of clause 6.5.2.
 void set_clusters(ClusterGof& gof, const Clustering& clustering) {
   gof.cluster_of_vertex = clustering.cluster_of_vertex;
-  gof.clusters.resize(std::max<std::size_t>(clustering.seeds.size(), 1));
+  gof.clusters.resize(clustering.num_clusters());
   for (std::size_t i = 0; i < clustering.seeds.size(); ++i) {
     gof.clusters[i].lcf_flag = true;
     gof.clusters[i].seed_vertex = clustering.seeds[i];
@@ -251,7 +251,7 @@ ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames
   gof.num_frames = frames.num_frames;
   gof.seed_step = settings.seed_step;
   if (settings.world) {
-    gof.clusters.resize(std::max<std::size_t>(clustering.seeds.size(), 1));
+    gof.clusters.resize(clustering.num_clusters());
     gof.cluster_of_vertex = clustering.cluster_of_vertex;
   } else {
     set_clusters(gof, clustering);

@@ -2,22 +2,40 @@
 // and 3.2).
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "common/cluster_gof/recon/lcf.h"
 #include "common/mesh/mesh.h"
+#include "encoder/cluster_gof/seed_choice.h"
 #include "encoder/gof/gof_frames.h"
 
 namespace rlpc {
 
-using Seed = std::array<std::uint32_t, 3>;  // p1, p2, p3 of a seed triangle
-
 struct Clustering {
-  std::vector<Seed> seeds;  // one per cluster; empty: one cluster without an LCF
+  // Of the first clusters; those after them have no LCF. There is at least one cluster.
+  std::vector<Seed> seeds;
   std::vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; also set for seed vertices
+  std::size_t without_lcf = 0;                   // clusters that have no seed
+
+  std::size_t num_clusters() const {
+    return std::max<std::size_t>(seeds.size() + without_lcf, 1);
+  }
+};
+
+std::vector<std::uint32_t> vertices_of(const Clustering& clustering, std::size_t cluster);
+
+// Clusters of the frames of a GOF, for any number of clusters.
+class ClusterMaker {
+ public:
+  virtual ~ClusterMaker() = default;
+  // At most `count` clusters, with seeds that are triangles.
+  virtual Clustering clusters(std::uint32_t count) = 0;
+  // As clusters(), with seeds of distant vertices of each cluster. Noise rotates these frames
+  // less, so seeds can be coded more coarsely.
+  virtual Clustering spread_clusters(std::uint32_t count) = 0;
 };
 
 // Farthest-point seeds, and the motion of every vertex in the local coordinate frames of the
@@ -28,7 +46,7 @@ struct Clustering {
 // vertex farthest from all chosen so far. The seed is an incident triangle that is degenerate
 // in no frame; in a point cloud, a triangle of the vertex and two of its nearest points.
 // Vertices without such a triangle are skipped.
-class MotionClusters {
+class MotionClusters : public ClusterMaker {
  public:
   // Keeps references to the frames and triangles.
   MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
@@ -37,24 +55,18 @@ class MotionClusters {
   // Assigns each vertex to that of the first `count` seeds in whose local coordinate frame it
   // moves least over the GOF; ties go to the lower index. There may be fewer seeds than
   // `count`, even none.
-  Clustering clusters(std::uint32_t count);
+  Clustering clusters(std::uint32_t count) override;
   // As clusters(), then replaces each seed triangle by three distant vertices of its cluster
-  // and assigns the vertices again. Noise rotates these frames less, so seeds can be coded more
-  // coarsely.
-  Clustering spread_clusters(std::uint32_t count);
+  // and assigns the vertices again.
+  Clustering spread_clusters(std::uint32_t count) override;
 
  private:
-  std::vector<Triangle> triangles_at(std::uint32_t v) const;
   bool add_seed();
-  std::vector<double> motion_in(const Seed& seed) const;
-  Seed spread_seed(const Clustering& clustering, std::size_t i) const;
   static void assign(Clustering& clustering, std::size_t i, const std::vector<double>& motion,
                      std::vector<double>& least);
 
   const GofFrames& frames_;
-  std::span<const Triangle> triangles_;
-  int position_bits_;
-  std::vector<std::vector<std::uint32_t>> incident_;
+  SeedChoice choice_;
   std::vector<double> distance_;  // squared, to the centre; later to the nearest seed
   std::vector<Seed> seeds_;
   std::vector<std::vector<double>> motion_;  // [seed][num_vertices]
