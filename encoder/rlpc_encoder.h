@@ -37,6 +37,12 @@ enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
 // distant vertices.
 enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
 
+// How vertices are divided into clusters. kSeeds: by their motion relative to seeds, as in the
+// RLPCA paper. The others make the parts first, and then choose a seed for each: parts of equal
+// size with few edges between them; parts of near vertices; parts that meet where the surface
+// is concave; parts of affine motion.
+enum class PartitionMethod : std::uint8_t { kSeeds, kKway, kLloyd, kSpectral, kMotion };
+
 // Search effort. Does not affect the syntax or the requirements on decoders.
 enum class Preset : std::uint8_t { kFast, kMedium, kSlow };
 

@@ -71,7 +71,10 @@ ROOMS = {
     "encoder/metrics": {"common/mesh", "encoder/math"},
     "encoder/write": _GOFS | {"encoder/math/det_math.h"},
     "encoder/gof": _ENCODER,
-    **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER),
+    # Parts of a mesh, whatever they are for.
+    "encoder/partition": {"common/mesh", "common/parallel", "encoder", "encoder/gof",
+                          "encoder/math"},
+    **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER | {"encoder/partition"}),
     "encoder/skinned_gof": _ENCODER | _SKINNED,
     **dict.fromkeys(("encoder/skinned_gof/fit", "encoder/skinned_gof/tracks",
                      "encoder/skinned_gof/rest"), _ENCODER),
