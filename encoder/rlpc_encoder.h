@@ -62,6 +62,7 @@ struct BaselineTools {
   int qdelta = 0;  // seed positions, up to 24
   FrameMode frame_mode = FrameMode::kAuto;
   SeedMode seed_mode = SeedMode::kAuto;
+  PartitionMethod partition = PartitionMethod::kSeeds;
 };
 
 // How rest positions may be coded: as the other values, in an order of their own (8.18), or

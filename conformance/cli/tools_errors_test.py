@@ -161,7 +161,7 @@ class BadInput(ToolsTest):
         for profile, other, options in (
                 ("baseline", "main", ("--clusters 2", "--qu 12", "--qc 12", "--qdelta 12",
                                       "--no-rdo", "--rdo-rate vectors", "--frame lcf",
-                                      "--seeds spread")),
+                                      "--seeds spread", "--partition kway")),
                 ("main", "baseline", ("--bones 2", "--influences 2", "--prediction none",
                                       "--basis-steps cobra", "--no-geometry-weights",
                                       "--no-outer-ring", "--no-layer-steps",

@@ -135,7 +135,7 @@ EncoderSettings CaseMaker::read_settings() {
   s.hash_mode = static_cast<HashMode>(o.hash_mode % 3);
   s.metadata = case_.metadata;
 
-  const auto bytes = input_.take(14);
+  const auto bytes = input_.take(15);
   FuzzInput tools(bytes.data(), bytes.size());
   const auto number = [&](std::uint32_t below) { return tools.number(1) % below; };
   BaselineTools b;
@@ -167,6 +167,7 @@ EncoderSettings CaseMaker::read_settings() {
   if ((more & 128) != 0 && s.profile == Profile::kHigh) m.temporal_layers = 2 + more % 3;
   m.component_groups = number(6);
   m.layer_groups = number(6);
+  b.partition = static_cast<PartitionMethod>(number(5));
   // The tools of the other profile are refused, so most cases do not set them.
   if (s.profile == Profile::kBaseline || (switches & 192) == 192) s.baseline = b;
   if (s.profile != Profile::kBaseline || (switches & 192) == 192) s.main = m;

@@ -115,14 +115,16 @@ TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
     s.target = {Target::kNone, 0.0};
     s.components = 2;
   };
-  expect_only_of(Profile::kBaseline, "baseline",
-                 {{"--clusters", [](auto& s) { s.baseline.clusters = 2; }},
-                  {"--no-rdo", [&](auto& s) { given(s), s.baseline.rdo = false; }},
-                  {"--rdo-rate", [&](auto& s) { given(s), s.baseline.rate_in_vectors = true; }},
-                  {"--qu", [&](auto& s) { given(s), s.baseline.qu = s.baseline.qc = 10; }},
-                  {"--qdelta", [](auto& s) { s.baseline.qdelta = 10; }},
-                  {"--frame", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
-                  {"--seeds", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }}});
+  expect_only_of(
+      Profile::kBaseline, "baseline",
+      {{"--clusters", [](auto& s) { s.baseline.clusters = 2; }},
+       {"--no-rdo", [&](auto& s) { given(s), s.baseline.rdo = false; }},
+       {"--rdo-rate", [&](auto& s) { given(s), s.baseline.rate_in_vectors = true; }},
+       {"--qu", [&](auto& s) { given(s), s.baseline.qu = s.baseline.qc = 10; }},
+       {"--qdelta", [](auto& s) { s.baseline.qdelta = 10; }},
+       {"--frame", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
+       {"--seeds", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }},
+       {"--partition", [](auto& s) { s.baseline.partition = PartitionMethod::kKway; }}});
   EXPECT_NE(error_of([](auto& s) { s.baseline.qc = 10; }).find("--qc needs --profile baseline"),
             std::string::npos);
 }

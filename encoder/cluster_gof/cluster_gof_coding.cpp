@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/int_math.h"
+#include "encoder/cluster_gof/partition_clusters.h"
 #include "encoder/math/det_math.h"
 #include "encoder/write/write_cluster_gof.h"
 
@@ -24,15 +25,20 @@ constexpr std::size_t kShare = 4;
 
 }  // namespace
 
-MotionClusters ClusterGofCoding::motion() const {
-  return {frames_, mesh_.triangles, mesh_.header.position_bits};
+std::unique_ptr<ClusterMaker> ClusterGofCoding::cluster_maker() const {
+  const int position_bits = mesh_.header.position_bits;
+  const PartitionMethod method = settings_.baseline.partition;
+  if (method == PartitionMethod::kSeeds) {
+    return std::make_unique<MotionClusters>(frames_, mesh_.triangles, position_bits);
+  }
+  return std::make_unique<PartitionClusters>(method, frames_, mesh_.triangles, position_bits);
 }
 
-Clustering ClusterGofCoding::cluster(MotionClusters& motion, std::uint32_t count) const {
+Clustering ClusterGofCoding::cluster(ClusterMaker& maker, std::uint32_t count) const {
   const SeedMode mode = settings_.baseline.seed_mode;
   const bool spread =
       mode == SeedMode::kSpread || (mode == SeedMode::kAuto && settings_.baseline.qu == 0);
-  return spread ? motion.spread_clusters(count) : motion.clusters(count);
+  return spread ? maker.spread_clusters(count) : maker.clusters(count);
 }
 
 ClusterAnalysisSettings ClusterGofCoding::analysis_settings(double step, bool world) const {
@@ -104,8 +110,8 @@ EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analy
 }
 
 EncodedGof ClusterGofCoding::encode(double step, const ClusterChoice& choice,
-                                    MotionClusters& motion) const {
-  return encode(step, analyse(step, choice.world, cluster(motion, choice.clusters)));
+                                    ClusterMaker& maker) const {
+  return encode(step, analyse(step, choice.world, cluster(maker, choice.clusters)));
 }
 
 }  // namespace rlpc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "encoder/cluster_gof/cluster_gof_encoder.h"
 #include "encoder/cluster_gof/clustering.h"
@@ -28,13 +29,13 @@ class ClusterGofCoding {
 
   const EncoderSettings& settings() const { return settings_; }
   const GofFrames& frames() const { return frames_; }
-  // A clustering of the frames without seeds so far.
-  MotionClusters motion() const;
-  Clustering cluster(MotionClusters& motion, std::uint32_t count) const;
+  // Clusters of the frames, made as the settings say.
+  std::unique_ptr<ClusterMaker> cluster_maker() const;
+  Clustering cluster(ClusterMaker& maker, std::uint32_t count) const;
   ClusterGofAnalysis analyse(double step, bool world, const Clustering& clustering) const;
   EncodedGof encode(double step, const ClusterGofAnalysis& analysis) const;
   // Clusters, analyses and encodes.
-  EncodedGof encode(double step, const ClusterChoice& choice, MotionClusters& motion) const;
+  EncodedGof encode(double step, const ClusterChoice& choice, ClusterMaker& maker) const;
 
  private:
   ClusterAnalysisSettings analysis_settings(double step, bool world) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "common/parallel/for_each.h"
@@ -21,7 +22,7 @@ constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
 class ClusterSearch {
  public:
   ClusterSearch(const ClusterGofCoding& coding, double step)
-      : coding_(coding), step_(step), motion_(coding.motion()) {}
+      : coding_(coding), step_(step), maker_(coding.cluster_maker()) {}
 
   FoundClusters run() {
     const BaselineTools& tools = coding_.settings().baseline;
@@ -32,7 +33,7 @@ class ClusterSearch {
       return better_extreme();
     }
     const ClusterChoice choice = choose();
-    return {choice, coding_.cluster(motion_, choice.clusters)};
+    return {choice, coding_.cluster(*maker_, choice.clusters)};
   }
 
  private:
@@ -41,7 +42,7 @@ class ClusterSearch {
     found[0].choice = {usual_clusters(coding_.frames().num_vertices), false};
     found[1].choice = {1, true};
     for (FoundClusters& of : found)
-      of.clustering = coding_.cluster(motion_, of.choice.clusters);
+      of.clustering = coding_.cluster(*maker_, of.choice.clusters);
     std::array<double, 2> costs{};
     for_each(2, [&](std::size_t i) {
       found[i].analysis = coding_.analyse(step_, found[i].choice.world, found[i].clustering);
@@ -56,7 +57,7 @@ class ClusterSearch {
     return error + lambda(step_) * bits;
   }
   double cost(const ClusterChoice& choice) {
-    return cost(coding_.encode(step_, choice, motion_));
+    return cost(coding_.encode(step_, choice, *maker_));
   }
 
   // The last number that leaves vertices beside those of seeds.
@@ -108,7 +109,7 @@ class ClusterSearch {
 
   const ClusterGofCoding& coding_;
   double step_;
-  MotionClusters motion_;
+  std::unique_ptr<ClusterMaker> maker_;
 };
 
 }  // namespace

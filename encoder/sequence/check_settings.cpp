@@ -18,7 +18,8 @@ struct Parameter {
 // The structured binding names all members: a new member does not compile until it is added
 // here.
 std::vector<Parameter> parameters(const BaselineTools& tools) {
-  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode] = tools;
+  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode,
+               partition] = tools;
   const BaselineTools defaults;
   return {{"--clusters", clusters != defaults.clusters},
           {"--no-rdo", rdo != defaults.rdo},
@@ -27,7 +28,8 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
           {"--qc", qc != defaults.qc},
           {"--qdelta", qdelta != defaults.qdelta},
           {"--frame", frame_mode != defaults.frame_mode},
-          {"--seeds", seed_mode != defaults.seed_mode}};
+          {"--seeds", seed_mode != defaults.seed_mode},
+          {"--partition", partition != defaults.partition}};
 }
 
 std::vector<Parameter> parameters(const MainTools& tools) {

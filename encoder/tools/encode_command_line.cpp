@@ -266,6 +266,16 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
                        "Vertices that carry local coordinate frames: auto (default), triangle, "
                        "spread")
       ->group(baseline);
+  add_choice<PartitionMethod>(
+      app, "--partition", t.partition,
+      {{"seeds", PartitionMethod::kSeeds},
+       {"kway", PartitionMethod::kKway},
+       {"lloyd", PartitionMethod::kLloyd},
+       {"spectral", PartitionMethod::kSpectral},
+       {"motion", PartitionMethod::kMotion}},
+      "What makes clusters: seeds (motion relative to them, default), kway (few edges between "
+      "equal parts), lloyd (near vertices), spectral (concave creases), motion (affine)")
+      ->group(baseline);
 }
 
 void add_main_options(CLI::App& app, EncodeCommandLine& line) {
