@@ -135,7 +135,8 @@ class BadInput(ToolsTest):
         for options in ("--kg 0", "--kg -1", "--kg a", "--kg nan", "--bpvf inf", "--kg 0,3",
                         "--max-error 1mm", "--kg 1 --bpvf 1", "--gof 0", "--gof 1x", "--gof -3",
                         "--fps 0", "--fps a", "--preset best", "--clusters 0", "--qu 1",
-                        "--influences 0", "--influences 5", "--frame y", "--profile scalable",
+                        "--influences 0", "--influences 5", "--frame y", "--partition metis",
+                        "--profile scalable",
                         "--nonsense"):
             self.fails(64, "", "rlpcenc", mesh, "-o", self.path("x"), *options.split())
         self.assertEqual(self.files(), ["mesh.obj"])

@@ -65,7 +65,7 @@ class Help(ToolsTest):
         groups = self.page("rlpcenc", "--help-all").split("\n\n")
         for heading, options in (("All profiles", ("--profile", "--components")),
                                  ("Main and High profiles only", ("--bones", "--layer-groups")),
-                                 ("Baseline profile only", ("--clusters", "--seeds"))):
+                                 ("Baseline profile only", ("--clusters", "--seeds", "--partition"))):
             group = [text for text in groups if text.startswith(heading)]
             self.assertEqual(len(group), 1, heading)
             for option in options:

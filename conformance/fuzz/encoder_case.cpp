@@ -135,7 +135,7 @@ EncoderSettings CaseMaker::read_settings() {
   s.hash_mode = static_cast<HashMode>(o.hash_mode % 3);
   s.metadata = case_.metadata;
 
-  const auto bytes = input_.take(15);
+  const auto bytes = input_.take(14);
   FuzzInput tools(bytes.data(), bytes.size());
   const auto number = [&](std::uint32_t below) { return tools.number(1) % below; };
   BaselineTools b;
@@ -150,7 +150,9 @@ EncoderSettings CaseMaker::read_settings() {
   if ((switches & 12) == 4) s.target = {Target::kNone, 0.0};
   if ((switches & 12) == 0) b.qu = b.qc = 0;
   b.frame_mode = static_cast<FrameMode>(number(3));
-  b.seed_mode = static_cast<SeedMode>(number(3));
+  const std::uint32_t clustering = tools.number(1);
+  b.seed_mode = static_cast<SeedMode>(clustering % 3);
+  b.partition = static_cast<PartitionMethod>(clustering / 3 % 5);
   MainTools m;
   m.bones = number(8);
   const std::uint32_t prediction = number(4);
@@ -167,7 +169,6 @@ EncoderSettings CaseMaker::read_settings() {
   if ((more & 128) != 0 && s.profile == Profile::kHigh) m.temporal_layers = 2 + more % 3;
   m.component_groups = number(6);
   m.layer_groups = number(6);
-  b.partition = static_cast<PartitionMethod>(number(5));
   // The tools of the other profile are refused, so most cases do not set them.
   if (s.profile == Profile::kBaseline || (switches & 192) == 192) s.baseline = b;
   if (s.profile != Profile::kBaseline || (switches & 192) == 192) s.main = m;

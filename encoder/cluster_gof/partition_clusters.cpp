@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kCentral = 16;    // tuned (off: 1): vertices whose triangles are compared
+constexpr std::size_t kCentral = 16;    // fixed: vertices whose triangles are compared
 constexpr std::size_t kMostTried = 64;  // fixed: time; then the part has no seed
 
 std::vector<std::uint32_t> nearest_to_centre(const GofFrames& frames,

@@ -12,10 +12,9 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kCoarsest = 96;  // tuned: vertices that are divided by eigenvectors
-constexpr std::size_t kVectors = 2;      // tuned: each gives two divisions to choose from
-constexpr std::int64_t kSlack =
-    100;  // tuned: a side may exceed its share by one part in so many
+constexpr std::int64_t kCoarsest = 96;  // fixed: time of the eigenvectors
+constexpr std::size_t kVectors = 2;     // fixed: time; each gives two divisions
+constexpr std::int64_t kSlack = 100;    // fixed: balance; a side may exceed its share by 1 %
 // fixed: to end. Coarsening stops where it leaves more than this part of the vertices, in per
 // cent.
 constexpr std::uint64_t kStall = 95;

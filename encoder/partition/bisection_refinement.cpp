@@ -9,9 +9,9 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPasses = 8;          // tuned (off: 0): they rarely help after four
+constexpr int kPasses = 8;          // fixed: time; they rarely help after four
 constexpr std::size_t kTried = 16;  // fixed: time; vertices that may be too heavy for a side
-constexpr std::size_t kPatience = 100;  // tuned: moves of a pass without success
+constexpr std::size_t kPatience = 100;  // fixed: time; moves of a pass without success
 
 class Pass {
  public:

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kRounds = 50;              // tuned: most meshes settle before
+constexpr int kRounds = 50;              // fixed: time; most meshes settle before
 constexpr std::size_t kTogether = 1024;  // fixed: points of a pass
 
 class KMeans {

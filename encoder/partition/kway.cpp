@@ -9,8 +9,8 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPasses = 8;               // tuned (off: 0): over all vertices
-constexpr std::uint32_t kPerCent = 103;  // tuned: the largest part, of the mean
+constexpr int kPasses = 8;               // fixed: time; over all vertices
+constexpr std::uint32_t kPerCent = 103;  // fixed: balance; the largest part, of the mean
 
 void divide(const Graph& graph, const std::vector<std::uint32_t>& original, std::uint32_t first,
             std::uint32_t count, Partition& partition) {

@@ -11,12 +11,14 @@ constexpr std::size_t kNeighbours = 6;  // fixed: of a vertex of a regular mesh
 
 std::vector<GraphEdge> mesh_edges(std::span<const Triangle> triangles) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  pairs.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) pairs.push_back(std::minmax({t[k], t[(k + 1) % 3]}));
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   std::vector<GraphEdge> edges;
+  edges.reserve(pairs.size());
   for (const auto& [a, b] : pairs) edges.push_back({a, b, kMeshEdge});
   return edges;
 }
@@ -72,6 +74,7 @@ Graph make_mesh_graph(std::span<const Point3> points, std::span<const Triangle> 
     const auto parts = components(points.size(), edges);
     if (parts.size() <= 1) break;
     std::vector<Point3> centres;
+    centres.reserve(parts.size());
     for (const auto& vertices : parts) centres.push_back(centre(points, vertices));
     const PointTree tree(centres);
     for (std::uint32_t i = 0; i < parts.size(); ++i) {

@@ -13,14 +13,15 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kSampleFrames = 24;  // tuned: the motion of frames between is similar
+constexpr std::uint32_t kSampleFrames = 24;  // fixed: memory
 // tuned (off: 0): The linear part of a motion is held back to that of a translation, as flat
 // parts do not determine it; relative to the spread of the part.
 constexpr double kRidge = 1e-3;
-constexpr std::uint32_t kSeedVertices = 32;  // tuned: that give a new part its motion
-constexpr int kRoundsWhileGrowing = 2;       // tuned (off: 0): each time the parts have doubled
-constexpr int kRounds = 12;                  // tuned (off: 0): of the final parts
-constexpr std::size_t kTogether = 1024;      // fixed: vertices of a pass
+constexpr std::uint32_t kSeedVertices = 32;  // tuned: Vertices that give a new part its motion.
+constexpr int kRoundsWhileGrowing =
+    2;                       // tuned (off: 0): Rounds each time the parts have doubled.
+constexpr int kRounds = 30;  // tuned (off: 0): Rounds of the final parts.
+constexpr std::size_t kTogether = 1024;  // fixed: vertices of a pass
 
 // Displacements from the first frame, x, y and z of all sample frames: translation + linear
 // part * (position - centre).
@@ -38,8 +39,8 @@ class MotionParts {
     const std::uint32_t sampled = std::min(moved, kSampleFrames);
     values_ = 3 * std::size_t{sampled};
     displacement_.resize(values_ * frames.num_vertices);
-    for (std::uint32_t i = 0; i < sampled; ++i) {
-      const auto frame = static_cast<std::uint32_t>((i + 1) * std::uint64_t{moved} / sampled);
+    for (std::size_t i = 0; i < sampled; ++i) {
+      const auto frame = static_cast<std::uint32_t>((i + 1) * moved / sampled);
       for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
         for (std::size_t c = 0; c < 3; ++c) {
           displacement_[values_ * v + 3 * i + c] = frames.at(frame, v)[c] - frames.at(0, v)[c];
@@ -55,10 +56,10 @@ class MotionParts {
   Partition run(std::uint32_t count) {
     fit_all(1);
     for (std::uint32_t v = 0; v < rest_.size(); ++v) error_[v] = error(motions_[0], v);
-    std::uint32_t settled = 1;
+    std::size_t settled = 1;
     while (motions_.size() < count && add_part()) {
       if (motions_.size() < 2 * settled) continue;
-      settled = static_cast<std::uint32_t>(motions_.size());
+      settled = motions_.size();
       settle(kRoundsWhileGrowing);
     }
     settle(kRounds);

@@ -13,12 +13,13 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kSamples = 400;      // tuned: time is cubic in them
+constexpr std::uint32_t kSamples = 400;      // fixed: time is cubic in them
 constexpr std::uint32_t kSamplesOfPart = 2;  // fixed: for k-means to choose from
 constexpr std::size_t kMaxVectors = 32;      // fixed: time
 
-// 1 + D^-1/2 W D^-1/2, positive semidefinite, where W is the Gaussian of the distances with
-// their mean as width.
+// D^-1/2 W D^-1/2, where W is exp(-d / 2) of the distances d, relative to their mean.
+//
+// Note: the paper divides d by the square of the mean, which depends on its unit.
 std::vector<double> affinity(const SurfaceSamples& samples) {
   constexpr double kLog2E = 1.4426950408889634;  // fixed: log2(e)
   constexpr double kLeast = -800.0;              // fixed: smaller powers of two are zero
@@ -31,13 +32,12 @@ std::vector<double> affinity(const SurfaceSamples& samples) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       const double d = mean > 0.0 ? samples.distance[i * n + j] / mean : 0.0;
-      w[i * n + j] = det_exp2(std::max(-0.5 * d * d * kLog2E, kLeast));
+      w[i * n + j] = det_exp2(std::max(-0.5 * d * kLog2E, kLeast));
       degree[i] += w[i * n + j];
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) w[i * n + j] /= std::sqrt(degree[i] * degree[j]);
-    w[i * n + i] += 1.0;
   }
   return w;
 }

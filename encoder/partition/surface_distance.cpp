@@ -13,7 +13,7 @@ namespace {
 
 // tuned (off: 1): What a geodesic distance weighs, beside an angular one. The paper has it
 // close to zero.
-constexpr double kGeodesic = 0.05;
+constexpr double kGeodesic = 0.2;
 constexpr double kConvex = 0.2;  // fixed: weight of convex angles, as in the paper
 
 constexpr double kFar = std::numeric_limits<double>::infinity();

@@ -20,6 +20,10 @@ SETTINGS = {
         "--bpvf 3 --seeds triangle",
         "--gof all --clusters 8 --components 6 --qu 12 --qc 12 --qdelta 12 --frame lcf",
         "--gof all --clusters 5 --components 4 --qu 10 --qc 11 --no-rdo --frame lcf --seeds spread",
+        "--kg 1 --preset fast --gof 20 --partition kway",
+        "--kg 1 --gof 20 --partition lloyd --clusters 6 --seeds triangle",
+        "--kg 1 --preset fast --gof 20 --partition spectral",
+        "--kg 1 --preset fast --gof 20 --partition motion",
     ],
     "main": [
         "--kg 0.3",
