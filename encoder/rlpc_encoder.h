@@ -33,9 +33,15 @@ namespace rlpc {
 enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
 
 // The three vertices that define a local coordinate frame: a triangle of the mesh, as in the
-// paper, or distant vertices of the cluster. kAuto: triangles if qu and qc are set, else
-// distant vertices.
-enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread };
+// paper, or distant vertices of the cluster. kTriangle: of the triangles at a vertex, the one
+// with the most stable frame. kFirst: the first of the input. kAuto: if qu and qc are set, the
+// cheaper of these two for each GOF, else distant vertices.
+enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread, kFirst };
+
+// How the distances that a vertex moves between frames, in the coordinates of a seed, add up:
+// themselves, or their squares. kAuto: if qu and qc are set, the cheaper of the two for each
+// GOF, else squares.
+enum class MotionMeasure : std::uint8_t { kAuto, kSquared, kPlain };
 
 // How vertices are divided into clusters. kSeeds: by their motion relative to seeds, as in the
 // RLPCA paper. The others make the parts first, and then choose a seed for each: parts of equal
@@ -59,10 +65,11 @@ struct BaselineTools {
   // qc must be set together, with Target::kNone and a number of components.
   int qu = 0;      // eigenshapes, up to 20
   int qc = 0;      // coefficients, up to 20
-  int qdelta = 0;  // seed positions, up to 24
+  int qdelta = 0;  // seed positions, up to 24; of the mean bounding box of the GOF's frames
   FrameMode frame_mode = FrameMode::kAuto;
   SeedMode seed_mode = SeedMode::kAuto;
   PartitionMethod partition = PartitionMethod::kSeeds;
+  MotionMeasure motion = MotionMeasure::kAuto;  // of kSeeds
 };
 
 // How rest positions may be coded: as the other values, in an order of their own (8.18), or

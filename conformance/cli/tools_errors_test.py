@@ -162,7 +162,8 @@ class BadInput(ToolsTest):
         for profile, other, options in (
                 ("baseline", "main", ("--clusters 2", "--qu 12", "--qc 12", "--qdelta 12",
                                       "--no-rdo", "--rdo-rate vectors", "--frame lcf",
-                                      "--seeds spread", "--partition kway")),
+                                      "--seeds spread", "--partition kway",
+                                      "--motion plain")),
                 ("main", "baseline", ("--bones 2", "--influences 2", "--prediction none",
                                       "--basis-steps cobra", "--no-geometry-weights",
                                       "--no-outer-ring", "--no-layer-steps",

@@ -151,8 +151,9 @@ EncoderSettings CaseMaker::read_settings() {
   if ((switches & 12) == 0) b.qu = b.qc = 0;
   b.frame_mode = static_cast<FrameMode>(number(3));
   const std::uint32_t clustering = tools.number(1);
-  b.seed_mode = static_cast<SeedMode>(clustering % 3);
-  b.partition = static_cast<PartitionMethod>(clustering / 3 % 5);
+  b.seed_mode = static_cast<SeedMode>(clustering % 4);
+  b.partition = static_cast<PartitionMethod>(clustering / 4 % 5);
+  b.motion = static_cast<MotionMeasure>(clustering / 20 % 3);
   MainTools m;
   m.bones = number(8);
   const std::uint32_t prediction = number(4);

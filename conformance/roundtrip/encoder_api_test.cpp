@@ -124,8 +124,25 @@ TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
        {"--qdelta", [](auto& s) { s.baseline.qdelta = 10; }},
        {"--frame", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
        {"--seeds", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }},
-       {"--partition", [](auto& s) { s.baseline.partition = PartitionMethod::kKway; }}});
+       {"--partition", [](auto& s) { s.baseline.partition = PartitionMethod::kKway; }},
+       {"--motion", [](auto& s) { s.baseline.motion = MotionMeasure::kPlain; }}});
   EXPECT_NE(error_of([](auto& s) { s.baseline.qc = 10; }).find("--qc needs --profile baseline"),
+            std::string::npos);
+}
+
+TEST(Settings, OfSeedsAreRefusedWithOtherPartitions) {
+  const auto error = [](SeedMode seeds, MotionMeasure motion) {
+    return error_of([&](auto& s) {
+      s.profile = Profile::kBaseline;
+      s.baseline.partition = PartitionMethod::kLloyd;
+      s.baseline.seed_mode = seeds;
+      s.baseline.motion = motion;
+    });
+  };
+  EXPECT_EQ(error(SeedMode::kTriangle, MotionMeasure::kAuto), "");
+  EXPECT_NE(error(SeedMode::kFirst, MotionMeasure::kAuto).find("--seeds first needs"),
+            std::string::npos);
+  EXPECT_NE(error(SeedMode::kAuto, MotionMeasure::kSquared).find("--motion needs"),
             std::string::npos);
 }
 

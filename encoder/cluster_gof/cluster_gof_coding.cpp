@@ -23,13 +23,37 @@ constexpr double kMinEnergy = 1.2;
 // multiple of it at the expense of others.
 constexpr std::size_t kShare = 4;
 
+// The largest extent of the bounding box of a frame, in the mean of all frames.
+double mean_extent(const GofFrames& frames) {
+  double sum = 0.0;
+  for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      double low = frames.at(f, 0)[c];
+      double high = low;
+      for (std::uint32_t v = 1; v < frames.num_vertices; ++v) {
+        low = std::min(low, frames.at(f, v)[c]);
+        high = std::max(high, frames.at(f, v)[c]);
+      }
+      largest = std::max(largest, high - low);
+    }
+    sum += largest;
+  }
+  return sum / frames.num_frames;
+}
+
 }  // namespace
 
 std::unique_ptr<ClusterMaker> ClusterGofCoding::cluster_maker() const {
   const int position_bits = mesh_.header.position_bits;
   const PartitionMethod method = settings_.baseline.partition;
   if (method == PartitionMethod::kSeeds) {
-    return std::make_unique<MotionClusters>(frames_, mesh_.triangles, position_bits);
+    const SeedRules rules{settings_.baseline.seed_mode == SeedMode::kFirst,
+                          settings_.baseline.motion == MotionMeasure::kPlain
+                              ? DistanceSum::kPlain
+                              : DistanceSum::kSquared};
+    return std::make_unique<MotionClusters>(
+        frames_, rules.first ? mesh_.input_triangles : mesh_.triangles, position_bits, rules);
   }
   return std::make_unique<PartitionClusters>(method, frames_, mesh_.triangles, position_bits);
 }
@@ -47,8 +71,7 @@ ClusterAnalysisSettings ClusterGofCoding::analysis_settings(double step, bool wo
   a.world = world;
   a.max_components = kLevels.back().max_components;
   const double seed_step =
-      tools.qdelta > 0 ? exact_exp2(std::max(mesh_.header.position_bits - tools.qdelta, 0))
-                       : step * kSeedStep;
+      tools.qdelta > 0 ? mean_extent(frames_) / exact_exp2(tools.qdelta) : step * kSeedStep;
   a.seed_step = static_cast<std::uint32_t>(
       std::clamp(std::floor(seed_step), 1.0, static_cast<double>(kMaxSeedStep)));
   if (settings_.components > 0) {

@@ -27,6 +27,7 @@ class ClusterGofCoding {
                    const GofFrames& frames)
       : mesh_(mesh), settings_(settings), frames_(frames) {}
 
+  const SequenceMesh& mesh() const { return mesh_; }
   const EncoderSettings& settings() const { return settings_; }
   const GofFrames& frames() const { return frames_; }
   // Clusters of the frames, made as the settings say.

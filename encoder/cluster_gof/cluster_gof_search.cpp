@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "common/parallel/for_each.h"
+#include "encoder/cluster_gof/variant_search.h"
 #include "encoder/gof/count_at.h"
 #include "encoder/gof/lagrangian.h"
 
@@ -31,6 +33,10 @@ class ClusterSearch {
     if (is_free && coding_.settings().preset == Preset::kMedium &&
         coding_.settings().profile != Profile::kBaseline) {
       return better_extreme();
+    }
+    if (coding_.settings().preset != Preset::kFast && has_variants(coding_.settings())) {
+      FoundVariant found = search_variants(coding_, step_, choices_of_paper());
+      return {found.choice, std::move(found.clustering)};
     }
     const ClusterChoice choice = choose();
     return {choice, coding_.cluster(*maker_, choice.clusters)};
@@ -105,6 +111,13 @@ class ClusterSearch {
     const ClusterChoice local = best_of(false);
     const ClusterChoice world = best_of(true);
     return cost(world) < cost(local) ? world : local;
+  }
+
+  // What the variants of the paper's method are tried with.
+  std::vector<ClusterChoice> choices_of_paper() {
+    const BaselineTools& tools = coding_.settings().baseline;
+    if (tools.clusters == 0 || tools.frame_mode != FrameMode::kAuto) return {choose()};
+    return {{tools.clusters, false}, {tools.clusters, true}};
   }
 
   const ClusterGofCoding& coding_;

@@ -17,9 +17,9 @@ std::vector<std::uint32_t> vertices_of(const Clustering& clustering, std::size_t
 }
 
 MotionClusters::MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
-                               int position_bits)
+                               int position_bits, const SeedRules& rules)
     : frames_(frames),
-      choice_(frames, triangles, position_bits),
+      choice_(frames, triangles, position_bits, rules),
       distance_(frames.num_vertices) {
   const std::uint32_t n = frames.num_vertices;
   std::array<double, 3> centre{};

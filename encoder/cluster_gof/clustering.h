@@ -50,7 +50,7 @@ class MotionClusters : public ClusterMaker {
  public:
   // Keeps references to the frames and triangles.
   MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
-                 int position_bits);
+                 int position_bits, const SeedRules& rules = {});
 
   // Assigns each vertex to that of the first `count` seeds in whose local coordinate frame it
   // moves least over the GOF; ties go to the lower index. There may be fewer seeds than

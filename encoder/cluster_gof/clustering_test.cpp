@@ -119,6 +119,58 @@ TEST(MotionClusters, SeedsAreMeshTrianglesRotatedToTheirLongestEdge) {
   }
 }
 
+TEST(MotionClusters, SeedsMayBeTheFirstTriangles) {
+  Scene scene = two_boxes();
+  SeedRules rules;
+  rules.first = true;
+  for (int i = 0; i < 2; ++i) {
+    MotionClusters motion(scene.frames, scene.triangles, kPositionBits, rules);
+    const Clustering clustering = motion.clusters(2);
+    ASSERT_EQ(clustering.seeds.size(), 2U);
+    // The farthest vertices are met by these triangles first, whichever comes first.
+    for (const Seed& seed : clustering.seeds) {
+      const auto is_seed = [&](const Triangle& t) { return t == seed; };
+      const auto at = std::find_if(scene.triangles.begin(), scene.triangles.end(), is_seed);
+      ASSERT_NE(at, scene.triangles.end()) << "turned";
+      const auto earlier_with = [&](std::uint32_t v) {
+        return std::any_of(scene.triangles.begin(), at, [&](const Triangle& t) {
+          return std::find(t.begin(), t.end(), v) != t.end();
+        });
+      };
+      EXPECT_FALSE(std::all_of(seed.begin(), seed.end(), earlier_with));
+    }
+    std::reverse(scene.triangles.begin(), scene.triangles.end());
+  }
+}
+
+TEST(MotionClusters, PlainSumsForgiveOneGreatMotion) {
+  // Point 6 keeps to the first triangle, but for one jump; it makes this with the second
+  // triangle, against which it moves a little in every frame.
+  Scene scene;
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}, {0, 1, 6}};
+  constexpr int kFrames = 40;
+  for (int f = 0; f < kFrames; ++f) {
+    const double jump = f >= kFrames / 2 ? 1500.0 : 0.0;
+    const double away = 40.0 * f + jump;
+    scene.add_frame({{0, 0, 0},
+                     {1000, 0, 0},
+                     {0, 1000, 0},
+                     {away, 0, 9000},
+                     {away + 1000, 0, 9000},
+                     {away, 1000, 9000},
+                     {jump, 0, 2000}});
+  }
+  for (const DistanceSum sum : {DistanceSum::kSquared, DistanceSum::kPlain}) {
+    SeedRules rules;
+    rules.sum = sum;
+    MotionClusters motion(scene.frames, scene.triangles, kPositionBits, rules);
+    const Clustering clustering = motion.clusters(2);
+    ASSERT_EQ(clustering.seeds.size(), 2U);
+    const std::uint16_t first = clustering.cluster_of_vertex[0];
+    EXPECT_EQ(clustering.cluster_of_vertex[6] == first, sum == DistanceSum::kPlain);
+  }
+}
+
 TEST(MotionClusters, SeedsOfAPointCloudAreNearbyPoints) {
   Scene scene = two_boxes();
   scene.triangles.clear();

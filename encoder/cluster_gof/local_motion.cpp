@@ -1,5 +1,7 @@
 #include "encoder/cluster_gof/local_motion.h"
 
+#include <cmath>
+
 #include "encoder/math/widest.h"
 
 namespace rlpc {
@@ -11,19 +13,42 @@ LocalFrame::LocalFrame(const Lcf& lcf) {
   }
 }
 
-RLPC_WIDEST void add_local_motion(const LocalFrame& frame, std::size_t num_vertices,
-                                  const double* xyz, double* before, double* motion) noexcept {
+namespace {
+
+template <DistanceSum kSum>
+[[gnu::always_inline]] inline void add(const LocalFrame& frame, std::size_t num_vertices,
+                                       const double* xyz, double* before,
+                                       double* motion) noexcept {
   const LocalFrame f = frame;  // a copy that the writes below cannot alias
   for (std::size_t v = 0; v < num_vertices; ++v) {
     const std::array<double, 3> q = f.to_local(xyz + 3 * v);
     const double dx = q[0] - before[3 * v];
     const double dy = q[1] - before[3 * v + 1];
     const double dz = q[2] - before[3 * v + 2];
-    motion[v] += dx * dx + dy * dy + dz * dz;
+    const double squared = dx * dx + dy * dy + dz * dz;
+    motion[v] += kSum == DistanceSum::kPlain ? std::sqrt(squared) : squared;
     before[3 * v] = q[0];
     before[3 * v + 1] = q[1];
     before[3 * v + 2] = q[2];
   }
+}
+
+RLPC_WIDEST void add_squared(const LocalFrame& frame, std::size_t num_vertices,
+                             const double* xyz, double* before, double* motion) noexcept {
+  add<DistanceSum::kSquared>(frame, num_vertices, xyz, before, motion);
+}
+
+RLPC_WIDEST void add_plain(const LocalFrame& frame, std::size_t num_vertices, const double* xyz,
+                           double* before, double* motion) noexcept {
+  add<DistanceSum::kPlain>(frame, num_vertices, xyz, before, motion);
+}
+
+}  // namespace
+
+void add_local_motion(DistanceSum sum, const LocalFrame& frame, std::size_t num_vertices,
+                      const double* xyz, double* before, double* motion) noexcept {
+  (sum == DistanceSum::kPlain ? add_plain : add_squared)(frame, num_vertices, xyz, before,
+                                                         motion);
 }
 
 }  // namespace rlpc

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "common/cluster_gof/recon/lcf.h"
 
@@ -29,13 +30,15 @@ struct LocalFrame {
   std::array<std::array<double, 3>, 3> axis{};  // in units of kAxisUnit
 };
 
-// Adds to motion[v] the squared distance between the local coordinates of vertex v and
-// `before`, then replaces `before` by the new local coordinates.
+enum class DistanceSum : std::uint8_t { kSquared, kPlain };
+
+// Adds to motion[v] the distance, squared or plain, between the local coordinates of vertex v
+// and `before`, then replaces `before` by the new local coordinates.
 //
 //   xyz     [num_vertices][3]  grid units
 //   before  [num_vertices][3]  local coordinates in the previous frame; updated
-//   motion  [num_vertices]     squared grid units; accumulated
-void add_local_motion(const LocalFrame& frame, std::size_t num_vertices, const double* xyz,
-                      double* before, double* motion) noexcept;
+//   motion  [num_vertices]     squared or plain grid units; accumulated
+void add_local_motion(DistanceSum sum, const LocalFrame& frame, std::size_t num_vertices,
+                      const double* xyz, double* before, double* motion) noexcept;
 
 }  // namespace rlpc

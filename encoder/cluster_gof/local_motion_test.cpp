@@ -57,7 +57,7 @@ TEST(LocalFrame, IsInvariantUnderRigidMotion) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(local[k], again[k], 1e-6);
 }
 
-TEST(AddLocalMotion, SumsSquaredDistancesAndKeepsTheLastPositions) {
+void expect_sums(DistanceSum sum) {
   std::mt19937 random(3);
   constexpr std::size_t kVertices = 37;  // several full SIMD vectors and a remainder
   std::vector<double> motion(kVertices);
@@ -69,11 +69,12 @@ TEST(AddLocalMotion, SumsSquaredDistancesAndKeepsTheLastPositions) {
         make_lcf(random_position(random), random_position(random), random_position(random)));
     std::vector<double> xyz(3 * kVertices);
     for (double& x : xyz) x = 0.25 * random_position(random)[0];
-    add_local_motion(frame, kVertices, xyz.data(), before.data(), motion.data());
+    add_local_motion(sum, frame, kVertices, xyz.data(), before.data(), motion.data());
     for (std::size_t v = 0; v < kVertices; ++v) {
       const Point q = frame.to_local(&xyz[3 * v]);
-      for (std::size_t c = 0; c < 3; ++c)
-        expected[v] += (q[c] - last[v][c]) * (q[c] - last[v][c]);
+      double squared = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) squared += (q[c] - last[v][c]) * (q[c] - last[v][c]);
+      expected[v] += sum == DistanceSum::kSquared ? squared : std::sqrt(squared);
       last[v] = q;
     }
   }
@@ -81,6 +82,11 @@ TEST(AddLocalMotion, SumsSquaredDistancesAndKeepsTheLastPositions) {
     EXPECT_DOUBLE_EQ(motion[v], expected[v]) << v;
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(before[3 * v + c], last[v][c]);
   }
+}
+
+TEST(AddLocalMotion, SumsDistancesAndKeepsTheLastPositions) {
+  expect_sums(DistanceSum::kSquared);
+  expect_sums(DistanceSum::kPlain);
 }
 
 }  // namespace

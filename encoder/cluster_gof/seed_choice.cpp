@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/cluster_gof/recon/lcf.h"
-#include "encoder/cluster_gof/local_motion.h"
 
 namespace rlpc {
 namespace {
@@ -54,10 +53,11 @@ Seed rotate_to_longest_edge(const GofFrames& frames, const Triangle& t) {
 }  // namespace
 
 SeedChoice::SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles,
-                       int position_bits)
+                       int position_bits, const SeedRules& rules)
     : frames_(frames),
       triangles_(triangles),
       position_bits_(position_bits),
+      rules_(rules),
       incident_(incident_triangles(frames.num_vertices, triangles)) {}
 
 // The candidate seed triangles at a vertex.
@@ -82,6 +82,7 @@ std::optional<Seed> SeedChoice::triangle_at(std::uint32_t v, const Suits& suits)
       best_quality = of_triangle;
       best = t;
     }
+    if (rules_.first && best_quality > 0.0) return best;
   }
   if (best_quality == 0.0) return std::nullopt;
   return rotate_to_longest_edge(frames_, best);
@@ -118,7 +119,7 @@ std::vector<double> SeedChoice::motion_in(const Seed& seed) const {
       p[k] = nearest_position(frames_.at(f, seed[k]), position_bits_);
     }
     const LocalFrame local(make_lcf(p[0], p[1], p[2]));
-    add_local_motion(local, n, frames_.at(f, 0), before.data(), motion.data());
+    add_local_motion(rules_.sum, local, n, frames_.at(f, 0), before.data(), motion.data());
     if (f == 0) motion.assign(n, 0.0);  // there is no frame before the first
   }
   return motion;

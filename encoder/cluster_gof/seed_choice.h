@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
+#include "encoder/cluster_gof/local_motion.h"
 #include "encoder/gof/gof_frames.h"
 
 namespace rlpc {
@@ -22,16 +23,24 @@ inline double distance2(const double* a, const double* b) {
   return sum;
 }
 
+// Which seeds SeedChoice makes, and how it measures motion.
+struct SeedRules {
+  bool first = false;  // the first triangle at a vertex as it is, instead of the best
+  DistanceSum sum = DistanceSum::kSquared;
+};
+
 class SeedChoice {
  public:
   using Suits = std::function<bool(const Triangle&)>;
 
   // Keeps references to the frames and triangles.
-  SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles, int position_bits);
+  SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles, int position_bits,
+             const SeedRules& rules = {});
 
   // The best triangle at a vertex that is degenerate in no frame, turned so that noise rotates
-  // its frame least; in a point cloud, of the vertex and two of its nearest points. suits: only
-  // such triangles; none: all.
+  // its frame least; in a point cloud, of the vertex and two of its nearest points. With
+  // SeedRules::first, the first that is degenerate in no frame. suits: only such triangles;
+  // none: all.
   std::optional<Seed> triangle_at(std::uint32_t v, const Suits& suits = {}) const;
   // How stable a local coordinate frame on the seed is: the minimum over the GOF of the square
   // of its doubled area; 0 if it is degenerate in any frame. Stops early once the minimum is at
@@ -56,6 +65,7 @@ class SeedChoice {
   const GofFrames& frames_;
   std::span<const Triangle> triangles_;
   int position_bits_;
+  SeedRules rules_;
   std::vector<std::vector<std::uint32_t>> incident_;  // triangles at each vertex
 };
 

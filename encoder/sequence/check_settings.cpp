@@ -18,8 +18,8 @@ struct Parameter {
 // The structured binding names all members: a new member does not compile until it is added
 // here.
 std::vector<Parameter> parameters(const BaselineTools& tools) {
-  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode,
-               partition] = tools;
+  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode, partition,
+               motion] = tools;
   const BaselineTools defaults;
   return {{"--clusters", clusters != defaults.clusters},
           {"--no-rdo", rdo != defaults.rdo},
@@ -29,7 +29,8 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
           {"--qdelta", qdelta != defaults.qdelta},
           {"--frame", frame_mode != defaults.frame_mode},
           {"--seeds", seed_mode != defaults.seed_mode},
-          {"--partition", partition != defaults.partition}};
+          {"--partition", partition != defaults.partition},
+          {"--motion", motion != defaults.motion}};
 }
 
 std::vector<Parameter> parameters(const MainTools& tools) {
@@ -128,6 +129,12 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
   if ((!b.rdo || b.rate_in_vectors) && s.components == 0) {
     return InputError{std::string(b.rdo ? "--rdo-rate" : "--no-rdo") +
                       " needs a number of components per cluster (--components)"};
+  }
+  const bool needs_seeds = b.motion != MotionMeasure::kAuto || b.seed_mode == SeedMode::kFirst;
+  if (needs_seeds && b.partition != PartitionMethod::kSeeds) {
+    return InputError{
+        std::string(b.motion != MotionMeasure::kAuto ? "--motion" : "--seeds first") +
+        " needs clusters of seeds: leave it out, or use --partition seeds"};
   }
   if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
     return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};

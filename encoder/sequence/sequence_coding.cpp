@@ -24,6 +24,18 @@ constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
 // trajectories for each frame.
 constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
 
+// The triangles of the input by the indices of decoded vertices.
+std::vector<Triangle> renumber(std::span<const Triangle> triangles,
+                               const std::vector<std::uint32_t>& input_vertex) {
+  std::vector<std::uint32_t> decoded_vertex(input_vertex.size());
+  for (std::uint32_t v = 0; v < input_vertex.size(); ++v) decoded_vertex[input_vertex[v]] = v;
+  std::vector<Triangle> renumbered(triangles.begin(), triangles.end());
+  for (Triangle& t : renumbered) {
+    for (std::uint32_t& v : t) v = decoded_vertex[v];
+  }
+  return renumbered;
+}
+
 }  // namespace
 
 std::uint32_t longest_gof(const EncoderSettings& settings) {
@@ -85,7 +97,10 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
       settings_(settings),
       connectivity_(write_connectivity(header.num_vertices, triangles)),
       topology_(make_topology(header.num_vertices, connectivity_.triangles)),
-      mesh_{header_, topology_, connectivity_.triangles},
+      input_triangles_(settings.profile == Profile::kBaseline
+                           ? renumber(triangles, connectivity_.input_vertex)
+                           : std::vector<Triangle>{}),
+      mesh_{header_, topology_, connectivity_.triangles, input_triangles_},
       kinds_(make_gof_kinds(mesh_, settings_)),
       last_resort_(make_last_resort(mesh_, settings_)) {}
 

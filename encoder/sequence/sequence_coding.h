@@ -104,6 +104,7 @@ class SequenceCoding {
   const EncoderSettings& settings_;
   ConnectivityCode connectivity_;
   Topology topology_;
+  std::vector<Triangle> input_triangles_;  // SequenceMesh::input_triangles
   SequenceMesh mesh_;
   GofKinds kinds_;
   std::unique_ptr<GofEncoder> last_resort_;

@@ -247,7 +247,10 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
              "Clusters per GOF, N of the paper (default: chosen)");
   add_number("--qu", t.qu, 2, 20, "Bits of eigenshapes; with --qc, instead of a quality");
   add_number("--qc", t.qc, 2, 20, "Bits of coefficients");
-  add_number("--qdelta", t.qdelta, 2, 24, "Bits of seed positions (default: from the quality)");
+  add_number(
+      "--qdelta", t.qdelta, 2, 24,
+      "Bits of seed positions, for the mean bounding box of the frames (default: from the "
+      "quality)");
   add_off_switch(app, "--no-rdo", t.rdo, "The same number of components in every cluster")
       ->group(baseline);
   add_choice<bool>(app, "--rdo-rate", t.rate_in_vectors, {{"bits", false}, {"vectors", true}},
@@ -261,10 +264,11 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(baseline);
   add_choice<SeedMode>(app, "--seeds", t.seed_mode,
                        {{"auto", SeedMode::kAuto},
+                        {"first", SeedMode::kFirst},
                         {"triangle", SeedMode::kTriangle},
                         {"spread", SeedMode::kSpread}},
-                       "Vertices that carry local coordinate frames: auto (default), triangle, "
-                       "spread")
+                       "Vertices that carry local coordinate frames: auto (default), first or "
+                       "triangle (the first or the most stable triangle at a vertex), spread")
       ->group(baseline);
   add_choice<PartitionMethod>(
       app, "--partition", t.partition,
@@ -275,6 +279,14 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
        {"motion", PartitionMethod::kMotion}},
       "What makes clusters: seeds (motion relative to them, default), kway (few edges between "
       "equal parts), lloyd (near vertices), spectral (concave creases), motion (affine)")
+      ->group(baseline);
+  add_choice<MotionMeasure>(
+      app, "--motion", t.motion,
+      {{"auto", MotionMeasure::kAuto},
+       {"squared", MotionMeasure::kSquared},
+       {"plain", MotionMeasure::kPlain}},
+      "Of motion relative to seeds, the sum of: squared or plain distances "
+      "(default: squared; with --qu, the cheaper)")
       ->group(baseline);
 }
 
