@@ -6,7 +6,7 @@
 #   judge    the judge of decoders and encoders
 #   suite    the conformance streams
 #   checks   rules of the project, its headers, its installed package
-#   figures  what scripts/compare and scripts/bench write
+#   figures  what scripts/compare, scripts/reproduce and scripts/bench write
 #   browser  pages in Chromium
 #
 # More labels: `slow` for tests that take more than three seconds of processor time, which

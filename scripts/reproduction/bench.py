@@ -1,0 +1,87 @@
+"""Encodes, decodes and compares; keeps each result."""
+
+import csv
+import dataclasses
+import json
+import subprocess
+import time
+
+
+class Failure(Exception):
+    """A program failed; the text says how."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    method: str
+    clusters: int
+    components: int
+    bpvf: float
+    kg: float
+    encode_seconds: float
+    decode_seconds: float
+
+
+class Bench:
+    """`sequence`: measure.Sequence. `folder`: for streams, which are removed."""
+
+    def __init__(self, tools, sequence, folder, say=print):
+        self.tools, self.sequence, self.folder, self.say = tools, sequence, folder, say
+        self._runs = {}
+
+    def call(self, tool, *arguments):
+        """(standard output, seconds)"""
+        start = time.monotonic()
+        command = [self.tools / tool, *map(str, arguments)]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise Failure(f"{command[0]}: {error.strerror}; leave out --bin to have the tools "
+                          "built") from error
+        # rlpcenc, 2: written, but the target was out of reach.
+        if done.returncode not in ((0, 2) if tool == "rlpcenc" else (0,)):
+            raise Failure(f"{tool} failed: {done.stderr.strip()}")
+        return done.stdout, time.monotonic() - start
+
+    def encode(self, settings, use):
+        """use(stream, order map, seconds) of a stream with these settings."""
+        stream, order = self.folder / "stream.rlpc", self.folder / "stream.order"
+        try:
+            _, seconds = self.call("rlpcenc", self.sequence.mesh, "--points", self.sequence.points,
+                                   "-o", stream, "--gof", "all", "--order-map", order, *settings)
+            return use(stream, order, seconds)
+        finally:
+            stream.unlink(missing_ok=True)
+            order.unlink(missing_ok=True)
+
+    def measure(self, stream, order, *options):
+        out, _ = self.call("rlpccmp", self.sequence.mesh, "--points-a", self.sequence.points,
+                           stream, "--order-map", order, "--json", *options)
+        return json.loads(out)
+
+    def run(self, method, settings, clusters=0, components=0):
+        """Clusters and components name the run; the settings must contain them."""
+        key = (method, *map(str, settings))
+        if key not in self._runs:
+            def use(stream, order, encode_seconds):
+                _, decode_seconds = self.call("rlpcdec", stream, "--verify")
+                found = self.measure(stream, order)
+                return Run(method, clusters, components, found["bpvf"],
+                           found["metrics"]["kg_error_percent"], encode_seconds, decode_seconds)
+            run = self._runs[key] = self.encode(settings, use)
+            what = f"N = {clusters:2d}, L = {components:3d}" if clusters else settings[-1] + " %"
+            self.say(f"{method:7}  {what:15}  {run.bpvf:7.3f} bpvf  KG {run.kg:.4f} %")
+        return self._runs[key]
+
+    def frame_errors(self, settings):
+        """RMS error of each frame, in units."""
+        path = self.folder / "frames.tmp.csv"
+
+        def use(stream, order, _):
+            self.measure(stream, order, "--csv", path)
+            with open(path, newline="", encoding="utf-8") as file:
+                return [float(row["rms_error"]) for row in csv.DictReader(file)]
+        try:
+            return self.encode(settings, use)
+        finally:
+            path.unlink(missing_ok=True)
