@@ -84,6 +84,16 @@ def best_count(runs_of_count):
     return f"Of {len(errors)} errors that all numbers of clusters reach, fewest bits: {found}."
 
 
+def at_published_errors(claim, runs, points):
+    """points: (kg, bpvf) of the paper; those beyond the runs do not count."""
+    least = min(run.kg for run in runs)
+    most = max(run.kg for run in runs)
+    ratios = [(kg, arithmetic.size_at(curve(runs), kg) / bpvf) for kg, bpvf in points
+              if least <= kg <= most]
+    more = ", ".join(f"KG {kg:g} %: {percent(ratio)} bits" for kg, ratio in ratios)
+    return counted(claim, sum(ratio < 1 for _, ratio in ratios), len(ratios), more)
+
+
 def published(rows):
     """rows: (published row, run at its N and L, run of Main, run of High)."""
     items = []

@@ -92,6 +92,20 @@ class Claims(unittest.TestCase):
                          "N = 20 at 0.")
 
 
+    def test_at_published_errors(self):
+        self.assertEqual(claims.at_published_errors("x", runs(*self.WORSE),
+                                                    [(1.0, 4.0), (2.0, 0.5), (0.1, 1.0)]),
+                         "Does not hold: x (1 of 2; KG 1 %: -50 % bits, KG 2 %: +100 % bits).")
+
+    def test_published(self):
+        row = published.TABLE[3]
+        run = Run("RLPCA", 30, 20, row.bpvf / 2, 2 * row.kg, 0.0, 0.0)
+        less = Run("Main", 0, 0, run.bpvf / 4, run.kg, 0.0, 0.0)
+        self.assertEqual(claims.published([(row, run, less, run)]), [
+            "N = 30, L = 20: -50 % bits and +100 % error against the published RLPCA; -54 % and "
+            "+60 % against the published CPCA. At our error, Main takes -75 % and High +0 % bits."])
+
+
 class Paths(unittest.TestCase):
     SEED = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (0.5, 3.0, 0.0))
 
