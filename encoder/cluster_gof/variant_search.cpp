@@ -1,7 +1,7 @@
 #include "encoder/cluster_gof/variant_search.h"
 
-#include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,7 +33,13 @@ std::vector<BaselineTools> variants_of(const BaselineTools& tools) {
   return variants;
 }
 
+// The paper as it reads: one of the incident triangles, and distances.
+bool is_literal(const BaselineTools& tools) {
+  return tools.seed_mode == SeedMode::kFirst && tools.motion == MotionMeasure::kPlain;
+}
+
 struct Trial {
+  ClusterChoice choice{};
   Clustering clustering;
   double error = 0.0;  // squared grid steps
   double bits = 0.0;
@@ -42,8 +48,7 @@ struct Trial {
 Trial encode_with(const ClusterGofCoding& coding, const EncoderSettings& settings, double step,
                   const ClusterChoice& choice) {
   const ClusterGofCoding variant(coding.mesh(), settings, coding.frames());
-  Trial trial;
-  trial.clustering = variant.cluster(*variant.cluster_maker(), choice.clusters);
+  Trial trial{choice, variant.cluster(*variant.cluster_maker(), choice.clusters)};
   const EncodedGof encoded =
       variant.encode(step, variant.analyse(step, choice.world, trial.clustering));
   trial.error = squared_error(coding.frames(), encoded.frame);
@@ -72,22 +77,27 @@ bool has_variants(const EncoderSettings& settings) {
 
 FoundVariant search_variants(const ClusterGofCoding& coding, double step,
                              std::span<const ClusterChoice> choices) {
-  FoundVariant found;
-  double least = std::numeric_limits<double>::infinity();
-  double worth = -1.0;  // of a bit; below 0: not known
-  for (const BaselineTools& tools : variants_of(coding.settings().baseline)) {
-    EncoderSettings settings = coding.settings();
-    settings.baseline = tools;
-    for (const ClusterChoice& choice : choices) {
-      Trial trial = encode_with(coding, settings, step, choice);
-      if (worth < 0.0) worth = worth_of_bit(coding, settings, step, choice, trial);
-      const double cost = trial.error + worth * trial.bits;
-      if (cost >= least) continue;
-      least = cost;
-      found = {choice, std::move(trial.clustering)};
+  std::optional<Trial> best;
+  double worth = 0.0;  // of a bit
+  for (const ClusterChoice& choice : choices) {
+    std::vector<Trial> trials;
+    double most = std::numeric_limits<double>::infinity();
+    for (const BaselineTools& tools : variants_of(coding.settings().baseline)) {
+      EncoderSettings settings = coding.settings();
+      settings.baseline = tools;
+      trials.push_back(encode_with(coding, settings, step, choice));
+      if (is_literal(tools)) most = trials.back().error;
+      if (best || trials.size() > 1) continue;
+      worth = worth_of_bit(coding, settings, step, choice, trials.back());
+    }
+    for (Trial& trial : trials) {
+      if (trial.error > most) continue;
+      const bool is_better =
+          !best || trial.error + worth * trial.bits < best->error + worth * best->bits;
+      if (is_better) best = std::move(trial);
     }
   }
-  return found;
+  return {best->choice, std::move(best->clustering)};
 }
 
 }  // namespace rlpc
