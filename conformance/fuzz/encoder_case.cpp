@@ -153,7 +153,10 @@ EncoderSettings CaseMaker::read_settings() {
   const std::uint32_t clustering = tools.number(1);
   b.seed_mode = static_cast<SeedMode>(clustering % 4);
   b.partition = static_cast<PartitionMethod>(clustering / 4 % 5);
-  b.motion = static_cast<MotionMeasure>(clustering / 20 % 3);
+  // Refused with other partitions, as is SeedMode::kFirst.
+  if (b.partition == PartitionMethod::kSeeds) {
+    b.motion = static_cast<MotionMeasure>(clustering / 20 % 3);
+  }
   MainTools m;
   m.bones = number(8);
   const std::uint32_t prediction = number(4);

@@ -1,7 +1,8 @@
 #include "encoder/cluster_gof/variant_search.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -77,26 +78,26 @@ bool has_variants(const EncoderSettings& settings) {
 
 FoundVariant search_variants(const ClusterGofCoding& coding, double step,
                              std::span<const ClusterChoice> choices) {
-  std::optional<Trial> best;
+  std::vector<Trial> trials;
+  double most = std::numeric_limits<double>::infinity();
   double worth = 0.0;  // of a bit
-  for (const ClusterChoice& choice : choices) {
-    std::vector<Trial> trials;
-    double most = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < choices.size(); ++i) {
     for (const BaselineTools& tools : variants_of(coding.settings().baseline)) {
       EncoderSettings settings = coding.settings();
       settings.baseline = tools;
-      trials.push_back(encode_with(coding, settings, step, choice));
-      if (is_literal(tools)) most = trials.back().error;
-      if (best || trials.size() > 1) continue;
-      worth = worth_of_bit(coding, settings, step, choice, trials.back());
-    }
-    for (Trial& trial : trials) {
-      if (trial.error > most) continue;
-      const bool is_better =
-          !best || trial.error + worth * trial.bits < best->error + worth * best->bits;
-      if (is_better) best = std::move(trial);
+      trials.push_back(encode_with(coding, settings, step, choices[i]));
+      if (i == 0 && is_literal(tools)) most = trials.back().error;
+      if (trials.size() > 1) continue;
+      worth = worth_of_bit(coding, settings, step, choices[i], trials.back());
     }
   }
+  const auto cost = [&](const Trial& trial) {
+    return trial.error > most ? std::numeric_limits<double>::infinity()
+                              : trial.error + worth * trial.bits;
+  };
+  const auto best =
+      std::min_element(trials.begin(), trials.end(),
+                       [&](const Trial& a, const Trial& b) { return cost(a) < cost(b); });
   return {best->choice, std::move(best->clustering)};
 }
 

@@ -118,6 +118,29 @@ TEST(SearchVariants, FindsOneThatNoOtherBeatsInErrorAndBitsNorTheLiteralOneInErr
   }
 }
 
+TEST(SearchVariants, WorldCoordinatesAreNoExcuseForMoreError) {
+  const Sheet sheet;
+  const SequenceMesh mesh = sheet.mesh();
+  const EncoderSettings settings = paper_settings();
+  EncoderSettings literal = settings;
+  literal.baseline.seed_mode = SeedMode::kFirst;
+  literal.baseline.motion = MotionMeasure::kPlain;
+  const ClusterGofCoding coding(mesh, literal, sheet.frames);
+  const auto error_of = [&](const ClusterChoice& choice, const Clustering& clustering) {
+    const EncodedGof encoded =
+        coding.encode(kStep, coding.analyse(kStep, choice.world, clustering));
+    return squared_error(sheet.frames, encoded.frame);
+  };
+  const std::uint32_t count = settings.baseline.clusters;
+  const Clustering as_it_reads = coding.cluster(*coding.cluster_maker(), count);
+  for (const bool world_first : {false, true}) {
+    const std::array<ClusterChoice, 2> choices{{{count, world_first}, {count, !world_first}}};
+    const FoundVariant found =
+        search_variants(ClusterGofCoding(mesh, settings, sheet.frames), kStep, choices);
+    EXPECT_LE(error_of(found.choice, found.clustering), error_of(choices[0], as_it_reads));
+  }
+}
+
 TEST(SearchVariants, IsForTheQuantisersOfThePaper) {
   EncoderSettings settings = paper_settings();
   settings.baseline.seed_mode = SeedMode::kTriangle;
