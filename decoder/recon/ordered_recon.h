@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/recon/frame_recon.h"

@@ -67,9 +67,8 @@ class FrameRecon {
   std::int64_t step(std::uint32_t v) const {
     return std::int64_t{settings_.step} * settings_.layer_step[mesh_.layer_of(v)];
   }
-  std::uint32_t frame() const {
-    return frame_;
-  }  // number of the frame in progress, or of the next one
+  // Number of the frame in progress, or of the next one.
+  std::uint32_t frame() const { return frame_; }
 
  private:
   void start_motion();
@@ -90,7 +89,7 @@ class FrameRecon {
   std::uint32_t frame_ = 0;
   // [num_vertices][3], 1/16 grid units:
   std::vector<std::int32_t> values_;
-  std::vector<std::int32_t> before_;     // the frame before; the first one
+  std::vector<std::int32_t> before_;     // the frame before this one
   std::vector<std::int32_t> reference_;  // Reference
   std::vector<std::int32_t> motion_;     // values_ - reference_
   // From the second frame on:
