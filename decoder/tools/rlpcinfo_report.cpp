@@ -25,17 +25,12 @@ template <class Summary>
 void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
   for (const SliceEntry& slice : summary.slices) {
-    if (summary.figure("num_frame_units") > 0) {
-      slices.push_back({{"frame_idx", slice.frame_idx},
-                        {"layer_group_idx", slice.layer_group_idx},
-                        {"bytes", slice.bytes}});
-      continue;
-    }
     slices.push_back({{"component_group_idx", slice.component_group_idx},
                       {"layer_group_idx", slice.layer_group_idx},
                       {"temporal_layer_idx", slice.temporal_layer_idx},
                       {"num_trajectories", slice.num_trajectories},
                       {"bytes", slice.bytes}});
+    if (summary.figure("num_frame_units") > 0) slices.back()["frame_idx"] = slice.frame_idx;
   }
   nlohmann::ordered_json components = nlohmann::ordered_json::array();
   for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
