@@ -47,7 +47,7 @@ struct FrameSettings {
   int prime_log2 = 0;
   bool frame_hash_flag = false;
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
-  std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to 16
+  std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
 
   bool operator==(const FrameSettings&) const = default;
 };

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/testing/grid.h"
+
 namespace rlpc {
 namespace {
 
@@ -50,19 +52,8 @@ Mesh bipyramid(std::uint32_t n) {
   add_bipyramid(mesh.triangles, 2, n);
   return mesh;
 }
-// closed: wraps in both directions, a torus
 Mesh grid(std::uint32_t width, std::uint32_t height, bool closed) {
-  Mesh mesh{width * height, {}};
-  for (std::uint32_t y = 0; y < height - (closed ? 0 : 1); ++y) {
-    for (std::uint32_t x = 0; x < width - (closed ? 0 : 1); ++x) {
-      const std::uint32_t row = y * width;
-      const std::uint32_t above = (y + 1) % height * width;
-      const std::uint32_t right = (x + 1) % width;
-      mesh.triangles.push_back({row + x, row + right, above + right});
-      mesh.triangles.push_back({row + x, above + right, above + x});
-    }
-  }
-  return mesh;
+  return {width * height, grid_triangles(width, height, closed)};
 }
 VertexLayers make_layers(const Mesh& mesh) {
   return rlpc::make_layers(mesh.num_vertices, mesh.triangles);

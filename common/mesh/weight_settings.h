@@ -5,6 +5,8 @@
 
 namespace rlpc {
 
+inline constexpr int kMaxLayerStep = 16;  // sixteenths of the step of a factor or of a frame
+
 struct WeightSettings {
   int damping_log2 = 0;                    // 0: plain weights
   int outer_weight = 0;                    // 1/16

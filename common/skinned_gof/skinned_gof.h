@@ -24,7 +24,6 @@ inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
 inline constexpr int kMaxWeightBits = 7;
 inline constexpr int kRestWeightBits = 6;  // of rest_edge_weight and rest_ring_weight
 inline constexpr std::uint32_t kMaxStepIdx = 239;
-inline constexpr int kMaxLayerStep = 16;  // sixteenths of the step of a factor
 inline constexpr int kMaxInfluences = 8;
 inline constexpr int kMaxExtraBones = 4;        // of a vertex
 inline constexpr std::size_t kRestFactors = 3;  // the first spatial factors: rest positions

@@ -39,9 +39,9 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
     gof.layer_group_size.push_back(size);
     left -= size;
   }
-  gof.layer_step.assign(mesh.num_layers(), 16);
+  gof.layer_step.assign(mesh.num_layers(), kMaxLayerStep);
   for (std::uint8_t& step : gof.layer_step) {
-    if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(16));
+    if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(kMaxLayerStep));
   }
   auto frames = std::make_shared<std::vector<CodedFrame>>(num_frames);
   auto groups = static_cast<std::uint32_t>(gof.layer_group_size.size());

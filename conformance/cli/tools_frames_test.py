@@ -40,6 +40,12 @@ class Frames(ToolsTest):
             streams.append(stream.read_bytes())
         self.assertEqual(*streams)
 
+    def test_the_choices_in_words(self):
+        said = self.ok("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
+                       self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile", "high",
+                       "--gof-kind", "frames")
+        self.assertIn("3 GOFs of frames, ", said.out.decode())
+
     def test_rlpcinfo_lists_frame_units(self):
         stream = self.path("a.rlpc")
         self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high", "--gof-kind", "frames")

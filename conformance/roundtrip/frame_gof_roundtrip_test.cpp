@@ -165,7 +165,7 @@ TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   settings.weights = {6, 3, 3, 0};
   settings.prime_log2 = settings.learning_flag ? 6 : 0;
   settings.layer_group_size = {1, mesh().num_layers() - 1};
-  settings.layer_step.assign(mesh().num_layers(), 16);
+  settings.layer_step.assign(mesh().num_layers(), kMaxLayerStep);
   const std::vector<double> xyz = animation();
   FrameGofPayloads payloads;
   payloads.first = write_frame_gof_unit({GofKind::kFrames, 0, kFrames}, settings);

@@ -43,7 +43,7 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   gof_.frame_hash_flag = r.flag("frame_hash_flag");
   const auto groups = parse_layer_groups(r, mesh_.num_layers());
   if (!groups.empty()) gof_.layer_group_size = groups;
-  gof_.layer_step.assign(mesh_.num_layers(), 16);
+  gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
   if (!gof_.exact_flag) parse_layer_steps(r, gof_.layer_step);
   r.byte_alignment();
   r.expect_end();

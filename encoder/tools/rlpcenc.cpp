@@ -56,6 +56,11 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
                 cut.kg_error_percent);
   }
   if (!o.verbose) return;
+  if (r.clusters == 0) {
+    std::printf("  %u GOF%s of frames, %u trial%s\n", r.num_gofs, s(r.num_gofs), r.trials,
+                s(r.trials));
+    return;
+  }
   const char* const bones = o.settings.profile == Profile::kBaseline ? ""
                             : r.clusters == 1                        ? "bone or "
                                                                      : "bones or ";

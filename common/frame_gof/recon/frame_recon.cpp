@@ -20,7 +20,7 @@ constexpr int kFirstSpreadShift = 19;
 constexpr std::int64_t kMostMotion = std::int64_t{1} << 29;
 constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
 
-// RandomMotionWalk( v, i ), by the sizes of ring and near vertices.
+// MotionWalk( v, i ), by the sizes of ring and near vertices.
 using Walks =
     std::array<std::array<std::array<std::int32_t, kMaxMotions>, kMaxNear + 1>, kMaxRing + 1>;
 constexpr Walks kWalks = [] {
