@@ -130,9 +130,15 @@ struct Target {
     // Maximum distance of a vertex from its original, in units. May end further below the
     // target, as this error jumps with the quantiser step, or if that saves bytes.
     kMaxError,
+    // Positions without loss, in the High profile: on a grid of `value` bits, 2 to 24, for the
+    // largest extent of the bounding box; 0: on the coarsest grid that all coordinates lie on.
+    kLossless,
   };
   Kind kind = kKg;
-  double value = 0.1;  // above zero and finite
+  double value = 0.1;  // above zero and finite, but for kNone and kLossless
+
+  // Whether a quantiser step has to be searched for.
+  bool has_search() const { return kind != kNone && kind != kLossless; }
 };
 
 inline constexpr std::uint32_t kMaxEncoderThreads = 256;  // fixed: a guard
@@ -163,6 +169,11 @@ struct EncoderSettings {
   // GOF: fewer are used where that would exceed max_memory_bytes. Clamped to 1 to
   // kMaxEncoderThreads.
   std::uint32_t threads = 1;
+
+  // The kinds of GOF that the target leaves.
+  KindChoice usable_kinds() const {
+    return target.kind == Target::kLossless ? KindChoice::kFrames : kinds;
+  }
 };
 
 // Bits of the stream by purpose.

@@ -66,6 +66,45 @@ class Frames(ToolsTest):
         self.ok("rlpcinfo", stream, "--html", page)
         self.assertIn("Units of frames 20", page.read_text())
 
+    def test_lossless_on_a_grid_and_again_on_its_own(self):
+        mesh, points = INPUTS / "elephant.obj", INPUTS / "elephant.pc2"
+        options = ("--profile", "high", "--keep-order")
+        stream, decoded, again = self.path("a.rlpc"), self.path("a.pc2"), self.path("b.rlpc")
+        said = self.ok("rlpcenc", mesh, "--points", points, "-o", stream, "--lossless", 13,
+                       *options).out.decode()
+        self.assertIn("lossless: all coordinates of all frames, once rounded to be on a grid", said)
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        self.assertIn(info["position_bits"], (12, 13))
+        step = 2.0 ** info["grid_log2_step"]
+        self.ok("rlpccmp", mesh, "--points-a", points, mesh, "--points-b",
+                self.decoded(stream, decoded), "--max-error", 0.51 * 3 ** 0.5 * step)
+        said = self.ok("rlpcenc", mesh, "--points", decoded, "-o", again, "--lossless",
+                       *options).out.decode()
+        self.assertIn("lossless: all coordinates of all frames, which are on a grid of 2^", said)
+        self.assertIn("KG error 0 %", said)
+        twice = self.decoded(again, self.path("b.pc2"))
+        self.assertEqual(decoded.read_bytes(), twice.read_bytes())
+
+    def decoded(self, stream, points):
+        self.ok("rlpcdec", stream, "-o", points)
+        return points
+
+    def test_lossless_without_a_grid(self):
+        mesh, points = INPUTS / "elephant.obj", INPUTS / "elephant.pc2"
+        out = self.path("a.rlpc")
+        self.fails(1, "have no common grid of 24 bits or fewer. Use --lossless BITS", "rlpcenc", mesh,
+                   "--points", points, "-o", out, "--profile", "high", "--lossless")
+        self.assertFalse(out.exists())
+        for options, words in ((("--lossless", 25), "found `25`"),
+                               (("--lossless", 1), "from 2 to 24"),
+                               (("--lossless", 14, "--kg", 1), "excludes"),
+                               (("--lossless", 14), "needs --profile high"),
+                               (("--lossless", 14, "--profile", "high", "--gof-kind", "bones"),
+                                "only GOFs of frames are lossless"),
+                               (("--lossless", 14, "--profile", "high", "--components", 3),
+                                "no effect")):
+            self.fails(64, words, "rlpcenc", mesh, *options, "-o", out)
+
     def test_settings_that_contradict(self):
         for options, words in (
                 (("--gof-kind", "frames"), "need --profile high"),

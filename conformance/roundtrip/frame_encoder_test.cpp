@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -171,6 +172,27 @@ TEST(FrameEncoder, QuantisersOfThePaperNeedNoSearch) {
   const auto encoded = encode_frames(source, settings);
   EXPECT_EQ(encoded.report.trials, 4U);
   EXPECT_EQ(encoded.report.step, 0.0);
+}
+
+TEST(FrameEncoder, LosslessOnAGridOfBits) {
+  MemoryFrames source = bending_tube(8, 30);
+  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 12}, 10);
+  const auto encoded = encode_frames(source, settings);
+  EXPECT_EQ(encoded.report.trials, 3U);  // one for each span
+  EXPECT_TRUE(encoded.report.target_met);
+  const SequenceHeader& header = encoded.report.header;
+  EXPECT_LE(header.position_bits, 12);
+  const double largest = std::sqrt(3.0) * 0.5 * std::ldexp(1.0, header.grid.log2_step);
+  EXPECT_GT(encoded.report.metrics.max_error, 0.2 * largest);
+  EXPECT_LE(encoded.report.metrics.max_error, (1.0 + 1e-6) * largest);
+}
+
+TEST(FrameEncoder, CannotKnowTheGridOfFramesToCome) {
+  MemoryFrames source = bending_tube(8, 30);
+  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 0}, 10);
+  const auto encoder = FrameEncoder::create(format_of(source), settings, discard);
+  ASSERT_FALSE(encoder);
+  EXPECT_NE(encoder.error().message.find("needs a number of bits"), std::string::npos);
 }
 
 TEST(FrameEncoder, GivesTheBytesOfAGofWhenItIsFull) {

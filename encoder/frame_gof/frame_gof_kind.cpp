@@ -55,8 +55,11 @@ class FrameGofCoder : public GofCoder {
 FrameSettings FrameGofCoder::settings_for(double step) const {
   FrameSettings s;
   s.reference = settings_.frames.reference;
-  s.step = static_cast<std::uint32_t>(
-      std::clamp(std::floor(step * kExactFrameStep + 0.5), 1.0, double{kMaxFrameStep}));
+  s.exact_flag = settings_.target.kind == Target::kLossless;
+  if (!s.exact_flag) {
+    s.step = static_cast<std::uint32_t>(
+        std::clamp(std::floor(step * kExactFrameStep + 0.5), 1.0, double{kMaxFrameStep}));
+  }
   s.weights = {kFrameDamping, kNearWeight, kNearScale, 0};
   s.learning_flag = settings_.frames.learning &&
                     mesh_.header.num_vertices <= mesh_.header.level().max_learning_vertices;
@@ -116,8 +119,8 @@ class FrameGofKind : public GofEncoder {
 std::unique_ptr<GofEncoder> make_frame_gof_kind(const SequenceMesh& mesh,
                                                 const EncoderSettings& settings) {
   if (settings.profile != Profile::kHigh) return nullptr;
-  const bool is_wanted = settings.kinds == KindChoice::kFrames;
-  const bool is_compared = settings.kinds == KindChoice::kAuto &&
+  const bool is_wanted = settings.usable_kinds() == KindChoice::kFrames;
+  const bool is_compared = settings.usable_kinds() == KindChoice::kAuto &&
                            settings.preset != Preset::kFast && settings.main == MainTools{};
   if (!is_wanted && !is_compared) return nullptr;
   return std::make_unique<FrameGofKind>(mesh, settings);

@@ -81,13 +81,29 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
   if (s.kinds == KindChoice::kFrames && s.profile != Profile::kHigh) {
     return InputError{"GOFs of frames need --profile high: use that, or leave out --gof-kind"};
   }
-  const bool has_bones = s.kinds == KindChoice::kAuto || s.kinds == KindChoice::kBones;
+  if (s.target.kind == Target::kLossless) {
+    if (s.profile != Profile::kHigh) {
+      return InputError{
+          "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
+          "leave out --lossless"};
+    }
+    if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+      return InputError{
+          "only GOFs of frames are lossless: use --gof-kind frames, or leave out --gof-kind or "
+          "--lossless"};
+    }
+  }
+  const KindChoice kinds = s.usable_kinds();
+  const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kBones;
+  if (kinds == KindChoice::kFrames && s.components > 0) {
+    return InputError{"--components has no effect on GOFs of frames: leave it out"};
+  }
   if (!has_bones && s.main != MainTools{}) {
     return InputError{
         "the settings of bones and trajectories have no effect on GOFs without "
         "bones: leave them out, or use --gof-kind auto or bones"};
   }
-  const bool has_frames = s.kinds == KindChoice::kAuto || s.kinds == KindChoice::kFrames;
+  const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kFrames;
   if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
     return InputError{
         "--frame-reference and --frame-weights need --profile high and "
@@ -158,6 +174,10 @@ std::optional<InputError> check_counts(const EncoderSettings& s) {
   return std::nullopt;
 }
 
+bool is_position_bits(double value) {
+  return value >= kMinPositionBits && value <= kMaxPositionBits && value == std::floor(value);
+}
+
 }  // namespace
 
 std::optional<InputError> check_settings(const EncoderSettings& s) {
@@ -191,9 +211,13 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.metadata.size() > kMaxMetadataBytes) {
     return InputError{"metadata may have at most 1 MiB"};
   }
-  if (s.target.kind != Target::kNone &&
-      !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
+  if (s.target.has_search() && !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
     return InputError{"a target must be a number above zero"};
+  }
+  if (s.target.kind == Target::kLossless && s.target.value != 0.0 &&
+      !is_position_bits(s.target.value)) {
+    return InputError{"positions have 2 to " + std::to_string(kMaxPositionBits) +
+                      " bits (--lossless)"};
   }
   return std::nullopt;
 }

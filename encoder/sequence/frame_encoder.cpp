@@ -14,6 +14,7 @@
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/choices/level_choice.h"
+#include "encoder/sequence/choices/lossless_grid.h"
 #include "encoder/sequence/gof_batch.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
@@ -148,6 +149,11 @@ void FrameEncoder::Impl::make_spans(const SequenceHeader& header) {
 
 std::optional<InputError> FrameEncoder::Impl::prepare() {
   if (auto error = check_settings(settings_)) return error;
+  if (settings_.target.kind == Target::kLossless && settings_.target.value == 0.0) {
+    return InputError{
+        "the grid of frames that are yet to come is not known: lossless coding needs a number "
+        "of bits (--lossless BITS)"};
+  }
   SequenceHeader header;
   header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
   header.num_vertices = format_.num_vertices;
@@ -237,7 +243,9 @@ SequenceHeader FrameEncoder::Impl::header_for(double finest) const {
   std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
   std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
   SequenceHeader header = coding_->header();
-  set_grid(header, choose_grid(extent, finest));
+  const bool is_lossless = settings_.target.kind == Target::kLossless;
+  set_grid(header, is_lossless ? grid_of_bits(extent, static_cast<int>(settings_.target.value))
+                               : choose_grid(extent, finest));
   return header;
 }
 

@@ -13,6 +13,7 @@
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/choices/level_choice.h"
+#include "encoder/sequence/choices/lossless_grid.h"
 #include "encoder/sequence/gof_batch.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
@@ -54,6 +55,7 @@ class SequenceEncoder {
  private:
   std::optional<InputError> prepare();
   std::optional<InputError> allot_memory(const SequenceHeader& header);
+  InputResult<GridChoice> first_grid() const;
   void use_grid(const GridChoice& grid);
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
   InputResult<TargetResult> search();
@@ -87,13 +89,23 @@ std::optional<InputError> SequenceEncoder::prepare() {
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
   extent_ = *extent;
-  set_grid(header, choose_grid(extent_, finest_error(settings_.target, extent_.rms_spread)));
-
+  const auto grid = first_grid();
+  if (!grid) return grid.error();
+  set_grid(header, *grid);
   if (auto error = cut_gofs(header)) return error;
   if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
   return std::nullopt;
+}
+
+InputResult<GridChoice> SequenceEncoder::first_grid() const {
+  const Target& target = settings_.target;
+  if (target.kind != Target::kLossless) {
+    return choose_grid(extent_, finest_error(target, extent_.rms_spread));
+  }
+  if (target.value == 0.0) return grid_of_source(source_, extent_);
+  return grid_of_bits(extent_, static_cast<int>(target.value));
 }
 
 // Analyses are kept if there is memory for them.
@@ -126,7 +138,7 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
                       std::to_string(header.num_frames) + "; split it"};
   }
   if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast ||
-      settings_.kinds == KindChoice::kFrames) {
+      settings_.usable_kinds() == KindChoice::kFrames) {
     spans_ = equal_gofs(header.num_frames, longest);
     divide_spans(spans_, longest_gof(settings_));
     return std::nullopt;
@@ -149,9 +161,9 @@ void SequenceEncoder::use_grid(const GridChoice& grid) {
 // The number of trials is unknown, so each trial counts for half of the remaining progress.
 void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
   if (!progress_) return;
-  progress_(settings_.target.kind == Target::kNone
-                ? done
-                : 1.0 - exact_exp2(-static_cast<int>(trials_ + trial)) * (2.0 - done));
+  progress_(settings_.target.has_search()
+                ? 1.0 - exact_exp2(-static_cast<int>(trials_ + trial)) * (2.0 - done)
+                : done);
 }
 
 InputResult<TargetResult> SequenceEncoder::search() {
@@ -303,7 +315,7 @@ InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& set
                                  const ByteSink& sink, const Progress& progress) {
   if (auto error = check_settings(settings)) return *error;
   InputResult<EncodeReport> report = [&]() -> InputResult<EncodeReport> {
-    if (settings.preset == Preset::kSlow && settings.target.kind != Target::kNone) {
+    if (settings.preset == Preset::kSlow && settings.target.has_search()) {
       return encode_slowly(source, settings, sink, progress);
     }
     SequenceEncoder encoder(source, settings, progress);

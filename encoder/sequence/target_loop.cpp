@@ -20,6 +20,7 @@ double measured(const TargetTask& task, const BatchTrial& trial, std::uint32_t n
       return (8.0 * static_cast<double>(trial.gof_bytes) + task.fixed_bits) /
              (static_cast<double>(task.header.num_vertices) * num_frames);
     case Target::kNone:
+    case Target::kLossless:
       break;
   }
   return 0.0;

@@ -36,8 +36,8 @@ class SkinnedGofKind : public GofEncoder {
 
 std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                   const EncoderSettings& settings) {
-  const bool is_wanted =
-      settings.kinds == KindChoice::kAuto || settings.kinds == KindChoice::kBones;
+  const bool is_wanted = settings.usable_kinds() == KindChoice::kAuto ||
+                         settings.usable_kinds() == KindChoice::kBones;
   if (settings.profile == Profile::kBaseline || !is_wanted) return nullptr;
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }

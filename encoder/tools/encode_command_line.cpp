@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <thread>
 #include <vector>
 
+#include "common/syntax/sequence_header.h"
 #include "common/tools/command_line.h"
 #include "encoder/sequence/target/quality.h"
 
@@ -22,6 +25,7 @@ constexpr const char* kExamples = R"(Examples
 constexpr const char* kDetails = R"(More examples
   rlpcenc frames/ --kg 0.3 --dry-run                     how large would it be?
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.01
+  rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile high --lossless 14
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all \
       --clusters 30 --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo \
       --frame lcf                         the settings of the RLPCA paper
@@ -53,6 +57,11 @@ decoded vertices, divided by the RMS distance of the vertices from the centre of
 their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
 length, a mean normal deviation of about one degree.
 
+--lossless restores every coordinate as the 32-bit float that it is (-0 as 0),
+--lossless BITS as it is once rounded to the grid. The order of vertices and
+triangles is not kept (--keep-order keeps that of vertices), nor is anything
+else in INPUT. Sampled glTF is kept as sampled.
+
 --dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
 more) and reports the exact size. Of longer ones it encodes eight sections and
 reports an estimate ("about").
@@ -83,6 +92,25 @@ const CLI::Validator kAboveZero(
                  : "expected a number above 0, found `" + word + "`";
     },
     "NUMBER");
+
+// Of --lossless: 0 for an empty text; none if it is neither that nor a number of bits.
+std::optional<int> parse_bits(const std::string& text) {
+  if (text.empty()) return 0;
+  int bits = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, bits);
+  const bool valid = error == std::errc() && rest == end && bits >= kMinPositionBits &&
+                     bits <= kMaxPositionBits;
+  return valid ? std::optional(bits) : std::nullopt;
+}
+
+const CLI::Validator kBits(
+    [](const std::string& word) {
+      return parse_bits(word) ? ""
+                              : "expected nothing, or a number of bits from 2 to 24, found `" +
+                                    word + "`; give INPUT before --lossless";
+    },
+    "");
 
 // Adds an option that takes one of a few words.
 template <class T>
@@ -135,9 +163,20 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
   bpvf->option_text("BITS");
   max_error->option_text("DISTANCE");
   for (auto* option : {kg, bpvf, max_error}) option->check(kAboveZero)->group(kQuality);
-  kg->excludes(bpvf)->excludes(max_error);
-  bpvf->excludes(max_error);
-  word->excludes(kg)->excludes(bpvf)->excludes(max_error);
+  auto* lossless =
+      app.add_option_function<std::string>(
+             "--lossless",
+             [&line](const std::string& bits) { line.lossless = parse_bits(bits); },
+             "No loss on the grid that all coordinates lie on; or, with BITS, on a grid of 2 "
+             "to 24 bits (High profile)")
+          ->expected(0, 1)
+          ->check(kBits)
+          ->option_text("[BITS]")
+          ->group(kQuality);
+  const std::array<CLI::Option*, 5> options{word, kg, bpvf, max_error, lossless};
+  for (auto a = options.begin(); a != options.end(); ++a) {
+    for (auto b = a + 1; b != options.end(); ++b) (*a)->excludes(*b);
+  }
 }
 
 void add_output_options(CLI::App& app, EncodeCommandLine& line) {

@@ -23,6 +23,7 @@ struct EncodeCommandLine {
   std::optional<double> kg;
   std::optional<double> bpvf;
   std::optional<double> max_error;
+  std::optional<int> lossless;  // 0: without a number of bits
 };
 
 // `line` must outlive the parsing of the command line.

@@ -43,7 +43,9 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (line.kg) s.target = {Target::kKg, *line.kg};
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
-  const bool asked = !o.quality.empty() || line.kg || line.bpvf || line.max_error;
+  if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
+  const bool asked =
+      !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;
   if (s.baseline.qu > 0 && !asked) s.target = {Target::kNone, 0.0};
   if (const auto error = check_settings(s)) return error->message;
   return std::nullopt;

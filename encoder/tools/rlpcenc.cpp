@@ -34,6 +34,16 @@
 namespace rlpc {
 namespace {
 
+// What was coded without loss, and what was not.
+void print_lossless(const EncodeOptions& o, const EncodeReport& r) {
+  std::printf("  lossless: all coordinates of all frames, %s on a grid of 2^%d units (%d bits)",
+              o.settings.target.value == 0.0 ? "which are" : "once rounded to be",
+              r.header.grid.log2_step, r.header.position_bits);
+  std::printf("%s\n", o.settings.keep_order
+                          ? "; vertices keep their order, triangles do not"
+                          : "; vertices and triangles are in another order (--keep-order)");
+}
+
 void print_report(const EncodeOptions& o, const Expectation& e) {
   const EncodeReport& r = e.report;
   const Metrics& m = r.metrics;
@@ -50,6 +60,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
+  if (o.settings.target.kind == Target::kLossless) print_lossless(o, r);
   for (const TemporalCut& cut : r.temporal_cuts) {
     std::printf("  cut to %u temporal layer%s: %llu bytes, KG error %.4g %%\n", cut.layers,
                 s(cut.layers), static_cast<unsigned long long>(cut.bytes),
@@ -133,7 +144,7 @@ std::string advice(const EncodeOptions& o, const EncodeReport& report) {
 
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
   if (report.target_met) {
-    if (!o.quiet && o.settings.target.kind != Target::kNone) {
+    if (!o.quiet && o.settings.target.has_search()) {
       tell_if_far_below(o.settings.target, report);
     }
     return kEncoded;
@@ -148,6 +159,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
 std::string finer(const EncodeOptions& o, const Visibility& v) {
   const Target& target = o.settings.target;
   if (target.kind == Target::kNone) return "larger --qu and --qc";
+  if (target.kind == Target::kLossless) return "more bits";
   if (target.kind == Target::kBpvf) return "a higher --bpvf";
   const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
   const NamedQuality* const named =

@@ -81,7 +81,8 @@ ROOMS = {
     "encoder/skinned_gof/quantise": _ENCODER | _QUANTISE,
     "encoder/skinned_gof/search": _ENCODER | _QUANTISE | {"encoder/skinned_gof/quantise"},
     "encoder/skinned_gof/reuse": _ENCODER | _SKINNED - {"encoder/skinned_gof/reuse"},
-    "encoder/sequence/choices": _ENCODER | _of_kinds("encoder/{}") | {"encoder/input"},
+    "encoder/sequence/choices": _ENCODER | _of_kinds("encoder/{}") | {
+        "encoder/input", "encoder/input/formats"},
     "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
     "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
         "encoder/sequence/choices", "encoder/sequence/target",
@@ -97,8 +98,8 @@ ROOMS = {
                            "encoder/math/det_math.h"},
     "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
                            "encoder/input/gltf", "encoder/input/gltf/document"},
-    "encoder/tools": {"common/io", "common/tools", "encoder", "encoder/input", "encoder/metrics",
-                      "encoder/sequence", "encoder/sequence/target"},
+    "encoder/tools": {"common/io", "common/syntax", "common/tools", "encoder", "encoder/input",
+                      "encoder/metrics", "encoder/sequence", "encoder/sequence/target"},
 }
 # Files that a room must not include although their folder is open to it: vertex layers are made
 # with the connectivity (8.9), not while a GOF is parsed.

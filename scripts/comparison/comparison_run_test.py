@@ -44,6 +44,16 @@ class SmallRun(unittest.TestCase):
         with open(self.folder / "out" / "points.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def test_lossless_beside_what_is_installed(self):
+        self.compare("--lossless", self.folder / "in put")
+        points = self.points()
+        self.assertEqual([p["BITS"] for p in points if p["animation"] == "arm"], ["12", "14", "16"])
+        for p in points[:3]:
+            self.assertLess(float(p["RLPC"]), float(p["time delta + xz -9e"]))
+        self.assertEqual(points[3]["animation"], "geometric mean")
+        said = self.compare("--lossless", "--codecs", "baseline", code=64)
+        self.assertIn("--lossless takes no codecs", said.stderr)
+
     def test_run_and_run_again(self):
         arguments = ("--codecs", "baseline,lorenzo-xz", self.folder / "in put")
         self.compare(*arguments)

@@ -61,7 +61,7 @@ TargetSearch::TargetSearch(const Target& target, double spread, double steps_per
 }
 
 void TargetSearch::begin_at(const Expected& expected) {
-  if (target_.kind == Target::kNone) return;
+  if (!target_.has_search()) return;
   frozen_ = 0.0;
   step_ = step_for(aim(), expected);
 }
@@ -69,7 +69,7 @@ void TargetSearch::begin_at(const Expected& expected) {
 bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& expected) {
   last_step_ = step_;
   ++trials_;
-  if (target_.kind == Target::kNone) {
+  if (!target_.has_search()) {
     finished_ = true;
     return true;
   }

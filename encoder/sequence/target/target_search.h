@@ -33,7 +33,7 @@ class TargetSearch {
 
   // Before the first encoding: sets the first step, unless there is no target.
   void begin_at(double step) {
-    if (target_.kind != Target::kNone) step_ = step;
+    if (target_.has_search()) step_ = step;
   }
   // Before the first encoding, if the target is an error: sets the first step to the one at
   // which the target is expected. expected: from analyses made for analysis_step().
@@ -53,7 +53,7 @@ class TargetSearch {
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
   // Whether the best encoding does not exceed the target.
-  bool met() const { return target_.kind == Target::kNone || best_.met(); }
+  bool met() const { return !target_.has_search() || best_.met(); }
 
  private:
   bool serves(double analysis_step, double step) const {
