@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/bitstream/crc32.h"
 #include "common/parallel/for_each.h"
 #include "decoder/recon/coarse_output.h"
 #include "decoder/recon/frame_band.h"
 #include "decoder/recon/hash_check.h"
+#include "decoder/recon/live_gof.h"
 #include "decoder/recon/prefetch.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/stream_reader.h"
@@ -32,10 +34,9 @@ class Decoder::Impl {
         band_(num_threads_) {
     stream_.models().when_dropped([this] { models_.erase_unused(); });
     // A trace follows the order of the stream.
-    if (num_threads_ > 1 && options.trace == nullptr) {
-      prefetch_.emplace(stream_, models_, threads_,
-                        options.limits.max_memory_bytes / num_threads_);
-    }
+    wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
+    prefetch_bytes_ = options.limits.max_memory_bytes / num_threads_;
+    forward_only_ = options.forward_only;
   }
 
   Result<bool> open();
@@ -50,23 +51,29 @@ class Decoder::Impl {
                    : stream_.header().num_vertices;
   }
   std::uint32_t num_layers() const;
+  std::optional<std::uint32_t> num_frames();
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
-  std::uint32_t compared_frames() const { return hash_check_.compared_frames(); }
+  std::uint32_t compared_frames() const { return compared_frames_; }
 
  private:
   bool has_frame(std::uint32_t frame) const {
+    if (live_) return live_->may_have(frame);
     return gof_ && frame >= gof_->header.first_frame &&
            frame - gof_->header.first_frame < gof_->header.num_frames;
   }
   // False at the end of the sequence.
   Result<bool> load_gof();
   Result<PreparedGof> find_gof(const UnitHeader& unit);
+  Result<bool> is_live(const UnitHeader& unit);
+  // False after the last frame of the GOF.
+  Result<bool> decode_live_frame(std::span<std::int32_t> positions);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
   // The loaded GOF may no longer match the position.
   void fail(const Error& error) {
     failure_ = error;
     gof_.reset();
+    live_.reset();
     if (prefetch_) prefetch_->clear();
   }
   void to_output_order(std::span<const std::int32_t> decoded,
@@ -80,16 +87,25 @@ class Decoder::Impl {
   std::uint32_t num_threads_;
   ThreadPool threads_;
   std::optional<PreparedGof> gof_;
+  std::unique_ptr<LiveGof> live_;  // instead of gof_
   HashCheck hash_check_;
   FrameBand band_;
+  bool wants_prefetch_ = false;
+  std::uint64_t prefetch_bytes_ = 0;
+  bool forward_only_ = false;
   std::optional<Prefetch> prefetch_;
   std::optional<Error> failure_;  // sticky until a successful seek
   std::uint32_t position_ = 0;
   bool was_cut_ = false;
+  std::uint32_t compared_frames_ = 0;
 };
 
 Result<bool> Decoder::Impl::open() {
   if (auto ok = stream_.open(); !ok) return ok;
+  // Prefetching would wait for GOFs that are yet to come.
+  if (wants_prefetch_ && !stream_.header().open_end_flag) {
+    prefetch_.emplace(stream_, models_, threads_, prefetch_bytes_);
+  }
   if (coarse_layers_ != SliceCut::kAll) {
     coarse_.emplace(stream_.header().num_vertices, stream_.triangles(), stream_.vertex_order(),
                     coarse_layers_);
@@ -103,13 +119,53 @@ std::uint32_t Decoder::Impl::num_layers() const {
   return meshes ? (*meshes)[Prediction::kLayers].num_layers() : 0;
 }
 
+std::optional<std::uint32_t> Decoder::Impl::num_frames() {
+  const std::uint32_t num_frames = stream_.find_num_frames();
+  if (stream_.header().open_end_flag && num_frames == kMaxFrames) return std::nullopt;
+  return num_frames;
+}
+
+// Whether the GOF is decoded frame by frame.
+Result<bool> Decoder::Impl::is_live(const UnitHeader& unit) {
+  if (!stream_.header().open_end_flag) return false;
+  const auto header = stream_.gof_header(unit);
+  if (!header) return false;  // reading the GOF finds the error, or another before it
+  return rlpc::is_live(stream_.header(), header->kind);
+}
+
+Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions) {
+  // After a seek into the GOF, those before it only pass.
+  do {
+    if (const auto more = live_->next(); !more || !*more) return more;
+  } while (live_->next_frame() <= position_);
+  was_cut_ = was_cut_ || live_->is_cut();
+  compared_frames_ = 0;
+  if (verify_hashes_ && !live_->is_cut() && live_->frame_crc()) {
+    if (crc32_of_positions(live_->positions()) != live_->frame_crc()->crc) {
+      return Error{Errc::kInvalid, "R-HSH-02", "frame_crc", live_->frame_crc()->bit_pos};
+    }
+    compared_frames_ = 1;
+  }
+  to_output_order(live_->positions(), positions);
+  ++position_;
+  return true;
+}
+
 Result<bool> Decoder::Impl::load_gof() {
   gof_.reset();
+  live_.reset();
   band_.clear();
   if (prefetch_) prefetch_->hand_over_models();
   const auto unit = stream_.find_gof();
   if (!unit) return unit.error();
   if (!*unit) return false;
+  if (forward_only_) stream_.units().forget((*unit)->offset);
+  const auto live = is_live(**unit);
+  if (!live) return live;
+  if (*live) {
+    live_ = std::make_unique<LiveGof>(stream_, stream_.access_units().cut());
+    return live_->begin(**unit);
+  }
   auto gof = find_gof(**unit);
   if (!gof) return gof.error();
   gof_ = std::move(*gof);
@@ -167,9 +223,16 @@ Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
 }
 
 Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
+  while (live_) {
+    const auto more = decode_live_frame(positions);
+    if (!more || *more) return more;
+    live_.reset();
+    if (auto next = load_gof(); !next || !*next) return next;
+  }
   if (!has_frame(position_)) {
     if (stream_.ended()) return false;
     if (auto more = load_gof(); !more || !*more) return more;
+    if (live_) return decode_frame(positions);
   }
   const std::uint32_t f = position_ - gof_->header.first_frame;
   const std::size_t frame_size = 3 * std::size_t{stream_.header().num_vertices};
@@ -179,13 +242,14 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
     return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
                  at.value_or(stream_.offset() * 8)};
   }
+  compared_frames_ = hash_check_.compared_frames();
   to_output_order(decoded, positions);
   ++position_;
   return true;
 }
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
-  assert(frame < stream_.header().num_frames);
+  assert(frame < num_frames().value_or(kMaxFrames));
   const ThreadPool::Use use(threads_);
   failure_.reset();
   if (!has_frame(frame)) {
@@ -196,7 +260,7 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
       return ok;
     }
   }
-  if (frame == gof_->header.first_frame) hash_check_.restart();
+  if (gof_ && frame == gof_->header.first_frame) hash_check_.restart();
   position_ = frame;
   band_.begin_small();
   return true;
@@ -205,6 +269,7 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
 Result<std::uint32_t> Decoder::Impl::parse_rest() {
   if (failure_) return *failure_;
   gof_.reset();
+  live_.reset();
   while (!stream_.ended()) {
     const auto access_unit = stream_.next();
     if (!access_unit) {
@@ -213,7 +278,7 @@ Result<std::uint32_t> Decoder::Impl::parse_rest() {
     }
     was_cut_ = was_cut_ || (*access_unit && (*access_unit)->is_cut);
   }
-  position_ = stream_.header().num_frames;
+  position_ = stream_.next_first_frame();
   return stream_.num_gofs();
 }
 
@@ -247,6 +312,7 @@ bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);
 }
+std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }

@@ -36,17 +36,29 @@ class FileSource final : public ByteSource {
 
 class PipedSource final : public ByteSource {
  public:
-  explicit PipedSource(PipedInput input) : input_(std::move(input)) {}
-  std::uint64_t size() const override { return input_.size(); }
+  // file: null if it is not owned.
+  PipedSource(PipedInput input, File file, std::uint64_t max_bytes)
+      : file_(std::move(file)), input_(std::move(input)), max_bytes_(max_bytes) {}
+  std::uint64_t size() const override {
+    input_.read_rest(max_bytes_);
+    return input_.size();
+  }
+  bool reaches(std::uint64_t end) override {
+    if (end > input_.size()) input_.read_to(end, max_bytes_);
+    return end <= input_.size();
+  }
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
-    if (offset > size() || out.size() > size() - offset) return false;
+    if (!reaches(offset + out.size()) || !input_.keeps(offset)) return false;
     input_.copy(offset, out);
     return true;
   }
-  std::uint64_t memory_bytes() const override { return input_.size(); }
+  void forget(std::uint64_t before) override { input_.forget(before); }
+  std::uint64_t memory_bytes() const override { return input_.kept_bytes(); }
 
  private:
-  PipedInput input_;
+  File file_;
+  mutable PipedInput input_;
+  std::uint64_t max_bytes_;
 };
 
 Error cannot_open(int code) {
@@ -67,17 +79,25 @@ bool begins_like_stream(std::span<const std::uint8_t> bytes) {
   return 2 * right >= kSignature.size();
 }
 
-Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file,
+// Of streams that can be open-ended, version 1.2, only what is needed is read, when it is
+// needed.
+Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file, File owned,
                                                  std::uint64_t max_memory_bytes) {
+  constexpr std::uint8_t kOpenEnded = 2;  // version_minor
   PipedInput input(file);
-  if (begins_like_stream(input.beginning())) input.read_rest(max_memory_bytes);
+  const auto beginning = input.beginning();
+  const bool may_be_live = beginning.size() > kSignature.size() + 1 &&
+                           beginning[kSignature.size() + 1] >= kOpenEnded;
+  if (begins_like_stream(beginning) && !may_be_live) input.read_rest(max_memory_bytes);
   if (input.state() == PipedInput::State::kFailed) {
     return Error{Errc::kIo, "", "reading it failed", 0};
   }
   if (input.state() == PipedInput::State::kTooLarge) {
     return Error{Errc::kLimitExceeded, "", "stream", 0};
   }
-  return {std::make_unique<PipedSource>(std::move(input))};
+  // No more is read of what is no stream.
+  const std::uint64_t most = begins_like_stream(input.beginning()) ? max_memory_bytes : 0;
+  return {std::make_unique<PipedSource>(std::move(input), std::move(owned), most)};
 }
 
 }  // namespace
@@ -89,14 +109,17 @@ Result<std::unique_ptr<ByteSource>> file_source(const std::string& path,
   struct stat about {};
   if (fstat(fileno(file.get()), &about) != 0) return cannot_open(errno);
   if (S_ISDIR(about.st_mode)) return cannot_open(EISDIR);
-  if (!S_ISREG(about.st_mode)) return piped_source(file.get(), max_memory_bytes);
+  if (!S_ISREG(about.st_mode)) {
+    std::FILE* const pipe = file.get();
+    return piped_source(pipe, std::move(file), max_memory_bytes);
+  }
   std::unique_ptr<ByteSource> source =
       std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(about.st_size));
   return source;
 }
 
 Result<std::unique_ptr<ByteSource>> standard_input_source(std::uint64_t max_memory_bytes) {
-  return piped_source(stdin, max_memory_bytes);
+  return piped_source(stdin, nullptr, max_memory_bytes);
 }
 
 }  // namespace rlpc

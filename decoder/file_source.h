@@ -13,9 +13,10 @@ namespace rlpc {
 // The default memory limit of DecodeLimits.
 inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
 
-// Reads from a file as needed. A pipe or a device is read to its end and buffered, unless its
-// beginning shows that it is not a stream. Errors: Errc::kIo, whose element holds the reason;
-// Errc::kLimitExceeded: more than max_memory_bytes to buffer.
+// Reads from a file as needed. A pipe or a device is buffered: of a stream of version 1.2, what
+// has been needed so far; others are read to their end, unless their beginning shows that they
+// are no streams. Errors: Errc::kIo, whose element holds the reason; Errc::kLimitExceeded: more
+// than max_memory_bytes to buffer.
 Result<std::unique_ptr<ByteSource>> file_source(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes);
 // Opens standard input in the same way.

@@ -68,6 +68,8 @@ struct DecoderOptions {
   // kAll, without degenerate triangles. Slices of layer groups that it does not need are
   // dropped as by a cut.
   std::uint32_t coarse_layers = SliceCut::kAll;
+  // There will be no seek(): a source that keeps what it has read can forget it.
+  bool forward_only = false;
 };
 
 class Decoder {
@@ -79,7 +81,8 @@ class Decoder {
   Decoder& operator=(Decoder&&) noexcept;
   ~Decoder();
 
-  // As in the stream: num_vertices and num_triangles are those of the whole mesh.
+  // As in the stream: num_vertices and num_triangles are those of the whole mesh; num_frames is
+  // kMaxFrames if open_end_flag is set, see num_frames().
   const SequenceHeader& header() const;
   // Of the frames and of triangles(): header().num_vertices, or fewer in a coarse mesh.
   std::uint32_t num_vertices() const;
@@ -99,6 +102,9 @@ class Decoder {
   // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
   // after the last frame, once the rest of the stream has been checked.
   Result<bool> next_frame(std::span<std::int32_t> positions);
+  // The number of frames. Of an open-ended stream, it is at the end: reads a pipe to its end;
+  // none if the stream has been cut off, so that it is not there.
+  std::optional<std::uint32_t> num_frames() const;
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
   // Parses the rest of the stream without reconstructing frames, for programs that inspect its

@@ -8,6 +8,11 @@
 //   }
 //   const auto report = encoder->finish();
 //
+// Without a number of frames (FrameFormat::num_frames), the stream is open-ended: frames are
+// added until finish(). With settings.low_delay, each frame is coded and passed to the sink at
+// once, in GOFs of frames; a frame that is refused is left out, and encoding can go on. Both
+// need the High profile. The rest of this comment is about frames that are held.
+//
 // GOFs have equal length, at most settings.gof_frames (by default 128, or 256 in the High
 // profile). Each is encoded when its last frame has been added, and its bytes are passed to the
 // sink at once. In the High profile, several GOFs are held and encoded together, a *span*, so
@@ -41,7 +46,9 @@ namespace rlpc {
 // Properties of the sequence that must be known before the first frame.
 struct FrameFormat {
   std::uint32_t num_vertices = 0;  // at least 1
-  std::uint32_t num_frames = 0;    // at least 1; exactly this many frames must be added
+  // Exactly this many frames must be added. 0: not known (High profile); the stream is
+  // open-ended.
+  std::uint32_t num_frames = 0;
   FrameRate frame_rate;
   std::vector<Triangle> triangles;  // indices below num_vertices; may be empty
   // Bounding box of all frames, in units, within 2^100. A box that is much too large makes the
@@ -54,6 +61,8 @@ struct FrameFormat {
   // many as encode() looks at together, 2^23 positions or fewer.
   std::uint32_t max_held_frames = 0;
 };
+
+class FrameCoder;
 
 class FrameEncoder {
  public:
@@ -70,18 +79,17 @@ class FrameEncoder {
   // or a coordinate outside the box; more than num_frames frames; a span that needs a higher
   // level; a sink that failed. Errors are sticky.
   std::optional<InputError> add_frame(std::span<const float> xyz);
-  // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames; a
-  // sink that failed. The metrics are those of the whole sequence, without single frames; step
-  // is that of the last span; target_met: in every span.
+  // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames,
+  // or none; a sink that failed. The metrics are those of the whole sequence, without single
+  // frames; step is that of the last span; target_met: in every span.
   InputResult<EncodeReport> finish();
 
   // The number of frames added so far.
   std::uint32_t num_added() const;
 
  private:
-  class Impl;
-  explicit FrameEncoder(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit FrameEncoder(std::unique_ptr<FrameCoder> coder);
+  std::unique_ptr<FrameCoder> coder_;
 };
 
 }  // namespace rlpc

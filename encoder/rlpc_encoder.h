@@ -109,9 +109,10 @@ enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
 
 // Parameters of GOFs of frames, of the High profile.
 struct FrameTools {
-  // What each frame is predicted from: the one before, or the first of the GOF.
-  FrameReference reference = FrameReference::kPrevious;
-  bool learning = true;  // weights of prediction learned from the frames before
+  // From which frames each is predicted, and temporal layers to which a stream can be cut.
+  FramePattern pattern;
+  bool learning = true;            // weights of prediction learned from the frames before
+  std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
 
   bool operator==(const FrameTools&) const = default;
 };
@@ -156,6 +157,10 @@ struct EncoderSettings {
   MainTools main;          // must be left at its defaults if profile is kBaseline
   // kBones: Main and High profile; kFrames: High profile, main left at its defaults.
   KindChoice kinds = KindChoice::kAuto;
+  // FrameEncoder only: codes and passes on each frame when it is added. High profile, all GOFs
+  // are of frames that are predicted from the one before; the target is a KG error, a maximum
+  // error or lossless, and is not searched for.
+  bool low_delay = false;
   FrameTools frames;  // must be left at its defaults unless profile is kHigh
   // Maximum frames per GOF; 0: 128, or 256 in the High profile; kWholeSequence: one GOF.
   std::uint32_t gof_frames = 0;
@@ -170,9 +175,14 @@ struct EncoderSettings {
   // kMaxEncoderThreads.
   std::uint32_t threads = 1;
 
+  // Temporal layers that the stream can be cut to.
+  std::uint32_t temporal_layers() const {
+    return usable_kinds() == KindChoice::kFrames ? frames.pattern.temporal_layers
+                                                 : main.temporal_layers;
+  }
   // The kinds of GOF that the target leaves.
   KindChoice usable_kinds() const {
-    return target.kind == Target::kLossless ? KindChoice::kFrames : kinds;
+    return low_delay || target.kind == Target::kLossless ? KindChoice::kFrames : kinds;
   }
 };
 

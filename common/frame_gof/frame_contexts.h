@@ -20,10 +20,11 @@ inline constexpr std::size_t kFrameClasses = 3;
 class FrameContexts {
  public:
   // The mesh must have layers, and outlive it.
-  FrameContexts(const CodedMesh& mesh, std::size_t num_layer_groups);
+  FrameContexts(const CodedMesh& mesh, std::size_t num_layer_groups, std::uint32_t num_depths);
 
-  // Call at the start of each frame, and before the vertices of each layer group of it.
-  void start_frame(std::uint32_t frame);
+  // Call at the start of each frame, with its place in coding order and its depth, and before
+  // the vertices of each layer group of it.
+  void start_frame(std::uint32_t place, std::uint32_t depth);
   void start_group(std::size_t layer_group) { group_ = layer_group; }
   // Call before the residuals of a vertex, which follow axis by axis.
   void start(std::uint32_t v);
@@ -36,7 +37,7 @@ class FrameContexts {
                                          : 64 * std::uint64_t{before_mean_} + 39 * latest_mean_;
     return static_cast<std::uint32_t>((sum + own) >> 12);
   }
-  ResidualModels& models() { return models_[group_][class_]; }
+  ResidualModels& models() { return state_->models[group_][class_]; }
   void update(std::int32_t residual);
 
   // FrameExpected of the vertex, once it has been started.
@@ -50,11 +51,18 @@ class FrameContexts {
   std::uint32_t mean_magnitude(std::span<const std::uint32_t> ring,
                                std::uint32_t otherwise) const;
 
+  // What carries over between frames of a depth.
+  struct State {
+    std::vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
+    std::vector<std::uint32_t> mean;       // FrameLayerMean, [num_layers]
+    std::vector<std::uint16_t> magnitude;  // of the last frame, summed over the axes
+  };
+
   const CodedMesh& mesh_;
-  std::vector<std::array<ResidualModels, kFrameClasses>> models_;  // [layer group][class]
-  std::vector<std::uint32_t> mean_;                                // LayerMean, [num_layers]
-  std::vector<std::uint16_t> magnitude_;  // of this frame, summed over the axes
-  std::vector<std::uint16_t> before_;     // likewise, of the frame before
+  std::size_t num_layer_groups_;
+  std::vector<State> states_;          // [num_depths]
+  State* state_ = nullptr;             // of the frame
+  std::vector<std::uint16_t> before_;  // FrameMagnitudeBefore
   bool is_first_ = true;
   std::size_t group_ = 0;
   // State of the current vertex:

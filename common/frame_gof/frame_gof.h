@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/frame_gof/compact_residuals.h"
+#include "common/frame_gof/frame_order.h"
 #include "common/mesh/weight_settings.h"
 #include "common/syntax/gof_header.h"
 
@@ -14,11 +15,7 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kMaxFrameStep = 1U << 16;  // 1/16 grid units
 inline constexpr std::uint32_t kExactFrameStep = 16;      // one grid unit
-inline constexpr std::uint32_t kMaxFrameExpected = 1023;  // 7.14.1, 1/16
-
-// 7.14: frame_reference_idc
-enum class FrameReference : std::uint8_t { kPrevious, kFirst };
-inline constexpr std::uint32_t kMaxFrameReference = 1;
+inline constexpr std::uint32_t kMaxFrameExpected = 1023;  // 9.8.6, 1/16
 
 // frame_crc, and where it is in the stream.
 struct FrameCrc {
@@ -28,7 +25,7 @@ struct FrameCrc {
   bool operator==(const FrameCrc& other) const { return crc == other.crc; }
 };
 
-// 6.14.1 frame_unit( ): the residuals of a frame.
+// 6.14.2 frame_unit( ): the residuals of a frame.
 struct CodedFrame {
   std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
   std::optional<FrameCrc> frame_crc;
@@ -39,9 +36,9 @@ struct CodedFrame {
 };
 
 struct FrameSettings {
-  FrameReference reference = FrameReference::kPrevious;
-  bool exact_flag = false;  // positions are sums of whole grid units
-  std::uint32_t step = kExactFrameStep;
+  FramePattern pattern;
+  bool exact_flag = false;                           // positions are sums of whole grid units
+  std::vector<std::uint32_t> step{kExactFrameStep};  // [num_depths]
   bool learning_flag = false;
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <memory>
 
 namespace rlpc {
@@ -16,6 +17,11 @@ struct CloseFile {
 
 }  // namespace
 
+// Without a buffer, reading waits for the bytes that are asked for and for no more.
+PipedInput::PipedInput(std::FILE* file) : file_(file) {
+  std::setvbuf(file, nullptr, _IONBF, 0);
+}
+
 std::span<const std::uint8_t> PipedInput::beginning() {
   if (state_ == State::kReading && size_ == 0) {
     beginning_.resize(kBeginningBytes);
@@ -28,34 +34,51 @@ std::span<const std::uint8_t> PipedInput::beginning() {
   return beginning_;
 }
 
-void PipedInput::read_block(std::size_t bytes) {
-  std::vector<std::uint8_t> block(bytes);
-  block.resize(std::fread(block.data(), 1, bytes, file_));
-  if (block.size() < bytes) {
+void PipedInput::read_more(std::uint64_t bytes) {
+  if (blocks_.empty() || blocks_.back().size() == kBlockBytes) blocks_.emplace_back();
+  std::vector<std::uint8_t>& block = blocks_.back();
+  const std::size_t before = block.size();
+  const auto wanted =
+      static_cast<std::size_t>(std::min<std::uint64_t>(bytes, kBlockBytes - before));
+  block.resize(before + wanted);
+  const std::size_t got = std::fread(&block[before], 1, wanted, file_);
+  if (got < wanted) {
     state_ = std::ferror(file_) != 0 ? State::kFailed : State::kWhole;
+    block.resize(before + got);
     block.shrink_to_fit();
   }
-  size_ += block.size();
-  blocks_.push_back(std::move(block));
+  size_ += got;
 }
 
-PipedInput::State PipedInput::read_rest(std::uint64_t max_bytes) {
+PipedInput::State PipedInput::read_to(std::uint64_t end, std::uint64_t max_bytes) {
   beginning();
-  while (state_ == State::kReading && size_ <= max_bytes) {
+  while (state_ == State::kReading && size_ < end && kept_bytes() <= max_bytes) {
     // One byte more than allowed, to detect excess.
-    read_block(
-        static_cast<std::size_t>(std::min<std::uint64_t>(kBlockBytes, max_bytes - size_ + 1)));
+    read_more(std::min(end - size_, max_bytes - kept_bytes() + 1));
   }
-  if (size_ > max_bytes) {
+  if (kept_bytes() > max_bytes) {
     state_ = State::kTooLarge;
     blocks_ = {};
     size_ = beginning_.size();
+    forgotten_ = 0;
   }
   return state_;
 }
 
+PipedInput::State PipedInput::read_rest(std::uint64_t max_bytes) {
+  return read_to(std::numeric_limits<std::uint64_t>::max(), max_bytes);
+}
+
+void PipedInput::forget(std::uint64_t before) {
+  const std::uint64_t behind = before - std::min<std::uint64_t>(before, beginning_.size());
+  while (forgotten_ + kBlockBytes <= behind) {
+    blocks_[static_cast<std::size_t>(forgotten_ / kBlockBytes)] = {};
+    forgotten_ += kBlockBytes;
+  }
+}
+
 void PipedInput::copy(std::uint64_t offset, std::span<std::uint8_t> out) const {
-  assert(offset <= size_ && out.size() <= size_ - offset);
+  assert(offset <= size_ && out.size() <= size_ - offset && keeps(offset));
   while (!out.empty()) {
     const bool first = offset < beginning_.size();
     const std::uint64_t behind = first ? 0 : offset - beginning_.size();

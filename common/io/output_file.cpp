@@ -181,6 +181,12 @@ std::optional<OutputError> OutputFile::write(std::span<const std::uint8_t> bytes
   return write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+std::optional<OutputError> OutputFile::flush() {
+  errno = 0;
+  if (std::fflush(file_) != 0) return output_error(path_, "write", errno);
+  return std::nullopt;
+}
+
 std::optional<OutputError> OutputFile::close() {
   errno = 0;
   std::FILE* const file = std::exchange(file_, nullptr);

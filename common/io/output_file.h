@@ -51,6 +51,8 @@ class OutputFile {
 
   std::optional<OutputError> write(std::string_view bytes);
   std::optional<OutputError> write(std::span<const std::uint8_t> bytes);
+  // Passes on what has been written, so that a reader of a pipe gets it.
+  std::optional<OutputError> flush();
   // Flushes to the disk, and closes unless standard output: afterwards only the renaming can
   // fail.
   std::optional<OutputError> close();

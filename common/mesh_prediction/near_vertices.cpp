@@ -10,7 +10,9 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 1024;  // vertices of a pass
+constexpr std::size_t kTogether = 1024;    // vertices of a pass
+constexpr std::size_t kFewCandidates = 4;  // below, vertices of the base are candidates
+constexpr std::size_t kBaseWindow = 256;   // vertices of the base
 
 struct NearList {
   std::array<std::uint32_t, kMaxNear> vertices;
@@ -31,7 +33,7 @@ std::int64_t squared_distance(std::span<const std::int32_t> values, std::uint32_
 class NearSearch {
  public:
   NearSearch(const CodedMesh& mesh, std::span<const std::int32_t> values)
-      : mesh_(mesh), values_(values) {}
+      : mesh_(mesh), base_(mesh.vertices_of_layers(0, 1)), values_(values) {}
 
   NearList find(std::uint32_t v) {
     vertices_.clear();
@@ -41,11 +43,13 @@ class NearSearch {
       add(mesh_.ring(r));
       add(mesh_.outer_ring(r));
     }
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    keep_different(ring);
+    if (mesh_.layer_of(v) == 0 || vertices_.size() < kFewCandidates) {
+      add(base_window(v));
+      keep_different(ring);
+    }
     found_.clear();
     for (const std::uint32_t u : vertices_) {
-      if (std::find(ring.begin(), ring.end(), u) != ring.end()) continue;
       found_.emplace_back(squared_distance(values_, u, v), u);
     }
     NearList near;
@@ -61,7 +65,30 @@ class NearSearch {
     vertices_.insert(vertices_.end(), list.begin(), list.end());
   }
 
+  // Removes those of the ring, and repetitions.
+  void keep_different(std::span<const std::uint32_t> ring) {
+    std::erase_if(vertices_, [&](std::uint32_t u) {
+      return std::find(ring.begin(), ring.end(), u) != ring.end();
+    });
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  }
+
+  // AddBaseVertices( v ): those before a vertex of the base, or around another.
+  std::span<const std::uint32_t> base_window(std::uint32_t v) const {
+    const auto before = static_cast<std::size_t>(
+        std::lower_bound(base_.begin(), base_.end(), v) - base_.begin());
+    if (mesh_.layer_of(v) == 0) {
+      const std::size_t first = before - std::min(before, kBaseWindow);
+      return base_.subspan(first, before - first);
+    }
+    const std::size_t last = base_.size() - std::min(base_.size(), kBaseWindow);
+    const std::size_t first = std::min(before - std::min(before, kBaseWindow / 2), last);
+    return base_.subspan(first, std::min(kBaseWindow, base_.size() - first));
+  }
+
   const CodedMesh& mesh_;
+  std::span<const std::uint32_t> base_;  // ascending
   std::span<const std::int32_t> values_;
   std::vector<std::uint32_t> vertices_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> found_;  // distance, vertex

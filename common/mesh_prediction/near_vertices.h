@@ -12,7 +12,8 @@ namespace rlpc {
 inline constexpr std::size_t kMaxNear = 12;
 
 // NearVertices( v ) of all vertices: of those in the outer ring, and in the rings and outer
-// rings of the ring, the nearest that are not in the ring. All come before v in the order.
+// rings of the ring, the nearest that are not in the ring; vertices of the base are candidates,
+// too, for those in the base, and for those with few others. All come before v in the order.
 //
 //   values  positions [num_vertices][3], within 29 bits
 VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values);

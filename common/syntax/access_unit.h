@@ -19,7 +19,7 @@ namespace rlpc {
 // A GOF of any kind.
 using AnyGof = std::variant<ClusterGof, SkinnedGof, FrameGof>;
 
-// 6.12 slice_unit( ), 6.14.1 frame_unit( )
+// 6.12 slice_unit( ), 6.14.2 frame_unit( )
 struct SliceEntry {
   std::uint32_t component_group_idx = 0;
   std::uint32_t layer_group_idx = 0;
@@ -27,9 +27,10 @@ struct SliceEntry {
   std::uint64_t bytes = 0;             // size of the unit
   std::uint32_t temporal_layer_idx = 0;
   std::uint32_t frame_idx = 0;  // of a frame unit
+  bool is_gof_end = false;      // the GOF ends before that frame; the unit has no residuals
 };
 
-// 7.14.1: those of the frames of a GOF that have one; empty if the GOF has none.
+// 7.14.2: those of the frames of a GOF that have one; empty if the GOF has none.
 using FrameCrcs = std::vector<std::optional<FrameCrc>>;
 
 struct AccessUnit {

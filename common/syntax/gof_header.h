@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/syntax/sequence_header.h"
 #include "common/syntax/stream_format.h"
 
 namespace rlpc {
@@ -29,6 +30,10 @@ constexpr std::optional<UnitType> slice_type(GofKind kind) {
   return kind == GofKind::kFrames ? UnitType::kFrame : UnitType::kSlice;
 }
 constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
+// 6.1 IsLive( ): whether frames of a GOF are output before it ends.
+constexpr bool is_live(const SequenceHeader& header, GofKind kind) {
+  return header.open_end_flag && kind == GofKind::kFrames;
+}
 
 struct GofHeader {
   GofKind kind = GofKind::kClusters;

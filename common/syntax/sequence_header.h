@@ -55,7 +55,8 @@ struct SequenceHeader {
   std::uint32_t level_idc = 1;
   std::uint32_t num_vertices = 1;
   std::uint32_t num_triangles = 0;
-  std::uint32_t num_frames = 1;
+  bool open_end_flag = false;    // the number of frames is at the end of the stream
+  std::uint32_t num_frames = 1;  // in the header of an open-ended stream: kMaxFrames
   FrameRate frame_rate;
   Grid grid;
   int position_bits = 20;

@@ -74,9 +74,11 @@ Bytes write_gof_index(const GofIndexEntries& index, std::uint32_t profile_idc) {
 }
 
 // 6.8 end_of_sequence( )
-Bytes write_end_of_sequence(std::uint32_t index_distance) {
+Bytes write_end_of_sequence(std::uint32_t index_distance,
+                            std::optional<std::uint32_t> num_frames) {
   BitWriter w;
   w.u(32, index_distance);
+  if (num_frames) w.u(32, *num_frames);
   return w.take();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct GofIndexEntries {
   bool fits() const;
 };
 Bytes write_gof_index(const GofIndexEntries& index, std::uint32_t profile_idc);
-Bytes write_end_of_sequence(std::uint32_t index_distance);
+// num_frames: of an open-ended stream.
+Bytes write_end_of_sequence(std::uint32_t index_distance,
+                            std::optional<std::uint32_t> num_frames = std::nullopt);
 
 }  // namespace rlpc

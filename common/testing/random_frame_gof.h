@@ -1,6 +1,7 @@
 // GOFs of frames with random contents, for tests of parser, writer and reconstruction.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -10,6 +11,49 @@
 #include "common/mesh/coded_mesh.h"
 
 namespace rlpc {
+
+// Any legal pattern. below(n): a random number below n.
+template <class Below>
+FramePattern random_frame_pattern(const Below& below) {
+  FramePattern pattern;
+  pattern.kind = static_cast<FramePattern::Kind>(below(4));
+  if (pattern.kind == FramePattern::kDyadic)
+    pattern.period_log2 = 1 + static_cast<int>(below(4));
+  if (pattern.kind == FramePattern::kExplicit) {
+    const std::uint32_t period = 1 + below(6);
+    std::vector<std::uint32_t> depth_at(period + 1, kMaxFrameDepths);
+    depth_at[0] = 0;
+    while (pattern.entries.size() < period) {
+      PatternEntry entry{1 + below(period), {}, 0};
+      if (depth_at[entry.offset] < kMaxFrameDepths) continue;
+      std::vector<std::uint32_t> before;
+      std::vector<std::uint32_t> after;
+      for (std::uint32_t offset = 0; offset <= period; ++offset) {
+        if (depth_at[offset] < kMaxFrameDepths) {
+          (offset < entry.offset ? before : after).push_back(offset);
+        }
+      }
+      const auto one_of = [&](const std::vector<std::uint32_t>& offsets) {
+        return offsets[below(static_cast<std::uint32_t>(offsets.size()))];
+      };
+      entry.reference.fill(one_of(before));
+      if (!after.empty() && below(3) > 0) entry.reference[1] = one_of(after);
+      if (!after.empty() && below(4) == 0) entry.reference[0] = entry.reference[1];
+      for (const std::uint32_t offset : entry.reference) {
+        entry.depth = std::max(entry.depth, depth_at[offset]);
+      }
+      if (entry.offset < period && entry.depth + 1 < kMaxFrameDepths) entry.depth += below(2);
+      if (entry.offset == period && entry.depth > 0) {
+        entry.depth = 0;
+        entry.reference.fill(0);
+      }
+      depth_at[entry.offset] = entry.depth;
+      pattern.entries.push_back(entry);
+    }
+  }
+  pattern.temporal_layers = 1 + below(pattern.num_depths());
+  return pattern;
+}
 
 // Any legal settings, residuals of any size, and layer groups and frames that are absent from
 // some frame on.
@@ -24,9 +68,12 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
   FrameGof gof;
   gof.kind = GofKind::kFrames;
   gof.num_frames = num_frames;
-  gof.reference = static_cast<FrameReference>(below(2));
+  gof.pattern = random_frame_pattern(below);
   gof.exact_flag = below(3) == 0;
-  if (!gof.exact_flag) gof.step = 1 + (below(4) == 0 ? below(kMaxFrameStep) : below(200));
+  gof.step.assign(gof.pattern.num_depths(), kExactFrameStep);
+  for (std::uint32_t& step : gof.step) {
+    if (!gof.exact_flag) step = 1 + (below(4) == 0 ? below(kMaxFrameStep) : below(200));
+  }
   gof.learning_flag = below(3) != 0;
   gof.weights = {static_cast<int>(below(16)), static_cast<int>(below(16)),
                  static_cast<int>(below(16)), 0};
@@ -44,10 +91,16 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
     if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(kMaxLayerStep));
   }
   auto frames = std::make_shared<std::vector<CodedFrame>>(num_frames);
-  auto groups = static_cast<std::uint32_t>(gof.layer_group_size.size());
+  std::vector<std::uint32_t> most(gof.pattern.temporal_layers,
+                                  static_cast<std::uint32_t>(gof.layer_group_size.size()));
   const std::uint32_t most_bits = below(4) == 0 ? 28 : 6;
-  for (CodedFrame& frame : *frames) {
+  const FrameOrder order(gof.pattern, num_frames);
+  for (std::uint32_t place = 0; place < num_frames; ++place) {
+    CodedFrame& frame = (*frames)[order[place].frame];
+    // No more layer groups than the frames before of the same and lower temporal layers.
+    std::uint32_t& groups = most[gof.pattern.temporal_layer(order[place].depth)];
     if (below(8) == 0) groups = below(groups + 1);
+    for (std::size_t t = 1; t < most.size(); ++t) most[t] = std::min(most[t], most[t - 1]);
     frame.layer_groups = groups;
     if (groups == 0) continue;
     frame.residual = CompactResiduals(3 * std::size_t{mesh.num_vertices()});

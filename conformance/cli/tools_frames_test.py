@@ -10,7 +10,8 @@ from tools_testing import INPUTS, NAMES, ToolsTest, main
 class Frames(ToolsTest):
     def test_the_bundled_animations_meet_their_target(self):
         for name in NAMES:
-            for how in ((), ("--frame-weights", "geometry"), ("--frame-reference", "first")):
+            for how in ((), ("--frame-weights", "geometry"), ("--frame-pattern", "first"),
+                        ("--frame-pattern", "dyadic:8"), ("--frame-pattern", "2<0,1<0+2@1")):
                 stream = self.path("a.rlpc")
                 report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind",
                                      "frames", *how, name=name)

@@ -336,13 +336,23 @@ void CaseMaker::keep_to_source() {
 
 bool EncoderCase::has_known_options() const {
   return options.profile <= RLPC_HIGH && options.preset <= RLPC_SLOW &&
-         options.target >= RLPC_TARGET_KG && options.target <= RLPC_TARGET_MAX_ERROR &&
+         options.target >= RLPC_TARGET_KG && options.target <= RLPC_TARGET_LOSSLESS &&
          options.hash_mode <= RLPC_HASH_FRAME;
+}
+
+bool EncoderCase::has_legal_target() const {
+  const double value = options.target_value;
+  if (options.target == RLPC_TARGET_LOSSLESS) {
+    return options.profile == RLPC_HIGH && options.components == 0 && value >= 2.0 &&
+           value <= 24.0 && value == std::floor(value);
+  }
+  return value > 0.0 && std::isfinite(value);
 }
 
 bool EncoderCase::is_legal() const {
   if (settings) return !check_settings(*settings);
-  if (!has_known_options() || num_vertices == 0 || num_frames == 0) return false;
+  if (!has_known_options() || num_vertices == 0) return false;
+  if (num_frames == 0 && options.profile != RLPC_HIGH) return false;
   if (frame_rate.numerator == 0 || frame_rate.denominator == 0) return false;
   for (const std::uint32_t v : indices) {
     if (v >= num_vertices) return false;
@@ -353,8 +363,8 @@ bool EncoderCase::is_legal() const {
       return false;
     }
   }
-  return options.target_value > 0.0 && std::isfinite(options.target_value) &&
-         options.components <= 1024 && options.least_level >= 1 && options.least_level <= 4;
+  return has_legal_target() && options.components <= 1024 && options.least_level >= 1 &&
+         options.least_level <= 4;
 }
 
 bool EncoderCase::is_legal_frame(std::size_t frame) const {
@@ -364,7 +374,7 @@ bool EncoderCase::is_legal_frame(std::size_t frame) const {
                                  : xyz[i] >= box_min[i % 3] && xyz[i] <= box_max[i % 3];
     if (!within) return false;
   }
-  return settings || frame < num_frames;
+  return settings || num_frames == 0 || frame < num_frames;
 }
 
 EncoderCase make_encoder_case(std::span<const std::uint8_t> bytes) {

@@ -411,11 +411,11 @@ static void test_encoder_arguments(void) {
   options.target_value = -1;
   CHECK(create_with(&format, &options, text) == RLPC_BAD_INPUT);
   CHECK_TEXT(text, "above zero");
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 6; ++i) {
     options = small_gofs();
-    uint32_t* const choices[4] = {&options.profile, &options.preset, &options.target,
-                                  &options.hash_mode};
-    *choices[i] = 4;
+    uint32_t* const choices[6] = {&options.profile,   &options.preset,   &options.target,
+                                  &options.hash_mode, &options.gof_kind, &options.low_delay};
+    *choices[i] = 5;
     CHECK(create_with(&format, &options, text) == RLPC_BAD_ARGUMENT);
     CHECK_TEXT(text, "unknown value");
   }
@@ -525,6 +525,59 @@ static void test_temporal_layers(void) {
   rlpc_encoder_close(encoder);
 }
 
+// A frame is in the stream as soon as it has been added, and the number of frames at its end.
+static void test_low_delay(void) {
+  static buffer stream;
+  rlpc_frame_format format = strip_format();
+  format.num_frames = 0;
+  rlpc_encode_options options = small_gofs();
+  options.low_delay = 1;
+  rlpc_encoder* encoder;
+  memset(&stream, 0, sizeof stream);
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_BAD_INPUT);
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "needs --profile high");
+  rlpc_encoder_close(encoder);
+  options.profile = RLPC_HIGH;
+  options.gof_kind = RLPC_KIND_FRAMES;
+  options.target = RLPC_TARGET_LOSSLESS;
+  options.target_value = 12;
+  CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);
+  float xyz[VALUES];
+  size_t before = 0;
+  for (unsigned f = 0; f < FRAMES; ++f) {
+    make_frame(f, xyz);
+    CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_OK);
+    CHECK(stream.size > before);
+    before = stream.size;
+    xyz[4] = 7;
+    CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_BAD_INPUT);  // left out
+    CHECK_TEXT(rlpc_encoder_error_text(encoder), "vertex 1: y is 7");
+    CHECK(stream.size == before);
+  }
+  rlpc_encode_report report;
+  CHECK(rlpc_encoder_finish(encoder, &report, sizeof report) == RLPC_OK);
+  CHECK(report.num_gofs == (FRAMES + 7) / 8 && report.target_met == 1);
+  rlpc_encoder_close(encoder);
+
+  rlpc_decoder* decoder;
+  CHECK(rlpc_decoder_open_memory(stream.bytes, stream.size, NULL, &decoder) == RLPC_OK);
+  rlpc_stream_info info;
+  CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+  CHECK(info.num_frames == FRAMES);
+  float decoded[VALUES];
+  for (unsigned f = 0; f < FRAMES; ++f) {
+    CHECK(rlpc_decoder_next_floats(decoder, decoded, VALUES) == RLPC_OK);
+    make_frame(f, xyz);
+    for (int i = 0; i < VALUES; ++i) CHECK(fabsf(decoded[i] - xyz[i]) <= 0.6F / 4095);
+  }
+  CHECK(rlpc_decoder_next_floats(decoder, decoded, VALUES) == RLPC_END);
+  CHECK(rlpc_decoder_seek(decoder, FRAMES - 1) == RLPC_OK);
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, VALUES) == RLPC_OK);
+  CHECK(memcmp(xyz, decoded, sizeof xyz) == 0);
+  CHECK(rlpc_decoder_seek(decoder, FRAMES) == RLPC_BAD_ARGUMENT);
+  rlpc_decoder_close(decoder);
+}
+
 static rlpc_decoder* open_coarse(const buffer* stream, uint32_t layers) {
   rlpc_decode_options options;
   rlpc_decode_options_init(&options, sizeof options);
@@ -617,6 +670,7 @@ int main(void) {
   test_encoder_arguments();
   test_encoder_frames();
   test_temporal_layers();
+  test_low_delay();
   test_coarse_meshes(&stream);
   test_texts();
   if (failures == 0) puts("the library does what its headers say");

@@ -17,12 +17,14 @@ class HighPlan(random_main.MainPlan):
         self.present_percent = n.pick([100, 70, 0])  # trajectories that occur in a GOF
         self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
         self.frames_percent = n.pick([0, 0, 30, 100])  # share of GOFs of frames
+        self.open_end = n.chance(30)
 
 
 class HighSource(random_main.MainSource):
     """Values of the elements that the Main profile does not have, too."""
 
     temporal_layer = 0  # of the slice
+    ends_gof = False  # by the frame unit
 
     def _profile_idc(self, ns, indices, arguments):
         return 2
@@ -67,10 +69,55 @@ class HighSource(random_main.MainSource):
             return self.numbers.pick([0, 0, 1, self.numbers.between(0, 7)])
         return self.numbers.pick(_kept(ns))
 
-    def _frame_reference_idc(self, ns, indices, arguments):
+    def _open_end_flag(self, ns, indices, arguments):
+        return int(self.plan.open_end)
+
+    def _num_sequence_frames(self, ns, indices, arguments):
+        return ns["NumParsedFrames"]
+
+    def _frame_pattern_idc(self, ns, indices, arguments):
+        return self.numbers.between(0, 3)
+
+    def _exact_flag(self, ns, indices, arguments):
         return self.numbers.between(0, 1)
 
-    _exact_flag = _frame_hash_flag = _frame_reference_idc
+    _frame_hash_flag = _exact_flag
+
+    def _pattern_period_log2(self, ns, indices, arguments):
+        return self.numbers.between(1, 3)
+
+    def _pattern_period_minus1(self, ns, indices, arguments):
+        return self.numbers.between(0, 3)
+
+    def _pattern_offset_minus1(self, ns, indices, arguments):
+        free = [i - 1 for i, depth in enumerate(ns["DepthAtOffset"]) if depth < 0]
+        return self.numbers.pick(free)
+
+    def _two_references_flag(self, ns, indices, arguments):
+        after = ns["DepthAtOffset"][_offset(ns) + 1:]
+        return int(max(after, default=-1) >= 0 and self.numbers.chance(70))
+
+    def _pattern_reference(self, ns, indices, arguments):
+        offset, depths = _offset(ns), ns["DepthAtOffset"]
+        known = [i for i, depth in enumerate(depths) if depth >= 0]
+        if ns["two_references_flag"]:
+            known = [i for i in known if (i > offset) == (indices[1] == 1)]
+        if offset == ns["PatternPeriod"]:
+            known = [i for i in known if depths[i] == 0]
+        return self.numbers.pick(known)
+
+    def _pattern_depth(self, ns, indices, arguments):
+        if _offset(ns) == ns["PatternPeriod"]:
+            return 0
+        references = ns["pattern_reference"][indices[0]]
+        return self.numbers.between(max(ns["DepthAtOffset"][i] for i in references), 3)
+
+    def _temporal_layers_minus1(self, ns, indices, arguments):
+        most = ns["MaxLearningVertices"] // ns["NumVertices"]
+        return self.near(0, min(ns["NumDepths"], most) - 1)
+
+    def _gof_end_flag(self, ns, indices, arguments):
+        return int(self.ends_gof)
 
     def _frame_step_minus1(self, ns, indices, arguments):
         return self.near(0, 65535)
@@ -111,6 +158,11 @@ class HighSource(random_main.MainSource):
         return int(self.numbers.chance(self.plan.present_percent))
 
 
+def _offset(ns):
+    """Of the entry of an explicit pattern that is being written."""
+    return ns["pattern_offset_minus1"][-1] + 1
+
+
 def _kept(ns):
     """The indices of the skinned models that there are."""
     return [m for m, model in enumerate(ns["Models"]) if model]
@@ -129,6 +181,15 @@ class HighSequence(random_main.MainSequence):
             self._skippable()
         super()._gof()
 
+    def _has_more(self):
+        if not self._plan.open_end:
+            return super()._has_more()
+        parsed = self._writer.ns["NumParsedFrames"]
+        return parsed == 0 or (parsed < 9 and self._n.chance(60))
+
+    def _may_have_hash(self):
+        return not (self._plan.open_end and self._writer.ns["gof_kind"] == 3)
+
     def _slices(self):
         ns = self._writer.ns
         if self._writer.source.unit_code == ns["GOF"] and ns["gof_kind"] == 3:
@@ -141,14 +202,25 @@ class HighSequence(random_main.MainSequence):
 
     def _frames(self):
         """The frame units of a GOF; from some frame on, fewer layer groups, or none."""
-        ns = self._writer.ns
-        most = ns["num_layer_groups_minus1"] + 1
-        for frame in range(ns["NumGofFrames"]):
+        ns, source = self._writer.ns, self._writer.source
+        most = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
+        for place in range(ns["NumGofFrames"]):
+            frame = ns["FrameOrder"][place]
+            layer = ns["TemporalLayerOfFrame"](frame)
             if self._n.chance(self._plan.cut_percent):
-                most = self._n.between(0, most)
-            for group in range(most):
-                self._writer.source.slice = frame, group
+                most[layer] = self._n.between(0, most[layer])
+                most[layer:] = [min(n, most[layer]) for n in most[layer:]]
+            for group in range(most[layer]):
+                source.slice = frame, group
                 self._unit("FRAME")
+            # Where no period is cut off, the order stays.
+            if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
+                    and sorted(ns["FrameOrder"][:place + 1]) == list(range(place + 1))
+                    and place % ns["PatternPeriod"] == 0):
+                source.slice, source.ends_gof = (place + 1, 0), True
+                self._unit("FRAME")
+                source.ends_gof = False
+                break
 
     def _temporal_layers(self):
         """The slices of the temporal layers but the first, some of them cut off."""

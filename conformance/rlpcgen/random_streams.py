@@ -352,6 +352,12 @@ class Sequence:
     def _gof(self):
         self._unit("GOF")
 
+    def _has_more(self):
+        return self._writer.ns["NumParsedFrames"] < self._writer.ns["NumFrames"]
+
+    def _may_have_hash(self):
+        return True
+
     def write(self):
         self._unit("SEQUENCE_HEADER")
         self._skippable()
@@ -361,10 +367,10 @@ class Sequence:
             self._unit("VERTEX_ORDER")
             self._writer.ns["HasVertexOrder"] = 1
         self._skippable()
-        while self._writer.ns["NumParsedFrames"] < self._writer.ns["NumFrames"]:
+        while self._has_more():
             self._gof()
             self._writer.decode_gof()
-            if self._n.chance(self._plan.hash_percent):
+            if self._n.chance(self._plan.hash_percent) and self._may_have_hash():
                 self._unit("GOF_HASH")
             self._skippable()
         if self._n.chance(30):

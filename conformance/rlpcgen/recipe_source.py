@@ -196,14 +196,15 @@ def inferred(writer, name, indices):
     if name == "first_frame":
         return ns["NumParsedFrames"]
     if name == "num_gof_frames_minus1":
-        return max(0, ns["NumFrames"] - ns["NumParsedFrames"] - 1)
+        return max(0, min(ns["NumFrames"] - ns["NumParsedFrames"], 64) - 1 if ns["open_end_flag"]
+                   else ns["NumFrames"] - ns["NumParsedFrames"] - 1)
     if name == "position_crc":
         hashes = writer.hash_of_gof(ns["per_frame_flag"])
         return hashes[indices[0]] if indices[0] < len(hashes) else 0
     if name == "frame_crc":
         return None  # known once the frame has been written
     if name == "layer_group_idx" and writer.source.unit_code == ns["FRAME"]:
-        return sum(frames > ns["frame_idx"] for frames in ns["FramesOfGroup"])
+        return ns["FrameGroups"][ns["frame_idx"]]
     if name in _SLICES:
         return _SLICES[name](ns)
     if name in writer.inferred:
@@ -232,8 +233,10 @@ def _next_layers(ns):
 
 def _next_frame(ns):
     """The frame of the next frame unit, if none is left out: all layer groups of one first."""
-    frames = ns["FramesOfGroup"]
-    return frames[0] if frames[-1] == frames[0] else frames[0] - 1
+    order, place = ns["FrameOrder"], ns["LastPlace"]
+    if place < 0 or ns["FrameGroups"][order[place]] > ns["num_layer_groups_minus1"]:
+        place += 1
+    return order[place] if place < len(order) else ns["NumGofFrames"]
 
 
 _SLICES = {"component_group_idx": _next_group, "layer_group_idx": _next_layers,
@@ -390,4 +393,5 @@ def _infer_positions(writer, codes, offsets, code):
     elif code == codes["END_OF_SEQUENCE"]:
         indexed = offsets and offsets[-1][0] == codes["GOF_INDEX"]
         writer.inferred["index_distance"] = here - offsets[-1][1] if indexed else 0
+        writer.inferred["num_sequence_frames"] = writer.ns.get("NumParsedFrames", 0)
 

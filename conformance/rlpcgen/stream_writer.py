@@ -163,6 +163,7 @@ class StreamWriter:
         self.running_hash = 0
         self._crc_at = None  # of a frame, which is known once its residuals are written
         self._decoded_frames = 0  # of a GOF of frames
+        self._counts_gof = False  # the last GOF is in gof_frames
 
     # Bits.
 
@@ -310,6 +311,8 @@ class StreamWriter:
         ns = self.ns
         if code in (ns["GOF"], ns["MODEL"]):
             self._finish_model()
+        if code == ns["GOF_INDEX"] and ns.get("open_end_flag"):
+            ns["NumFrames"] = ns["NumParsedFrames"]  # as random access knows it
         self.source.unit_code = code
         start = len(self.data)
         ns["unit_header"]()
@@ -323,6 +326,9 @@ class StreamWriter:
         self._bins.clear()
         if code == ns["GOF"]:
             self._decoded_frames = 0
+            self._counts_gof = False
+        elif code == ns["FRAME"]:
+            self._end_gof_early()
         if self._crc_at is not None:
             self._put_frame_crc()
         if finish is not None:
@@ -381,7 +387,7 @@ class StreamWriter:
         if code == self.ns["SLICE"]:
             return "SliceLayers" in self.ns  # after a GOF or skinned model
         if code == self.ns["FRAME"]:
-            return "FramesOfGroup" in self.ns  # after a GOF of frames
+            return "FrameGroups" in self.ns  # after a GOF of frames
         if code == self.ns["MODEL"]:
             return "EarlierNeighbours" in self.ns  # after the connectivity
         return True
@@ -406,12 +412,14 @@ class StreamWriter:
 
     def _put_frame_crc(self):
         """The hash of the frame whose last frame unit has been written."""
-        frame = self.ns["frame_idx"]
-        while self._decoded_frames <= frame:
-            self.ns["DecodeFrame"](self._decoded_frames)
+        ns, frame = self.ns, self.ns["frame_idx"]
+        while self._decoded_frames <= ns["PlaceOfFrame"][frame]:
+            ns["NextPlace"] = self._decoded_frames
+            ns["DecodeFrame"](ns["FrameOrder"][self._decoded_frames])
             self._decoded_frames += 1
-        self.ns["RoundFrame"]()
-        crc = self.ns["HashOfPositions"](0)
+        ns["NextPlace"] = 0  # decoding the GOF begins afresh
+        ns["RoundFrame"](frame)
+        crc = ns["HashOfPositions"](0)
         self.data[self._crc_at:self._crc_at + 4] = crc.to_bytes(4, "big")
         self.ns["FrameCrc"][frame][0] = crc
         self._crc_at = None
@@ -431,8 +439,16 @@ class StreamWriter:
             if not self.broken:
                 raise
 
+    def _end_gof_early(self):
+        """A frame unit may have set the number of frames of a GOF that has been counted."""
+        if self._counts_gof:
+            fewer = self.gof_frames[-1] + 1 - self.ns["NumGofFrames"]
+            self.gof_frames[-1] -= fewer
+            self.ns["NumParsedFrames"] -= fewer
+
     def decode_gof(self):
         """After a GOF unit: its frames count as parsed, and their hashes become known."""
+        self._counts_gof = True
         self.ns["NumParsedFrames"] += self.ns["NumGofFrames"]
         self.gof_frames.append(self.ns["NumGofFrames"] - 1)
         self.frame_hashes, self.running_hash = [], 0

@@ -96,17 +96,35 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-FRM-01", "7.14", "The step of a GOF of frames is above 2^12 grid units.",
      "The step was written in other units than 1/16 grid units.",
      "Write the step in 1/16 grid units, minus 1."},
-    {"R-FRM-02", "7.14.1", "A frame unit has a frame or a layer group that its GOF lacks.",
+    {"R-FRM-02", "7.14.2", "A frame unit has a frame or a layer group that its GOF lacks.",
      "frame_idx counts from the start of the sequence, or reading is out of step.",
      "Count frames from the start of the GOF, and layer groups from the coarsest, both from "
      "0."},
-    {"R-FRM-03", "7.14.1", "A frame unit does not continue its GOF.",
+    {"R-FRM-03", "7.14.2", "A frame unit does not continue its GOF.",
      "A unit was lost or left out while later ones of its layer group stayed, or units of "
      "frames "
      "were mixed.",
      "Write frames in order, each with its layer groups from the coarsest on; once a frame "
      "lacks "
      "a layer group, so do all later ones of the GOF."},
+    {"R-FRM-04", "7.14.2", "A GOF ends before frames that have been coded.",
+     "gof_end_flag was sent with a frame_idx that is too small, or within a period whose "
+     "frames "
+     "are coded in another order if the period is cut off.",
+     "End a GOF after the last frame that has been coded; in a pattern with two references, "
+     "before the first frame of a period that is cut off."},
+    {"R-FRM-05", "7.14.1", "The period of a dyadic pattern is not 2, 4, 8, 16, 32 or 64.",
+     "pattern_period_log2 was written as the period itself, or is 0.",
+     "Write a logarithm of 1 to 6; with a period of one frame, frame_pattern_idc is 0."},
+    {"R-FRM-06", "7.14.1", "The pattern of a GOF of frames is not one.",
+     "A frame of the period is missing or comes twice, a reference comes after the frame that "
+     "it "
+     "predicts, or depths are too small.",
+     "List every frame of the period once, after its references, with a depth that is not less "
+     "than theirs; the last frame of the period has depth 0."},
+    {"R-FRM-07", "7.14.1", "A pattern has more temporal layers than depths.",
+     "The number of layers was taken from another pattern.",
+     "A pattern has at most as many temporal layers as its frames have depths."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",

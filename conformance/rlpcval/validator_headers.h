@@ -29,6 +29,7 @@ struct SliceCounts {
   std::uint32_t layer_groups = 1;
   std::uint32_t temporal_layers = 1;
   std::uint32_t frames = 0;  // of a GOF of frames; 0: there are slice units
+  bool open_end = false;     // of the stream
 };
 
 struct GofHeaderCheck {

@@ -208,7 +208,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
   }
 }
 
-// 6.12 slice_unit( ), 6.14.1 frame_unit( )
+// 6.12 slice_unit( ), 6.14.2 frame_unit( )
 void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   if (model_.unit) return slice_of(model_, unit, payload);
@@ -254,6 +254,9 @@ void StreamValidator::end_gof() {
   gof_.parser.reset();
   ++report_.gofs;
   report_.frames += gof_.access_unit->header().num_frames;
+  // It may have ended early.
+  if (next_frame_) *next_frame_ -= gof_.num_frames - gof_.access_unit->header().num_frames;
+  gof_.num_frames = gof_.access_unit->header().num_frames;
   findings_.in_unit(gof_.place);
   needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, gof_.unit->size);
   warn_of_gof(*gof_.access_unit, lead_.context, slots_of(models_),
@@ -280,6 +283,13 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   }
   findings_.suspect(findings_.suspect() || gof_.suspect);
   BitReader r = bits_of(unit, payload);
+  if (is_live(lead_.header->header, GofKind::kFrames) && gof_.access_unit &&
+      gof_.access_unit->header().kind == GofKind::kFrames) {
+    findings_.unchecked(
+        "R-HSH-03", "unit_type", unit.offset * 8,
+        "GOFs of frames of an open-ended stream have hashes in their frame units");
+    return;
+  }
   const auto hash = parse_gof_hash(r, gof_.num_frames);
   if (!hash) {
     findings_.error(hash.error());
@@ -296,6 +306,9 @@ void StreamValidator::compare_frame_crcs(const AccessUnit& access_unit) {
   if (crcs.empty()) return;
   const auto recon = make_recon(access_unit, lead_.context, *recons_);
   std::vector<std::int32_t> positions(3 * std::size_t{lead_.header->header.num_vertices});
+  const auto hashed = static_cast<std::uint32_t>(
+      std::count_if(crcs.begin(), crcs.end(), [](const auto& crc) { return crc.has_value(); }));
+  if (hashed == crcs.size()) ++report_.gofs_of_hashed_frames;
   for (std::uint32_t f = 0; f < crcs.size(); ++f) {
     if (!crcs[f]) continue;
     recon->frame(f, positions);
@@ -306,6 +319,7 @@ void StreamValidator::compare_frame_crcs(const AccessUnit& access_unit) {
                            "of frame " + std::to_string(frame) + ": frame_crc is " +
                                hex(crcs[f]->crc) + ", the decoded positions give " + hex(crc));
   }
+  if (is_live(lead_.header->header, access_unit.header().kind)) report_.hashed_frames += hashed;
 }
 
 // 8.6.2 Hash check
@@ -346,8 +360,9 @@ void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash
 void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   ElementReader r(payload, unit.payload_offset() * 8, findings_, Checked::kNotByDecoding);
-  index_.checks.push_back(
-      check_gof_index(r, lead_.header->header, options_.limits.max_memory_bytes));
+  SequenceHeader header = lead_.header->header;
+  if (header.open_end_flag && next_frame_) header.num_frames = *next_frame_;
+  index_.checks.push_back(check_gof_index(r, header, options_.limits.max_memory_bytes));
   index_.checks.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
   index_.checks.back().suspect = findings_.suspect();
   if (index_.checks.back().too_large) {
@@ -371,6 +386,14 @@ void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
 void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& payload) {
   ElementReader r(payload, unit.payload_offset() * 8, findings_);
   const auto distance = static_cast<std::uint64_t>(r.u(32, "index_distance"));
+  const bool is_open_ended =
+      lead_.header && lead_.header->usable && lead_.header->header.open_end_flag;
+  std::int64_t num_frames = 0;
+  if (is_open_ended) {
+    num_frames = r.u(32, "num_sequence_frames");
+    r.require(num_frames <= kMaxFrames, "R-LVL-03",
+              "a sequence has at most " + std::to_string(kMaxFrames) + " frames");
+  }
   r.expect_end();
   const bool follows_index = previous_ && previous_->type() == UnitType::kGofIndex;
   const bool leads_to_it = follows_index && previous_->offset + distance == unit.offset;
@@ -386,11 +409,12 @@ void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& pay
   }
   if (!lead_.header || !lead_.header->usable) return;
   findings_.suspect(findings_.suspect() || lead_.header_suspect || frames_suspect_);
-  if (next_frame_ && *next_frame_ != lead_.header->header.num_frames) {
+  if (!is_open_ended) num_frames = lead_.header->header.num_frames;
+  if (next_frame_ && *next_frame_ != num_frames && r.readable()) {
     findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
-                    "the GOFs have " + std::to_string(*next_frame_) +
-                        " frames, the sequence header announces " +
-                        std::to_string(lead_.header->header.num_frames));
+                    "the GOFs have " + std::to_string(*next_frame_) + " frames, the " +
+                        (is_open_ended ? "end_of_sequence unit" : "sequence header") +
+                        " announces " + std::to_string(num_frames));
   }
 }
 

@@ -120,7 +120,9 @@ void StreamValidator::warn_of_stream() {
   warn_of_level();
   const auto seen = [&](UnitType type) { return seen_[static_cast<std::uint8_t>(type)]; };
   const std::uint32_t gofs = seen(UnitType::kGof);
-  const std::uint32_t hashes = seen(UnitType::kGofHash);
+  std::uint32_t hashes = seen(UnitType::kGofHash);
+  if (lead_.header && lead_.header->header.open_end_flag)
+    hashes += report_.gofs_of_hashed_frames;
   if (gofs > hashes) {
     findings_.warning(
         "W-HSH-01", "gof_hash", end,

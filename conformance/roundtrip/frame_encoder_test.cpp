@@ -166,6 +166,108 @@ TEST(FrameEncoder, GivesTheBytesOfASpanWhenItIsFull) {
   EXPECT_TRUE(encoder->finish());
 }
 
+// Frames of a source, as if their number were not known.
+Encoded encode_open_ended(FrameSource& source, const EncoderSettings& settings) {
+  Encoded out;
+  FrameFormat format = format_of(source);
+  format.num_frames = 0;
+  format.max_held_frames = 1;
+  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
+    out.bytes.insert(out.bytes.end(), more.begin(), more.end());
+    return true;
+  });
+  if (!encoder) throw std::logic_error(encoder.error().message);
+  for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
+    const std::size_t before = out.bytes.size();
+    if (const auto error = encoder->add_frame(frame_of(source, f))) {
+      throw std::logic_error(error->message);
+    }
+    EXPECT_EQ(out.bytes.size() > before, settings.low_delay || f % 20 == 19) << f;
+  }
+  auto report = encoder->finish();
+  if (!report) throw std::logic_error(report.error().message);
+  out.report = std::move(*report);
+  require_conforming(out.bytes);
+  return out;
+}
+
+// GOFs of any kind; the last is shorter.
+TEST(FrameEncoder, WithoutANumberOfFrames) {
+  MemoryFrames source = bending_tube(80, 50);
+  for (const KindChoice kinds :
+       {KindChoice::kAuto, KindChoice::kClusters, KindChoice::kFrames}) {
+    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+    settings.kinds = kinds;
+    const auto encoded = encode_open_ended(source, settings);
+    EXPECT_TRUE(encoded.report.target_met);
+    EXPECT_EQ(encoded.report.num_gofs, 3U);
+    EXPECT_EQ(encoded.report.header.num_frames, 50U);
+    EXPECT_EQ(encoded.report.bpvf, bits_per_vertex_per_frame(encoded.bytes.size(), 400, 50));
+    EXPECT_LE(measure(source, encoded, 20).whole.kg_error_percent, 0.5);
+  }
+}
+
+TEST(FrameEncoder, WithLowDelayAFrameIsOutWhenItIsIn) {
+  MemoryFrames source = bending_tube(80, 50);
+  for (const Target& target : {Target{Target::kKg, 0.5}, Target{Target::kMaxError, 0.01},
+                               Target{Target::kLossless, 11}}) {
+    EncoderSettings settings = settings_of(Profile::kHigh, target, 20);
+    settings.low_delay = true;
+    const auto encoded = encode_open_ended(source, settings);
+    EXPECT_EQ(encoded.report.num_gofs, 3U);
+    const Measured measured = measure(source, encoded, 20);
+    EXPECT_EQ(encoded.report.metrics.max_error, measured.whole.max_error);
+    if (target.kind == Target::kKg) {
+      EXPECT_NEAR(measured.whole.kg_error_percent, 0.5, 0.15);
+    } else {
+      EXPECT_TRUE(encoded.report.target_met);
+    }
+  }
+}
+
+TEST(FrameEncoder, WithoutAFrameThereIsNoStream) {
+  MemoryFrames source = bending_tube(8, 4);
+  FrameFormat format = format_of(source);
+  format.num_frames = 0;
+  for (const bool low_delay : {false, true}) {
+    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+    settings.low_delay = low_delay;
+    auto encoder = FrameEncoder::create(format, settings, discard);
+    ASSERT_TRUE(encoder);
+    const auto report = encoder->finish();
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().message.find("at least one frame"), std::string::npos);
+  }
+}
+
+// It is left out, and the others are a stream.
+TEST(FrameEncoder, WithLowDelayAWrongFrameIsNoEnd) {
+  MemoryFrames source = bending_tube(8, 4);
+  FrameFormat format = format_of(source);
+  format.num_frames = 0;
+  EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 12}, 20);
+  settings.low_delay = true;
+  StreamBytes bytes;
+  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return true;
+  });
+  ASSERT_TRUE(encoder);
+  ASSERT_FALSE(encoder->add_frame(frame_of(source, 0)));
+  std::vector<float> wrong = frame_of(source, 1);
+  wrong[5] = std::numeric_limits<float>::quiet_NaN();
+  const auto error = encoder->add_frame(wrong);
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->message.find("frame 1 (from 0), vertex 1: z is nan"), std::string::npos);
+  wrong.pop_back();
+  EXPECT_TRUE(encoder->add_frame(wrong));
+  ASSERT_FALSE(encoder->add_frame(frame_of(source, 1)));
+  const auto report = encoder->finish();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->header.num_frames, 2U);
+  require_conforming(bytes);
+}
+
 TEST(FrameEncoder, QuantisersOfThePaperNeedNoSearch) {
   MemoryFrames source = bending_tube(6, 12);
   EncoderSettings settings = rich_settings();
@@ -230,7 +332,7 @@ TEST(FrameEncoder, RefusesFormatsThatCannotBe) {
   expect(error_of_format([](auto& f) { f.num_vertices = 0; }), "at least one vertex");
   expect(error_of_format([](auto& f) { f.num_vertices = 19; }), "vertex 19 of 19");
   expect(error_of_format([](auto& f) { f.num_vertices = 1U << 24; }), "no level allows");
-  expect(error_of_format([](auto& f) { f.num_frames = 0; }), "16777216 frames, not 0");
+  expect(error_of_format([](auto& f) { f.num_frames = 0; }), "only the High profile");
   expect(error_of_format([](auto& f) { f.num_frames = kMaxFrames + 1; }), "not 16777217");
   expect(error_of_format([](auto& f) { f.frame_rate.denominator = 0; }), "frame rate");
   expect(error_of_format([](auto& f) { f.least_level = 5; }), "1 to 4, not 5");

@@ -157,11 +157,14 @@ class CodedFrames : public FrameGofs, public testing::WithParamInterface<unsigne
 
 TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   FrameSettings settings;
-  settings.reference = static_cast<FrameReference>(GetParam() & 1U);
-  settings.learning_flag = (GetParam() & 2U) != 0;
-  settings.exact_flag = (GetParam() & 4U) != 0;
+  settings.pattern.kind = static_cast<FramePattern::Kind>(GetParam() & 3U);
+  settings.pattern.entries = {{2, {0, 0}, 0}, {1, {0, 2}, 1}};
+  settings.pattern.temporal_layers = settings.pattern.num_depths();
+  settings.learning_flag = (GetParam() & 4U) != 0;
+  settings.exact_flag = (GetParam() & 8U) != 0;
   settings.frame_hash_flag = true;
-  settings.step = settings.exact_flag ? kExactFrameStep : 40;
+  settings.step.assign(settings.pattern.num_depths(),
+                       settings.exact_flag ? kExactFrameStep : 40);
   settings.weights = {6, 3, 3, 0};
   settings.prime_log2 = settings.learning_flag ? 6 : 0;
   settings.layer_group_size = {1, mesh().num_layers() - 1};
@@ -171,8 +174,9 @@ TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   payloads.first = write_frame_gof_unit({GofKind::kFrames, 0, kFrames}, settings);
   std::vector<std::int32_t> expected(kFrames * frame_size());
   const Threads use(2);
-  FrameCoding coding(mesh(), settings, header_.position_bits);
-  for (std::uint32_t f = 0; f < kFrames; ++f) {
+  FrameCoding coding(mesh(), settings, header_, kFrames);
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    const std::uint32_t f = coding.next_frame();
     auto units = coding.code(std::span(xyz).subspan(f * frame_size(), frame_size()),
                              std::span(expected).subspan(f * frame_size(), frame_size()));
     ASSERT_EQ(units.size(), 2U);
@@ -191,7 +195,7 @@ TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   for (const CodedFrame& frame : *gof->frames) EXPECT_TRUE(frame.frame_crc);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachKind, CodedFrames, testing::Range(0U, 8U));
+INSTANTIATE_TEST_SUITE_P(OfEachKind, CodedFrames, testing::Range(0U, 16U));
 
 }  // namespace
 }  // namespace rlpc

@@ -218,7 +218,7 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
     ours.level = h.level_idc;
     ours.num_vertices = decoder->decoder->num_vertices();
     ours.num_triangles = static_cast<std::uint32_t>(decoder->decoder->triangles().size());
-    ours.num_frames = h.num_frames;
+    ours.num_frames = decoder->decoder->num_frames().value_or(0);
     ours.frame_rate_numerator = h.frame_rate.numerator;
     ours.frame_rate_denominator = h.frame_rate.denominator;
     ours.grid_log2_step = h.grid.log2_step;
@@ -292,7 +292,7 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
 
 rlpc_status rlpc_decoder_seek(rlpc_decoder* decoder, uint32_t frame) {
   return rlpc::guarded(decoder, [&] {
-    const std::uint32_t num_frames = decoder->decoder->header().num_frames;
+    const std::uint32_t num_frames = decoder->decoder->num_frames().value_or(0);
     if (frame >= num_frames) {
       return decoder->error.set(RLPC_BAD_ARGUMENT,
                                 "there is no frame " + std::to_string(frame) + " of " +

@@ -74,6 +74,7 @@ typedef struct rlpc_stream_info {
   uint32_t level;
   uint32_t num_vertices;
   uint32_t num_triangles;
+  // Of an open-ended stream, that at its end; 0: not known, as the stream has been cut off.
   uint32_t num_frames;
   uint32_t frame_rate_numerator;  // frames per second
   uint32_t frame_rate_denominator;

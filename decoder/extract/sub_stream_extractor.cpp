@@ -173,7 +173,9 @@ Result<Bytes> SubStreamExtractor::slice(const UnitHeader& unit) {
 
 Result<Bytes> SubStreamExtractor::hash(const UnitHeader& unit) {
   if (!open_ || open_->gof == nullptr) return Bytes{};
-  auto bytes = open_->gof->is_cut_by(cut_) ? new_hash() : copy(unit);
+  const bool is_cut = open_->gof->is_cut_by(cut_);
+  if (is_cut && is_live(stream_->header(), open_->gof->kind)) return Bytes{};  // not allowed
+  auto bytes = is_cut ? new_hash() : copy(unit);
   open_.reset();
   return bytes;
 }
@@ -200,8 +202,11 @@ Bytes SubStreamExtractor::end_of_sequence() {
     bytes =
         write_unit(UnitType::kGofIndex, write_gof_index(index_, stream_->header().profile_idc));
   }
-  const Bytes end = write_unit(UnitType::kEndOfSequence,
-                               write_end_of_sequence(static_cast<std::uint32_t>(bytes.size())));
+  std::optional<std::uint32_t> frames;
+  if (stream_->header().open_end_flag) frames = num_frames();
+  const Bytes end =
+      write_unit(UnitType::kEndOfSequence,
+                 write_end_of_sequence(static_cast<std::uint32_t>(bytes.size()), frames));
   bytes.insert(bytes.end(), end.begin(), end.end());
   return bytes;
 }

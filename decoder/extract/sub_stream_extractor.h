@@ -33,6 +33,7 @@ class SubStreamExtractor {
                                          const SliceCut& cut, const DecodeLimits& limits = {});
 
   const SequenceHeader& header() const { return stream_->header(); }
+  std::uint32_t num_frames() const { return summary_.num_frames(); }
   std::uint64_t size() const { return stream_->units().size(); }  // of the input
   // The GOFs and skinned models of the input. Cluster GOFs have no slices and are kept whole.
   const StreamSummary& summary() const { return summary_; }

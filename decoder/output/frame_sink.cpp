@@ -87,7 +87,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
   if (format == SinkFormat::kByName) {
     return misuse(name + "needs a format");
   }
-  if (format == SinkFormat::kPc2 || format == SinkFormat::kMdd) {
+  const bool is_stream = options.live && format == SinkFormat::kPc2;
+  if ((format == SinkFormat::kPc2 || format == SinkFormat::kMdd) && !is_stream) {
     return misuse(name + "a point cache needs the mesh in a second file; write .rlpd or .glb");
   }
   if (is_mesh(format) && options.num_frames > 1) {

@@ -41,6 +41,10 @@ struct SinkOptions {
   std::vector<Triangle> triangles;  // every index below num_vertices
   // .rlpd only: finish() accepts fewer frames, and the file holds exactly those.
   bool keep_partial = false;
+  // Frames come as they are made, and may be fewer than num_frames; each is passed on at once.
+  // Not for MDD and glTF, nor PC2 files. A PC2 stream on standard output then has a count of 0,
+  // and no mesh.
+  bool live = false;
   // Mesh sequences only: number of the first file.
   std::uint32_t first_number = 0;
   SinkFormat format = SinkFormat::kByName;

@@ -38,7 +38,7 @@ class MeshSink : public FrameSink {
   }
 
   std::optional<OutputError> finish() override {
-    assert(written_ == options_.num_frames);
+    assert(written_ == options_.num_frames || options_.live);
     if (auto error = temporary_.sync()) return error;
     std::error_code ec;
     if (!fs::exists(folder_, ec)) return temporary_.commit(folder_.string());

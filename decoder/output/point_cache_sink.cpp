@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -22,7 +23,9 @@ constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  /
 
 class PointCacheSink : public FrameSink {
  public:
-  PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points, OutputFile mesh)
+  // mesh: none in a live stream.
+  PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points,
+                 std::optional<OutputFile> mesh)
       : mdd_(format == SinkFormat::kMdd),
         options_(std::move(options)),
         points_(std::move(points)),
@@ -35,15 +38,15 @@ class PointCacheSink : public FrameSink {
     append_u32(bytes, options_.num_vertices);
     append_f32(bytes, 0);  // start
     append_f32(bytes, 1);  // frames per sample
-    append_u32(bytes, options_.num_frames);
+    append_u32(bytes, options_.live ? 0 : options_.num_frames);
     return points_.write(bytes);
   }
 
   std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) override {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
-    if (written_++ == 0) {
-      if (auto error = mesh_.write(MeshBytes(SinkFormat::kObj, options_).frame(positions))) {
+    if (written_++ == 0 && mesh_) {
+      if (auto error = mesh_->write(MeshBytes(SinkFormat::kObj, options_).frame(positions))) {
         return error;
       }
     }
@@ -52,19 +55,18 @@ class PointCacheSink : public FrameSink {
       const float x = float_position(options_.grid, i % 3, positions[i]);
       mdd_ ? append_f32_be(bytes_, x) : append_f32(bytes_, x);
     }
-    return points_.write(bytes_);
+    if (auto error = points_.write(bytes_)) return error;
+    return options_.live ? points_.flush() : std::nullopt;
   }
 
   std::optional<OutputError> finish() override {
-    assert(written_ == options_.num_frames);
-    for (OutputFile* file : {&points_, &mesh_}) {
-      if (auto error = file->close()) return error;
-    }
+    assert(written_ == options_.num_frames || options_.live);
+    if (auto error = points_.close()) return error;
+    if (!mesh_) return points_.commit();
+    if (auto error = mesh_->close()) return error;
     const HoldInterrupts hold;
-    for (OutputFile* file : {&mesh_, &points_}) {
-      if (auto error = file->commit()) return error;
-    }
-    return std::nullopt;
+    if (auto error = mesh_->commit()) return error;
+    return points_.commit();
   }
 
  private:
@@ -82,7 +84,7 @@ class PointCacheSink : public FrameSink {
   bool mdd_;
   SinkOptions options_;
   OutputFile points_;
-  OutputFile mesh_;
+  std::optional<OutputFile> mesh_;
   std::string bytes_;
   std::uint32_t written_ = 0;
 };
@@ -104,6 +106,14 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
                                                                SinkOptions options) {
   if (options.num_vertices > kMaxCount || options.num_frames > kMaxCount) {
     return OutputError{path + ": a point cache holds at most 2147483647 vertices and frames"};
+  }
+  if (options.live) {
+    auto points = OutputFile::create(path, options.limit);
+    if (!points) return points.error();
+    auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
+                                                 std::nullopt);
+    if (auto error = sink->write_header()) return *error;
+    return std::unique_ptr<FrameSink>(std::move(sink));
   }
   const std::string mesh_path = std::filesystem::path(path).replace_extension(".obj").string();
   if (OutputFile::is_same_file(path, mesh_path)) {

@@ -37,11 +37,12 @@ class RlpdSink : public FrameSink {
     bytes_.clear();
     for (const std::int32_t p : positions) append_i32(bytes_, p);
     ++written_;
-    return file_.write(bytes_);
+    if (auto error = file_.write(bytes_)) return error;
+    return options_.live ? file_.flush() : std::nullopt;
   }
 
   std::optional<OutputError> finish() override {
-    assert(written_ == options_.num_frames || options_.keep_partial);
+    assert(written_ == options_.num_frames || options_.keep_partial || options_.live);
     if (auto error = file_.close()) return error;
     return file_.commit();
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "common/components/component_limits.h"
+#include "common/frame_gof/frame_gof.h"
 #include "common/skinned_gof/model_slots.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
@@ -65,16 +66,26 @@ constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
   return num_vertices * kBytesPerVertex;
 }
 
-// A GOF of frames: frames without their residuals; per vertex the position in several frames,
-// neighbours and weights; with learned weights, errors and a filter; models of layer groups.
-constexpr std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
-                                         std::uint64_t num_layer_groups, bool is_learning) {
-  constexpr std::uint64_t kBytesPerFrame = 120;
+// A GOF of frames: frames without their residuals, and their order; per vertex the position in
+// several frames, neighbours and weights; with learned weights, for each temporal layer, errors
+// and a filter; models of layer groups, for each depth.
+inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
+                                      const FrameSettings& settings) {
+  constexpr std::uint64_t kBytesPerFrame = 160;
   constexpr std::uint64_t kBytesPerVertex = 400;
   constexpr std::uint64_t kBytesOfFilter = 2600;
   constexpr std::uint64_t kBytesPerGroup = 6000;
-  return num_frames * kBytesPerFrame + num_layer_groups * kBytesPerGroup +
-         num_vertices * (kBytesPerVertex + (is_learning ? kBytesOfFilter : 0));
+  constexpr std::uint64_t kBytesPerDepth = 2;  // and vertex
+  constexpr std::uint64_t kBytesOfKept = 24;   // a position, and as it is output
+  const FramePattern& pattern = settings.pattern;
+  const std::uint64_t depths = pattern.num_depths();
+  const std::uint64_t kept =
+      pattern.kind == FramePattern::kExplicit ? pattern.period() : depths;
+  const std::uint64_t filters = settings.learning_flag ? pattern.temporal_layers : 0;
+  return num_frames * kBytesPerFrame +
+         depths * settings.layer_group_size.size() * kBytesPerGroup +
+         num_vertices * (kBytesPerVertex + filters * kBytesOfFilter + depths * kBytesPerDepth +
+                         kept * kBytesOfKept);
 }
 // The residuals of a frame, of which some are large.
 constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_t num_large) {

@@ -1,10 +1,13 @@
 #include "decoder/parse/parse_frame_gof.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "decoder/parse/memory_estimate.h"
+#include "decoder/parse/parse_frame_pattern.h"
 #include "decoder/parse/parse_layers.h"
 #include "decoder/parse/section_reader.h"
 
@@ -25,7 +28,9 @@ void FrameGofParser::weights(BitReader& r) {
   const std::uint64_t at = r.bit_pos();
   gof_.learning_flag = r.flag("learning_flag");
   if (!gof_.learning_flag) return;
-  if (!r.error() && header_.num_vertices > header_.level().max_learning_vertices) {
+  const std::uint64_t vertices =
+      std::uint64_t{header_.num_vertices} * gof_.pattern.temporal_layers;
+  if (!r.error() && vertices > header_.level().max_learning_vertices) {
     r.fail(Errc::kInvalid, "R-LVL-10", "learning_flag", at);
   }
   gof_.prime_log2 = static_cast<int>(r.u(4, "prime_log2"));
@@ -34,10 +39,13 @@ void FrameGofParser::weights(BitReader& r) {
 // 6.14 frames_of_gof( )
 Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   static_cast<GofHeader&>(gof_) = gof_header;
-  gof_.reference = static_cast<FrameReference>(r.u(1, "frame_reference_idc"));
+  gof_.pattern = parse_frame_pattern(r);
+  if (r.error()) return *r.error();
   gof_.exact_flag = r.flag("exact_flag");
-  if (!gof_.exact_flag) {
-    gof_.step = r.ue("frame_step_minus1", {0, std::int64_t{kMaxFrameStep} - 1}, "R-FRM-01") + 1;
+  gof_.step.assign(gof_.pattern.num_depths(), kExactFrameStep);
+  for (std::uint32_t& step : gof_.step) {
+    if (gof_.exact_flag) break;
+    step = r.ue("frame_step_minus1", {0, std::int64_t{kMaxFrameStep} - 1}, "R-FRM-01") + 1;
   }
   weights(r);
   gof_.frame_hash_flag = r.flag("frame_hash_flag");
@@ -48,51 +56,119 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   r.byte_alignment();
   r.expect_end();
   if (r.error()) return *r.error();
-  memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames,
-                                   gof_.layer_group_size.size(), gof_.learning_flag);
+  memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
   if (!has_memory(r, 0, "frames_of_gof")) return *r.error();
   frames_.resize(gof_.num_frames);
-  contexts_.emplace(mesh_, gof_.layer_group_size.size());
-  frames_of_group_.assign(gof_.layer_group_size.size(), 0);
+  contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
+  order_.emplace(gof_.pattern, gof_.num_frames);
+  frames_before_.assign(gof_.pattern.temporal_layers, 0);
+  frames_of_group_.assign(gof_.pattern.temporal_layers,
+                          std::vector<std::uint32_t>(gof_.layer_group_size.size()));
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
+  end_temporal_layer_ = std::min(cut_.max_temporal_layers, gof_.pattern.temporal_layers);
   return true;
 }
 
-// 6.14.1 frame_unit( ), to its section
-SliceEntry FrameGofParser::frame_header(BitReader& r) const {
-  SliceEntry unit;
-  unit.frame_idx = r.ue("frame_idx", {0, std::int64_t{gof_.num_frames} - 1}, "R-FRM-02");
-  const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
-  unit.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
-  return unit;
+FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
+                                      std::uint32_t num_frames) {
+  FrameUnitStart start;
+  start.frame_idx = r.ue("frame_idx", {0, std::int64_t{num_frames} - 1}, "R-FRM-02");
+  if (header.open_end_flag) start.gof_end_flag = r.flag("gof_end_flag");
+  return start;
 }
 
-// 6.14.1 frame_unit( )
+// 6.14.2 frame_unit( )
 Result<bool> FrameGofParser::frame(BitReader& r, std::uint64_t unit_bit_pos) {
-  SliceEntry unit = frame_header(r);
-  if (r.error()) return *r.error();
   last_unit_.reset();
-  const std::uint32_t group = unit.layer_group_idx;
-  if (group >= end_layer_group_) {
-    is_cut_ = true;
-    return true;
+  const FrameUnitStart start = parse_frame_unit_start(r, header_, gof_.num_frames);
+  if (r.error()) return *r.error();
+  SliceEntry unit;
+  unit.frame_idx = start.frame_idx;
+  if (start.gof_end_flag) {
+    end_gof(r, start.frame_idx, unit_bit_pos);
+    unit.is_gof_end = true;
+    last_unit_ = unit;
+  } else {
+    frame_of_group(r, unit, unit_bit_pos);
   }
-  // 8.19.1 FrameMayFollow( frame, group )
-  const bool may_follow = unit.frame_idx + 1 >= next_frame_ &&
-                          unit.frame_idx == frames_of_group_[group] &&
-                          (group == 0 || frames_of_group_[group - 1] > unit.frame_idx);
-  if (!may_follow) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+  if (r.error()) return *r.error();
+  return true;
+}
+
+// 6.14.2 gof_end( )
+void FrameGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
+                             std::uint64_t unit_bit_pos) {
+  if (num_frames > 0) {
+    FrameOrder order(gof_.pattern, num_frames);
+    if (order.begins_as(*order_, next_place_)) {
+      gof_.num_frames = num_frames;
+      order_ = std::move(order);
+      frames_.resize(num_frames);
+      r.byte_alignment();
+      r.expect_end();
+      return;
+    }
+  }
+  r.fail(Errc::kInvalid, "R-FRM-04", "frame_unit", unit_bit_pos);
+}
+
+// 8.19.1 FrameMayFollow( )
+bool FrameGofParser::may_follow(const SliceEntry& unit) {
+  const std::uint32_t place = order_->place_of(unit.frame_idx);
+  const std::uint32_t group = unit.layer_group_idx;
+  if (place + 1 < next_place_ || frames_[unit.frame_idx].layer_groups != group) return false;
+  for (std::uint32_t p = next_place_ == 0 ? 0 : next_place_ - 1; p < place; ++p) {
+    ++frames_before_[gof_.pattern.temporal_layer((*order_)[p].depth)];
+  }
+  next_place_ = place + 1;
+  for (std::uint32_t t = 0; t <= unit.temporal_layer_idx; ++t) {
+    if (frames_of_group_[t][group] != frames_before_[t]) return false;
+  }
+  return true;
+}
+
+// 6.14.2 frame_of_group( )
+void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
+                                    std::uint64_t unit_bit_pos) {
+  const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
+  unit.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
+  if (r.error()) return;
+  const std::uint32_t group = unit.layer_group_idx;
+  const FramePlace& place = (*order_)[order_->place_of(unit.frame_idx)];
+  unit.temporal_layer_idx = gof_.pattern.temporal_layer(place.depth);
+  if (group >= end_layer_group_ || unit.temporal_layer_idx >= end_temporal_layer_) {
+    is_cut_ = true;
+    return;
+  }
+  if (!may_follow(unit)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
   r.byte_alignment();
   if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
     const std::uint64_t at = r.bit_pos();
     frames_[unit.frame_idx].frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
   }
-  if (r.error()) return *r.error();
+  if (r.error()) return;
   frame_section(r, unit);
-  if (r.error()) return *r.error();
-  frames_of_group_[group] = unit.frame_idx + 1;
+  if (r.error()) return;
+  ++frames_of_group_[unit.temporal_layer_idx][group];
   last_unit_ = unit;
-  return true;
+}
+
+std::uint32_t FrameGofParser::complete_places() const {
+  if (next_place_ == 0) return 0;
+  const CodedFrame& last = frames_[(*order_)[next_place_ - 1].frame];
+  return last.layer_groups == gof_.layer_group_size.size() ? next_place_ : next_place_ - 1;
+}
+
+CodedFrame FrameGofParser::take_frame(std::uint32_t frame) {
+  CodedFrame& kept = frames_[frame];
+  if (kept.layer_groups > 0) {
+    memory_bytes_ -= memory_of_frame(header_.num_vertices, kept.residual.num_large());
+  }
+  CodedFrame taken = std::move(kept);
+  kept.residual = {};
+  kept.expected = {};
+  kept.layer_groups = taken.layer_groups;
+  return taken;
 }
 
 namespace {
@@ -107,7 +183,7 @@ struct OfVertex {
 
 }  // namespace
 
-// 6.14.1 frame_section( )
+// 6.14.2 frame_section( )
 void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
   CodedFrame& frame = frames_[unit.frame_idx];
   const std::uint64_t num_vertices = header_.num_vertices;
@@ -116,8 +192,8 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
     if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
     frame.residual = CompactResiduals(3 * std::size_t{num_vertices});
     frame.expected.assign(num_vertices, 0);
-    contexts_->start_frame(unit.frame_idx);
-    next_frame_ = unit.frame_idx + 1;
+    const std::uint32_t place = order_->place_of(unit.frame_idx);
+    contexts_->start_frame(place, (*order_)[place].depth);
     memory_bytes_ += memory_of_frame(num_vertices, 0);
   }
   const std::uint64_t large_before = frame.residual.num_large();

@@ -18,6 +18,15 @@
 
 namespace rlpc {
 
+// 6.14.2 frame_unit( ), its beginning.
+struct FrameUnitStart {
+  std::uint32_t frame_idx = 0;
+  bool gof_end_flag = false;
+};
+// num_frames: of the GOF. Errors are left in `r`.
+FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
+                                      std::uint32_t num_frames);
+
 // A GOF unit and the frame units after it, one by one. Every size is checked against the level,
 // and the memory it needs against the limit, before anything is allocated. Layer groups outside
 // the cut are treated as absent.
@@ -30,9 +39,17 @@ class FrameGofParser {
 
   // 6.14 frames_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
   Result<bool> gof(BitReader& r, const GofHeader& gof_header);
-  // 6.14.1 frame_unit( ). unit_bit_pos: of the unit.
+  // 6.14.2 frame_unit( ). unit_bit_pos: of the unit.
   Result<bool> frame(BitReader& r, std::uint64_t unit_bit_pos);
   FrameGof finish();
+
+  // Of the settings in the GOF unit, and with the number of frames that is known so far.
+  const FrameSettings& settings() const { return gof_; }
+  const FrameOrder& order() const { return *order_; }
+  // Places whose frames have all their frame units: 8.19.1 DecodeCompleteFrames( ).
+  std::uint32_t complete_places() const;
+  // Hands over a frame that is complete.
+  CodedFrame take_frame(std::uint32_t frame);
 
   // The unit that the last frame() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_unit() const { return last_unit_; }
@@ -42,7 +59,9 @@ class FrameGofParser {
 
  private:
   void weights(BitReader& r);
-  SliceEntry frame_header(BitReader& r) const;
+  void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
+  void frame_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
+  bool may_follow(const SliceEntry& unit);
   void frame_section(BitReader& r, const SliceEntry& unit);
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);
 
@@ -53,9 +72,14 @@ class FrameGofParser {
   FrameGof gof_;  // without its frames
   std::vector<CodedFrame> frames_;
   std::optional<FrameContexts> contexts_;
-  std::vector<std::uint32_t> frames_of_group_;  // FramesOfGroup
-  std::uint32_t next_frame_ = 0;                // whose contexts have not started
-  std::uint32_t end_layer_group_ = 0;           // of those that the cut keeps
+  std::optional<FrameOrder> order_;
+  std::uint32_t next_place_ = 0;  // LastPlace + 1
+  // Frames of each temporal layer: those before next_place_ - 1, and [temporal layer][layer
+  // group] those that have the layer group.
+  std::vector<std::uint32_t> frames_before_;
+  std::vector<std::vector<std::uint32_t>> frames_of_group_;
+  std::uint32_t end_layer_group_ = 0;     // of those that the cut keeps
+  std::uint32_t end_temporal_layer_ = 0;  // likewise
   bool is_cut_ = false;
   std::optional<SliceEntry> last_unit_;
   std::uint64_t memory_bytes_ = 0;

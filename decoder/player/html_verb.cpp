@@ -42,7 +42,7 @@ int check_whole(const std::string& input, Decoder& decoder) {
 bool same_mesh(const Decoder& a, const Decoder& b) {
   const auto triangles = a.triangles();
   return a.header().num_vertices == b.header().num_vertices &&
-         a.header().num_frames == b.header().num_frames &&
+         a.num_frames() == b.num_frames() &&
          std::equal(triangles.begin(), triangles.end(), b.triangles().begin(),
                     b.triangles().end());
 }
@@ -80,7 +80,7 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
   }
   if (!request.quiet) {
     std::fprintf(stderr, "%s: plays %u frames of %u vertices; open it in a browser\n",
-                 printable(request.output).c_str(), decoder->header().num_frames,
+                 printable(request.output).c_str(), decoder->num_frames().value_or(0),
                  decoder->header().num_vertices);
   }
   return check_whole(request.input, *decoder);

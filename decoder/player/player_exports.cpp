@@ -85,7 +85,9 @@ RLPC_EXPORT(player_new) Page* player_new(std::uint32_t stream, double num_bytes)
 RLPC_EXPORT(player_open) bool player_open(Page* page) { return page->player.open(); }
 
 RLPC_EXPORT(player_describe) const char* player_describe(Page* page) {
-  page->text = rlpc::describe(page->player.decoder().header());
+  rlpc::SequenceHeader header = page->player.decoder().header();
+  header.num_frames = page->player.decoder().num_frames().value_or(1);
+  page->text = rlpc::describe(header);
   return page->text.c_str();
 }
 

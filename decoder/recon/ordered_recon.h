@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/recon/frame_recon.h"
@@ -13,13 +15,16 @@
 
 namespace rlpc {
 
-// Keeps the last frame: the same and the next one are there at once, an earlier one begins with
-// the GOF again.
+// Keeps the last frame, and those that have been decoded before their turn: the same and the
+// next one are there at once, an earlier one begins with the GOF again.
 class OrderedRecon final : public GofRecon {
  public:
   // The mesh must outlive it.
   OrderedRecon(const CodedMesh& mesh, FrameGof gof, int position_bits)
-      : mesh_(mesh), gof_(std::move(gof)), position_bits_(position_bits) {}
+      : mesh_(mesh),
+        gof_(std::move(gof)),
+        order_(gof_.pattern, gof_.num_frames),
+        position_bits_(position_bits) {}
 
   std::uint32_t num_frames() const override { return gof_.num_frames; }
   bool is_ordered() const override { return true; }
@@ -31,9 +36,12 @@ class OrderedRecon final : public GofRecon {
 
   const CodedMesh& mesh_;
   FrameGof gof_;
+  FrameOrder order_;
   int position_bits_;
   mutable std::mutex decoding_;
   mutable std::optional<FrameRecon> recon_;
+  // [frame]: positions of the last one asked for, and of later ones that have been decoded.
+  mutable std::map<std::uint32_t, std::vector<std::int32_t>> decoded_;
 };
 
 }  // namespace rlpc

@@ -169,13 +169,16 @@ Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader&
                                                                std::optional<UnitType> slice) {
   using Next = std::optional<UnitHeader>;
   const bool may_follow = slice || wants_hash_;
-  if (unit.type() == UnitType::kGofHash || !may_follow || unit.end() == units_.size()) {
+  if (unit.type() == UnitType::kGofHash || !may_follow || !units_.goes_on_after(unit.end())) {
     return Next();
   }
   const auto next = units_.header_at(unit.end());
   if (!next) return next.error();
-  const bool follows =
-      (slice && next->type() == *slice) || (wants_hash_ && next->type() == UnitType::kGofHash);
+  const bool is_frames = slice == UnitType::kFrame;
+  const bool may_have_hash =
+      wants_hash_ && !(is_frames && is_live(context_.header, GofKind::kFrames));
+  const bool follows = (slice && next->type() == *slice) ||
+                       (may_have_hash && next->type() == UnitType::kGofHash);
   return follows ? Next(*next) : Next();
 }
 

@@ -47,6 +47,8 @@ class AccessUnitReader {
     cut_.needed_layers = std::min(cut_.needed_layers, options.coarse_layers);
   }
 
+  const MemoryLimit& memory_limit() const { return memory_; }
+  const SliceCut& cut() const { return cut_; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
 

@@ -58,9 +58,12 @@ void add_kind(const FrameGof& gof, GofSummary& summary) {
   summary.first_group = "frames";
   summary.layer_group_size = gof.layer_group_size;
   summary.figures = {
-      {"frame_reference_idc", nullptr, nullptr, static_cast<std::uint32_t>(gof.reference)},
+      {"frame_pattern_idc", nullptr, nullptr, gof.pattern.kind},
+      {"pattern_period", nullptr, nullptr, gof.pattern.period()},
       {"exact_flag", nullptr, nullptr, gof.exact_flag ? 1U : 0U},
       {"learning_flag", nullptr, nullptr, gof.learning_flag ? 1U : 0U},
+      {"num_temporal_layers", "temporal layer", "temporal layers", gof.pattern.temporal_layers,
+       true},
       {"num_layers", "layer", "layers", size_of(gof.layer_step)},
       {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
       {"num_frame_units", "frame unit", "frame units", size_of(summary.slices)}};

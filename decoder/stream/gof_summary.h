@@ -2,6 +2,7 @@
 // trajectories and slices.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -69,7 +70,11 @@ struct SlicedSummary {
   std::uint32_t num_groups() const;
   // Temporal layers up to the last that has a slice.
   std::uint32_t num_temporal_layers() const {
-    return slices.empty() ? 1 : slices.back().temporal_layer_idx + 1;
+    std::uint32_t layers = 1;
+    for (const SliceEntry& slice : slices) {
+      layers = std::max(layers, slice.temporal_layer_idx + 1);
+    }
+    return layers;
   }
   SliceTotals totals(const SliceGroups& groups) const;
 };
@@ -100,6 +105,10 @@ struct GofSummary : SlicedSummary {
 struct StreamSummary {
   std::vector<std::shared_ptr<const ModelSummary>> models;  // in the order of the stream
   std::vector<GofSummary> gofs;
+
+  std::uint32_t num_frames() const {
+    return gofs.empty() ? 0 : gofs.back().first_frame + gofs.back().num_frames;
+  }
 };
 
 // Summaries of all GOFs and skinned models of a stream, which is read to its end. `check` is

@@ -5,6 +5,7 @@
 
 #include "common/syntax/stream_format.h"
 #include "decoder/parse/memory_estimate.h"
+#include "decoder/parse/parse_frame_gof.h"
 #include "decoder/parse/parse_gof_header.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_end_of_sequence.h"
@@ -150,17 +151,32 @@ Result<bool> StreamReader::check_end(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  parse_end_of_sequence(r);
+  const std::uint32_t num_frames = parse_end_of_sequence(r, context_.header).num_frames;
   units_.flush_trace();
   if (r.error()) return *r.error();
-  if (frames_parsed_ != context_.header.num_frames) {
+  if (frames_parsed_ != num_frames) {
     return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
   }
-  if (unit.end() != units_.size()) {
+  if (units_.goes_on_after(unit.end())) {
     return Error{Errc::kInvalid, "R-END-02", "end_of_sequence", unit.end() * 8};
   }
   ended_ = true;
   return true;
+}
+
+std::uint32_t StreamReader::find_num_frames() {
+  const SequenceHeader& header = context_.header;
+  const std::uint32_t payload_bytes = end_of_sequence_bytes(header);
+  const std::uint64_t end_bytes =
+      kUnitHeaderBytes + std::uint64_t{payload_bytes} + kUnitCrcBytes;
+  if (!header.open_end_flag || units_.size() < offset_ + end_bytes) return header.num_frames;
+  const auto unit = units_.header_at(units_.size() - end_bytes);
+  if (!unit || unit->type() != UnitType::kEndOfSequence) return header.num_frames;
+  const auto bytes = units_.payload_start(*unit, payload_bytes);
+  if (!bytes) return header.num_frames;
+  BitReader r(*bytes);
+  const std::uint32_t num_frames = parse_end_of_sequence(r, header).num_frames;
+  return r.error() ? header.num_frames : num_frames;
 }
 
 Result<AccessUnit> StreamReader::read(const UnitHeader& gof_unit) {
@@ -199,14 +215,31 @@ Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
   return header;
 }
 
+// After a GOF unit. A frame unit may tell that the GOF ends early.
 Result<bool> StreamReader::skip_slices(UnitType type) {
-  while (offset_ < units_.size()) {
+  const std::uint32_t first_frame = gofs_.back().first_frame;
+  while (units_.goes_on_after(offset_)) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
     if (unit->type() != type) break;
     offset_ = unit->end();
+    if (type != UnitType::kFrame || !context_.header.open_end_flag) continue;
+    const auto end = gof_end(*unit);
+    if (!end) return end.error();
+    if (*end) frames_parsed_ = first_frame + **end;
   }
   return true;
+}
+
+// The number of frames of the GOF, if the frame unit gives it.
+Result<std::optional<std::uint32_t>> StreamReader::gof_end(const UnitHeader& unit) {
+  constexpr std::uint32_t kEnough = 9;  // a code of at most 63 bits, and gof_end_flag
+  const auto bytes = units_.payload_start(unit, kEnough);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  const FrameUnitStart start = parse_frame_unit_start(r, context_.header, kMaxFrames);
+  if (r.error()) return *r.error();
+  return start.gof_end_flag ? std::optional(start.frame_idx) : std::nullopt;
 }
 
 void StreamReader::remember_gof(const UnitHeader& unit) {
@@ -239,11 +272,17 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     if (!*unit) return Error{Errc::kInvalid, "R-END-01", "unit_type", offset_ * 8};
     const auto gof = gof_header(**unit);
     if (!gof) return gof.error();
-    if (frame < frames_parsed_ + gof->num_frames) return true;
+    const std::uint64_t start = offset_;
+    const std::uint32_t first_frame = frames_parsed_;
     go_past(**unit, gof->num_frames, (*unit)->end());
-    const auto type = slice_type(gof->kind);
-    if (!type) continue;
-    if (auto ok = skip_slices(*type); !ok) return ok;
+    if (const auto type = slice_type(gof->kind)) {
+      if (auto ok = skip_slices(*type); !ok) return ok;
+    }
+    if (frame < frames_parsed_) {
+      offset_ = start;
+      frames_parsed_ = first_frame;
+      return true;
+    }
   }
 }
 

@@ -49,6 +49,11 @@ class StreamReader {
   void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
   // Finds and reads the next access unit.
   Result<std::optional<AccessUnit>> next();
+  // Of the next GOF: reads only the first bytes of its unit.
+  Result<GofHeader> gof_header(const UnitHeader& unit);
+  // The number of frames: of an open-ended stream, that at its end; kMaxFrames if it has none.
+  // Does not check the unit. Reads a pipe to its end.
+  std::uint32_t find_num_frames();
   // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);
 
@@ -69,9 +74,8 @@ class StreamReader {
   Result<bool> read_ancillary(const UnitHeader& unit);
   Result<bool> check_limits();
   Result<bool> check_end(const UnitHeader& unit);
-  // For a GOF that is skipped: reads only its first bytes.
-  Result<GofHeader> gof_header(const UnitHeader& unit);
   Result<bool> skip_slices(UnitType type);
+  Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
   void remember_gof(const UnitHeader& unit);
 
   DecodeLimits limits_;

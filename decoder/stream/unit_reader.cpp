@@ -18,8 +18,11 @@ std::uint32_t big_endian(std::span<const std::uint8_t> b) {
 // 6.1 stream( )
 Result<bool> UnitReader::stream_header() {
   std::array<std::uint8_t, kStreamHeaderBytes> bytes{};
+  const bool is_whole = source_->reaches(bytes.size());
   const auto present =
-      static_cast<std::size_t>(std::min<std::uint64_t>(source_->size(), bytes.size()));
+      is_whole
+          ? bytes.size()
+          : static_cast<std::size_t>(std::min<std::uint64_t>(source_->size(), bytes.size()));
   if (!source_->read(0, std::span(bytes).first(present))) {
     return Error{Errc::kIo, "", "signature", 0};
   }
@@ -40,7 +43,7 @@ Result<bool> UnitReader::stream_header() {
   if (bytes[8] != kVersionMajor)
     return Error{Errc::kUnsupported, "R-STR-02", "version_major", 64};
   // Version 1.1 called a stream unsupported that ends after the number of version 1.2.
-  const bool ends_here = bytes[9] == 2 && source_->size() == bytes.size();
+  const bool ends_here = bytes[9] == 2 && !source_->reaches(bytes.size() + 1);
   if (bytes[9] > kVersionMinor || ends_here) return unsupported_minor_version();
   version_minor_ = bytes[9];
   return true;
@@ -49,7 +52,7 @@ Result<bool> UnitReader::stream_header() {
 // 6.2 unit_header( )
 Result<UnitHeader> UnitReader::header_at(std::uint64_t offset) {
   std::array<std::uint8_t, kUnitHeaderBytes> bytes{};
-  if (offset + bytes.size() > source_->size()) {
+  if (!source_->reaches(offset + bytes.size())) {
     return Error{Errc::kTruncated, "R-UNT-01", "unit_type", offset * 8};
   }
   if (!source_->read(offset, bytes)) return Error{Errc::kIo, "", "unit_type", offset * 8};
@@ -57,7 +60,7 @@ Result<UnitHeader> UnitReader::header_at(std::uint64_t offset) {
   if (!unit.ancillary() && unit.size > max_unit_bytes_) {
     return Error{Errc::kInvalid, "R-LVL-07", "unit_size", offset * 8 + 8};
   }
-  if (unit.end() > source_->size()) {
+  if (!source_->reaches(unit.end())) {
     return Error{Errc::kTruncated, "R-UNT-02", "unit_size", offset * 8 + 8};
   }
   return unit;
@@ -89,7 +92,8 @@ Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t compute
 }
 
 Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
-  const std::uint64_t needed_bytes = memory_.bytes_in_use + unit.size;
+  const std::uint64_t needed_bytes =
+      memory_.bytes_in_use + unit.size + source_->memory_bytes() - bytes_at_first_;
   if (needed_bytes > memory_.max_bytes || std::uint64_t{unit.size} > kMaxPayloadBytes) {
     return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
   }

@@ -34,7 +34,10 @@ class UnitReader {
   // max_memory_bytes: of what payload() reads, together with the bytes in use.
   explicit UnitReader(std::unique_ptr<ByteSource> source, Trace* trace = nullptr,
                       std::uint64_t max_memory_bytes = kMaxPayloadBytes)
-      : source_(std::move(source)), trace_(trace), memory_{max_memory_bytes, 0} {}
+      : source_(std::move(source)),
+        trace_(trace),
+        memory_{max_memory_bytes, 0},
+        bytes_at_first_(source_->memory_bytes()) {}
 
   // 6.1: signature and version.
   Result<bool> stream_header();
@@ -61,7 +64,11 @@ class UnitReader {
   void flush_trace();
 
   std::uint32_t version_minor() const { return version_minor_; }
+  // Of a pipe: reads it to its end.
   std::uint64_t size() const { return source_->size(); }
+  // Whether the stream goes on after its first `end` bytes. Waits for a pipe.
+  bool goes_on_after(std::uint64_t end) const { return source_->reaches(end + 1); }
+  void forget(std::uint64_t before) { source_->forget(before); }
 
  private:
   // What a vector can hold in addition to header and CRC, on 32-bit machines, too.
@@ -82,6 +89,7 @@ class UnitReader {
   std::unique_ptr<ByteSource> source_;
   Trace* trace_;
   MemoryLimit memory_;
+  std::uint64_t bytes_at_first_;  // held by the source, accounted for by the caller
   std::uint32_t version_minor_ = 0;
   std::uint64_t max_unit_bytes_ = 0xFFFFFFFF;
   std::optional<PendingCrc> pending_crc_;

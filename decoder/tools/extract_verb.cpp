@@ -37,7 +37,7 @@ int complain(const ExtractOptions& o, const Error& error) {
 double bpvf(const SubStreamExtractor& cutter, std::uint64_t bytes) {
   const SequenceHeader& h = cutter.header();
   return 8.0 * static_cast<double>(bytes) /
-         (static_cast<double>(h.num_vertices) * h.num_frames);
+         (static_cast<double>(h.num_vertices) * cutter.num_frames());
 }
 
 // The first layer group is kept even if it has more layers than requested.

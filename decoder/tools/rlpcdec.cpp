@@ -46,7 +46,9 @@ Examples
 
 constexpr const char* kDetails =
     R"(A folder OUT gets OBJ files, with --format ply PLY files. With -o -, the format
-is needed: rlpd or glb; of a single frame also obj or ply.
+is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
+stream (rlpcenc --low-delay), each frame is written as soon as its bytes are
+there; with --format pc2 -o - without a mesh, and with a frame count of 0.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
@@ -103,6 +105,16 @@ int complain(const std::string& message, int code) {
 int complain(const Options& o, const rlpc::Error& error) {
   return complain(rlpc::stream_message(o.input, error, o.decoder.limits),
                   rlpc::exit_code(error.code));
+}
+
+// Whether the frames are decoded as they come, their number being unknown.
+bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
+  if (!header.open_end_flag || !o.frames.empty()) return false;
+  const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
+  const bool needs_count = format == rlpc::SinkFormat::kGlb ||
+                           format == rlpc::SinkFormat::kMdd ||
+                           (format == rlpc::SinkFormat::kPc2 && o.output != "-");
+  return o.verify_only || !needs_count;
 }
 
 // "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
@@ -200,9 +212,18 @@ int decode(const Options& o) {
     return complain(rlpc::name_of_input(o.input) + ": " + rlpc::SliceCut::kNoSlices,
                     rlpc::kExitUnsupported);
   }
-  const auto span = parse_frames(o.frames, header.num_frames);
+  const bool live = is_live(o, header);
+  const auto num_frames = live ? std::optional(header.num_frames) : decoder->num_frames();
+  if (!num_frames) {
+    return complain(
+        rlpc::name_of_input(o.input) +
+            ": an open-ended stream that has been cut off: the number of its frames is "
+            "not known. Write .rlpd, OBJ or PLY files, and all frames",
+        rlpc::kExitInvalid);
+  }
+  const auto span = parse_frames(o.frames, *num_frames);
   if (!span) {
-    return complain("--frames: expected A-B within 0-" + std::to_string(header.num_frames - 1) +
+    return complain("--frames: expected A-B within 0-" + std::to_string(*num_frames - 1) +
                         ", got `" + o.frames + "`",
                     rlpc::kExitUsage);
   }
@@ -215,6 +236,7 @@ int decode(const Options& o) {
                               header.grid,
                               {decoder->triangles().begin(), decoder->triangles().end()}};
     options.first_number = span->first;
+    options.live = live;
     options.format = o.format;
     options.ascii = o.ascii;
     options.limit = o.limit;
@@ -234,16 +256,18 @@ int decode(const Options& o) {
     while (frames.decoded < count) {
       const auto more = decoder->next_frame(positions);
       if (!more) return complain(o, more.error());
+      if (!*more) break;  // of an open-ended stream
       if (sink) {
         if (auto error = sink->write_frame(positions)) {
           return complain(error->message, rlpc::exit_code(*error));
         }
       }
       frames.compared += decoder->compared_frames();
-      bar.show(static_cast<double>(++frames.decoded) / count);
+      ++frames.decoded;
+      if (!live) bar.show(static_cast<double>(frames.decoded) / count);
     }
   }
-  if (o.frames.empty()) {
+  if (o.frames.empty() && !live) {
     if (const auto more = decoder->next_frame(positions); !more)
       return complain(o, more.error());
   }
@@ -428,6 +452,7 @@ int main(int argc, char** argv) try {
                     rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
+  options.decoder.forward_only = options.frames.empty() && options.html.output.empty();
   return rlpc::after_standard_output("rlpcdec", decode(options), rlpc::kExitIo);
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "rlpcdec: out of memory\n");

@@ -117,7 +117,9 @@ int inform(const Options& o) {
   if (!summary) return complain(o, summary.error());
   counter.finish(8 * bytes);
   if (o.trace) return rlpc::kExitDone;
-  rlpc::StreamInfo info{o.input, stream.header(), counter, bytes, *summary, stream.metadata()};
+  rlpc::SequenceHeader header = stream.header();
+  header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
+  rlpc::StreamInfo info{o.input, header, counter, bytes, *summary, stream.metadata()};
   std::optional<rlpc::CoarseMeshes> coarse;
   if (o.coarse) {
     coarse = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),

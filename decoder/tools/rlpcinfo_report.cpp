@@ -293,6 +293,7 @@ void print_json(const StreamInfo& s) {
       {"num_vertices", h.num_vertices},
       {"num_triangles", h.num_triangles},
       {"num_frames", h.num_frames},
+      {"open_ended", h.open_end_flag},
       {"frame_rate", {h.frame_rate.numerator, h.frame_rate.denominator}},
       {"grid_log2_step", h.grid.log2_step},
       {"grid_origin", h.grid.origin},

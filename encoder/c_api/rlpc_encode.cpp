@@ -18,6 +18,7 @@ struct rlpc_encoder {
   rlpc_write_function write = nullptr;
   void* user = nullptr;
   bool write_failed = false;
+  bool low_delay = false;
   rlpc::HandleError error;
   bool is_placed = false;
 };
@@ -88,6 +89,9 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
     case RLPC_TARGET_MAX_ERROR:
       settings.target.kind = Target::kMaxError;
       break;
+    case RLPC_TARGET_LOSSLESS:
+      settings.target.kind = Target::kLossless;
+      break;
     default:
       return std::nullopt;
   }
@@ -104,6 +108,9 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
     default:
       return std::nullopt;
   }
+  if (options.gof_kind > RLPC_KIND_FRAMES || options.low_delay > 1) return std::nullopt;
+  settings.kinds = static_cast<KindChoice>(options.gof_kind);
+  settings.low_delay = options.low_delay != 0;
   settings.target.value = options.target_value;
   settings.gof_frames = options.gof_frames;
   settings.components = options.components;
@@ -159,6 +166,7 @@ rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
   }
   handle.encoder = std::move(*encoder);
   handle.num_values = 3 * std::size_t{format.num_vertices};
+  handle.low_delay = settings->low_delay;
   return RLPC_OK;
 }
 
@@ -237,6 +245,9 @@ rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz, size
                                        " values, not " + std::to_string(encoder->num_values));
     }
     if (const auto error = encoder->encoder->add_frame({xyz, num_values})) {
+      if (encoder->low_delay && !encoder->write_failed) {
+        return encoder->error.set(RLPC_BAD_INPUT, error->message);  // the frame is left out
+      }
       return rlpc::fail(*encoder, *error);
     }
     return RLPC_OK;

@@ -41,11 +41,11 @@ typedef struct rlpc_encoder rlpc_encoder;
 
 // Properties of the sequence that must be known before the first frame.
 typedef struct rlpc_frame_format {
-  size_t struct_size;             // rlpc_frame_format_init sets it
-  uint32_t num_vertices;          // at least 1
-  uint32_t num_triangles;         // 0: a point cloud
-  const uint32_t* indices;        // 3 * num_triangles, each below num_vertices; copied
-  uint32_t num_frames;            // at least 1; exactly this many frames must follow
+  size_t struct_size;       // rlpc_frame_format_init sets it
+  uint32_t num_vertices;    // at least 1
+  uint32_t num_triangles;   // 0: a point cloud
+  const uint32_t* indices;  // 3 * num_triangles, each below num_vertices; copied
+  uint32_t num_frames;      // exactly this many frames must follow; 0: not known (High profile)
   uint32_t frame_rate_numerator;  // frames per second; default 30 / 1
   uint32_t frame_rate_denominator;
   // Bounding box of all frames, within 2^100. A box that is much too large makes the grid
@@ -63,7 +63,18 @@ typedef enum rlpc_target {
   RLPC_TARGET_KG = 1,         // KG error in per cent
   RLPC_TARGET_BPVF = 2,       // bits per vertex and frame
   RLPC_TARGET_MAX_ERROR = 3,  // maximum distance of a vertex from its original, in units
+  // High profile: positions without loss on a grid of this many bits, 2 to 24, of the box.
+  RLPC_TARGET_LOSSLESS = 4,
 } rlpc_target;
+
+// RLPC_KIND_BONES: Main and High; RLPC_KIND_FRAMES: High. RLPC_KIND_AUTO: the cheapest that the
+// profile has, for each GOF.
+typedef enum rlpc_gof_kind {
+  RLPC_KIND_AUTO = 0,
+  RLPC_KIND_CLUSTERS = 1,
+  RLPC_KIND_BONES = 2,
+  RLPC_KIND_FRAMES = 3,
+} rlpc_gof_kind;
 
 typedef enum rlpc_hash_mode {
   RLPC_HASH_NONE = 0,
@@ -101,6 +112,10 @@ typedef struct rlpc_encode_options {
   // High profile: most frames that are held before they are encoded together, but at least
   // those of one GOF; 0: as many as share a skinned model in memory, 2^23 positions or fewer.
   uint32_t max_held_frames;
+  uint32_t gof_kind;  // default RLPC_KIND_AUTO
+  // High profile, 1: each frame is coded when it is added, in GOFs of frames; the KG error is
+  // then met about. Default 0. Targets: all but RLPC_TARGET_BPVF.
+  uint32_t low_delay;
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
@@ -148,11 +163,12 @@ RLPC_API const char* rlpc_encoder_error_text(const rlpc_encoder* encoder);
 
 // Adds the next frame: x, y and z of each vertex, in units. num_values: 3 * num_vertices.
 // RLPC_BAD_INPUT: a coordinate outside the box, or more than num_frames frames; RLPC_IO_FAILED:
-// the callback failed. These errors are sticky.
+// the callback failed. These errors are sticky; but with low_delay, a frame that is refused is
+// left out, and the stream can go on or be finished.
 RLPC_API rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz,
                                             size_t num_values);
-// Ends the stream, after the last frame. RLPC_BAD_INPUT: fewer than num_frames frames. report
-// may be null; otherwise struct_size is sizeof *report.
+// Ends the stream, after the last frame. RLPC_BAD_INPUT: fewer than num_frames frames, or none.
+// report may be null; otherwise struct_size is sizeof *report.
 RLPC_API rlpc_status rlpc_encoder_finish(rlpc_encoder* encoder, rlpc_encode_report* report,
                                          size_t struct_size);
 // After rlpc_encoder_finish: the input index of each decoded vertex. (With keep_order, decoders

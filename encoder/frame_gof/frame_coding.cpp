@@ -19,11 +19,14 @@ constexpr std::size_t kTogether = 128;  // fixed: vertices of a pass
 }  // namespace
 
 FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
-                         int position_bits)
+                         const SequenceHeader& header, std::uint32_t num_frames,
+                         bool to_nearest)
     : mesh_(mesh),
       settings_(settings),
-      recon_(mesh, settings, position_bits),
-      writer_(mesh, settings) {}
+      to_nearest_(to_nearest),
+      order_(settings.pattern, num_frames),
+      recon_(mesh, settings, header.position_bits),
+      writer_(mesh, settings, header.open_end_flag) {}
 
 // Vertices of the base depend on each other: they are predicted when they are coded.
 void FrameCoding::predict(Layer& layer, std::uint32_t index) {
@@ -38,7 +41,7 @@ void FrameCoding::predict(Layer& layer, std::uint32_t index) {
   });
 }
 
-void FrameCoding::choose(Layer& layer, std::span<const double> xyz) {
+void FrameCoding::choose(Layer& layer, std::span<const double> xyz, CodedFrame* coded) {
   constexpr double kPoint = 1 << kPointFractionBits;  // fixed: format
   constexpr double kStepUnits = 256.0;                // fixed: format
   FrameContexts& contexts = writer_.contexts();
@@ -54,31 +57,44 @@ void FrameCoding::choose(Layer& layer, std::span<const double> xyz) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double value = xyz[3 * std::size_t{v} + c];
       const double start = recon_.start_of(motion, c);
-      if (settings_.exact_flag) {
+      if (to_nearest_) {
+        residual[c] = rounded_residual((value * kPoint - start) / step, 0.5);
+      } else if (settings_.exact_flag) {
         residual[c] = rounded_residual((std::floor(value + 0.5) * kPoint - start) / step, 0.5);
       } else {
         residual[c] = cheaper_residual(contexts.models(), contexts.expected(),
                                        (value * kPoint - start) / step);
       }
       writer_.write(residual[c]);
+      if (coded != nullptr && residual[c] != 0) {
+        coded->residual.set(3 * std::size_t{v} + c, residual[c]);
+      }
     }
+    if (coded != nullptr) coded->expected[v] = layer.expected[i];
     recon_.set(v, motion, recon_.position(v, motion, residual));
-    if (is_base) recon_.adapt(v, motion, layer.expected[i]);
+    if (is_base) recon_.adapt(v, motion, true, layer.expected[i]);
   }
 }
 
-void FrameCoding::adapt(const Layer& layer, std::size_t first, std::size_t end) {
+void FrameCoding::adapt(Layer& layer, std::size_t first, std::size_t end) {
   for (std::size_t i = first; i < end; ++i) {
-    recon_.adapt(layer.vertices[i], layer.motions[i], layer.expected[i]);
+    recon_.adapt(layer.vertices[i], layer.motions[i], true, layer.expected[i]);
   }
 }
 
 std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
-                                                std::span<std::int32_t> positions) {
+                                                std::span<std::int32_t> positions,
+                                                CodedFrame* coded) {
   std::vector<EncodedGof::Unit> units;
-  const std::uint32_t frame = recon_.frame();
-  recon_.start_frame();
-  writer_.start_frame(frame);
+  const std::uint32_t number = recon_.place();
+  const FramePlace& place = order_[number];
+  recon_.start_frame(place, order_.last_use(place.frame));
+  writer_.start_frame(number, place);
+  if (coded != nullptr) {
+    coded->layer_groups = static_cast<std::uint32_t>(settings_.layer_group_size.size());
+    coded->residual = CompactResiduals(3 * std::size_t{mesh_.num_vertices()});
+    coded->expected.assign(mesh_.num_vertices(), 0);
+  }
   Layer* current = &layers_[0];
   Layer* before = &layers_[1];
   before->vertices = {};
@@ -93,7 +109,7 @@ std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
       const std::size_t passes =
           index == 1 ? 0 : (before->vertices.size() + kTogether - 1) / kTogether;
       for_each(1 + passes, [&](std::size_t pass) {
-        if (pass == 0) return choose(*current, xyz);
+        if (pass == 0) return choose(*current, xyz, coded);
         adapt(*before, (pass - 1) * kTogether,
               std::min(pass * kTogether, before->vertices.size()));
       });
@@ -106,9 +122,11 @@ std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
       }
       recon_.end_frame();
       recon_.positions(positions);
+      if (coded != nullptr) coded->residual.sort();
     }
     const std::uint32_t crc = settings_.frame_hash_flag ? crc32_of_positions(positions) : 0;
-    units.push_back({UnitType::kFrame, writer_.finish_group(crc)});
+    units.push_back({UnitType::kFrame, writer_.finish_group(crc),
+                     settings_.pattern.temporal_layer(place.depth)});
   }
   return units;
 }

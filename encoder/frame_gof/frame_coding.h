@@ -8,6 +8,7 @@
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/recon/frame_recon.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/syntax/sequence_header.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/write/write_frame_gof.h"
 
@@ -17,13 +18,19 @@ namespace rlpc {
 // layers. Vertices of a layer are predicted, and adapt, on several threads.
 class FrameCoding {
  public:
-  // The mesh must have layers; mesh and settings must outlive it.
-  FrameCoding(const CodedMesh& mesh, const FrameSettings& settings, int position_bits);
+  // The mesh must have layers; mesh and settings must outlive it. num_frames: of the GOF.
+  // to_nearest: residuals are rounded to nearest, not chosen by rate and distortion.
+  FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
+              const SequenceHeader& header, std::uint32_t num_frames, bool to_nearest = false);
 
-  // Codes the next frame; xyz [num_vertices][3], in grid units, unrounded. Returns its frame
-  // units, and writes its positions as a decoder outputs them.
+  // The frame that comes next in coding order.
+  std::uint32_t next_frame() const { return order_[recon_.place()].frame; }
+  // Codes it; xyz [num_vertices][3], in grid units, unrounded. Returns its frame units, and
+  // writes its positions as a decoder outputs them. coded: unless null, set to the frame as a
+  // parser would return it.
   std::vector<EncodedGof::Unit> code(std::span<const double> xyz,
-                                     std::span<std::int32_t> positions);
+                                     std::span<std::int32_t> positions,
+                                     CodedFrame* coded = nullptr);
 
  private:
   // The vertices of a layer, with their predictions.
@@ -34,11 +41,13 @@ class FrameCoding {
   };
 
   void predict(Layer& layer, std::uint32_t index);
-  void choose(Layer& layer, std::span<const double> xyz);
-  void adapt(const Layer& layer, std::size_t first, std::size_t end);
+  void choose(Layer& layer, std::span<const double> xyz, CodedFrame* coded);
+  void adapt(Layer& layer, std::size_t first, std::size_t end);
 
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
+  bool to_nearest_;
+  FrameOrder order_;
   FrameRecon recon_;
   FrameUnitWriter writer_;
   Layer layers_[2];  // of which one adapts while residuals of the other are chosen

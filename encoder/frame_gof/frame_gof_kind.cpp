@@ -10,28 +10,55 @@
 #include <utility>
 #include <vector>
 
+#include "common/frame_gof/recon/frame_recon.h"
 #include "common/mesh/coded_meshes.h"
 #include "encoder/frame_gof/frame_coding.h"
+#include "encoder/frame_gof/frame_settings.h"
 #include "encoder/gof/split_coder.h"
 
 namespace rlpc {
 namespace {
 
-// The geometry weights, 8.11, which learned weights start from.
-// tuned (off: 0): Binary logarithm of their damping.
-constexpr int kFrameDamping = 6;
-// tuned (off: 0): The weight of near vertices, 1/16. Learned weights hardly depend on it;
-// without learning, frames take 1 to 7 % more bytes if it is 0.
-constexpr int kNearWeight = 3;
-// tuned (off: 0): How much the weights of near vertices change, 1/16.
-constexpr int kNearScale = 3;
-// tuned (off: 0): Binary logarithm of the variance with which weights are first learned from
-// the first frame, whose offsets then have 10 bits.
-constexpr int kPrime = 6;
-
 // tuned (off: 1): GOFs of frames are tried where trajectories number at least this fraction of
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
+
+// Positions of all frames of a span, as a decoder outputs them.
+class DecodedSpan {
+ public:
+  DecodedSpan(std::uint32_t num_vertices, std::uint32_t num_frames)
+      : values_(3 * std::size_t{num_vertices}),
+        positions_(std::make_shared<std::vector<std::int32_t>>(values_ * num_frames)) {}
+
+  std::span<std::int32_t> frame(std::uint32_t f) const {
+    return std::span(*positions_).subspan(f * values_, values_);
+  }
+  DecodeFrame decoder() const {
+    return [span = *this](std::uint32_t f, std::span<std::int32_t> out) {
+      std::copy_n(span.frame(f).begin(), span.values_, out.begin());
+    };
+  }
+
+ private:
+  std::size_t values_;
+  std::shared_ptr<std::vector<std::int32_t>> positions_;
+};
+
+// coded: in coding order. Frames of higher temporal layers are absent.
+DecodeFrame decode_cut(const CodedMesh& mesh, const FrameSettings& s,
+                       const std::vector<CodedFrame>& coded, int position_bits,
+                       std::uint32_t temporal_layers) {
+  const DecodedSpan decoded(mesh.num_vertices(), static_cast<std::uint32_t>(coded.size()));
+  const FrameOrder order(s.pattern, static_cast<std::uint32_t>(coded.size()));
+  FrameRecon recon(mesh, s, position_bits);
+  for (std::uint32_t place = 0; place < order.num_frames(); ++place) {
+    const FramePlace& next = order[place];
+    const bool is_there = s.pattern.temporal_layer(next.depth) < temporal_layers;
+    recon.decode(next, order.last_use(next.frame), is_there ? coded[place] : CodedFrame{});
+    recon.positions(decoded.frame(next.frame));
+  }
+  return decoded.decoder();
+}
 
 class FrameGofCoder : public GofCoder {
  public:
@@ -44,48 +71,35 @@ class FrameGofCoder : public GofCoder {
   EncodedGof encode(double step, double /*analysis_step*/) override;
 
  private:
-  FrameSettings settings_for(double step) const;
-
   const SequenceMesh& mesh_;
   const CodedMesh& layers_;
   const EncoderSettings& settings_;
   const GofFrames& frames_;
 };
 
-FrameSettings FrameGofCoder::settings_for(double step) const {
-  FrameSettings s;
-  s.reference = settings_.frames.reference;
-  s.exact_flag = settings_.target.kind == Target::kLossless;
-  if (!s.exact_flag) {
-    s.step = static_cast<std::uint32_t>(
-        std::clamp(std::floor(step * kExactFrameStep + 0.5), 1.0, double{kMaxFrameStep}));
-  }
-  s.weights = {kFrameDamping, kNearWeight, kNearScale, 0};
-  s.learning_flag = settings_.frames.learning &&
-                    mesh_.header.num_vertices <= mesh_.header.level().max_learning_vertices;
-  s.prime_log2 = s.learning_flag ? kPrime : 0;
-  s.layer_group_size = {layers_.num_layers()};
-  s.layer_step.assign(layers_.num_layers(), kMaxLayerStep);
-  return s;
-}
-
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
-  const FrameSettings s = settings_for(step);
+  const FrameSettings s = choose_frame_settings(mesh_.header, settings_, layers_, step);
   const std::size_t values = 3 * std::size_t{frames_.num_vertices};
   const GofHeader header{GofKind::kFrames, frames_.first_frame, frames_.num_frames};
-  auto positions = std::make_shared<std::vector<std::int32_t>>(values * frames_.num_frames);
+  const DecodedSpan decoded(frames_.num_vertices, frames_.num_frames);
   EncodedGof encoded;
   encoded.units.push_back({UnitType::kGof, write_frame_gof_unit(header, s)});
-  FrameCoding coding(layers_, s, mesh_.header.position_bits);
-  for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
+  FrameCoding coding(layers_, s, mesh_.header, frames_.num_frames);
+  auto coded = std::make_shared<std::vector<CodedFrame>>();
+  const bool has_cuts = s.pattern.temporal_layers > 1;
+  for (std::uint32_t i = 0; i < frames_.num_frames; ++i) {
+    const std::uint32_t f = coding.next_frame();
+    if (has_cuts) coded->emplace_back();
     auto units = coding.code(std::span(frames_.xyz).subspan(f * values, values),
-                             std::span(*positions).subspan(f * values, values));
+                             decoded.frame(f), has_cuts ? &coded->back() : nullptr);
     std::move(units.begin(), units.end(), std::back_inserter(encoded.units));
   }
-  encoded.frame = [positions, values](std::uint32_t f, std::span<std::int32_t> out) {
-    const auto first = positions->begin() + static_cast<std::ptrdiff_t>(f * values);
-    std::copy_n(first, values, out.begin());
-  };
+  encoded.frame = decoded.decoder();
+  if (has_cuts) {
+    encoded.cut = [layers = &layers_, s, coded, bits = mesh_.header.position_bits](int most) {
+      return decode_cut(*layers, s, *coded, bits, static_cast<std::uint32_t>(most));
+    };
+  }
   return encoded;
 }
 

@@ -44,7 +44,7 @@ struct EncodedGof {
   struct Unit {
     UnitType type;
     std::vector<std::uint8_t> payload;
-    std::uint32_t temporal_layer_idx = 0;  // of a slice
+    std::uint32_t temporal_layer_idx = 0;  // of a slice or frame unit
   };
   // In the order of the stream: a skinned model and its slices, if the GOFs use one; then each
   // GOF unit, with its slices.

@@ -6,6 +6,7 @@
 
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/frame_gof/check_frame_pattern.h"
 
 namespace rlpc {
 namespace {
@@ -72,6 +73,30 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
+std::optional<InputError> check_low_delay(const EncoderSettings& s) {
+  if (!s.low_delay) return std::nullopt;
+  if (s.profile != Profile::kHigh) {
+    return InputError{
+        "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
+        "--low-delay"};
+  }
+  if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+    return InputError{"low delay needs GOFs of frames: leave out --gof-kind"};
+  }
+  if (s.target.kind == Target::kBpvf) {
+    return InputError{
+        "without a delay, a rate cannot be searched for: use --quality, --kg, --max-error or "
+        "--lossless BITS instead of --bpvf"};
+  }
+  const FramePattern::Kind pattern = s.frames.pattern.kind;
+  if (pattern != FramePattern::kPrevious && pattern != FramePattern::kFirst) {
+    return InputError{
+        "low delay needs frames that are coded in their order: use --frame-pattern previous or "
+        "first"};
+  }
+  return std::nullopt;
+}
+
 std::optional<InputError> check_kinds(const EncoderSettings& s) {
   if (s.kinds == KindChoice::kBones && s.profile == Profile::kBaseline) {
     return InputError{
@@ -93,6 +118,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
           "--lossless"};
     }
   }
+  if (auto error = check_low_delay(s)) return error;
   const KindChoice kinds = s.usable_kinds();
   const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kBones;
   if (kinds == KindChoice::kFrames && s.components > 0) {
@@ -103,11 +129,18 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
         "the settings of bones and trajectories have no effect on GOFs without "
         "bones: leave them out, or use --gof-kind auto or bones"};
   }
+  if (auto error = error_of_pattern(s.frames.pattern)) return InputError{*error};
+  if (kinds == KindChoice::kAuto &&
+      (s.frames.pattern.temporal_layers > 1 || s.frames.layer_groups > 1)) {
+    return InputError{
+        "layers of GOFs of frames need GOFs of this kind alone: use --gof-kind frames"};
+  }
+  if (s.frames.layer_groups < 1) return InputError{"there is at least one layer group"};
   const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kFrames;
   if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
     return InputError{
-        "--frame-reference and --frame-weights need --profile high and "
-        "--gof-kind frames: use these, or leave them out"};
+        "--frame-pattern and --frame-weights need --profile high and --gof-kind frames: use "
+        "these, or leave them out"};
   }
   return std::nullopt;
 }

@@ -118,9 +118,10 @@ InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof&
   MetricsAccumulator metrics(coding_.header().num_vertices);
   auto hash_units = coding_.measure({source_, reading_}, gof.span, encoded.frame, metrics);
   if (!hash_units) return hash_units.error();
-  std::vector<GofBytes> gofs = write_gof_units(encoded, gof.span);
+  std::vector<GofBytes> gofs =
+      write_gof_units(encoded, gof.span, coding_.header().open_end_flag);
   for (std::size_t g = 0; g < gofs.size(); ++g) {
-    gofs[g].hash_unit = std::move((*hash_units)[g]);
+    if (!gofs[g].has_own_hashes) gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
   return MeasuredGof{
       {std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,

@@ -212,18 +212,21 @@ void SequenceCoding::to_input(std::span<const std::int32_t> positions,
   }
 }
 
-std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span) {
+std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span,
+                                      bool is_open_ended) {
   std::vector<GofBytes> gofs;
   Bytes model;
   for (const auto& unit : encoded.units) {
     const Bytes bytes = write_unit(unit.type, unit.payload);
-    if (unit.type == UnitType::kGof) gofs.push_back({0, std::exchange(model, {}), {}, {}, {}});
+    if (unit.type == UnitType::kGof)
+      gofs.push_back({0, std::exchange(model, {}), {}, {}, false, {}});
+    if (unit.type == UnitType::kFrame && is_open_ended) gofs.back().has_own_hashes = true;
     Bytes& out = gofs.empty() ? model : gofs.back().units;
     out.insert(out.end(), bytes.begin(), bytes.end());
     if (unit.temporal_layer_idx == 0) continue;
     std::vector<std::uint64_t>& of_layer = gofs.back().layer_bytes;
-    of_layer.resize(unit.temporal_layer_idx);  // they are in ascending order
-    of_layer.back() += bytes.size();
+    of_layer.resize(std::max<std::size_t>(of_layer.size(), unit.temporal_layer_idx));
+    of_layer[unit.temporal_layer_idx - 1] += bytes.size();
   }
   const std::vector<GofSpan> parts = equal_spans(span.count, span.num_gofs);
   for (std::size_t g = 0; g < gofs.size(); ++g) gofs[g].num_frames = parts[g].count;

@@ -62,6 +62,7 @@ class SequenceCoding {
 
   const SequenceHeader& header() const { return header_; }
   const ConnectivityCode& connectivity() const { return connectivity_; }
+  const SequenceMesh& mesh() const { return mesh_; }
   // The header may change in level and grid only. A new grid invalidates all frames and coders
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
@@ -111,6 +112,7 @@ class SequenceCoding {
 };
 
 // The units of the GOFs of a coded span as bytes of a stream, without hashes.
-std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span);
+std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span,
+                                      bool is_open_ended);
 
 }  // namespace rlpc

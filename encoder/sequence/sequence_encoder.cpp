@@ -116,7 +116,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
                         source_.memory_bytes());
   };
   // What the cuts are measured from is smaller than an analysis.
-  const bool keeps_cuts = settings_.main.temporal_layers > 1;
+  const bool keeps_cuts = settings_.temporal_layers() > 1;
   keeps_analyses_ = keeps_analyses(header);
   auto found = threads(keeps_analyses_ || keeps_cuts);
   if (!found && keeps_analyses_ && !keeps_cuts) {
@@ -233,7 +233,7 @@ std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
                                                         EncodeReport& report) {
   const SequenceHeader& header = coding_->header();
   std::mutex reading;
-  for (std::uint32_t layers = 1; layers < settings_.main.temporal_layers; ++layers) {
+  for (std::uint32_t layers = 1; layers < settings_.temporal_layers(); ++layers) {
     MetricsAccumulator metrics(header.num_vertices, MetricsAccumulator::kTotals);
     for (std::size_t g = 0; g < spans_.size(); ++g) {
       const DecodeFrame frame = trial.gofs[g].cut(static_cast<int>(layers));

@@ -1,5 +1,6 @@
 #include "encoder/sequence/stream_assembly.h"
 
+#include <optional>
 #include <utility>
 
 #include "common/syntax/stream_format.h"
@@ -20,8 +21,13 @@ Bytes header_unit(const SequenceHeader& header) {
 StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
                                const ConnectivityCode& connectivity)
     : profile_idc_(header.profile_idc),
+      is_open_ended_(header.open_end_flag),
       connectivity_(write_unit(UnitType::kConnectivity, connectivity.payload)),
-      end_bytes_(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(0)).size()) {
+      end_bytes_(
+          write_unit(UnitType::kEndOfSequence,
+                     write_end_of_sequence(
+                         0, header.open_end_flag ? std::optional(kMaxFrames) : std::nullopt))
+              .size()) {
   if (!settings.metadata.empty()) {
     metadata_ = write_unit(UnitType::kMetadata, write_metadata(settings.metadata));
   }
@@ -69,7 +75,23 @@ bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
   gof_offset_ = offset;
   layer_bytes_.push_back(gof.layer_bytes);
   index_.gofs.push_back({gof.num_frames, gof.units.size() + gof.hash_unit.size()});
+  num_frames_ += gof.num_frames;
   return put(gof.model, sink) && put(gof.units, sink) && put(gof.hash_unit, sink);
+}
+
+bool StreamAssembly::begin_gof(const Bytes& gof_unit, const ByteSink& sink) {
+  return write_gof({0, {}, gof_unit, {}, true, {}}, sink);
+}
+
+bool StreamAssembly::add_to_gof(const Bytes& unit, const ByteSink& sink) {
+  gof_bytes_ += unit.size();
+  index_.gofs.back().bytes += unit.size();
+  return put(unit, sink);
+}
+
+void StreamAssembly::end_gof(std::uint32_t num_frames) {
+  index_.gofs.back().num_frames = num_frames;
+  num_frames_ += num_frames;
 }
 
 bool StreamAssembly::write_end(const ByteSink& sink) {
@@ -77,7 +99,11 @@ bool StreamAssembly::write_end(const ByteSink& sink) {
   index_unit_bytes_ = index.size();
   const auto index_distance = static_cast<std::uint32_t>(index.size());
   return put(index, sink) &&
-         put(write_unit(UnitType::kEndOfSequence, write_end_of_sequence(index_distance)), sink);
+         put(write_unit(UnitType::kEndOfSequence,
+                        write_end_of_sequence(index_distance, is_open_ended_
+                                                                  ? std::optional(num_frames_)
+                                                                  : std::nullopt)),
+             sink);
 }
 
 // As SubStreamExtractor writes it: hashes keep their size, and offsets in the index shrink.
@@ -106,8 +132,9 @@ void StreamAssembly::describe(const SequenceHeader& header,
                               const ConnectivityCode& connectivity,
                               EncodeReport& report) const {
   report.header = header;
+  report.header.num_frames = num_frames_;
   report.bytes = written_;
-  report.bpvf = bits_per_vertex_per_frame(written_, header.num_vertices, header.num_frames);
+  report.bpvf = bits_per_vertex_per_frame(written_, header.num_vertices, num_frames_);
   report.bits.connectivity = 8 * connectivity_.size();
   report.bits.vertex_order = 8 * vertex_order_.size();
   report.bits.metadata = 8 * metadata_.size();

@@ -17,8 +17,9 @@ struct GofBytes {
   Bytes model;      // the skinned model that comes before it, and its slices; empty: none
   Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
-  // Bytes of the slices of each temporal layer besides the first; they are at the end of
-  // `units`.
+  // The GOF has hashes in its frame units, and there must be no hash unit (7.2).
+  bool has_own_hashes = false;
+  // Bytes of the slices or frame units of each temporal layer besides the first.
   std::vector<std::uint64_t> layer_bytes;
 
   std::uint64_t size() const { return model.size() + units.size() + hash_unit.size(); }
@@ -39,6 +40,11 @@ class StreamAssembly {
   // the constructor in its level only.
   bool write_lead(const SequenceHeader& header, const ByteSink& sink);
   bool write_gof(const GofBytes& gof, const ByteSink& sink);
+  // Instead of write_gof(), for a GOF that is written unit by unit: the first unit, further
+  // ones, and the number of frames once it is known.
+  bool begin_gof(const Bytes& gof_unit, const ByteSink& sink);
+  bool add_to_gof(const Bytes& unit, const ByteSink& sink);
+  void end_gof(std::uint32_t num_frames);
   bool write_end(const ByteSink& sink);
 
   // Size of the stream with only the first temporal layers, at least 1, once all units are
@@ -57,6 +63,8 @@ class StreamAssembly {
   bool put(std::span<const std::uint8_t> bytes, const ByteSink& sink);
 
   std::uint32_t profile_idc_;
+  bool is_open_ended_;
+  std::uint32_t num_frames_ = 0;
   Bytes metadata_;
   Bytes connectivity_;
   Bytes vertex_order_;

@@ -26,6 +26,7 @@ constexpr const char* kDetails = R"(More examples
   rlpcenc frames/ --kg 0.3 --dry-run                     how large would it be?
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.01
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile high --lossless 14
+  capture | rlpcenc cow.obj --points - -o - --profile high --low-delay | send
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile baseline --gof all \
       --clusters 30 --components 20 --qu 12 --qc 12 --qdelta 12 --no-rdo \
       --frame lcf                         the settings of the RLPCA paper
@@ -65,6 +66,19 @@ else in INPUT. Sampled glTF is kept as sampled.
 --dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
 more) and reports the exact size. Of longer ones it encodes eight sections and
 reports an estimate ("about").
+
+--low-delay reads RLPD from INPUT -, or PC2 from --points -, up to its end,
+whatever its number of frames says, and writes each frame before it waits for
+the next. The stream is then open-ended: rlpcdec shows its frames as they come.
+If the input fails, OUT ends with the frame before. Quality is --kg, --max-error
+or --lossless BITS; the KG error is met on the whole only, and about.
+
+--frame-pattern FRAME<REFERENCES, ... lists the frames of a period in the order
+in which they are coded, counted from 1, with one or two references each, and
+@DEPTH if they are deeper than these; 0 is the last frame of the period before.
+dyadic:4 is 4<0,2<0+4@1,1<0+2@2,3<2+4@2. --temporal-layers N makes layers of the
+N - 1 greatest depths, --layer-groups N of vertex layers: frames and details
+that rlpcinfo --extract can remove.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";
@@ -167,8 +181,7 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
       app.add_option_function<std::string>(
              "--lossless",
              [&line](const std::string& bits) { line.lossless = parse_bits(bits); },
-             "No loss on the grid that all coordinates lie on; or, with BITS, on a grid of 2 "
-             "to 24 bits (High profile)")
+             "No loss on the grid that all lie on, or one of BITS (High profile)")
           ->expected(0, 1)
           ->check(kBits)
           ->option_text("[BITS]")
@@ -199,6 +212,11 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
                  "smallest file, slow seeking")
       ->option_text("FRAMES")
       ->group(kOutput);
+  app.add_flag("--low-delay", o.settings.low_delay,
+               "Encode each frame when it comes, from standard input as well; larger "
+               "(High profile)")
+      ->excludes(dry_run)
+      ->group(kMore);
   auto* keep_order =
       app.add_flag("--keep-order", o.settings.keep_order, "Store the vertex order of INPUT")
           ->group(kOutput);
@@ -206,6 +224,13 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
   app.add_flag("-v,--verbose", o.verbose, "Also report the encoder's choices")->group(kOutput);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kOutput);
 
+  app.add_option("--box", line.box,
+                 "With --low-delay: bounds of all frames, smallest x,y,z and largest (default: "
+                 "from INPUT; 8 times the size of the first frame if it is a pipe)")
+      ->delimiter(',')
+      ->expected(6)
+      ->option_text("X,Y,Z,X,Y,Z")
+      ->group(kMore);
   app.add_option("--order-map", o.order_map,
                  "Write, per decoded vertex, its index in INPUT (glTF: after welding)")
       ->option_text("FILE")
@@ -261,10 +286,12 @@ void add_method_options(CLI::App& app, EncodeCommandLine& line) {
 void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string frames = "GOFs of frames, High profile";
   FrameTools& t = line.options.settings.frames;
-  add_choice<FrameReference>(
-      app, "--frame-reference", t.reference,
-      {{"previous", FrameReference::kPrevious}, {"first", FrameReference::kFirst}},
-      "What frames are predicted from: previous (the one before, default), first (of the GOF)")
+  app.add_option(
+         "--frame-pattern", line.frame_pattern,
+         "What frames are predicted from: previous (the one before, default), first (of "
+         "the GOF), dyadic (those around, in periods of 2, 4, ... 64: dyadic:16), or "
+         "entries (see below)")
+      ->option_text("WORD")
       ->group(frames);
   add_choice<bool>(app, "--frame-weights", t.learning, {{"learned", true}, {"geometry", false}},
                    "Weights of prediction: learned (from the frames before, default), geometry "

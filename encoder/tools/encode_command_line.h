@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "encoder/tools/encode_options.h"
 
@@ -19,6 +20,8 @@ struct EncodeCommandLine {
   EncodeOptions& options;
   std::string fps;
   std::optional<std::string> gof;  // none: chosen by the profile
+  std::string frame_pattern;
+  std::vector<float> box;
   std::string metadata_path;
   std::optional<double> kg;
   std::optional<double> bpvf;

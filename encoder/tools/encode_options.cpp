@@ -1,15 +1,18 @@
 #include "encoder/tools/encode_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/io/bounded_input.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/tools/command_line.h"
+#include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/input/input_format.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/target/quality.h"
@@ -37,6 +40,19 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
       return "--gof: expected a number of frames or `all`, found `" + *line.gof + "`";
     }
   }
+  if (!line.box.empty()) {
+    if (!s.low_delay) return "--box needs --low-delay";
+    std::copy_n(line.box.begin(), 6, o.box.emplace().begin());
+  }
+  if (!line.frame_pattern.empty()) {
+    const auto pattern = parse_frame_pattern_text(line.frame_pattern);
+    if (!pattern) {
+      return "--frame-pattern: expected previous, first, dyadic:16 or entries such as "
+             "2<0,1<0+2@1, found `" +
+             line.frame_pattern + "`";
+    }
+    s.frames.pattern = *pattern;
+  }
   for (const NamedQuality& q : kQualities) {
     if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
   }
@@ -44,6 +60,10 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
+  if (s.usable_kinds() == KindChoice::kFrames) {
+    s.frames.pattern.temporal_layers = std::exchange(s.main.temporal_layers, 1);
+    s.frames.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
+  }
   const bool asked =
       !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;
   if (s.baseline.qu > 0 && !asked) s.target = {Target::kNone, 0.0};

@@ -1,6 +1,7 @@
 // The command line of rlpcenc.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -11,14 +12,20 @@ namespace rlpc {
 
 struct EncodeOptions {
   InputOptions input;
-  std::string output;     // "-": standard output
-  std::string order_map;  // "-": standard output; empty: none
-  std::string quality;    // the word given; empty: none
+  std::string output;                       // "-": standard output
+  std::string order_map;                    // "-": standard output; empty: none
+  std::string quality;                      // the word given; empty: none
+  std::optional<std::array<float, 6>> box;  // of --box: smallest x, y, z, then largest
   bool dry_run = false;
   bool json = false;
   bool verbose = false;
   bool quiet = false;
   EncoderSettings settings;
+
+  // Frames are to be encoded as they come through standard input.
+  bool is_live() const {
+    return settings.low_delay && (input.path == "-" || input.points == "-");
+  }
 };
 
 enum EncodeExitCode : int { kEncoded = 0, kFailed = 1, kTargetMissed = 2, kUsage = 64 };

@@ -29,6 +29,7 @@
 #include "encoder/sequence/dry_run.h"
 #include "encoder/sequence/target/quality.h"
 #include "encoder/tools/encode_options.h"
+#include "encoder/tools/low_delay.h"
 #include "encoder/tools/report_json.h"
 
 namespace rlpc {
@@ -144,10 +145,17 @@ std::string advice(const EncodeOptions& o, const EncodeReport& report) {
 
 int report_target(const EncodeOptions& o, const EncodeReport& report) {
   if (report.target_met) {
-    if (!o.quiet && o.settings.target.has_search()) {
+    if (!o.quiet && o.settings.target.has_search() && !o.settings.low_delay) {
       tell_if_far_below(o.settings.target, report);
     }
     return kEncoded;
+  }
+  if (o.settings.low_delay) {
+    char error[32];
+    std::snprintf(error, sizeof error, "%.3g", report.metrics.kg_error_percent);
+    return complain("the KG error is " + std::string(error) +
+                        " %, more than was asked for: without a delay, it is met about",
+                    kTargetMissed);
   }
   return complain(
       "the target is out of reach; this is the closest found. " + advice(o, report) + ".",
@@ -219,6 +227,51 @@ std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& repo
   return map.close();
 }
 
+InputResult<EncodeReport> encode_source(FrameSource& source, const EncodeOptions& o,
+                                        const ByteSink& sink, const Progress& progress) {
+  if (!o.settings.low_delay) return encode(source, o.settings, sink, progress);
+  auto encoded = encode_low_delay(source, o, sink, progress);
+  if (!encoded) return encoded.error();
+  return std::move(encoded->report);
+}
+
+// Encodes frames as they come. What has been written when the input fails is a stream, and
+// stays.
+int run_live(const EncodeOptions& o) {
+  const std::string mesh = o.input.points.empty() ? std::string() : o.input.path;
+  auto frames = open_frame_stream(stdin, mesh, o.input.frame_rate, o.input.max_memory_bytes);
+  if (!frames) return complain(frames.error().message);
+  auto stream = OutputFile::create(o.output);
+  if (!stream) return complain(stream.error().message);
+  std::optional<OutputError> failure;
+  const ByteSink sink = [&](std::span<const std::uint8_t> bytes) {
+    failure = stream->write(bytes);
+    return !failure;
+  };
+  const auto encoded = encode_live(**frames, o, sink, [&] {
+    failure = stream->flush();
+    return !failure;
+  });
+  if (failure) return complain(failure->message);
+  if (!encoded) return complain(encoded.error().message);
+  const HoldInterrupts hold;
+  failure = stream->close();
+  if (!failure) failure = stream->commit();
+  if (failure) return complain(failure->message);
+  const EncodeReport& report = encoded->report;
+  if (o.json) {
+    std::cout << report_json(report).dump(2) << "\n";
+  } else if (!o.quiet && o.output != "-") {
+    print_report(o, {report, report.header.num_frames});
+  }
+  if (encoded->stopped) {
+    return complain(encoded->stopped->message + ". The stream ends with the " +
+                    std::to_string(report.header.num_frames) + " frame" +
+                    (report.header.num_frames == 1 ? "" : "s") + " before");
+  }
+  return report_target(o, report);
+}
+
 // Encodes to the file, and writes the vertex order if asked for.
 InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& source) {
   auto stream = OutputFile::create(o.output);
@@ -233,13 +286,12 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   InputResult<EncodeReport> report = InputError{};
   {
     ProgressBar bar("encoding", !o.quiet);
-    report = encode(
-        source, o.settings,
-        [&](std::span<const std::uint8_t> bytes) {
-          failure = stream->write(bytes);
-          return !failure;
-        },
-        [&](double fraction) { bar.show(fraction); });
+    const ByteSink sink = [&](std::span<const std::uint8_t> bytes) {
+      failure = stream->write(bytes);
+      return !failure;
+    };
+    const Progress progress = [&](double fraction) { bar.show(fraction); };
+    report = encode_source(source, o, sink, progress);
   }
   if (!failure && !report) return report;
   if (!failure) failure = stream->close();
@@ -275,6 +327,7 @@ std::optional<std::string> written_over(const EncodeOptions& o, const FrameSourc
 }
 
 int run(const EncodeOptions& o) {
+  if (o.is_live()) return run_live(o);
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
   if (const auto written = written_over(o, **source)) {

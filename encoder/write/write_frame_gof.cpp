@@ -10,13 +10,38 @@
 
 namespace rlpc {
 
+namespace {
+
+// 6.14.1 frame_pattern( )
+void write_frame_pattern(BitWriter& w, const FramePattern& pattern) {
+  w.u(2, pattern.kind);
+  if (pattern.kind == FramePattern::kDyadic) {
+    w.u(3, static_cast<std::uint32_t>(pattern.period_log2));
+  } else if (pattern.kind == FramePattern::kExplicit) {
+    w.u(5, pattern.period() - 1);
+    for (const PatternEntry& entry : pattern.entries) {
+      const bool has_two = entry.reference[0] != entry.reference[1];
+      w.u(5, entry.offset - 1);
+      w.flag(has_two);
+      w.u(6, entry.reference[0]);
+      if (has_two) w.u(6, entry.reference[1]);
+      w.u(3, entry.depth);
+    }
+  }
+  if (pattern.num_depths() > 1) w.u(3, pattern.temporal_layers - 1);
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
                                                const FrameSettings& settings) {
   BitWriter w;
   write_gof_header(w, gof, kProfileHigh);
-  w.u(1, static_cast<std::uint32_t>(settings.reference));
+  write_frame_pattern(w, settings.pattern);
   w.flag(settings.exact_flag);
-  if (!settings.exact_flag) w.ue(settings.step - 1);
+  for (const std::uint32_t step : settings.step) {
+    if (!settings.exact_flag) w.ue(step - 1);
+  }
   w.u(4, static_cast<std::uint32_t>(settings.weights.damping_log2));
   w.u(4, static_cast<std::uint32_t>(settings.weights.outer_weight));
   w.u(4, static_cast<std::uint32_t>(settings.weights.outer_scale));
@@ -29,9 +54,9 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
   return w.take();
 }
 
-void FrameUnitWriter::start_frame(std::uint32_t frame) {
-  frame_ = frame;
-  contexts_.start_frame(frame);
+void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
+  frame_ = frame.frame;
+  contexts_.start_frame(place, frame.depth);
 }
 
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
@@ -48,6 +73,7 @@ void FrameUnitWriter::write(std::int32_t residual) {
 std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc) {
   BitWriter w;
   w.ue(frame_);
+  if (is_open_ended_) w.flag(false);  // gof_end_flag
   w.ue(layer_group_);
   w.byte_alignment();
   const bool is_last = layer_group_ + 1 == settings_.layer_group_size.size();
@@ -58,14 +84,23 @@ std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc)
   return payload;
 }
 
+std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames) {
+  BitWriter w;
+  w.ue(num_frames);
+  w.flag(true);
+  w.byte_alignment();
+  return w.take();
+}
+
 FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
   FrameGofPayloads payloads;
   payloads.first = write_frame_gof_unit(gof, gof);
   FrameUnitWriter writer(mesh, gof);
-  for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
-    const CodedFrame& frame = (*gof.frames)[f];
-    if (frame.layer_groups == 0) break;
-    writer.start_frame(f);
+  const FrameOrder order(gof.pattern, gof.num_frames);
+  for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
+    const CodedFrame& frame = (*gof.frames)[order[place].frame];
+    if (frame.layer_groups == 0) continue;
+    writer.start_frame(place, order[place]);
     std::uint32_t layer = 0;
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
       writer.start_group(j);

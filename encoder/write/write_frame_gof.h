@@ -22,12 +22,16 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
 class FrameUnitWriter {
  public:
   // Mesh and settings must outlive it.
-  FrameUnitWriter(const CodedMesh& mesh, const FrameSettings& settings)
-      : settings_(settings), contexts_(mesh, settings.layer_group_size.size()) {}
+  FrameUnitWriter(const CodedMesh& mesh, const FrameSettings& settings,
+                  bool is_open_ended = false)
+      : settings_(settings),
+        is_open_ended_(is_open_ended),
+        contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()) {}
 
-  // Each frame: start_frame(), and for each of its layer groups start_group(), the vertices of
-  // its layers in the order of the mesh, and finish_group().
-  void start_frame(std::uint32_t frame);
+  // Each frame, in coding order: start_frame(), with its place, and for each of its layer
+  // groups start_group(), the vertices of its layers in the order of the mesh, and
+  // finish_group().
+  void start_frame(std::uint32_t place, const FramePlace& frame);
   void start_group(std::uint32_t layer_group);
   // For each vertex start(), then write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
@@ -39,11 +43,15 @@ class FrameUnitWriter {
 
  private:
   const FrameSettings& settings_;
+  bool is_open_ended_;
   FrameContexts contexts_;
   std::uint32_t frame_ = 0;
   std::uint32_t layer_group_ = 0;
   std::optional<SectionWriter> section_;
 };
+
+// 6.14.2 gof_end( ): the payload of a frame unit that ends a GOF of an open-ended stream.
+std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames);
 
 // Payloads of a GOF unit, and of its frame units.
 struct FrameGofPayloads {

@@ -17,7 +17,8 @@ Bytes write_sequence_header(const SequenceHeader& h) {
   w.u(8, h.level_idc);
   w.ue(h.num_vertices - 1);
   w.ue(h.num_triangles);
-  w.ue(h.num_frames - 1);
+  if (h.profile_idc >= kProfileHigh) w.flag(h.open_end_flag);
+  if (!h.open_end_flag) w.ue(h.num_frames - 1);
   w.ue(h.frame_rate.numerator - 1);
   w.ue(h.frame_rate.denominator - 1);
   w.se(h.grid.log2_step);

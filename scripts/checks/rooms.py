@@ -49,7 +49,8 @@ ROOMS = {
     "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
     "decoder/parse/sequence": _GOFS | {"decoder/parse"},
     # Structures to positions.
-    "decoder/recon": _GOFS | _RECON | {"decoder/stream"},
+    # It parses, too, where frames are decoded before their GOF has been read.
+    "decoder/recon": _GOFS | _RECON | {"decoder/parse", "decoder/stream"},
     "decoder/stream": _GOFS | _PARSE | _PUBLIC_DECODER,
     "decoder": _GOFS | {"common/io", "common/parallel", "decoder/stream", "decoder/recon"},
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
@@ -99,7 +100,8 @@ ROOMS = {
     "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
                            "encoder/input/gltf", "encoder/input/gltf/document"},
     "encoder/tools": {"common/io", "common/syntax", "common/tools", "encoder", "encoder/input",
-                      "encoder/metrics", "encoder/sequence", "encoder/sequence/target"},
+                      "encoder/metrics", "encoder/frame_gof", "encoder/sequence",
+                      "encoder/sequence/target"},
 }
 # Files that a room must not include although their folder is open to it: vertex layers are made
 # with the connectivity (8.9), not while a GOF is parsed.

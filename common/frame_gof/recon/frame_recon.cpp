@@ -74,13 +74,13 @@ FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int
       value_bits_(position_bits + kPointFractionBits + 1),
       position_bits_(position_bits),
       values_(3 * std::size_t{mesh.num_vertices()}),
-      before_(values_.size()),
       reference_(values_.size()),
       motion_(values_.size()) {}
 
 // 8.19.1 DecodeFrame( f )
-void FrameRecon::decode(const CodedFrame& frame) {
-  start_frame();
+void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
+                        const CodedFrame& frame) {
+  start_frame(place, last_use);
   std::uint32_t layer = 0;
   for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
     const bool is_there = j < frame.layer_groups;
@@ -99,7 +99,7 @@ void FrameRecon::decode(const CodedFrame& frame) {
             }
           }
           set(v, motion, position(v, motion, residual));
-          if (is_there) adapt(v, motion, frame.expected[v]);
+          adapt(v, motion, is_there, is_there ? frame.expected[v] : 0U);
         }
       };
       if (layer == 0 || vertices.size() <= kTogether) {
@@ -113,44 +113,58 @@ void FrameRecon::decode(const CodedFrame& frame) {
 }
 
 void FrameRecon::positions(std::span<std::int32_t> positions) const {
-  for (std::size_t i = 0; i < before_.size(); ++i) {
-    positions[i] = clip_signed(position_bits_, round2(before_[i], kPointFractionBits));
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    positions[i] = clip_signed(position_bits_, round2(values_[i], kPointFractionBits));
   }
 }
 
-void FrameRecon::skip_to(std::uint32_t frame) {
-  if (frame_ == 1) start_motion();
-  if (frame_ == 1) reference_ = before_;
-  frame_ = frame;
+void FrameRecon::skip_to(std::uint32_t place) {
+  if (number_ == 1) start_motion();
+  number_ = place;
 }
 
-void FrameRecon::start_frame() {
-  if (frame_ == 1) start_motion();
-  if (frame_ == 1 || settings_.reference == FrameReference::kPrevious) reference_ = before_;
+void FrameRecon::start_frame(const FramePlace& place, std::uint32_t last_use) {
+  if (number_ == 1) start_motion();
+  place_ = place;
+  last_use_ = last_use;
+  temporal_layer_ = settings_.pattern.temporal_layer(place.depth);
+  if (number_ > 0) make_reference();
+}
+
+// 8.19.3 MakeReference( f )
+void FrameRecon::make_reference() {
+  const std::vector<std::int32_t>& a = kept_.at(place_.first).values;
+  if (place_.first == place_.second) {
+    reference_ = a;
+    return;
+  }
+  const std::vector<std::int32_t>& b = kept_.at(place_.second).values;
+  const std::int64_t of_a = place_.second - place_.frame;
+  const std::int64_t of_b = place_.frame - place_.first;
+  for (std::size_t i = 0; i < reference_.size(); ++i) {
+    reference_[i] =
+        static_cast<std::int32_t>(div_round(of_a * a[i] + of_b * b[i], of_a + of_b));
+  }
 }
 
 // 8.19.2 StartMotion( )
 void FrameRecon::start_motion() {
-  near_ = near_vertices(mesh_, before_);
+  near_ = near_vertices(mesh_, values_);
   std::array<std::vector<std::int32_t>, 3> rest;
   for (std::size_t c = 0; c < 3; ++c) {
     rest[c].resize(mesh_.num_vertices());
-    for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = before_[3 * v + c];
+    for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = values_[3 * v + c];
   }
   weights_.emplace(mesh_, settings_.weights,
                    std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]},
                    &near_);
-  if (!settings_.learning_flag) return;
-  for (auto* const errors :
-       {&plain_error_, &plain_error1_, &plain_error2_, &error_, &error1_, &older_error_}) {
-    errors->assign(values_.size(), 0);
-  }
-  start_filters();
+  if (settings_.learning_flag) start_learning();
 }
 
 // 8.19.4 StartLearning( )
-void FrameRecon::start_filters() {
+void FrameRecon::start_learning() {
   const std::uint32_t num_vertices = mesh_.num_vertices();
+  plain_error_.assign(values_.size(), 0);
   first_.resize(num_vertices);
   std::size_t size = 0;
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
@@ -158,13 +172,18 @@ void FrameRecon::start_filters() {
     const std::size_t n = num_neighbours(v) + kNumEarlierErrors;
     size += padded(n) * (n + 1);
   }
-  filters_.assign(size, 0);
+  Learned learned;
+  for (auto* const errors : {&learned.plain_error1, &learned.plain_error2, &learned.error,
+                             &learned.error1, &learned.older_error}) {
+    errors->assign(values_.size(), 0);
+  }
+  learned.filters.assign(size, 0);
   const std::int64_t variance = std::int64_t{1}
                                 << (kVarianceFractionBits + settings_.prime_log2);
   for_ranges(num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);
-      const FilterState state = filter(v);
+      const FilterState state = filter(learned, v);
       constexpr std::int64_t kFiner = 1 << (kAdaptiveFractionBits - kWeightFractionBits);
       const auto weights = (*weights_)[v];
       for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -174,32 +193,33 @@ void FrameRecon::start_filters() {
       for (std::size_t k = 0; k < state.size; ++k) {
         state.spread[k * state.stride + k] = state.walk[k] << kFirstSpreadShift;
       }
-      if (settings_.prime_log2 > 0 && mesh_.ring(v).size() > 1) prime(v, variance);
+      if (settings_.prime_log2 > 0 && mesh_.ring(v).size() > 1) prime(learned, v, variance);
     }
   });
+  learned_.assign(settings_.pattern.temporal_layers, learned);
 }
 
-FilterState FrameRecon::filter(std::uint32_t v) const {
+FilterState FrameRecon::filter(const Learned& learned, std::uint32_t v) const {
   FilterState state;
   state.size = num_neighbours(v) + kNumEarlierErrors;
   state.stride = padded(state.size);
-  state.weight = &filters_[first_[v]];
+  state.weight = &learned.filters[first_[v]];
   state.spread = state.weight + state.stride;
   state.walk = kWalks[mesh_.ring(v).size()][near_[v].size()].data();
   return state;
 }
 
 // 8.19.4 PrimeFilter( v )
-void FrameRecon::prime(std::uint32_t v, std::int64_t variance) {
+void FrameRecon::prime(Learned& learned, std::uint32_t v, std::int64_t variance) {
   const auto ring = mesh_.ring(v);
   const auto near = near_[v];
-  const FilterState state = filter(v);
+  const FilterState state = filter(learned, v);
   std::array<std::array<std::int64_t, kMaxMotions>, 3> offsets{};
   Vec3l own{};
   std::int64_t largest = 1;
   for (std::size_t c = 0; c < 3; ++c) {
     const auto at = [&](std::uint32_t u) -> std::int64_t {
-      return before_[3 * std::size_t{u} + c];
+      return values_[3 * std::size_t{u} + c];
     };
     std::int64_t sum = 0;
     for (const std::uint32_t u : ring) sum += at(u);
@@ -227,7 +247,7 @@ void FrameRecon::prime(std::uint32_t v, std::int64_t variance) {
 void FrameRecon::predict(std::uint32_t v, VertexMotion& motion) const {
   const auto ring = mesh_.ring(v);
   const std::size_t own = 3 * std::size_t{v};
-  if (frame_ == 0) {
+  if (number_ == 0) {
     for (std::size_t c = 0; c < 3; ++c) {
       std::int64_t sum = 0;
       for (const std::uint32_t u : ring) sum += values_[3 * std::size_t{u} + c];
@@ -245,16 +265,19 @@ void FrameRecon::predict(std::uint32_t v, VertexMotion& motion) const {
     motion.plain[c] =
         clip3(-kMostMotion, kMostMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
   }
-  Vec3l moved = motion.plain;
-  if (settings_.learning_flag) {
-    gather_errors(v, motion);
-    const FilterState state = filter(v);
-    for (std::size_t c = 0; c < 3; ++c) {
-      moved[c] = motion.mean[c] + kernels_.predict_offset(state, motion.offsets[c].data());
-    }
-  }
+  if (settings_.learning_flag) return predict(learned_[temporal_layer_], v, motion);
   for (std::size_t c = 0; c < 3; ++c) {
-    motion.prediction[c] = clip_signed(value_bits_, reference_[own + c] + moved[c]);
+    motion.prediction[c] = clip_signed(value_bits_, reference_[own + c] + motion.plain[c]);
+  }
+}
+
+void FrameRecon::predict(const Learned& learned, std::uint32_t v, VertexMotion& motion) const {
+  gather_errors(learned, v, motion);
+  const FilterState state = filter(learned, v);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int64_t moved =
+        motion.mean[c] + kernels_.predict_offset(state, motion.offsets[c].data());
+    motion.prediction[c] = clip_signed(value_bits_, reference_[3 * std::size_t{v} + c] + moved);
   }
 }
 
@@ -279,8 +302,9 @@ void FrameRecon::gather_motion(std::uint32_t v, VertexMotion& motion) const {
   }
 }
 
-// 8.19.4 AddEarlierErrors( v, c, offsets )
-void FrameRecon::gather_errors(std::uint32_t v, VertexMotion& motion) const {
+// 8.19.4 AddEarlierErrors( layer, v, c, offsets )
+void FrameRecon::gather_errors(const Learned& learned, std::uint32_t v,
+                               VertexMotion& motion) const {
   const auto ring = mesh_.ring(v);
   const std::size_t first = num_neighbours(v);
   const std::size_t end = padded(first + kNumEarlierErrors);
@@ -289,11 +313,11 @@ void FrameRecon::gather_errors(std::uint32_t v, VertexMotion& motion) const {
     std::int32_t* offsets = &motion.offsets[c][first];
     std::int64_t sum = 0;
     for (const std::uint32_t u : ring) sum += plain_error_[3 * std::size_t{u} + c];
-    offsets[0] = plain_error1_[own];
-    offsets[1] = plain_error2_[own];
+    offsets[0] = learned.plain_error1[own];
+    offsets[1] = learned.plain_error2[own];
     offsets[2] = static_cast<std::int32_t>(mean_of(sum, ring.size()));
-    offsets[3] = error1_[own];
-    offsets[4] = older_error_[own];
+    offsets[3] = learned.error1[own];
+    offsets[4] = learned.older_error[own];
     std::fill(offsets + kNumEarlierErrors, &motion.offsets[c][0] + end, 0);
   }
 }
@@ -317,24 +341,44 @@ Vec3i FrameRecon::position(std::uint32_t v, const VertexMotion& motion,
 }
 
 void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position) {
+  std::vector<std::int32_t>* const errors =
+      number_ > 0 && settings_.learning_flag ? &learned_[temporal_layer_].error : nullptr;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t own = 3 * std::size_t{v} + c;
     values_[own] = position[c];
-    if (frame_ == 0) continue;
+    if (number_ == 0) continue;
     motion_[own] = position[c] - reference_[own];
-    if (!settings_.learning_flag) continue;
+    if (errors == nullptr) continue;
     plain_error_[own] = static_cast<std::int32_t>(motion_[own] - motion.plain[c]);
-    error_[own] = position[c] - motion.prediction[c];
+    (*errors)[own] = position[c] - motion.prediction[c];
   }
 }
 
-// 8.19.4 LearnFromVertex( f, v )
-void FrameRecon::adapt(std::uint32_t v, const VertexMotion& motion, std::uint32_t expected) {
-  if (frame_ == 0 || !settings_.learning_flag) return;
+// 8.19.4 Learn( f, v, present )
+void FrameRecon::adapt(std::uint32_t v, VertexMotion& motion, bool is_there,
+                       std::uint32_t expected) {
+  if (number_ == 0 || !settings_.learning_flag) return;
   const std::int64_t of_step = step(v);
   const std::int64_t variance =
       of_step * of_step * (128 + std::int64_t{expected} * std::int64_t{expected});
-  const FilterState state = filter(v);
+  const std::uint32_t own = temporal_layer_;
+  for (std::uint32_t t = own; t < settings_.pattern.temporal_layers; ++t) {
+    Learned& learned = learned_[t];
+    if (t > own) {
+      predict(learned, v, motion);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t i = 3 * std::size_t{v} + c;
+        learned.error[i] = values_[i] - motion.prediction[c];
+      }
+    }
+    if (is_there) adapt(learned, v, motion, variance);
+  }
+}
+
+// 8.19.4 LearnFromVertex( layer, f, v )
+void FrameRecon::adapt(Learned& learned, std::uint32_t v, const VertexMotion& motion,
+                       std::int64_t variance) {
+  const FilterState state = filter(learned, v);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int32_t* const offsets = motion.offsets[c].data();
     const std::int64_t error = motion_[3 * std::size_t{v} + c] - motion.mean[c] -
@@ -344,18 +388,37 @@ void FrameRecon::adapt(std::uint32_t v, const VertexMotion& motion, std::uint32_
 }
 
 void FrameRecon::end_frame() {
-  before_.swap(values_);
-  if (frame_ > 0 && settings_.learning_flag) {
-    for (std::size_t i = 0; i < older_error_.size(); ++i) {
-      const std::int64_t sum = std::int64_t{older_error_[i]} + error1_[i];
-      older_error_[i] = static_cast<std::int32_t>(
+  if (number_ > 0 && settings_.learning_flag) end_errors();
+  // Frames that are no longer needed lend their memory.
+  std::vector<std::int32_t> free;
+  for (auto it = kept_.begin(); it != kept_.end();) {
+    if (it->second.last_use > number_) {
+      ++it;
+      continue;
+    }
+    free = std::move(it->second.values);
+    it = kept_.erase(it);
+  }
+  // This one stays for one frame in any case: what is left of a period that turns out to be
+  // shorter may be predicted from it.
+  free = values_;
+  kept_[place_.frame] = {std::move(free), std::max(last_use_, number_ + 1)};
+  ++number_;
+}
+
+// 8.19.4 EndErrors( f )
+void FrameRecon::end_errors() {
+  for (std::uint32_t t = temporal_layer_; t < settings_.pattern.temporal_layers; ++t) {
+    Learned& learned = learned_[t];
+    for (std::size_t i = 0; i < learned.older_error.size(); ++i) {
+      const std::int64_t sum = std::int64_t{learned.older_error[i]} + learned.error1[i];
+      learned.older_error[i] = static_cast<std::int32_t>(
           clip3(-kMostOlderError, kMostOlderError, round2(3 * sum, 2)));
     }
-    error1_.swap(error_);
-    plain_error2_.swap(plain_error1_);
-    plain_error1_.swap(plain_error_);
+    learned.error1.swap(learned.error);
+    learned.plain_error2.swap(learned.plain_error1);
+    learned.plain_error1 = plain_error_;
   }
-  ++frame_;
 }
 
 }  // namespace rlpc

@@ -1,10 +1,11 @@
-// 8.19 GOF of frames: the positions of one frame after the other. The decoder gives it the
-// residuals of a frame; the encoder chooses them layer by layer.
+// 8.19 GOF of frames: the positions of one frame after the other, in coding order. The decoder
+// gives it the residuals of a frame; the encoder chooses them layer by layer.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,26 +39,27 @@ class FrameRecon {
   // The mesh must have layers; mesh and settings must outlive it.
   FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int position_bits);
 
-  // Decodes the next frame, on several threads.
-  void decode(const CodedFrame& frame);
-  // Whether each frame but the first decodes alone; then skip_to() makes another, from the
-  // second on, the next, once the first has been decoded.
+  // Decodes a frame, the next in coding order, on several threads. last_use: the last place
+  // whose frame is predicted from it.
+  void decode(const FramePlace& place, std::uint32_t last_use, const CodedFrame& frame);
+  // Whether each frame but the first decodes alone; then skip_to() makes another place, from
+  // the second on, the next, once the first has been decoded.
   bool has_independent_frames() const {
-    return settings_.reference == FrameReference::kFirst && !settings_.learning_flag;
+    return settings_.pattern.kind == FramePattern::kFirst && !settings_.learning_flag;
   }
-  void skip_to(std::uint32_t frame);
+  void skip_to(std::uint32_t place);
   // The last frame in grid units, [num_vertices][3].
   void positions(std::span<std::int32_t> positions) const;
 
-  // The parts of decode( ). Each frame: start_frame(); for the vertices of a layer, predict()
-  // and set(), and at any time after that adapt(), once if the frame has their layer group;
-  // end_frame().
-  void start_frame();
+  // The parts of decode( ). Each frame: start_frame(), with the next place in coding order; for
+  // the vertices of a layer, predict() and set(), and at any time after that adapt();
+  // end_frame(). is_there: the frame has their layer group; expected: then FrameNoise.
+  void start_frame(const FramePlace& place, std::uint32_t last_use);
   void predict(std::uint32_t v, VertexMotion& motion) const;
   // 8.19.3: the position that residuals, in steps, lead to.
   Vec3i position(std::uint32_t v, const VertexMotion& motion, const Vec3i& residual) const;
   void set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position);
-  void adapt(std::uint32_t v, const VertexMotion& motion, std::uint32_t expected);
+  void adapt(std::uint32_t v, VertexMotion& motion, bool is_there, std::uint32_t expected);
   void end_frame();
 
   // What residuals are relative to, with 4 fractional bits: the prediction, rounded to the grid
@@ -65,45 +67,64 @@ class FrameRecon {
   std::int32_t start_of(const VertexMotion& motion, std::size_t c) const;
   // FrameStep of a vertex, 1/256 grid units.
   std::int64_t step(std::uint32_t v) const {
-    return std::int64_t{settings_.step} * settings_.layer_step[mesh_.layer_of(v)];
+    return std::int64_t{settings_.step[place_.depth]} * settings_.layer_step[mesh_.layer_of(v)];
   }
-  // Number of the frame in progress, or of the next one.
-  std::uint32_t frame() const { return frame_; }
+  // The place in coding order that is in progress, or comes next.
+  std::uint32_t place() const { return number_; }
 
  private:
+  // 8.19.4: what a temporal layer learns.
+  struct Learned {
+    // Of the last frame, and the one before it; [num_vertices][3]:
+    std::vector<std::int32_t> plain_error1;
+    std::vector<std::int32_t> plain_error2;
+    std::vector<std::int32_t> error;  // of this frame, and of the last
+    std::vector<std::int32_t> error1;
+    std::vector<std::int32_t> older_error;
+    mutable std::vector<std::int32_t> filters;  // of each vertex: weights, then spread
+  };
+  struct Kept {
+    std::vector<std::int32_t> values;
+    std::uint32_t last_use = 0;
+  };
+
   void start_motion();
-  void start_filters();
-  void prime(std::uint32_t v, std::int64_t variance);
-  FilterState filter(std::uint32_t v) const;
+  void start_learning();
+  void prime(Learned& learned, std::uint32_t v, std::int64_t variance);
+  void make_reference();
+  void end_errors();
+  FilterState filter(const Learned& learned, std::uint32_t v) const;
+  // By what a temporal layer has learned.
+  void predict(const Learned& learned, std::uint32_t v, VertexMotion& motion) const;
+  void adapt(Learned& learned, std::uint32_t v, const VertexMotion& motion,
+             std::int64_t variance);
   std::size_t num_neighbours(std::uint32_t v) const {
     return mesh_.ring(v).size() + near_[v].size();
   }
   void gather_motion(std::uint32_t v, VertexMotion& motion) const;
-  void gather_errors(std::uint32_t v, VertexMotion& motion) const;
+  void gather_errors(const Learned& learned, std::uint32_t v, VertexMotion& motion) const;
 
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
   Kernels kernels_;
   int value_bits_;
   int position_bits_;
-  std::uint32_t frame_ = 0;
+  std::uint32_t number_ = 0;            // of the place in coding order
+  FramePlace place_;                    // the last one started
+  std::uint32_t last_use_ = 0;          // of its frame
+  std::uint32_t temporal_layer_ = 0;    // likewise
+  std::map<std::uint32_t, Kept> kept_;  // frames that later ones are predicted from
   // [num_vertices][3], 1/16 grid units:
-  std::vector<std::int32_t> values_;
-  std::vector<std::int32_t> before_;     // the frame before this one
+  std::vector<std::int32_t> values_;     // FrameValues
   std::vector<std::int32_t> reference_;  // Reference
   std::vector<std::int32_t> motion_;     // values_ - reference_
   // From the second frame on:
   VertexLists near_;
   std::optional<GeometryWeights> weights_;
   // If the weights are learned:
-  std::vector<std::int32_t> plain_error_;  // of this frame, the one before, and its predecessor
-  std::vector<std::int32_t> plain_error1_;
-  std::vector<std::int32_t> plain_error2_;
-  std::vector<std::int32_t> error_;  // of this frame, and the one before
-  std::vector<std::int32_t> error1_;
-  std::vector<std::int32_t> older_error_;
-  std::vector<std::size_t> first_;             // [num_vertices]: of its filter
-  mutable std::vector<std::int32_t> filters_;  // of each vertex: weights, then spread
+  std::vector<std::int32_t> plain_error_;  // of this frame
+  std::vector<std::size_t> first_;         // [num_vertices]: of its filter
+  std::vector<Learned> learned_;           // [temporal_layers]
 };
 
 }  // namespace rlpc

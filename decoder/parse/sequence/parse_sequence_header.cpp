@@ -30,7 +30,11 @@ Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version
   h.num_vertices =
       r.ue("num_vertices_minus1", {0, std::int64_t{level.max_vertices} - 1}, "R-LVL-01") + 1;
   h.num_triangles = r.ue("num_triangles", {0, level.max_triangles}, "R-LVL-02");
-  h.num_frames = r.ue("num_frames_minus1", {0, std::int64_t{kMaxFrames} - 1}, "R-LVL-03") + 1;
+  if (h.profile_idc >= kProfileHigh) h.open_end_flag = r.flag("open_end_flag");
+  h.num_frames = kMaxFrames;
+  if (!h.open_end_flag) {
+    h.num_frames = r.ue("num_frames_minus1", {0, std::int64_t{kMaxFrames} - 1}, "R-LVL-03") + 1;
+  }
   h.frame_rate.numerator = r.ue("frame_rate_numerator_minus1", {0, kAny}, "R-HDR-03") + 1;
   h.frame_rate.denominator = r.ue("frame_rate_denominator_minus1", {0, kAny}, "R-HDR-03") + 1;
   h.grid.log2_step = r.se("grid_log2_step", {kMinGridLog2Step, kMaxGridLog2Step}, "R-HDR-04");

@@ -15,6 +15,7 @@
 #include "common/io/binary_numbers.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
+#include "encoder/input/piped_frames.h"
 
 namespace rlpc {
 
@@ -43,21 +44,25 @@ InputError too_short(const InputFile& file, std::size_t header_bytes) {
                     to_string(header_bytes)};
 }
 
-InputResult<Layout> read_pc2_header(InputFile& file) {
-  std::array<char, kPc2HeaderBytes> header{};
-  if (file.size() < header.size()) return too_short(file, header.size());
-  if (auto error = file.read(0, header)) return *error;
+InputResult<Layout> parse_pc2_header(const std::string& path,
+                                     const std::array<char, kPc2HeaderBytes>& header) {
   if (std::string_view(header.data(), kPc2Magic.size()) != kPc2Magic) {
-    return InputError{file.path() + ": does not begin with POINTCACHE2; not a PC2 point cache"};
+    return InputError{path + ": does not begin with POINTCACHE2; not a PC2 point cache"};
   }
   const std::int32_t version = load_i32(header, 12);
   if (version != 1) {
-    return InputError{file.path() + ": PC2 version " + to_string(version) +
-                      " at byte 12; expected 1"};
+    return InputError{path + ": PC2 version " + to_string(version) + " at byte 12; expected 1"};
   }
   const bool has_rate =
       std::isfinite(load_f32(header, 20)) && std::isfinite(load_f32(header, 24));
   return Layout{false, load_i32(header, 16), load_i32(header, 28), kPc2HeaderBytes, has_rate};
+}
+
+InputResult<Layout> read_pc2_header(InputFile& file) {
+  std::array<char, kPc2HeaderBytes> header{};
+  if (file.size() < header.size()) return too_short(file, header.size());
+  if (auto error = file.read(0, header)) return *error;
+  return parse_pc2_header(file.path(), header);
 }
 
 InputResult<Layout> read_mdd_header(InputFile& file) {
@@ -74,16 +79,24 @@ InputResult<Layout> read_mdd_header(InputFile& file) {
   return layout;
 }
 
-// Compares the header with the mesh and with the size of the file.
+// Compares the header with the mesh.
+std::optional<InputError> check_points(const std::string& path, const Layout& layout,
+                                       const std::string& mesh_path,
+                                       std::uint32_t num_vertices) {
+  if (layout.points >= 0 && static_cast<std::uint32_t>(layout.points) == num_vertices) {
+    return std::nullopt;
+  }
+  return InputError{path + ": " + to_string(layout.points) + " points per frame, but " +
+                    name_of_input(mesh_path) + " has " + to_string(num_vertices) +
+                    " vertices; use the mesh and the cache of the same export"};
+}
+
+// Compares it with the size of the file, too.
 std::optional<InputError> check_layout(const InputFile& file, const Layout& layout,
                                        const std::string& mesh_path,
                                        std::uint32_t num_vertices) {
   const std::string& path = file.path();
-  if (layout.points < 0 || static_cast<std::uint32_t>(layout.points) != num_vertices) {
-    return InputError{path + ": " + to_string(layout.points) + " points per frame, but " +
-                      name_of_input(mesh_path) + " has " + to_string(num_vertices) +
-                      " vertices; use the mesh and the cache of the same export"};
-  }
+  if (auto error = check_points(path, layout, mesh_path, num_vertices)) return error;
   if (layout.frames < 1) {
     return InputError{path + ": " + to_string(layout.frames) +
                       " samples; expected at least 1 frame"};
@@ -286,6 +299,47 @@ const InputFormat kPc2Format{
     .begins = [](std::string_view beginning) { return beginning.starts_with("POINTCACHE2"); },
     .open_points = open_point_cache,
 };
+
+namespace {
+
+class Pc2Stream final : public FrameStream {
+ public:
+  Pc2Stream(Shape shape, std::FILE* file)
+      : FrameStream(std::move(shape)), frames_(file, this->shape().name) {}
+
+  InputResult<bool> next_frame(std::span<float> xyz) override {
+    bytes_.resize(4 * xyz.size());
+    const auto read = frames_.read(bytes_);
+    if (!read || !*read) return read;
+    for (std::size_t i = 0; i < xyz.size(); ++i) xyz[i] = load_f32(bytes_, 4 * i);
+    return true;
+  }
+
+ private:
+  PipedFrames frames_;
+  std::vector<char> bytes_;
+};
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
+    std::FILE* file, const std::string& name, const std::string& mesh_path,
+    const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) {
+  auto mesh = read_mesh(mesh_path, max_memory_bytes);
+  if (!mesh) return mesh.error();
+  const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
+  std::array<char, kPc2HeaderBytes> header{};
+  if (std::fread(header.data(), 1, header.size(), file) < header.size()) {
+    return InputError{name + ": ends before its first frame; expected a PC2 point cache"};
+  }
+  const auto layout = parse_pc2_header(name, header);
+  if (!layout) return layout.error();
+  if (auto error = check_points(name, *layout, mesh_path, num_vertices)) return *error;
+  FrameSource::Shape shape = shape_of(std::move(*mesh), 1, frame_rate);
+  return std::unique_ptr<FrameStream>(std::make_unique<Pc2Stream>(
+      FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles)},
+      file));
+}
 
 namespace {
 

@@ -8,11 +8,13 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "encoder/input/frame_source.h"
+#include "encoder/input/frame_stream.h"
 #include "encoder/input/input_format.h"
 
 namespace rlpc {
@@ -23,6 +25,11 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
     const std::string& mesh_path, const std::string& points_path,
     const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+
+// From a pipe, frame by frame; see open_frame_stream().
+InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
+    std::FILE* file, const std::string& name, const std::string& mesh_path,
+    const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes);
 
 extern const InputFormat kPc2Format;
 extern const InputFormat kMddFormat;

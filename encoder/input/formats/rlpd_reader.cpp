@@ -1,5 +1,6 @@
 #include "encoder/input/formats/rlpd_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include "common/io/binary_numbers.h"
 #include "common/io/float_position.h"
 #include "encoder/input/input_file.h"
+#include "encoder/input/piped_frames.h"
 
 namespace rlpc {
 
@@ -33,14 +35,8 @@ struct RlpdHeader {
   std::uint64_t overhead_bytes() const { return std::uint64_t{num_vertices} * 12; }
 };
 
-InputResult<RlpdHeader> read_header(InputFile& file) {
-  const std::string& path = file.path();
-  std::array<char, kHeaderBytes> bytes{};
-  if (file.size() < kHeaderBytes) {
-    return InputError{path + ": " + to_string(file.size()) +
-                      " bytes; the header of a .rlpd file has " + to_string(kHeaderBytes)};
-  }
-  if (auto error = file.read(0, bytes)) return *error;
+InputResult<RlpdHeader> parse_header(const std::string& path,
+                                     const std::array<char, kHeaderBytes>& bytes) {
   if (std::string_view(bytes.data(), 4) != "RLPD") {
     return InputError{path + ": does not begin with RLPD; not a .rlpd file"};
   }
@@ -69,6 +65,16 @@ InputResult<RlpdHeader> read_header(InputFile& file) {
   return header;
 }
 
+InputResult<RlpdHeader> read_header(InputFile& file) {
+  std::array<char, kHeaderBytes> bytes{};
+  if (file.size() < kHeaderBytes) {
+    return InputError{file.path() + ": " + to_string(file.size()) +
+                      " bytes; the header of a .rlpd file has " + to_string(kHeaderBytes)};
+  }
+  if (auto error = file.read(0, bytes)) return *error;
+  return parse_header(file.path(), bytes);
+}
+
 // The number of frames present, from the size of the file.
 InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader& header) {
   const std::string& path = file.path();
@@ -93,15 +99,15 @@ InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader&
   return static_cast<std::uint32_t>(frames);
 }
 
-InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHeader& header) {
-  std::vector<char> bytes(std::size_t{header.num_triangles} * 12);
-  if (auto error = file.read(kHeaderBytes, bytes)) return *error;
+InputResult<std::vector<Triangle>> parse_triangles(const std::string& path,
+                                                   const RlpdHeader& header,
+                                                   std::span<const char> bytes) {
   std::vector<Triangle> triangles(header.num_triangles);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t v = load_u32(bytes, 12 * t + 4 * corner);
       if (v >= header.num_vertices) {
-        return InputError{file.path() + ": triangle " + to_string(t) + " (from 0): index " +
+        return InputError{path + ": triangle " + to_string(t) + " (from 0): index " +
                           to_string(v) + " is out of range 0 to " +
                           to_string(header.num_vertices - 1)};
       }
@@ -109,6 +115,12 @@ InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHea
     }
   }
   return triangles;
+}
+
+InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHeader& header) {
+  std::vector<char> bytes(std::size_t{header.num_triangles} * 12);
+  if (auto error = file.read(kHeaderBytes, bytes)) return *error;
+  return parse_triangles(file.path(), header, bytes);
 }
 
 class RlpdSource : public FrameSource {
@@ -160,6 +172,60 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(const std::string& path,
   shape.memory_bytes = mesh_bytes / 2 + file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<RlpdSource>(std::move(shape), std::move(*file), *header));
+}
+
+namespace {
+
+class RlpdStream final : public FrameStream {
+ public:
+  RlpdStream(Shape shape, std::FILE* file, const Grid& grid)
+      : FrameStream(std::move(shape)), frames_(file, this->shape().name), grid_(grid) {}
+
+  InputResult<bool> next_frame(std::span<float> xyz) override {
+    bytes_.resize(4 * xyz.size());
+    const auto read = frames_.read(bytes_);
+    if (!read || !*read) return read;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = float_position(grid_, i % 3, load_i32(bytes_, 4 * i));
+    }
+    return true;
+  }
+
+ private:
+  PipedFrames frames_;
+  Grid grid_;
+  std::vector<char> bytes_;
+};
+
+}  // namespace
+
+InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
+    std::FILE* file, const std::string& name, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes) {
+  std::array<char, kHeaderBytes> bytes{};
+  const InputError ended{name + ": ends before its first frame; expected a .rlpd file"};
+  if (std::fread(bytes.data(), 1, bytes.size(), file) < bytes.size()) return ended;
+  const auto header = parse_header(name, bytes);
+  if (!header) return header.error();
+  if (header->num_vertices == 0) return InputError{name + ": no vertices (byte 8)"};
+  if (header->bytes_before_frames() * 2 + header->overhead_bytes() > max_memory_bytes) {
+    return InputError{name + ": " + memory_problem(max_memory_bytes), true};
+  }
+  std::vector<char> indices;
+  while (indices.size() < std::size_t{header->num_triangles} * 12) {
+    // In steps, as the header may announce more than there is.
+    constexpr std::size_t kStep = std::size_t{1} << 20;  // fixed: memory
+    const std::size_t before = indices.size();
+    indices.resize(std::min(before + kStep, std::size_t{header->num_triangles} * 12));
+    const std::size_t wanted = indices.size() - before;
+    if (std::fread(&indices[before], 1, wanted, file) < wanted) return ended;
+  }
+  auto triangles = parse_triangles(name, *header, indices);
+  if (!triangles) return triangles.error();
+  FrameStream::Shape shape{name, header->num_vertices, frame_rate.value_or(header->frame_rate),
+                           std::move(*triangles)};
+  return std::unique_ptr<FrameStream>(
+      std::make_unique<RlpdStream>(std::move(shape), file, header->grid));
 }
 
 namespace {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "encoder/input/frame_source.h"
+#include "encoder/input/frame_stream.h"
 #include "encoder/input/input_format.h"
 
 namespace rlpc {
@@ -15,6 +17,11 @@ namespace rlpc {
 InputResult<std::unique_ptr<FrameSource>> open_rlpd(
     const std::string& path, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+
+// From a pipe, frame by frame; see open_frame_stream().
+InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
+    std::FILE* file, const std::string& name, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes);
 
 extern const InputFormat kRlpdFormat;
 

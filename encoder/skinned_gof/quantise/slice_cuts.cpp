@@ -3,33 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "encoder/gof/layer_groups.h"
+
 namespace rlpc {
 namespace {
 
 constexpr double kBytesOfSlice = 4000.0;  // fixed: slices are a feature; they cost 0.2 %
-
-// The layers before each group have at most an eighth of the vertices of all layers up to its
-// end. A group is smaller if it would not leave enough layers for the requested number of
-// groups.
-void cut_layers(const CodedMesh& mesh, std::size_t num_groups, std::uint32_t requested,
-                SkinnedModel& model) {
-  const std::uint32_t num_layers = mesh.num_layers();
-  requested = std::min(requested, num_layers);
-  std::vector<std::uint32_t> ends{num_layers};
-  for (std::uint32_t last = num_layers; ends.size() < num_groups; ends.push_back(last)) {
-    const std::size_t most = mesh.vertices_of_layers(0, last).size() / 8;
-    const auto num_ends = static_cast<std::uint32_t>(ends.size());
-    const std::uint32_t first = std::max(requested, num_ends + 1) - num_ends;
-    while (last > first && mesh.vertices_of_layers(0, last).size() > most) --last;
-    if (last == ends.back()) break;
-  }
-  model.layer_group_size.clear();
-  std::uint32_t first = 0;
-  for (std::size_t i = ends.size(); i-- > 0;) {
-    model.layer_group_size.push_back(ends[i] - first);
-    first = ends[i];
-  }
-}
 
 // The trajectories up to the end of each group are about three times as many as those before
 // it. A group is smaller if it would not leave enough trajectories for the requested number of
@@ -80,7 +59,8 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
 
 void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
                 std::span<const std::int32_t> residual, SkinnedModel& model) {
-  cut_layers(mesh, cuts.num_layer_groups, settings.layer_groups, model);
+  model.layer_group_size =
+      layer_group_sizes(mesh, cuts.num_layer_groups, settings.layer_groups);
   cut_components(mesh.num_vertices(), cuts.group_end, residual, model);
   model.slice_layers.assign(model.group_end.size(),
                             static_cast<std::uint32_t>(model.layer_group_size.size()));

@@ -1,0 +1,48 @@
+// Animations that are read while they are made: frames come one after the other, from a pipe.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "encoder/input/frame_source.h"
+
+namespace rlpc {
+
+class FrameStream {
+ public:
+  struct Shape {
+    std::string name;  // of the input, for messages
+    std::uint32_t num_vertices = 0;
+    FrameRate frame_rate;
+    std::vector<Triangle> triangles;  // every index below num_vertices; may be empty
+  };
+
+  explicit FrameStream(Shape shape) : shape_(std::move(shape)) {}
+  FrameStream(const FrameStream&) = delete;
+  FrameStream& operator=(const FrameStream&) = delete;
+  virtual ~FrameStream() = default;
+
+  const Shape& shape() const { return shape_; }
+  // Waits for the next frame, and for no more: 3 * num_vertices values, not checked. False
+  // after the last. Errors: the input cannot be read, or ends within the frame.
+  virtual InputResult<bool> next_frame(std::span<float> xyz) = 0;
+
+ private:
+  Shape shape_;
+};
+
+// The frames of a .rlpd file (Annex A) or of a PC2 point cache that comes through `file`, which
+// is not owned. Their numbers of frames are not used: frames are read to the end. mesh_path:
+// the triangles of a point cache; empty: the format is .rlpd. Errors: a bad header or mesh; a
+// frame that would not fit max_memory_bytes.
+InputResult<std::unique_ptr<FrameStream>> open_frame_stream(
+    std::FILE* file, const std::string& mesh_path, const std::optional<FrameRate>& frame_rate,
+    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+
+}  // namespace rlpc

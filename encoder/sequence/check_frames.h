@@ -1,0 +1,19 @@
+// What FrameEncoder refuses.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "encoder/frame_encoder.h"
+
+namespace rlpc {
+
+std::optional<InputError> check_format(const FrameFormat& format);
+// The frame that follows num_added others.
+std::optional<InputError> check_frame(const FrameFormat& format, std::uint32_t num_added,
+                                      std::span<const float> xyz);
+// When the stream is to end.
+std::optional<InputError> check_count(const FrameFormat& format, std::uint32_t num_added);
+
+}  // namespace rlpc

@@ -1,0 +1,241 @@
+#include "encoder/sequence/span_encoder.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "common/parallel/for_each.h"
+#include "encoder/math/det_math.h"
+#include "encoder/sequence/check_frames.h"
+#include "encoder/sequence/choices/grid_choice.h"
+#include "encoder/sequence/choices/lossless_grid.h"
+
+namespace rlpc {
+namespace {
+
+// The grid is chosen for the first span; later ones may need errors smaller by this factor. The
+// finer grid keeps steps far below their maximum.
+constexpr double kReserve = 16.0;  // fixed: four bits of the grid
+
+}  // namespace
+
+// Spans of as many GOFs as may be held, all of about the same length.
+void SpanEncoder::make_spans(const SequenceHeader& header) {
+  const std::uint32_t of_gof = longest_gof(settings_);
+  std::uint32_t longest = longest_span(settings_, header);
+  if (format_.max_held_frames > 0) {
+    longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
+  }
+  spans_ = is_open_ended() ? std::vector<GofSpan>{{0, longest, 1}}
+                           : equal_gofs(header.num_frames, longest);
+  divide_spans(spans_, of_gof);
+}
+
+GofSpan SpanEncoder::current() const {
+  if (!is_open_ended()) return spans_[coded_.spans];
+  // All have the same length but the last.
+  const std::uint32_t held = buffer_ ? buffer_->num_frames() : spans_.front().count;
+  std::vector<GofSpan> span{{num_added_ - num_held_, held, 1}};
+  divide_spans(span, longest_gof(settings_));
+  return span.front();
+}
+
+std::optional<InputError> SpanEncoder::prepare() {
+  SequenceHeader header;
+  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
+  header.num_vertices = format_.num_vertices;
+  header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
+  header.open_end_flag = is_open_ended();
+  header.num_frames = is_open_ended() ? kMaxFrames : format_.num_frames;
+  header.frame_rate = format_.frame_rate;
+  make_spans(header);
+  std::uint32_t longest = 0;
+  for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
+  // The buffer holds frames as floats.
+  const std::uint64_t buffer_bytes = 12 * std::uint64_t{header.num_vertices} * longest;
+  const auto threads = check_memory(settings_, header, longest, 0, buffer_bytes);
+  if (!threads) return threads.error();
+  num_threads_ = *threads;
+  longest_gof_ = longest_gof_of(spans_);
+  if (auto error = choose_level(header, longest_gof_, format_.least_level)) return error;
+  // The level must allow later GOFs to have all clusters, bones and components of the settings.
+  if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest_gof_)) {
+    return error;
+  }
+  coded_.cuts.assign(settings_.temporal_layers() - 1,
+                     MetricsAccumulator(header.num_vertices, MetricsAccumulator::kTotals));
+  coding_.emplace(header, settings_, format_.triangles);
+  format_.triangles = {};
+  return std::nullopt;
+}
+
+// Bits outside the GOFs, per frame. If the target is a rate, the index is taken at its largest
+// size for GOFs that meet the target.
+double SpanEncoder::fixed_bits_per_frame() const {
+  constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
+  std::uint64_t bytes = stream_->overhead_bytes();
+  if (is_open_ended()) {
+    constexpr std::uint64_t kBytesOfEntry = 8;  // fixed: of a GOF in an index, about
+    const GofSpan span = current();
+    const std::uint64_t lead = coded_.spans == 0 ? bytes : 0;
+    return 8.0 * static_cast<double>(lead + kBytesOfEntry * span.num_gofs) / span.count;
+  }
+  if (settings_.target.kind == Target::kBpvf) {
+    std::vector<GofEntry> largest;
+    for (const GofSpan& span : spans_) {
+      for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+        const double bits = settings_.target.value * format_.num_vertices * gof.count;
+        largest.push_back(
+            {gof.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
+      }
+    }
+    bytes += stream_->index_bytes(std::move(largest));
+  }
+  return 8.0 * static_cast<double>(bytes) / format_.num_frames;
+}
+
+std::optional<InputError> SpanEncoder::add_frame(std::span<const float> xyz) {
+  if (failure_) return failure_;
+  if (auto error = check_frame(format_, num_added_, xyz)) return fail(*error);
+  if (!buffer_) {
+    const std::uint32_t count = current().count;
+    buffer_.emplace(format_.num_vertices, count);
+  }
+  buffer_->add(xyz);
+  ++num_added_;
+  ++num_held_;
+  if (!buffer_->is_full()) return std::nullopt;
+  if (auto error = encode_span()) return fail(*error);
+  return std::nullopt;
+}
+
+void SpanEncoder::use_header(const SequenceHeader& header) {
+  coding_->set_header(header);
+  stream_.emplace(header, settings_, coding_->connectivity());
+}
+
+SequenceHeader SpanEncoder::header_for(double finest) const {
+  Extent extent;
+  std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
+  std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
+  SequenceHeader header = coding_->header();
+  const bool is_lossless = settings_.target.kind == Target::kLossless;
+  set_grid(header, is_lossless ? grid_of_bits(extent, static_cast<int>(settings_.target.value))
+                               : choose_grid(extent, finest));
+  return header;
+}
+
+InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_spread) {
+  GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
+                 {.first_frame = span.first,
+                  .keep_decoded = true,
+                  .model = model_,
+                  .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
+                  .metrics = MetricsAccumulator::kTotals});
+  auto best = reach_target({.settings = settings_,
+                            .header = coding_->header(),
+                            .rms_spread = rms_spread,
+                            .fixed_bits = fixed_bits_per_frame() * span.count,
+                            .first_step = coded_.step,  // spans are usually similar
+                            .keeps_level = coded_.spans > 0},
+                           batch);
+  if (best) coded_.report.trials += best->trials;
+  return best;
+}
+
+// Searches the first span, which determines the grid. If the target is a rate, the resulting
+// error may require a finer grid and a second search.
+InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double rms_spread) {
+  use_header(header_for(finest_error(settings_.target, rms_spread) / kReserve));
+  auto best = search(span, rms_spread);
+  if (!best || settings_.target.kind != Target::kBpvf) return best;
+  const double error = rms_spread * best->trial.metrics.kg_error_percent / 100.0;
+  const SequenceHeader finer = header_for(error / kReserve);
+  if (finer.position_bits <= coding_->header().position_bits) return best;
+  use_header(finer);
+  return search(span, rms_spread);
+}
+
+// Sets the level with a reserve at the first span; error if a later one needs a higher level.
+std::optional<InputError> SpanEncoder::keep_to_level(const LevelNeeds& needs) {
+  const GofSpan span = current();
+  SequenceHeader header = coding_->header();
+  const std::uint32_t level_idc = header.level_idc;
+  const bool first = coded_.spans == 0;
+  const LevelNeeds wanted = first ? needs.with_reserve() : needs;
+  if (auto error = raise_level(header.level_idc, wanted, longest_gof_)) return error;
+  if (first) coding_->set_header(header);
+  if (first || header.level_idc == level_idc) return std::nullopt;
+  return InputError{"frames " + std::to_string(span.first) + " to " +
+                    std::to_string(span.first + span.count - 1) + " need level " +
+                    std::to_string(header.level_idc) +
+                    " (specification, Annex B), but the stream has level " +
+                    std::to_string(level_idc) +
+                    ": encode again with a higher least level, or with fewer components"};
+}
+
+std::optional<InputError> SpanEncoder::encode_span() {
+  const Threads threads(num_threads_);
+  const GofSpan span = current();
+  const auto extent = measure_extent(*buffer_);
+  if (!extent) return extent.error();
+  const auto best = coded_.spans == 0 ? search_first(span, extent->rms_spread)
+                                      : search(span, extent->rms_spread);
+  if (!best) return best.error();
+  const CodedGof& coded = best->trial.gofs.front();
+  coded_.report.target_met = coded_.report.target_met && best->met;
+  coded_.report.clusters += coded.clusters;
+  coded_.report.components += coded.components;
+  coded_.step = best->step;
+  if (auto error = keep_to_level(coded.needs)) return error;
+  std::mutex reading;
+  const SharedSource source{*buffer_, reading};
+  const GofSpan frames{0, span.count, span.num_gofs};
+  const auto hashes = coding_->measure(source, frames, coded.frame, coded_.metrics);
+  if (!hashes) return hashes.error();
+  for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
+    const auto cut =
+        coding_->measure(source, frames, coded.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
+    if (!cut) return cut.error();
+  }
+  if (coded.model) model_ = coded.model;
+  if (!write(coded)) return InputError{"the stream could not be written"};
+  ++coded_.spans;
+  num_held_ = 0;
+  buffer_.reset();
+  return std::nullopt;
+}
+
+bool SpanEncoder::write(const CodedGof& span) {
+  bool ok = coded_.spans > 0 || stream_->write_lead(coding_->header(), sink_);
+  for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink_);
+  return ok;
+}
+
+InputResult<EncodeReport> SpanEncoder::finish() {
+  if (failure_) return *failure_;
+  if (auto error = check_count(format_, num_added_)) return fail(*error);
+  if (buffer_) {  // the rest of an open-ended stream
+    std::vector<float> rest = buffer_->take();
+    buffer_.emplace(format_.num_vertices, std::move(rest));
+    if (auto error = encode_span()) return fail(*error);
+  }
+  if (!stream_->write_end(sink_)) return fail({"the stream could not be written"});
+  EncodeReport& report = coded_.report;
+  stream_->describe(coding_->header(), coding_->connectivity(), report);
+  report.metrics = coded_.metrics.result();
+  for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
+    report.temporal_cuts.push_back({static_cast<std::uint32_t>(i) + 1,
+                                    stream_->cut_bytes(i + 1),
+                                    coded_.cuts[i].result().kg_error_percent});
+  }
+  if (settings_.baseline.qu == 0) {
+    report.step = coded_.step * exact_exp2(coding_->header().grid.log2_step);
+  }
+  failure_ = InputError{"the stream is finished already"};
+  return std::move(report);
+}
+
+}  // namespace rlpc
