@@ -82,12 +82,12 @@ std::vector<std::uint32_t> layers_of_pictures(const CoarseMeshes& meshes,
   return chosen;
 }
 
-void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes,
+void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes, std::uint32_t frame,
                         std::span<const float> xyz) {
   page.add_section(
       "Coarse meshes",
-      "What remains of the mesh without its higher vertex layers (rlpcdec --coarse); the first "
-      "frame.",
+      "What remains of the mesh without its higher vertex layers (rlpcdec --coarse); frame " +
+          std::to_string(frame) + ".",
       pictures(meshes, xyz) + size_table(meshes));
 }
 
