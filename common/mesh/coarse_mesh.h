@@ -32,6 +32,8 @@ class CoarseMeshes {
                                 std::span<const std::uint32_t> output_index);
 
   std::uint32_t num_layers() const { return num_layers_; }
+  // LayerOfVertex, in decoded order.
+  std::span<const std::uint8_t> layer_of_vertex() const { return layer_of_vertex_; }
   // 8.9.8 Coarse meshes. num_layers: at least 1; with as many as there are, or more, the whole
   // mesh without its degenerate triangles. output_index: VertexOrder or empty.
   CoarseMesh mesh(std::uint32_t num_layers,

@@ -167,6 +167,7 @@ class Places(ToolsTest):
         self.encode(self.path("a.rlpc"), "--kg", 1)
         self.path("p.obj").write_text("# frame_rate 30/1\n")
         self.path("out").mkdir()
+        self.path("pictures").mkdir()
 
     def writers(self):
         """Commands, and the file that each writes."""
@@ -182,6 +183,7 @@ class Places(ToolsTest):
         yield ["rlpccmp", obj, obj, "--csv", self.path("p.csv"), "-q"], "p.csv"
         yield ["rlpccmp", obj, obj, "--html", self.path("p.html"), "-q"], "p.html"
         yield ["rlpcinfo", stream, "--html", self.path("i.html")], "i.html"
+        yield ["rlpcinfo", stream, "--pictures", self.path("pictures")], "pictures/layers.svg"
         yield ["rlpcinfo", stream, "--extract", "components=0", "-o", self.path("e.rlpc")], "e.rlpc"
 
     def test_permissions_are_kept(self):

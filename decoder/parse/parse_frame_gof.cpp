@@ -190,8 +190,8 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
   if (unit.layer_group_idx == 0) {
     const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices);
     if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
-    frame.residual = CompactResiduals(3 * std::size_t{num_vertices});
-    frame.expected.assign(num_vertices, 0);
+    frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
+    frame.expected.assign(header_.num_vertices, 0);
     const std::uint32_t place = order_->place_of(unit.frame_idx);
     contexts_->start_frame(place, (*order_)[place].depth);
     memory_bytes_ += memory_of_frame(num_vertices, 0);

@@ -73,8 +73,7 @@ class Player {
       discard: (reply) => this.thread.recycle(reply),
     });
     this.playback.speed = Number($("speed").value);
-    document.body.dataset.state = "ready";
-    this.say("");
+    document.body.dataset.state = "ready"; // what is said ends with the first frame
     this.setWire(Math.max(0, kWireModes.indexOf(wanted.get("wire"))));
     this.showToggles();
     if (header.num_vertices * header.num_frames <= kCheckedAtOnce) this.checkAll();

@@ -84,6 +84,30 @@ class Browser(InFolder):
         self.assertGreater(min(colour), 40)
         self.assertLess(self.browser.evaluate(middle.replace("MODE", "alone"))[3], 255)
 
+    def test_it_says_what_one_waits_for(self):
+        """The page as it is before its end has come, then a stream whose frames do not come."""
+        whole = self.folder / "whole.html"
+        self.assertEqual(run("rlpcdec", self.stream, "--html", whole, "--player",
+                             PLAYER).returncode, 0)
+        begun = self.folder / "begun.html"
+        begun.write_bytes(whole.read_bytes().partition(b"<script")[0])
+        self.browser.open("about:blank")
+        self.browser.open(begun.as_uri())
+        self.browser.wait_for("document.getElementById('message')?.checkVisibility()")
+        self.assertEqual(self.text("message"), "Loading …")
+        self.open(self.stream, "frame=0")
+        self.wait_for_frame(0)
+        self.assertFalse(self.browser.evaluate(
+            "document.getElementById('message').checkVisibility()"))
+        self.browser.evaluate("""(() => {
+          player.frameArrived = (reply) => { globalThis.held = reply; };
+          player.open('again', player.stream);
+        })()""")
+        self.browser.wait_for("document.body.dataset.state === 'ready' && globalThis.held")
+        self.assertEqual(self.text("message"), "Decoding …")
+        self.browser.evaluate("delete player.frameArrived && player.frameArrived(held)")
+        self.browser.wait_for("document.getElementById('message').hidden")
+
     def test_keys(self):
         self.open(self.stream, "frame=10")
         self.wait_for_frame(10)

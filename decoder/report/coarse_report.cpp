@@ -1,93 +1,31 @@
 #include "decoder/report/coarse_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <string>
+#include <utility>
+
+#include "decoder/report/mesh_projection.h"
 
 namespace rlpc {
 namespace {
 
-using Point = std::array<double, 3>;  // to the right, up, towards the viewer
-
-constexpr std::uint32_t kMaxTriangles = 6000;  // of a picture: about 70 bytes each
+constexpr std::uint32_t kMaxTriangles = 6000;  // of a picture: about 60 bytes each
 constexpr std::size_t kMaxPictures = 4;
-constexpr double kWidth = 340;
-constexpr double kHeight = 300;
-constexpr double kMargin = 8;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-// In the first view of the mesh viewer (viewer/camera.js), without perspective.
-std::vector<Point> first_view(std::span<const float> xyz) {
-  constexpr double kYaw = 0.5;
-  constexpr double kPitch = 0.3;
-  const Point right{std::cos(kYaw), 0, -std::sin(kYaw)};
-  const Point up{-std::sin(kPitch) * std::sin(kYaw), std::cos(kPitch),
-                 -std::sin(kPitch) * std::cos(kYaw)};
-  const Point towards{std::cos(kPitch) * std::sin(kYaw), std::sin(kPitch),
-                      std::cos(kPitch) * std::cos(kYaw)};
-  std::vector<Point> points(xyz.size() / 3);
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    const Point p{xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]};
-    points[v] = {dot(right, p), dot(up, p), dot(towards, p)};
-  }
-  return points;
-}
-
-// As large as fits the picture; y downwards.
-void fit(std::vector<Point>& points) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  Point low{kFar, kFar, kFar};
-  Point high{-kFar, -kFar, -kFar};
-  for (const Point& p : points) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], p[c]);
-      high[c] = std::max(high[c], p[c]);
-    }
-  }
-  const double span = std::max({(high[0] - low[0]) / (kWidth - 2 * kMargin),
-                                (high[1] - low[1]) / (kHeight - 2 * kMargin), 1e-30});
-  for (Point& p : points) {
-    p[0] = kWidth / 2 + (p[0] - (low[0] + high[0]) / 2) / span;
-    p[1] = kHeight / 2 - (p[1] - (low[1] + high[1]) / 2) / span;
-    p[2] /= span;
-  }
-}
-
-// Of 0 (seen from the side) to 9 (from the front), whichever side is seen.
-int brightness(const Point& a, const Point& b, const Point& c) {
-  const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const Point w{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  const Point normal{u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
-                     u[0] * w[1] - u[1] * w[0]};
-  const double length = std::sqrt(dot(normal, normal));
-  return length > 0 ? static_cast<int>(9 * std::abs(normal[2]) / length) : 0;
-}
-
-// Triangles with their edges, from back to front.
+// Triangles with their edges.
 std::string picture(const CoarseMesh& mesh, const std::vector<Point>& points) {
-  const auto corner = [&](std::uint32_t i) -> const Point& { return points[mesh.vertices[i]]; };
-  std::vector<double> depth(mesh.triangles.size());
-  for (std::size_t t = 0; t < depth.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) depth[t] += corner(v)[2];
+  std::vector<Shape> shapes;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const std::array<Point, 3> corners{points[mesh.vertices[i]], points[mesh.vertices[j]],
+                                       points[mesh.vertices[k]]};
+    const auto& [a, b, c] = corners;
+    shapes.push_back({a[2] + b[2] + c[2], "<path class=\"m" +
+                                              std::to_string(brightness(a, b, c)) + "\" d=\"" +
+                                              outline(corners) + "\"/>\n"});
   }
-  std::vector<std::size_t> order(depth.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return depth[a] < depth[b]; });
-  std::string svg;
-  for (const std::size_t t : order) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    svg += "<path class=\"m" + std::to_string(brightness(corner(a), corner(b), corner(c))) +
-           "\" d=\"M";
-    for (const std::uint32_t v : {a, b, c}) {
-      svg += number_text(corner(v)[0]) + " " + number_text(corner(v)[1]) + " ";
-    }
-    svg.back() = 'Z';
-    svg += "\"/>\n";
-  }
-  return svg;
+  return drawn(std::move(shapes));
 }
 
 std::string size_text(std::uint32_t layers, const MeshSize& size) {
@@ -97,13 +35,12 @@ std::string size_text(std::uint32_t layers, const MeshSize& size) {
 }
 
 std::string pictures(const CoarseMeshes& meshes, std::span<const float> xyz) {
-  std::vector<Point> points = first_view(xyz);
-  fit(points);
+  const std::vector<Point> points = projected(xyz);
   std::string html;
   for (const std::uint32_t layers : layers_of_pictures(meshes, kMaxTriangles)) {
-    html += "<figure class=\"card\"><svg class=\"mesh\" viewBox=\"0 0 " + number_text(kWidth) +
-            " " + number_text(kHeight) + "\" role=\"img\">\n" +
-            picture(meshes.mesh(layers), points) + "</svg><figcaption>" +
+    html += "<figure class=\"card\"><svg class=\"mesh\" viewBox=\"0 0 " +
+            number_text(kPictureWidth) + " " + number_text(kPictureHeight) +
+            "\" role=\"img\">\n" + picture(meshes.mesh(layers), points) + "</svg><figcaption>" +
             size_text(layers, meshes.size(layers)) + "</figcaption></figure>\n";
   }
   return html.empty() ? "" : "<div class=\"pictures\">\n" + html + "</div>\n";
@@ -145,12 +82,12 @@ std::vector<std::uint32_t> layers_of_pictures(const CoarseMeshes& meshes,
   return chosen;
 }
 
-void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes,
+void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes, std::uint32_t frame,
                         std::span<const float> xyz) {
   page.add_section(
       "Coarse meshes",
-      "What remains of the mesh without its higher vertex layers (rlpcdec --coarse); the first "
-      "frame.",
+      "What remains of the mesh without its higher vertex layers (rlpcdec --coarse); frame " +
+          std::to_string(frame) + ".",
       pictures(meshes, xyz) + size_table(meshes));
 }
 

@@ -1,10 +1,8 @@
 // The coarse meshes of a stream (8.9.8) in a page: their sizes, and pictures of some of them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "common/mesh/coarse_mesh.h"
@@ -17,7 +15,8 @@ namespace rlpc {
 std::vector<std::uint32_t> layers_of_pictures(const CoarseMeshes& meshes,
                                               std::uint32_t max_triangles);
 
-// xyz: all vertices of a frame in decoded order.
-void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes, std::span<const float> xyz);
+// xyz: all vertices of the frame in decoded order.
+void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes, std::uint32_t frame,
+                        std::span<const float> xyz);
 
 }  // namespace rlpc

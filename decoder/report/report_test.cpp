@@ -171,7 +171,7 @@ TEST(Report, PicturesOfCoarseMeshesShowAllTriangles) {
     for (const std::uint32_t x : {v / 4, v % 4, v % 3}) xyz.push_back(static_cast<float>(x));
   }
   HtmlPage page("coarse");
-  add_coarse_section(page, meshes, xyz);
+  add_coarse_section(page, meshes, 0, xyz);
   const std::string html = page.text();
   std::size_t triangles = 0;
   for (const std::uint32_t layers : layers_of_pictures(meshes, 6000)) {

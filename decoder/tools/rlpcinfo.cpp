@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/float_position.h"
 #include "common/io/interrupts.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
@@ -19,12 +18,14 @@
 #include "common/mesh/coarse_mesh.h"
 #include "common/tools/command_line.h"
 #include "decoder/report/bit_counter.h"
+#include "decoder/report/vertex_groups.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/gof_summary.h"
 #include "decoder/stream/stream_reader.h"
 #include "decoder/tools/borrowed_source.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/extract_verb.h"
+#include "decoder/tools/rlpcinfo_pictures.h"
 #include "decoder/tools/rlpcinfo_report.h"
 #include "decoder/tools/stream_message.h"
 
@@ -34,6 +35,7 @@ constexpr const char* kExamples = R"(Examples
   rlpcinfo walk.rlpc              contents, and bits per part
   rlpcinfo walk.rlpc --gofs       the same for each GOF and slice
   rlpcinfo walk.rlpc --html walk.html
+  rlpcinfo walk.rlpc --pictures walk --frame 40
   rlpcinfo walk.rlpc --coarse     and the coarse meshes of rlpcdec --coarse
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
@@ -45,6 +47,10 @@ shape), and the coarsest layer groups with at most L vertex layers in total
 (always at least the first).
 Of the temporal layers of a GOF, it keeps the first N; all frames are left.
 Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
+
+Pictures show the mesh from two sides, with the cluster or bone of each vertex
+in colour, and with its vertex layer. Beyond 10000 triangles (2000 in a page),
+they show a coarse mesh.
 
 --trace prints bit position, name and value of every syntax element.
 
@@ -59,6 +65,8 @@ struct Options {
   bool coarse = false;
   bool trace = false;
   std::string html;
+  std::string pictures;
+  std::uint32_t frame = 0;
   std::string extract;
   std::string output;
   std::uint64_t max_memory_bytes = rlpc::DecodeLimits().max_memory_bytes;
@@ -75,33 +83,83 @@ int complain(const Options& o, const rlpc::Error& error) {
   return complain(rlpc::stream_message(o.input, error, limits), rlpc::exit_code(error.code));
 }
 
-int complain(const rlpc::OutputError& error) { return complain(error.message, rlpc::kExitIo); }
+int complain(const rlpc::OutputError& error) {
+  return complain(error.message, rlpc::exit_code(error));
+}
 
-// The first frame in decoded order.
-rlpc::Result<std::vector<float>> first_frame(const Options& o, rlpc::ByteSource& source,
-                                             std::span<const std::uint32_t> vertex_order) {
+// The outputs besides standard output.
+struct Outputs {
+  std::optional<rlpc::OutputFile> page;
+  std::optional<rlpc::PictureFolder> folder;
+
+  bool have_pictures() const { return page || folder; }
+};
+
+rlpc::OutputResult<Outputs> open_outputs(const Options& o) {
+  Outputs outputs;
+  if (!o.html.empty()) {
+    auto file = rlpc::OutputFile::create(o.html);
+    if (!file) return file.error();
+    outputs.page.emplace(std::move(*file));
+  }
+  if (!o.pictures.empty()) {
+    auto folder = rlpc::PictureFolder::create(o.pictures, o.input);
+    if (!folder) return folder.error();
+    outputs.folder.emplace(std::move(*folder));
+  }
+  return outputs;
+}
+
+std::optional<rlpc::OutputError> write_outputs(Outputs& outputs, const rlpc::StreamInfo& info) {
+  if (outputs.folder) {
+    const auto pictures = rlpc::gof_pictures(*info.pictured, rlpc::kMaxFileTriangles);
+    if (auto error = outputs.folder->write(pictures)) return error;
+  }
+  if (outputs.page) return rlpc::write_and_commit(*outputs.page, rlpc::page_text(info));
+  return std::nullopt;
+}
+
+// The frame of the pictures: all vertices in decoded order, in grid units.
+rlpc::Result<std::vector<float>> decoded_frame(const Options& o, rlpc::ByteSource& source,
+                                               std::span<const std::uint32_t> vertex_order) {
   rlpc::DecoderOptions options;
   options.limits.max_memory_bytes = o.max_memory_bytes;
   options.verify_hashes = false;
   auto decoder = rlpc::Decoder::open(std::make_unique<rlpc::BorrowedSource>(source), options);
   if (!decoder) return decoder.error();
+  if (o.frame > 0) {  // a seek reads the GOF index, which may be wrong
+    if (const auto found = decoder->seek(o.frame); !found) return found.error();
+  }
   std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
   if (const auto more = decoder->next_frame(positions); !more) return more.error();
   std::vector<float> xyz(positions.size());
   for (std::size_t i = 0; i < xyz.size(); ++i) {
     const std::size_t v = vertex_order.empty() ? i / 3 : vertex_order[i / 3];
-    xyz[i] = rlpc::float_position(decoder->header().grid, i % 3, positions[3 * v + i % 3]);
+    xyz[i] = static_cast<float>(positions[3 * v + i % 3]);
   }
   return xyz;
 }
 
+// Sets pictured.groups if there are to be pictures.
+rlpc::Result<rlpc::StreamSummary> summarise(const Options& o, bool with_pictures,
+                                            rlpc::StreamReader& stream,
+                                            rlpc::PicturedFrame& pictured) {
+  pictured.frame = o.frame;
+  return rlpc::summarise_all(
+      stream, [&](const rlpc::AccessUnit& gof) -> std::optional<rlpc::Error> {
+        const rlpc::GofHeader& header = gof.header();
+        const bool has_frame =
+            header.first_frame <= o.frame && o.frame < header.first_frame + header.num_frames;
+        if (with_pictures && has_frame)
+          pictured.groups = rlpc::vertex_groups(gof, stream.context());
+        return std::nullopt;
+      });
+}
+
 int inform(const Options& o) {
-  std::optional<rlpc::OutputFile> page;
-  if (!o.html.empty()) {
-    auto file = rlpc::OutputFile::create(o.html);
-    if (!file) return complain(file.error());
-    page.emplace(std::move(*file));
-  }
+  auto outputs = open_outputs(o);
+  if (!outputs) return complain(outputs.error());
+  const bool with_pictures = outputs->have_pictures();
   rlpc::BitCounter counter(o.trace);
   const auto source = rlpc::file_or_standard_input(o.input, o.max_memory_bytes);
   if (!source) return complain(o, source.error());
@@ -110,31 +168,37 @@ int inform(const Options& o) {
   options.limits.max_memory_bytes = o.max_memory_bytes;
   options.trace = &counter;
   // Drops nothing, but counts the memory that coarse meshes take.
-  if (o.coarse) options.coarse_layers = rlpc::kMaxLayers;
+  if (o.coarse || with_pictures) options.coarse_layers = rlpc::kMaxLayers;
   rlpc::StreamReader stream(std::make_unique<rlpc::BorrowedSource>(**source), options);
   if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
-  const auto summary = rlpc::summarise_all(stream);
+  const std::uint32_t num_frames = stream.find_num_frames();
+  if (o.frame >= num_frames) {
+    return complain("--frame: expected 0 to " + std::to_string(num_frames - 1) +
+                        ", got " + std::to_string(o.frame),
+                    rlpc::kExitUsage);
+  }
+  rlpc::PicturedFrame pictured;
+  const auto summary = summarise(o, with_pictures, stream, pictured);
   if (!summary) return complain(o, summary.error());
   counter.finish(8 * bytes);
   if (o.trace) return rlpc::kExitDone;
   rlpc::SequenceHeader header = stream.header();
   header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
   rlpc::StreamInfo info{o.input, header, counter, bytes, *summary, stream.metadata()};
-  std::optional<rlpc::CoarseMeshes> coarse;
-  if (o.coarse) {
-    coarse = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),
+  std::optional<rlpc::CoarseMeshes> meshes;
+  if (o.coarse || with_pictures) {
+    meshes = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),
                                            stream.vertex_order());
-    info.coarse = &*coarse;
+    if (o.coarse) info.coarse = &*meshes;
   }
-  if (o.coarse && page) {
-    auto frame = first_frame(o, **source, stream.vertex_order());
-    if (!frame) return complain(o, frame.error());
-    info.first_frame = std::move(*frame);
+  if (with_pictures) {
+    auto xyz = decoded_frame(o, **source, stream.vertex_order());
+    if (!xyz) return complain(o, xyz.error());
+    pictured.xyz = std::move(*xyz);
+    pictured.meshes = &*meshes;
+    info.pictured = &pictured;
   }
-  if (page) {
-    if (const auto error = rlpc::write_and_commit(*page, rlpc::page_text(info)))
-      return complain(*error);
-  }
+  if (const auto error = write_outputs(*outputs, info)) return complain(*error);
   if (o.json) {
     rlpc::print_json(info);
   } else if (o.html != "-") {
@@ -154,9 +218,19 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                               "Also list the coarse meshes of rlpcdec --coarse; with --html, "
                               "with pictures")
                      ->group(report);
-  auto* html = app.add_option("--html", o.html, "Also write a page with charts")
+  auto* html = app.add_option("--html", o.html, "Also write a page with charts and pictures")
                    ->option_text("FILE")
                    ->group(report);
+  auto* pictures = app.add_option("--pictures", o.pictures,
+                                  "Also write SVG pictures of clusters or bones, and of vertex "
+                                  "layers, to this folder")
+                       ->option_text("FOLDER")
+                       ->group(report);
+  auto* frame =
+      app.add_option("--frame", o.frame,
+                     "The frame in pictures, with its GOF, counted from 0 (default: 0)")
+          ->option_text("F")
+          ->group(report);
   auto* trace =
       app.add_flag("--trace", o.trace, "List every syntax element instead")->group(report);
   app.add_option("--max-memory", o.max_memory_bytes,
@@ -171,8 +245,9 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                                 "With --extract: stream to write; - for standard output")
                      ->option_text("FILE")
                      ->group(cut);
-  trace->excludes(json)->excludes(html)->excludes(coarse);
+  trace->excludes(json)->excludes(html)->excludes(coarse)->excludes(pictures);
   extract->needs(output)->excludes(gofs)->excludes(trace)->excludes(html)->excludes(coarse);
+  extract->excludes(pictures)->excludes(frame);
   output->needs(extract);
   rlpc::add_help(app, {"STREAM [OPTIONS]", {report, cut}, kExamples, kDetails}, RLPC_VERSION);
   return extract;
@@ -188,6 +263,10 @@ int main(int argc, char** argv) try {
   if (const auto code = rlpc::parse_command_line(app, argc, argv)) return *code;
   if (rlpc::OutputFile::is_same_file(options.html, options.input)) {
     return complain(options.html + ": is also an input; choose another name for the output",
+                    rlpc::kExitUsage);
+  }
+  if (app.count("--frame") > 0 && options.html.empty() && options.pictures.empty()) {
+    return complain("--frame is for pictures; add --html FILE or --pictures FOLDER",
                     rlpc::kExitUsage);
   }
   if (options.json && (options.html == "-" || options.output == "-")) {

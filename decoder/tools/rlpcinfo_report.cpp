@@ -363,7 +363,9 @@ std::string page_text(const StreamInfo& s) {
                          s.summary.gofs.size() == 1 ? "group of frames" : "groups of frames"}});
   add_rate_section(page, rates);
   add_gof_section(page, rates);
-  if (s.coarse != nullptr) add_coarse_section(page, *s.coarse, s.first_frame);
+  add_picture_section(page, *s.pictured);
+  if (s.coarse != nullptr)
+    add_coarse_section(page, *s.coarse, s.pictured->frame, s.pictured->xyz);
   return page.text();
 }
 

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "common/mesh/coarse_mesh.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/report/bit_counter.h"
+#include "decoder/report/gof_pictures.h"
 #include "decoder/stream/gof_summary.h"
 
 namespace rlpc {
@@ -16,17 +16,17 @@ struct StreamInfo {
   const std::string& input;  // as given on the command line
   const SequenceHeader& header;
   const BitCounter& counter;
-  std::uint64_t bytes;
+  std::uint64_t bytes = 0;
   const StreamSummary& summary;
   const std::string& metadata;
-  const CoarseMeshes* coarse = nullptr;  // to be listed; null: not asked for
-  std::vector<float> first_frame{};      // for pictures of them, in decoded order
+  const CoarseMeshes* coarse = nullptr;     // to be listed; null: not asked for
+  const PicturedFrame* pictured = nullptr;  // of a page
 };
 
 // Both on standard output.
 void print_table(const StreamInfo& s, bool with_gofs);
 void print_json(const StreamInfo& s);
-// HTML.
+// HTML; `pictured` is set.
 std::string page_text(const StreamInfo& s);
 
 }  // namespace rlpc

@@ -23,7 +23,7 @@ constexpr int kPrime = 6;
 
 // tuned (off: 1): Growth of the quantiser step from one depth of a pattern to the next. Deeper
 // frames are no references, so that their errors stay with them.
-constexpr double kStepOfDepth = 1.1;
+constexpr double kStepOfDepth = 1.2;
 
 }  // namespace
 

@@ -1,0 +1,30 @@
+// A mesh as SVG with each vertex in the colour of its group.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh/coarse_mesh.h"
+#include "decoder/report/group_colours.h"
+#include "decoder/report/mesh_projection.h"
+
+namespace rlpc {
+
+// All vertices of the mesh, of which some may be drawn.
+struct ColouredVertices {
+  std::span<const std::uint32_t> group;                 // [num_vertices]
+  std::span<const Colour> colours;                      // [num_groups]
+  std::span<const std::array<std::uint32_t, 3>> seeds;  // triangles to be outlined
+};
+
+// A `g` element of the size of a picture at (x, y). A triangle whose corners are in one group
+// is one path; of any other, each corner has a path of its own that begins at the vertex and
+// ends at the middles of edge and triangle. Paths of group 7 have the class g7; outlines of
+// seed triangles, seed. Without triangles, vertices are dots.
+std::string group_picture(const CoarseMesh& mesh, std::span<const Point> points,
+                          const ColouredVertices& vertices, double x, double y);
+
+}  // namespace rlpc

@@ -1,0 +1,29 @@
+// What the vertices of a GOF belong to, for pictures: its clusters, or its bones.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/syntax/access_unit.h"
+#include "common/syntax/stream_context.h"
+
+namespace rlpc {
+
+enum class GroupKind : std::uint8_t { kNone, kClusters, kBones };
+
+struct VertexGroups {
+  GroupKind kind = GroupKind::kNone;  // kNone: a GOF of frames has neither
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;
+  std::uint32_t num_groups = 0;
+  // [num_vertices], in decoded order. A seed vertex is in the first cluster that it is a seed
+  // of. Of bones, that of the greatest weight; if there are several, the first.
+  std::vector<std::uint32_t> of_vertex;
+  // Vertices of the seed triangles, of those clusters that have one, in their order.
+  std::vector<std::array<std::uint32_t, 3>> seeds;
+};
+
+VertexGroups vertex_groups(const AccessUnit& access_unit, const StreamContext& context);
+
+}  // namespace rlpc
