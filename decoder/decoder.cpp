@@ -42,6 +42,7 @@ class Decoder::Impl {
   Result<bool> open();
   Result<bool> next_frame(std::span<std::int32_t> positions);
   Result<bool> seek(std::uint32_t frame);
+  Result<std::optional<std::uint32_t>> skip_damage();
   Result<std::uint32_t> parse_rest();
 
   const StreamReader& stream() const { return stream_; }
@@ -266,6 +267,21 @@ Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
   return true;
 }
 
+Result<std::optional<std::uint32_t>> Decoder::Impl::skip_damage() {
+  gof_.reset();
+  live_.reset();
+  if (prefetch_) prefetch_->clear();
+  const auto frame = stream_.skip_damage();
+  if (!frame) {
+    fail(frame.error());
+    return frame.error();
+  }
+  if (!*frame) return *frame;
+  failure_.reset();
+  position_ = **frame;
+  return *frame;
+}
+
 Result<std::uint32_t> Decoder::Impl::parse_rest() {
   if (failure_) return *failure_;
   gof_.reset();
@@ -315,6 +331,7 @@ Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
 std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }
+Result<std::optional<std::uint32_t>> Decoder::skip_damage() { return impl_->skip_damage(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }
 std::uint32_t Decoder::position() const { return impl_->position(); }
 bool Decoder::was_cut() const { return impl_->was_cut(); }

@@ -107,6 +107,11 @@ class Decoder {
   std::optional<std::uint32_t> num_frames() const;
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
+  // After an error of next_frame(): goes on with the next GOF that is not lost, and returns its
+  // first frame, which is the next one; none: the rest of the stream is lost. The frames in
+  // between, from position() on, are not decoded. Errors: as of next_frame(); there is no way
+  // to go on.
+  Result<std::optional<std::uint32_t>> skip_damage();
   // Parses the rest of the stream without reconstructing frames, for programs that inspect its
   // syntax. Returns the number of GOFs in the stream; afterwards there is no next frame.
   Result<std::uint32_t> parse_rest();

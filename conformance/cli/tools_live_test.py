@@ -160,6 +160,73 @@ class Live(ToolsTest):
         self.fails(1, "is not known. Write .rlpd", "rlpcdec", cut, "-o", self.path("x.pc2"))
         self.assertFalse(self.path("x.pc2").exists())
 
+    def units(self, data):
+        """(type, start, end) of the units."""
+        found, at = [], 10
+        while at < len(data):
+            size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
+            found.append((data[at], at, at + size))
+            at += size
+        return found
+
+    def conceal(self, data, options, code=1):
+        """What rlpcdec says, and the frames."""
+        stream, out = self.path("d.rlpc"), self.path("d.pc2")
+        stream.write_bytes(data)
+        done = run("rlpcdec", stream, "-o", out, "--conceal", *options)
+        self.assertEqual(done.code, code, done.err)
+        return done.err, read_pc2(out)
+
+    def test_damage_is_concealed_up_to_the_next_gof(self):
+        stream = self.path("a.rlpc")
+        self.encode_pipe(self.head + b"".join(self.frames[:30]), "-o", stream, "--gof", 10)
+        data = stream.read_bytes()
+        self.ok("rlpcdec", stream, "-o", self.path("a.pc2"))
+        good = read_pc2(self.path("a.pc2"))
+        frames = [unit for unit in self.units(data) if unit[0] == 8]
+        gofs = [unit for unit in self.units(data) if unit[0] == 4]
+        _, start, end = frames[13]  # in the second GOF
+        damaged = bytearray(data)
+        damaged[end - 1] ^= 1
+        self.fails(1, "R-UNT-03", "rlpcdec", self.write("x.rlpc", damaged), "-o", self.path("x.pc2"))
+        for threads in ((), ("--threads", 3)):
+            said, found = self.conceal(damaged, threads)
+            self.assertIn("frames 13 to 19 are lost, and show the one before them", said)
+            self.assertEqual(found, good[:13] + 7 * [good[12]] + good[20:])
+            said, found = self.conceal(data[:start] + data[end:], threads)  # lost on the way
+            self.assertIn("R-FRM-03", said)
+            self.assertEqual(found, good[:13] + 7 * [good[12]] + good[20:])
+            said, found = self.conceal(data[:gofs[1][1]] + data[gofs[1][2]:], threads)
+            self.assertIn("frames 10 to 19 are lost", said)
+            self.assertEqual(found, good[:10] + 10 * [good[9]] + good[20:])
+        last = bytearray(data)
+        last[frames[25][2] - 1] ^= 1
+        said, found = self.conceal(last, ())
+        self.assertIn("frames 25 to 29 are lost", said)
+        self.assertEqual(found, good[:25] + 5 * [good[24]])
+        first = bytearray(data)
+        first[frames[0][2] - 1] ^= 1
+        self.fails(1, "R-UNT-03", "rlpcdec", self.write("y.rlpc", first), "-o", self.path("y.pc2"),
+                   "--conceal")
+
+    def test_damage_in_other_gofs_is_concealed_as_well(self):
+        stream = self.path("a.rlpc")
+        self.encode(stream, "--kg", 1, "--gof", 20)
+        data = bytearray(stream.read_bytes())
+        self.ok("rlpcdec", stream, "-o", self.path("a.pc2"))
+        good = read_pc2(self.path("a.pc2"))
+        data[[unit for unit in self.units(data) if unit[0] == 4][1][2] - 1] ^= 1
+        gof = self.ok("rlpcinfo", stream, "--json").json()["gofs"][1]
+        first, end = gof["first_frame"], gof["first_frame"] + gof["num_frames"]
+        for threads in ((), ("--threads", 3)):
+            said, found = self.conceal(data, threads)
+            self.assertIn(f"frames {first} to {end - 1} are lost", said)
+            self.assertEqual(found, good[:first] + (end - first) * [good[first - 1]] + good[end:])
+
+    def write(self, name, data):
+        self.path(name).write_bytes(data)
+        return self.path(name)
+
     def test_settings_that_contradict(self):
         for options, words in ((("--bpvf", 3), "a rate cannot be searched for"),
                                (("--frame-pattern", "dyadic:4"), "coded in their order"),

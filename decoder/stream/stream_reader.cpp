@@ -164,6 +164,33 @@ Result<bool> StreamReader::check_end(const UnitHeader& unit) {
   return true;
 }
 
+Result<std::optional<std::uint32_t>> StreamReader::skip_damage() {
+  constexpr std::uint32_t kEnough = 8;  // a code of at most 63 bits
+  for (bool is_first = true;; is_first = false) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kEndOfSequence) return std::optional<std::uint32_t>();
+    // The GOF with the error begins here, if its own unit could be read.
+    if (unit->type() == UnitType::kGof && !is_first) {
+      const auto bytes = units_.payload_start(*unit, kEnough);
+      if (!bytes) return bytes.error();
+      BitReader r = units_.bits(*unit, *bytes);
+      const std::int64_t most = std::int64_t{context_.header.num_frames} - 1;
+      const std::uint32_t first_frame = r.ue("first_frame", {frames_parsed_, most}, "R-GOF-01");
+      if (r.error()) return *r.error();
+      frames_parsed_ = first_frame;
+      return std::optional(first_frame);
+    }
+    if (unit->type() == UnitType::kModel && !is_first) {
+      const auto end = models_.skip(*unit);
+      if (!end) return end.error();
+      offset_ = *end;
+    } else {
+      offset_ = unit->end();
+    }
+  }
+}
+
 std::uint32_t StreamReader::find_num_frames() {
   const SequenceHeader& header = context_.header;
   const std::uint32_t payload_bytes = end_of_sequence_bytes(header);

@@ -54,6 +54,10 @@ class StreamReader {
   // The number of frames: of an open-ended stream, that at its end; kMaxFrames if it has none.
   // Does not check the unit. Reads a pipe to its end.
   std::uint32_t find_num_frames();
+  // After an error in a GOF: makes the next GOF whose unit can be found the next one, and
+  // returns its first frame; none: the stream has no more. Errors: the units after the error
+  // cannot be told apart; the next GOF does not come after frames that have been read.
+  Result<std::optional<std::uint32_t>> skip_damage();
   // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);
 

@@ -85,6 +85,7 @@ struct Options {
   bool ascii = false;
   bool verify_only = false;
   bool no_hashes = false;
+  bool conceals = false;
   bool json = false;
   bool quiet = false;
   rlpc::HtmlRequest html;
@@ -115,6 +116,20 @@ bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
                            format == rlpc::SinkFormat::kMdd ||
                            (format == rlpc::SinkFormat::kPc2 && o.output != "-");
   return o.verify_only || !needs_count;
+}
+
+// end: the frame with which decoding goes on; none: it does not.
+int complain_of_loss(const Options& o, const rlpc::Error& error, std::uint32_t first,
+                     std::optional<std::uint32_t> end) {
+  std::string lost = "; frames from " + std::to_string(first) + " on are lost";
+  if (end && *end == first + 1) {
+    lost = "; frame " + std::to_string(first) + " is lost, and shows the one before it";
+  } else if (end) {
+    lost = "; frames " + std::to_string(first) + " to " + std::to_string(*end - 1) +
+           " are lost, and show the one before them";
+  }
+  return complain(rlpc::stream_message(o.input, error, o.decoder.limits) + lost,
+                  rlpc::exit_code(error.code));
 }
 
 // "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
@@ -251,23 +266,40 @@ int decode(const Options& o) {
   }
   std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
   FrameCounts frames;
+  int code = rlpc::kExitDone;
   {
     rlpc::ProgressBar bar("decoding", !o.quiet);
+    std::uint32_t lost = 0;  // that the frame before stands for
     while (frames.decoded < count) {
-      const auto more = decoder->next_frame(positions);
-      if (!more) return complain(o, more.error());
-      if (!*more) break;  // of an open-ended stream
+      if (lost == 0) {
+        const auto more = decoder->next_frame(positions);
+        if (more && !*more) break;  // of an open-ended stream
+        if (!more) {
+          if (!o.conceals || frames.decoded == 0) return complain(o, more.error());
+          const std::uint32_t next = span->first + frames.decoded;
+          const auto found = decoder->skip_damage();
+          const bool goes_on = found && *found;
+          if (!goes_on && live) return complain_of_loss(o, more.error(), next, std::nullopt);
+          const std::uint32_t end =
+              goes_on ? std::min(**found, span->last + 1) : span->last + 1;
+          code = complain_of_loss(o, more.error(), next, end);
+          lost = end - next;
+          if (lost == 0) continue;
+        } else {
+          frames.compared += decoder->compared_frames();
+        }
+      }
       if (sink) {
         if (auto error = sink->write_frame(positions)) {
           return complain(error->message, rlpc::exit_code(*error));
         }
       }
-      frames.compared += decoder->compared_frames();
+      lost -= std::min(lost, 1U);
       ++frames.decoded;
       if (!live) bar.show(static_cast<double>(frames.decoded) / count);
     }
   }
-  if (o.frames.empty() && !live) {
+  if (o.frames.empty() && !live && code == rlpc::kExitDone) {
     if (const auto more = decoder->next_frame(positions); !more)
       return complain(o, more.error());
   }
@@ -277,7 +309,7 @@ int decode(const Options& o) {
     }
   }
   report(o, *decoder, frames);
-  return rlpc::kExitDone;
+  return code;
 }
 
 struct Outputs {
@@ -322,6 +354,12 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
       ->group(kOutput);
   app.add_flag("--ascii", o.ascii, "PLY files as text")
       ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_flag(
+         "--conceal", o.conceals,
+         "Go on after damage, with the next group of frames that is whole; the frames between "
+         "show the last one before")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")
