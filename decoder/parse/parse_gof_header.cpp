@@ -2,13 +2,17 @@
 
 namespace rlpc {
 
+std::uint32_t parse_first_frame(BitReader& r, Range range) {
+  return r.ue("first_frame", range, "R-GOF-01");
+}
+
 // 6.5 gof( )
 GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
                            std::uint32_t expected_first_frame) {
   const Level& level = header.level();
   GofHeader gof;
   gof.first_frame = expected_first_frame;
-  r.ue("first_frame", {expected_first_frame, expected_first_frame}, "R-GOF-01");
+  parse_first_frame(r, {expected_first_frame, expected_first_frame});
   const std::uint64_t at = r.bit_pos();
   const std::uint32_t frames_left = header.num_frames - expected_first_frame;
   gof.num_frames =

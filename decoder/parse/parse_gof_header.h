@@ -9,6 +9,10 @@
 
 namespace rlpc {
 
+// The first element of a GOF unit, which says after damage where decoding goes on. Errors are
+// left in `r`.
+std::uint32_t parse_first_frame(BitReader& r, Range range);
+
 // expected_first_frame: below num_frames of the sequence. Errors are left in `r`.
 GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
                            std::uint32_t expected_first_frame);

@@ -175,8 +175,8 @@ Result<std::optional<std::uint32_t>> StreamReader::skip_damage() {
       const auto bytes = units_.payload_start(*unit, kEnough);
       if (!bytes) return bytes.error();
       BitReader r = units_.bits(*unit, *bytes);
-      const std::int64_t most = std::int64_t{context_.header.num_frames} - 1;
-      const std::uint32_t first_frame = r.ue("first_frame", {frames_parsed_, most}, "R-GOF-01");
+      const std::int64_t highest = std::int64_t{context_.header.num_frames} - 1;
+      const std::uint32_t first_frame = parse_first_frame(r, {frames_parsed_, highest});
       if (r.error()) return *r.error();
       frames_parsed_ = first_frame;
       return std::optional(first_frame);

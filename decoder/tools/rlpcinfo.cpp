@@ -173,8 +173,8 @@ int inform(const Options& o) {
   if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
   const std::uint32_t num_frames = stream.find_num_frames();
   if (o.frame >= num_frames) {
-    return complain("--frame: expected 0 to " + std::to_string(num_frames - 1) +
-                        ", got " + std::to_string(o.frame),
+    return complain("--frame: expected 0 to " + std::to_string(num_frames - 1) + ", got " +
+                        std::to_string(o.frame),
                     rlpc::kExitUsage);
   }
   rlpc::PicturedFrame pictured;
