@@ -33,8 +33,9 @@ class FrameContexts {
   std::uint32_t expected() const {
     const std::uint64_t sum = 64 * std::uint64_t{*layer_mean_} +
                               51 * std::uint64_t{ring_mean_} + 38 * std::uint64_t{outer_mean_};
-    const std::uint64_t own = axis_ == 0 ? 103 * std::uint64_t{before_mean_}
-                                         : 64 * std::uint64_t{before_mean_} + 39 * std::uint64_t{latest_mean_};
+    const std::uint64_t own =
+        axis_ == 0 ? 103 * std::uint64_t{before_mean_}
+                   : 64 * std::uint64_t{before_mean_} + 39 * std::uint64_t{latest_mean_};
     return static_cast<std::uint32_t>((sum + own) >> 12);
   }
   ResidualModels& models() { return state_->models[group_][class_]; }

@@ -91,14 +91,14 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
         VertexMotion motion;
         for (std::size_t i = first; i < last; ++i) {
           const std::uint32_t v = vertices[i];
-          predict(v, motion);
+          predict(v, motion, is_there);
           Vec3i residual{};
           if (is_there) {
             for (std::size_t c = 0; c < 3; ++c) {
               residual[c] = frame.residual[3 * std::size_t{v} + c];
             }
           }
-          set(v, motion, position(v, motion, residual));
+          set(v, motion, position(v, motion, residual), is_there);
           adapt(v, motion, is_there, is_there ? frame.expected[v] : 0U);
         }
       };
@@ -244,7 +244,7 @@ void FrameRecon::prime(Learned& learned, std::uint32_t v, std::int64_t variance)
 }
 
 // 8.19.3 PredictMotion( v, c ), and in the first frame MeanInFrame( v, c, 0 )
-void FrameRecon::predict(std::uint32_t v, VertexMotion& motion) const {
+void FrameRecon::predict(std::uint32_t v, VertexMotion& motion, bool is_there) const {
   const auto ring = mesh_.ring(v);
   const std::size_t own = 3 * std::size_t{v};
   if (number_ == 0) {
@@ -265,14 +265,15 @@ void FrameRecon::predict(std::uint32_t v, VertexMotion& motion) const {
     motion.plain[c] =
         clip3(-kMostMotion, kMostMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
   }
-  if (settings_.learning_flag) return predict(learned_[temporal_layer_], v, motion);
+  if (settings_.learning_flag) return predict(learned_[temporal_layer_], v, motion, is_there);
   for (std::size_t c = 0; c < 3; ++c) {
     motion.prediction[c] = clip_signed(value_bits_, reference_[own + c] + motion.plain[c]);
   }
 }
 
-void FrameRecon::predict(const Learned& learned, std::uint32_t v, VertexMotion& motion) const {
-  gather_errors(learned, v, motion);
+void FrameRecon::predict(const Learned& learned, std::uint32_t v, VertexMotion& motion,
+                         bool is_there) const {
+  gather_errors(learned, v, motion, is_there);
   const FilterState state = filter(learned, v);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int64_t moved =
@@ -303,14 +304,18 @@ void FrameRecon::gather_motion(std::uint32_t v, VertexMotion& motion) const {
 }
 
 // 8.19.4 AddEarlierErrors( layer, v, c, offsets )
-void FrameRecon::gather_errors(const Learned& learned, std::uint32_t v,
-                               VertexMotion& motion) const {
+void FrameRecon::gather_errors(const Learned& learned, std::uint32_t v, VertexMotion& motion,
+                               bool is_there) const {
   const auto ring = mesh_.ring(v);
   const std::size_t first = num_neighbours(v);
   const std::size_t end = padded(first + kNumEarlierErrors);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t own = 3 * std::size_t{v} + c;
     std::int32_t* offsets = &motion.offsets[c][first];
+    if (!is_there) {
+      std::fill(offsets, &motion.offsets[c][0] + end, 0);
+      continue;
+    }
     std::int64_t sum = 0;
     for (const std::uint32_t u : ring) sum += plain_error_[3 * std::size_t{u} + c];
     offsets[0] = learned.plain_error1[own];
@@ -340,7 +345,8 @@ Vec3i FrameRecon::position(std::uint32_t v, const VertexMotion& motion,
   return values;
 }
 
-void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position) {
+void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position,
+                     bool is_there) {
   std::vector<std::int32_t>* const errors =
       number_ > 0 && settings_.learning_flag ? &learned_[temporal_layer_].error : nullptr;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -349,8 +355,9 @@ void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& p
     if (number_ == 0) continue;
     motion_[own] = position[c] - reference_[own];
     if (errors == nullptr) continue;
-    plain_error_[own] = static_cast<std::int32_t>(motion_[own] - motion.plain[c]);
-    (*errors)[own] = position[c] - motion.prediction[c];
+    plain_error_[own] =
+        is_there ? static_cast<std::int32_t>(motion_[own] - motion.plain[c]) : 0;
+    (*errors)[own] = is_there ? position[c] - motion.prediction[c] : 0;
   }
 }
 
@@ -365,10 +372,10 @@ void FrameRecon::adapt(std::uint32_t v, VertexMotion& motion, bool is_there,
   for (std::uint32_t t = own; t < settings_.pattern.temporal_layers; ++t) {
     Learned& learned = learned_[t];
     if (t > own) {
-      predict(learned, v, motion);
+      predict(learned, v, motion, is_there);
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t i = 3 * std::size_t{v} + c;
-        learned.error[i] = values_[i] - motion.prediction[c];
+        learned.error[i] = is_there ? values_[i] - motion.prediction[c] : 0;
       }
     }
     if (is_there) adapt(learned, v, motion, variance);

@@ -55,10 +55,11 @@ class FrameRecon {
   // the vertices of a layer, predict() and set(), and at any time after that adapt();
   // end_frame(). is_there: the frame has their layer group; expected: then FrameNoise.
   void start_frame(const FramePlace& place, std::uint32_t last_use);
-  void predict(std::uint32_t v, VertexMotion& motion) const;
+  void predict(std::uint32_t v, VertexMotion& motion, bool is_there = true) const;
   // 8.19.3: the position that residuals, in steps, lead to.
   Vec3i position(std::uint32_t v, const VertexMotion& motion, const Vec3i& residual) const;
-  void set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position);
+  void set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position,
+           bool is_there = true);
   void adapt(std::uint32_t v, VertexMotion& motion, bool is_there, std::uint32_t expected);
   void end_frame();
 
@@ -95,14 +96,16 @@ class FrameRecon {
   void end_errors();
   FilterState filter(const Learned& learned, std::uint32_t v) const;
   // By what a temporal layer has learned.
-  void predict(const Learned& learned, std::uint32_t v, VertexMotion& motion) const;
+  void predict(const Learned& learned, std::uint32_t v, VertexMotion& motion,
+               bool is_there) const;
   void adapt(Learned& learned, std::uint32_t v, const VertexMotion& motion,
              std::int64_t variance);
   std::size_t num_neighbours(std::uint32_t v) const {
     return mesh_.ring(v).size() + near_[v].size();
   }
   void gather_motion(std::uint32_t v, VertexMotion& motion) const;
-  void gather_errors(const Learned& learned, std::uint32_t v, VertexMotion& motion) const;
+  void gather_errors(const Learned& learned, std::uint32_t v, VertexMotion& motion,
+                     bool is_there) const;
 
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
