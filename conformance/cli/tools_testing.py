@@ -92,16 +92,17 @@ def triangle_set(triangles):
 
 
 def read_rlpd(path):
-    """(header fields, triangles, the bytes of each frame)"""
+    """(header fields, triangles, the bytes of each frame present: A.2)"""
     data = path.read_bytes()
     magic, version, vertices, num_triangles, frames, *rest = struct.unpack_from("<4s6Ii3i", data)
     assert magic == b"RLPD" and version == 1
     corners = struct.unpack_from(f"<{3 * num_triangles}I", data, 44)
     at = 44 + 12 * num_triangles
     size = 12 * vertices
-    assert len(data) == at + size * frames
+    present = (len(data) - at) // size
+    assert len(data) == at + size * present and present <= frames
     triangles = [corners[3 * t:3 * t + 3] for t in range(num_triangles)]
-    return rest, triangles, [data[at + size * f:at + size * f + size] for f in range(frames)]
+    return rest, triangles, [data[at + size * f:at + size * f + size] for f in range(present)]
 
 
 def limited(size):

@@ -174,8 +174,11 @@ class HighSequence(random_main.MainSequence):
     version_minor = 2
 
     def _gof(self):
+        # R-IDX-05; where the end is open, the GOF that follows has a frame at least.
+        ns = self._writer.ns
+        most = ns["NumParsedFrames"] + 1 if self._plan.open_end else ns["NumFrames"]
         while (self._n.chance(self._plan.models_percent)
-               and len(self._writer.model_indices) < self._writer.ns["NumFrames"]):  # R-IDX-05
+               and len(self._writer.model_indices) < most):
             self._unit("MODEL")
             self._slices()
             self._skippable()
