@@ -80,7 +80,7 @@ class CutTest(ToolsTest):
 
     def rich_stream(self, profile="main", temporal_layers=1):
         """The first random stream with GOFs of several component groups and layer groups."""
-        for seed in range(200):
+        for seed in range(2000):
             path = self.random_stream(seed, profile)
             for gof in self.skinned_gofs(path):
                 if (len(gof["cut_to_components"]) > 2 and len(gof["cut_to_layers"]) > 1
