@@ -141,7 +141,7 @@ class StreamWriter:
         self._range = None
         self._reading = False  # a payload that was given as bytes
         self.ns = spec_program.run(code, {
-            "StreamBytes": self.data, "require": self._require, "supported": self._require,
+            "StreamBytes": self.data, "require": self._require, "supported": self._support,
             "inflates_to": lambda first, end, size: 1, "output_bytes": lambda data: None,
             "write_element": self._element})
         self._read = {name: self.ns[name] for name in
@@ -301,6 +301,15 @@ class StreamWriter:
             raise WriteError(f"{rule} is broken")
         if self.stop_broken:
             raise _Stop
+
+    def _support(self, condition, rule):
+        """After a profile and a version that do not match, the older of the two goes on.
+
+        That is how released recipes write the rest of the sequence header.
+        """
+        self._require(condition, rule)
+        if not condition and rule in ("R-HDR-01", "R-STR-03"):
+            self.ns["profile_idc"] = min(self.ns["profile_idc"], self.ns["version_minor"])
 
     def unit(self, code, payload=None, finish=None):
         """A unit with the payload that the source gives, or with these bytes.
