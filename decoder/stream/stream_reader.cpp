@@ -242,9 +242,8 @@ Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
   return header;
 }
 
-// After a GOF unit. A frame unit may tell that the GOF ends early.
-Result<bool> StreamReader::skip_slices(UnitType type) {
-  const std::uint32_t first_frame = gofs_.back().first_frame;
+// After the unit of a GOF. A frame unit may tell that the GOF ends early.
+Result<bool> StreamReader::skip_slices(UnitType type, std::uint32_t first_frame) {
   while (units_.goes_on_after(offset_)) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
@@ -303,7 +302,7 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     const std::uint32_t first_frame = frames_parsed_;
     go_past(**unit, gof->num_frames, (*unit)->end());
     if (const auto type = slice_type(gof->kind)) {
-      if (auto ok = skip_slices(*type); !ok) return ok;
+      if (auto ok = skip_slices(*type, first_frame); !ok) return ok;
     }
     if (frame < frames_parsed_) {
       offset_ = start;

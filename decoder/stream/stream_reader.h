@@ -78,7 +78,7 @@ class StreamReader {
   Result<bool> read_ancillary(const UnitHeader& unit);
   Result<bool> check_limits();
   Result<bool> check_end(const UnitHeader& unit);
-  Result<bool> skip_slices(UnitType type);
+  Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);
   Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
   void remember_gof(const UnitHeader& unit);
 
