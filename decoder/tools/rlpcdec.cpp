@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -25,8 +24,10 @@
 #include "decoder/output/frame_sink.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/tools/concealed_frames.h"
 #include "decoder/tools/conformance_verbs.h"
 #include "decoder/tools/exit_code.h"
+#include "decoder/tools/frame_span.h"
 #include "decoder/tools/stream_message.h"
 
 namespace {
@@ -47,8 +48,8 @@ Examples
 constexpr const char* kDetails =
     R"(A folder OUT gets OBJ files, with --format ply PLY files. With -o -, the format
 is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
-stream (rlpcenc --low-delay), each frame is written as soon as its bytes are
-there; with --format pc2 -o - without a mesh, and with a frame count of 0.
+stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
+with --format pc2 -o -, without a mesh and with a frame count of 0.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
@@ -93,11 +94,6 @@ struct Options {
   std::shared_ptr<rlpc::OutputLimit> limit;
 };
 
-struct FrameSpan {
-  std::uint32_t first;
-  std::uint32_t last;
-};
-
 int complain(const std::string& message, int code) {
   rlpc::print_message("rlpcdec", message);
   return code;
@@ -108,7 +104,7 @@ int complain(const Options& o, const rlpc::Error& error) {
                   rlpc::exit_code(error.code));
 }
 
-// Whether the frames are decoded as they come, their number being unknown.
+// Whether the frames are decoded as they arrive, their number being unknown.
 bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
   if (!header.open_end_flag || !o.frames.empty()) return false;
   const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
@@ -122,7 +118,9 @@ bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
 int complain_of_loss(const Options& o, const rlpc::Error& error, std::uint32_t first,
                      std::optional<std::uint32_t> end) {
   std::string lost = "; frames from " + std::to_string(first) + " on are lost";
-  if (end && *end == first + 1) {
+  if (end && *end == first) {
+    lost = "; no frame is lost";
+  } else if (end && *end == first + 1) {
     lost = "; frame " + std::to_string(first) + " is lost, and shows the one before it";
   } else if (end) {
     lost = "; frames " + std::to_string(first) + " to " + std::to_string(*end - 1) +
@@ -132,30 +130,12 @@ int complain_of_loss(const Options& o, const rlpc::Error& error, std::uint32_t f
                   rlpc::exit_code(error.code));
 }
 
-// "A-B", "A" or "A-" of frames 0 .. num_frames - 1.
-std::optional<FrameSpan> parse_frames(const std::string& text, std::uint32_t num_frames) {
-  if (text.empty()) return FrameSpan{0, num_frames - 1};
-  const char* const end = text.data() + text.size();
-  FrameSpan span{};
-  auto [rest, error] = std::from_chars(text.data(), end, span.first);
-  if (error != std::errc()) return std::nullopt;
-  span.last = span.first;
-  if (rest != end) {
-    if (*rest++ != '-') return std::nullopt;
-    span.last = num_frames - 1;
-    if (rest != end) {
-      const auto [after, wrong] = std::from_chars(rest, end, span.last);
-      if (wrong != std::errc() || after != end) return std::nullopt;
-    }
-  }
-  if (span.first > span.last || span.last >= num_frames) return std::nullopt;
-  return span;
-}
-
-// Numbers of frames decoded, and verified against a hash.
+// Numbers of frames decoded, verified against a hash, and lost to damage.
 struct FrameCounts {
   std::uint32_t decoded = 0;
   std::uint32_t compared = 0;
+  std::uint32_t lost = 0;
+  int loss_code = rlpc::kExitDone;  // of the last damage
 };
 
 std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
@@ -184,12 +164,11 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
   const std::uint32_t num_vertices = decoder.num_vertices();
   const auto num_triangles = static_cast<std::uint32_t>(decoder.triangles().size());
   if (o.json) {
-    nlohmann::ordered_json json = {{"num_vertices", num_vertices},
-                                   {"num_triangles", num_triangles},
-                                   {"frames", frames.decoded},
-                                   {"frames_compared", frames.compared},
-                                   {"hashes_verified", frames.compared == frames.decoded},
-                                   {"cut", decoder.was_cut()}};
+    nlohmann::ordered_json json = {
+        {"num_vertices", num_vertices}, {"num_triangles", num_triangles},
+        {"frames", frames.decoded},     {"frames_compared", frames.compared},
+        {"frames_lost", frames.lost},   {"hashes_verified", frames.compared == frames.decoded},
+        {"cut", decoder.was_cut()}};
     if (is_coarse(o)) {
       json["coarse"] = {{"layers", std::min(o.decoder.coarse_layers, decoder.num_layers())},
                         {"of_layers", decoder.num_layers()},
@@ -199,11 +178,13 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
-    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s%s\n",
+    const std::string lost =
+        frames.lost > 0 ? ", " + std::to_string(frames.lost) + " lost" : std::string();
+    std::fprintf(stderr, "%s: %u frame%s of %u vert%s and %u triangle%s decoded%s%s%s\n",
                  rlpc::printable(rlpc::name_of_input(o.input)).c_str(), frames.decoded,
                  plural(frames.decoded), num_vertices, num_vertices == 1 ? "ex" : "ices",
                  num_triangles, plural(num_triangles), coarse_text(o, decoder).c_str(),
-                 hashes_text(o, decoder, frames).c_str());
+                 hashes_text(o, decoder, frames).c_str(), lost.c_str());
   }
 }
 
@@ -214,6 +195,45 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
   request.limit = o.limit;
   request.quiet = o.quiet;
   return rlpc::write_html(request, source);
+}
+
+// Returns the exit code of an error that ends it; none: all frames have been written.
+std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
+                                const rlpc::FrameSpan& span, bool live, rlpc::FrameSink* sink,
+                                FrameCounts& frames) {
+  const auto report_loss = [&](const rlpc::Error& error, std::uint32_t first,
+                               std::optional<std::uint32_t> end) {
+    frames.loss_code = complain_of_loss(o, error, first, end);
+  };
+  rlpc::ConcealedFrames shown(
+      decoder, span.first, live ? std::nullopt : std::optional(span.last + 1),
+      o.conceals ? rlpc::ConcealedFrames::Report(report_loss) : nullptr);
+  std::vector<std::int32_t> positions(3 * std::size_t{decoder.num_vertices()});
+  const std::uint32_t count = span.last - span.first + 1;
+  rlpc::ProgressBar bar("decoding", !o.quiet);
+  for (;;) {
+    const auto more = shown.next(positions);
+    if (!more) return complain(o, more.error());
+    if (!*more) break;
+    if (sink != nullptr) {
+      if (auto error = sink->write_frame(positions)) {
+        return complain(error->message, rlpc::exit_code(*error));
+      }
+    }
+    if (shown.is_lost()) {
+      ++frames.lost;
+    } else {
+      ++frames.decoded;
+      frames.compared += decoder.compared_frames();
+    }
+    if (!live) bar.show(static_cast<double>(frames.decoded + frames.lost) / count);
+  }
+  // What follows the last frame is checked, too.
+  if (o.frames.empty() && !live && frames.loss_code == rlpc::kExitDone) {
+    if (const auto more = decoder.next_frame(positions); !more)
+      return complain(o, more.error());
+  }
+  return std::nullopt;
 }
 
 int decode(const Options& o) {
@@ -236,7 +256,7 @@ int decode(const Options& o) {
             "not known. Write .rlpd, OBJ or PLY files, and all frames",
         rlpc::kExitInvalid);
   }
-  const auto span = parse_frames(o.frames, *num_frames);
+  const auto span = rlpc::parse_frame_span(o.frames, *num_frames);
   if (!span) {
     return complain("--frames: expected A-B within 0-" + std::to_string(*num_frames - 1) +
                         ", got `" + o.frames + "`",
@@ -264,52 +284,16 @@ int decode(const Options& o) {
   if (span->first > 0) {
     if (const auto ok = decoder->seek(span->first); !ok) return complain(o, ok.error());
   }
-  std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
   FrameCounts frames;
-  int code = rlpc::kExitDone;
-  {
-    rlpc::ProgressBar bar("decoding", !o.quiet);
-    std::uint32_t lost = 0;  // that the frame before stands for
-    while (frames.decoded < count) {
-      if (lost == 0) {
-        const auto more = decoder->next_frame(positions);
-        if (more && !*more) break;  // of an open-ended stream
-        if (!more) {
-          if (!o.conceals || frames.decoded == 0) return complain(o, more.error());
-          const std::uint32_t next = span->first + frames.decoded;
-          const auto found = decoder->skip_damage();
-          const bool goes_on = found && *found;
-          if (!goes_on && live) return complain_of_loss(o, more.error(), next, std::nullopt);
-          const std::uint32_t end =
-              goes_on ? std::min(**found, span->last + 1) : span->last + 1;
-          code = complain_of_loss(o, more.error(), next, end);
-          lost = end - next;
-          if (lost == 0) continue;
-        } else {
-          frames.compared += decoder->compared_frames();
-        }
-      }
-      if (sink) {
-        if (auto error = sink->write_frame(positions)) {
-          return complain(error->message, rlpc::exit_code(*error));
-        }
-      }
-      lost -= std::min(lost, 1U);
-      ++frames.decoded;
-      if (!live) bar.show(static_cast<double>(frames.decoded) / count);
-    }
-  }
-  if (o.frames.empty() && !live && code == rlpc::kExitDone) {
-    if (const auto more = decoder->next_frame(positions); !more)
-      return complain(o, more.error());
-  }
+  if (const auto code = write_frames(o, *decoder, *span, live, sink.get(), frames))
+    return *code;
   if (sink) {
     if (auto error = sink->finish()) {
       return complain(error->message, rlpc::exit_code(*error));
     }
   }
   report(o, *decoder, frames);
-  return code;
+  return frames.loss_code;
 }
 
 struct Outputs {
@@ -358,8 +342,8 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
       ->group(kOutput);
   app.add_flag(
          "--conceal", o.conceals,
-         "Go on after damage, with the next group of frames that is whole; the frames between "
-         "show the last one before")
+         "After damage, go on with the next intact group of frames; the last frame before "
+         "stands for those that are lost")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")
