@@ -12,21 +12,17 @@
 #include "encoder/sequence/check_frames.h"
 #include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/choices/level_choice.h"
-#include "encoder/sequence/choices/lossless_grid.h"
+#include "encoder/sequence/format_header.h"
 #include "encoder/sequence/span_buffer.h"
 #include "encoder/write/write_frame_gof.h"
 
 namespace rlpc {
 namespace {
 
-// The grid is chosen by the first frame; later ones may move less.
-constexpr double kReserve = 16.0;  // fixed: four bits of the grid
-
-// The ratio of the error to the quantiser step is between 0.29, where residuals are rounded to
-// nearest, and more where many fall into the dead zone.
-// In the first GOF, it is not known: nine animations at four errors have 0.33 to 0.37.
-constexpr double kFirstErrorRatio = 0.36;  // fixed: near the largest, to exceed no target
-constexpr double kAim = 0.985;             // fixed: a margin, of the KG error
+// RMS error of a coordinate over the quantiser step: 0.29 where residuals are rounded to
+// nearest, more where many fall into the dead zone. Later GOFs use the ratio of earlier ones.
+constexpr double kFirstErrorRatio = 0.36;  // fixed: measured, 0.33 to 0.37 on nine animations
+constexpr double kAim = 0.985;             // fixed: a margin below the KG error
 
 }  // namespace
 
@@ -37,13 +33,7 @@ LowDelayEncoder::LowDelayEncoder(FrameFormat format, EncoderSettings settings, B
       metrics_(format_.num_vertices, MetricsAccumulator::kTotals) {}
 
 std::optional<InputError> LowDelayEncoder::prepare() {
-  SequenceHeader header;
-  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
-  header.num_vertices = format_.num_vertices;
-  header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
-  header.open_end_flag = format_.num_frames == 0;
-  header.num_frames = header.open_end_flag ? kMaxFrames : format_.num_frames;
-  header.frame_rate = format_.frame_rate;
+  SequenceHeader header = header_of(format_, settings_);
   const std::uint32_t longest = std::min(longest_gof(settings_), header.num_frames);
   // Of a GOF, one frame is held.
   const auto threads = check_memory(settings_, header, 1, 0, 0);
@@ -57,19 +47,13 @@ std::optional<InputError> LowDelayEncoder::prepare() {
 }
 
 std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> xyz) {
-  Extent extent;
-  std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
-  std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
   SpanBuffer frame(format_.num_vertices, 1);
   frame.add(xyz);
   const auto measured = measure_extent(frame);
   if (!measured) return measured.error();
   SequenceHeader header = coding_->header();
   const Target& target = settings_.target;
-  set_grid(header,
-           target.kind == Target::kLossless
-               ? grid_of_bits(extent, static_cast<int>(target.value))
-               : choose_grid(extent, finest_error(target, measured->rms_spread) / kReserve));
+  set_grid_of_box(header, format_, target, finest_error(target, measured->rms_spread));
   coding_->set_header(header);
   stream_.emplace(header, settings_, coding_->connectivity());
   if (!stream_->write_lead(header, sink_)) return InputError{"the stream could not be written"};

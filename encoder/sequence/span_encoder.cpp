@@ -10,16 +10,9 @@
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/check_frames.h"
 #include "encoder/sequence/choices/grid_choice.h"
-#include "encoder/sequence/choices/lossless_grid.h"
+#include "encoder/sequence/format_header.h"
 
 namespace rlpc {
-namespace {
-
-// The grid is chosen for the first span; later ones may need errors smaller by this factor. The
-// finer grid keeps steps far below their maximum.
-constexpr double kReserve = 16.0;  // fixed: four bits of the grid
-
-}  // namespace
 
 // Spans of as many GOFs as may be held, all of about the same length.
 void SpanEncoder::make_spans(const SequenceHeader& header) {
@@ -43,13 +36,7 @@ GofSpan SpanEncoder::current() const {
 }
 
 std::optional<InputError> SpanEncoder::prepare() {
-  SequenceHeader header;
-  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
-  header.num_vertices = format_.num_vertices;
-  header.num_triangles = static_cast<std::uint32_t>(format_.triangles.size());
-  header.open_end_flag = is_open_ended();
-  header.num_frames = is_open_ended() ? kMaxFrames : format_.num_frames;
-  header.frame_rate = format_.frame_rate;
+  SequenceHeader header = header_of(format_, settings_);
   make_spans(header);
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
@@ -117,13 +104,8 @@ void SpanEncoder::use_header(const SequenceHeader& header) {
 }
 
 SequenceHeader SpanEncoder::header_for(double finest) const {
-  Extent extent;
-  std::copy_n(format_.box_min.begin(), 3, extent.min.begin());
-  std::copy_n(format_.box_max.begin(), 3, extent.max.begin());
   SequenceHeader header = coding_->header();
-  const bool is_lossless = settings_.target.kind == Target::kLossless;
-  set_grid(header, is_lossless ? grid_of_bits(extent, static_cast<int>(settings_.target.value))
-                               : choose_grid(extent, finest));
+  set_grid_of_box(header, format_, settings_.target, finest);
   return header;
 }
 
@@ -148,11 +130,11 @@ InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_sp
 // Searches the first span, which determines the grid. If the target is a rate, the resulting
 // error may require a finer grid and a second search.
 InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double rms_spread) {
-  use_header(header_for(finest_error(settings_.target, rms_spread) / kReserve));
+  use_header(header_for(finest_error(settings_.target, rms_spread)));
   auto best = search(span, rms_spread);
   if (!best || settings_.target.kind != Target::kBpvf) return best;
   const double error = rms_spread * best->trial.metrics.kg_error_percent / 100.0;
-  const SequenceHeader finer = header_for(error / kReserve);
+  const SequenceHeader finer = header_for(error);
   if (finer.position_bits <= coding_->header().position_bits) return best;
   use_header(finer);
   return search(span, rms_spread);

@@ -52,7 +52,7 @@ class SpanEncoder final : public FrameCoder {
   std::optional<InputError> encode_span();
   bool write(const CodedGof& span);  // false: the sink failed
   void use_header(const SequenceHeader& header);
-  // The header with the grid for an error of `finest` (units).
+  // The header with the grid for errors of `finest` (units) and more.
   SequenceHeader header_for(double finest) const;
   InputResult<TargetResult> search(const GofSpan& span, double rms_spread);
   InputResult<TargetResult> search_first(const GofSpan& span, double rms_spread);
