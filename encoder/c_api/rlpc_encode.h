@@ -113,8 +113,8 @@ typedef struct rlpc_encode_options {
   // those of one GOF; 0: as many as share a skinned model in memory, 2^23 positions or fewer.
   uint32_t max_held_frames;
   uint32_t gof_kind;  // default RLPC_KIND_AUTO
-  // High profile, 1: each frame is coded when it is added, in GOFs of frames; the KG error is
-  // then met about. Default 0. Targets: all but RLPC_TARGET_BPVF.
+  // High profile, 1: each frame is coded when it is added, in GOFs of frames; a KG error is
+  // then met approximately. Default 0. Targets: all but RLPC_TARGET_BPVF.
   uint32_t low_delay;
 } rlpc_encode_options;
 

@@ -59,9 +59,10 @@ their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
 length, a mean normal deviation of about one degree.
 
 --lossless restores every coordinate as the 32-bit float that it is (-0 as 0),
---lossless BITS as it is once rounded to the grid. The order of vertices and
-triangles is not kept (--keep-order keeps that of vertices), nor is anything
-else in INPUT. Sampled glTF is kept as sampled.
+--lossless BITS as it is once rounded to the finest grid, of a step that is a
+power of two, on which the box needs at most BITS bits. The order of vertices
+and triangles is not kept (--keep-order keeps that of vertices), nor is
+anything else in INPUT. Sampled glTF is kept as sampled.
 
 --dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
 more) and reports the exact size. Of longer ones it encodes eight sections and
@@ -69,9 +70,10 @@ reports an estimate ("about").
 
 --low-delay reads RLPD from INPUT -, or PC2 from --points -, up to its end,
 whatever its number of frames says, and writes each frame before it waits for
-the next. The stream is then open-ended: rlpcdec shows its frames as they come.
-If the input fails, OUT ends with the frame before. Quality is --kg, --max-error
-or --lossless BITS; the KG error is met on the whole only, and about.
+the next. The stream is then open-ended: rlpcdec writes its frames as they
+arrive. If the input fails, OUT ends with the frame before. Quality is --kg,
+--max-error or --lossless BITS; the KG error is that of the whole, and met
+approximately.
 
 --frame-pattern FRAME<REFERENCES, ... lists the frames of a period in the order
 in which they are coded, counted from 1, with one or two references each, and
@@ -181,7 +183,7 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
       app.add_option_function<std::string>(
              "--lossless",
              [&line](const std::string& bits) { line.lossless = parse_bits(bits); },
-             "No loss on the grid that all lie on, or one of BITS (High profile)")
+             "Exact floats, or exact on a grid of at most BITS bits (High profile)")
           ->expected(0, 1)
           ->check(kBits)
           ->option_text("[BITS]")
@@ -213,7 +215,7 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       ->option_text("FRAMES")
       ->group(kOutput);
   app.add_flag("--low-delay", o.settings.low_delay,
-               "Encode each frame when it comes, from standard input as well; larger "
+               "Encode each frame as it arrives, also from standard input; larger files "
                "(High profile)")
       ->excludes(dry_run)
       ->group(kMore);

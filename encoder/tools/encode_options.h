@@ -22,7 +22,7 @@ struct EncodeOptions {
   bool quiet = false;
   EncoderSettings settings;
 
-  // Frames are to be encoded as they come through standard input.
+  // Frames are to be encoded as they arrive through standard input.
   bool is_live() const {
     return settings.low_delay && (input.path == "-" || input.points == "-");
   }

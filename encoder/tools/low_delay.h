@@ -1,4 +1,4 @@
-// rlpcenc --low-delay: frames are encoded one by one, from files or as they come.
+// rlpcenc --low-delay: frames are encoded one by one, from files or as they arrive.
 #pragma once
 
 #include <functional>

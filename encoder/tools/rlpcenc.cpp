@@ -235,7 +235,7 @@ InputResult<EncodeReport> encode_source(FrameSource& source, const EncodeOptions
   return std::move(encoded->report);
 }
 
-// Encodes frames as they come. What has been written when the input fails is a stream, and
+// Encodes frames as they arrive. What has been written when the input fails is a stream, and
 // stays.
 int run_live(const EncodeOptions& o) {
   const std::string mesh = o.input.points.empty() ? std::string() : o.input.path;
