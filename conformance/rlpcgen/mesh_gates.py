@@ -38,7 +38,13 @@ def octahedron():
     return [(0, a, b) for a, b in pairs] + [(5, b, a) for a, b in pairs]
 
 
-MESHES = {"grid": grid, "fan": fan, "tetrahedron": tetrahedron, "octahedron": octahedron}
+def separate(count, sides):
+    """Closed fans without common vertices."""
+    return [tuple(v + (sides + 1) * i for v in t) for i in range(count) for t in fan(sides, 1)]
+
+
+MESHES = {"grid": grid, "fan": fan, "tetrahedron": tetrahedron, "octahedron": octahedron,
+          "separate": separate}
 
 
 class MeshFollower:

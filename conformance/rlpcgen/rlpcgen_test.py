@@ -192,7 +192,8 @@ class Meshes(unittest.TestCase):
     def test_meshes(self):
         for triangles in (mesh_gates.grid(4, 3), mesh_gates.grid(4, 4, 1, 1),
                           mesh_gates.grid(5, 2, 1, 0), mesh_gates.fan(7), mesh_gates.fan(6, 1),
-                          mesh_gates.tetrahedron(), mesh_gates.octahedron()):
+                          mesh_gates.tetrahedron(), mesh_gates.octahedron(),
+                          mesh_gates.separate(3, 5)):
             self.gives(triangles)
 
     def test_fans_that_meet_in_a_vertex(self):
