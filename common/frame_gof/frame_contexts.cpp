@@ -4,13 +4,13 @@ namespace rlpc {
 
 FrameContexts::FrameContexts(const CodedMesh& mesh, std::size_t num_layer_groups,
                              std::uint32_t num_depths)
-    : mesh_(mesh), num_layer_groups_(num_layer_groups), states_(num_depths) {}
+    : mesh_(mesh), num_layer_groups_(num_layer_groups), states_(num_depths + 1) {}
 
 // 9.8.6 StartFrameContexts( )
 void FrameContexts::start_frame(std::uint32_t place, std::uint32_t depth) {
   is_first_ = place == 0;
-  state_ = &states_[depth];
-  if (state_->models.empty() || place == 1) {
+  state_ = &states_[is_first_ ? 0 : depth + 1];
+  if (state_->models.empty()) {
     state_->models.assign(num_layer_groups_, {});
     state_->mean.assign(mesh_.num_layers(), 256);
     state_->magnitude.assign(mesh_.num_vertices(), 0);

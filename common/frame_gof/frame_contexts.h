@@ -22,8 +22,8 @@ class FrameContexts {
   // The mesh must have layers, and outlive it.
   FrameContexts(const CodedMesh& mesh, std::size_t num_layer_groups, std::uint32_t num_depths);
 
-  // Call at the start of each frame, with its place in coding order and its depth, and before
-  // the vertices of each layer group of it.
+  // Call at the start of each frame that repeats no other, with its place in coding order and
+  // its depth, and before the vertices of each layer group of it.
   void start_frame(std::uint32_t place, std::uint32_t depth);
   void start_group(std::size_t layer_group) { group_ = layer_group; }
   // Call before the residuals of a vertex, which follow axis by axis.
@@ -52,7 +52,7 @@ class FrameContexts {
   std::uint32_t mean_magnitude(std::span<const std::uint32_t> ring,
                                std::uint32_t otherwise) const;
 
-  // What carries over between frames of a depth.
+  // What carries over from frame to frame.
   struct State {
     std::vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
     std::vector<std::uint32_t> mean;       // FrameLayerMean, [num_layers]
@@ -61,7 +61,7 @@ class FrameContexts {
 
   const CodedMesh& mesh_;
   std::size_t num_layer_groups_;
-  std::vector<State> states_;          // [num_depths]
+  std::vector<State> states_;          // of the first frame, then [num_depths]: of the others
   State* state_ = nullptr;             // of the frame
   std::vector<std::uint16_t> before_;  // FrameMagnitudeBefore
   bool is_first_ = true;

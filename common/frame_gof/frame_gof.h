@@ -28,6 +28,8 @@ struct FrameCrc {
 // 6.14.2 frame_unit( ): the residuals of a frame.
 struct CodedFrame {
   std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
+  // The frame that it is equal to: it then has its layer groups, and nothing of what follows.
+  std::optional<std::uint32_t> repeated;
   std::optional<FrameCrc> frame_crc;
   CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
   std::vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
@@ -43,6 +45,7 @@ struct FrameSettings {
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
   bool frame_hash_flag = false;
+  std::uint32_t max_repeat_distance = 0;  // in coding order; 0: no frame repeats another
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
   std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
 

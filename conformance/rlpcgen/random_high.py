@@ -83,6 +83,22 @@ class HighSource(random_main.MainSource):
 
     _frame_hash_flag = _exact_flag
 
+    def _max_repeat_distance(self, ns, indices, arguments):
+        return self.numbers.pick([0, 0, self.numbers.between(1, 4)])
+
+    def _repeat_flag(self, ns, indices, arguments):
+        return int(bool(self._repeatable(ns)) and self.numbers.chance(25))
+
+    def _repeat_distance_minus1(self, ns, indices, arguments):
+        return self.numbers.pick(self._repeatable(ns))
+
+    def _repeatable(self, ns):
+        place = ns["PlaceOfFrame"][ns["frame_idx"]]
+        layer = ns["TemporalLayerOfFrame"]
+        most = layer(ns["frame_idx"])
+        return [i for i in range(min(place, ns["max_repeat_distance"]))
+                if layer(ns["FrameOrder"][place - 1 - i]) <= most]
+
     def _pattern_period_log2(self, ns, indices, arguments):
         return self.numbers.between(1, 3)
 
@@ -216,6 +232,8 @@ class HighSequence(random_main.MainSequence):
             for group in range(most[layer]):
                 source.slice = frame, group
                 self._unit("FRAME")
+                if ns["repeat_flag"]:
+                    break
             # Where no period is cut off, the order stays.
             if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
                     and sorted(ns["FrameOrder"][:place + 1]) == list(range(place + 1))

@@ -125,6 +125,11 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-FRM-07", "7.14.1", "A pattern has more temporal layers than depths.",
      "The number of layers was taken from another pattern.",
      "A pattern has at most as many temporal layers as its frames have depths."},
+    {"R-FRM-08", "7.14.2",
+     "A frame repeats one that is too far back, before the GOF, or of a higher temporal layer.",
+     "The distance was counted in output order, or across the start of the GOF.",
+     "Count frames in coding order; repeat only frames that are still there if temporal layers "
+     "are left out."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",

@@ -51,7 +51,10 @@ class GofWarnings {
 
 void GofWarnings::add(const FrameGof& gof) {
   raise(needed_.max_gof_values, num_vertices() * gof.num_frames);
-  if (gof.learning_flag) raise(needed_.max_learning_vertices, num_vertices());
+  raise(needed_.max_gof_factors, 3 * num_vertices() * gof.max_repeat_distance);
+  if (gof.learning_flag) {
+    raise(needed_.max_learning_vertices, num_vertices() * gof.pattern.temporal_layers);
+  }
 }
 
 void GofWarnings::add(const ClusterGof& gof) {

@@ -80,7 +80,8 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
   const FramePattern& pattern = settings.pattern;
   const std::uint64_t depths = pattern.num_depths();
   const std::uint64_t kept =
-      pattern.kind == FramePattern::kExplicit ? pattern.period() : depths;
+      (pattern.kind == FramePattern::kExplicit ? pattern.period() : depths) +
+      std::min<std::uint64_t>(settings.max_repeat_distance, num_frames);
   const std::uint64_t filters = settings.learning_flag ? pattern.temporal_layers : 0;
   return num_frames * kBytesPerFrame +
          depths * settings.layer_group_size.size() * kBytesPerGroup +

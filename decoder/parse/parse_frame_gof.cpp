@@ -49,6 +49,9 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   }
   weights(r);
   gof_.frame_hash_flag = r.flag("frame_hash_flag");
+  const std::uint64_t values = 3 * std::uint64_t{header_.num_vertices};
+  const auto most = static_cast<std::int64_t>(header_.level().max_gof_factors / values);
+  gof_.max_repeat_distance = r.ue("max_repeat_distance", {0, most}, "R-LVL-05");
   const auto groups = parse_layer_groups(r, mesh_.num_layers());
   if (!groups.empty()) gof_.layer_group_size = groups;
   gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
@@ -116,7 +119,8 @@ void FrameGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
 bool FrameGofParser::may_follow(const SliceEntry& unit) {
   const std::uint32_t place = order_->place_of(unit.frame_idx);
   const std::uint32_t group = unit.layer_group_idx;
-  if (place + 1 < next_place_ || frames_[unit.frame_idx].layer_groups != group) return false;
+  const CodedFrame& frame = frames_[unit.frame_idx];
+  if (place + 1 < next_place_ || frame.layer_groups != group || frame.repeated) return false;
   for (std::uint32_t p = next_place_ == 0 ? 0 : next_place_ - 1; p < place; ++p) {
     ++frames_before_[gof_.pattern.temporal_layer((*order_)[p].depth)];
   }
@@ -141,6 +145,8 @@ void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
     return;
   }
   if (!may_follow(unit)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+  const bool may_repeat = gof_.max_repeat_distance > 0 && group == 0 && unit.frame_idx > 0;
+  if (may_repeat && r.flag("repeat_flag")) return repeat_of_frame(r, unit);
   r.byte_alignment();
   if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
     const std::uint64_t at = r.bit_pos();
@@ -153,15 +159,42 @@ void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
   last_unit_ = unit;
 }
 
+// 6.14.2 repeat_of_frame( )
+void FrameGofParser::repeat_of_frame(BitReader& r, const SliceEntry& unit) {
+  const std::uint64_t at = r.bit_pos();
+  const std::uint32_t distance =
+      r.ue("repeat_distance_minus1", {0, std::int64_t{gof_.max_repeat_distance} - 1},
+           "R-FRM-08") +
+      1;
+  if (r.error()) return;
+  const std::uint32_t place = order_->place_of(unit.frame_idx);
+  const FramePlace* const repeated = distance > place ? nullptr : &(*order_)[place - distance];
+  if (repeated == nullptr ||
+      gof_.pattern.temporal_layer(repeated->depth) > unit.temporal_layer_idx) {
+    r.fail(Errc::kInvalid, "R-FRM-08", "repeat_distance_minus1", at);
+  }
+  r.byte_alignment();
+  r.expect_end();
+  if (r.error()) return;
+  CodedFrame& frame = frames_[unit.frame_idx];
+  frame.repeated = repeated->frame;
+  frame.layer_groups = frames_[repeated->frame].layer_groups;
+  for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
+    ++frames_of_group_[unit.temporal_layer_idx][j];
+  }
+  last_unit_ = unit;
+}
+
 std::uint32_t FrameGofParser::complete_places() const {
   if (next_place_ == 0) return 0;
   const CodedFrame& last = frames_[(*order_)[next_place_ - 1].frame];
-  return last.layer_groups == gof_.layer_group_size.size() ? next_place_ : next_place_ - 1;
+  const bool is_complete = last.layer_groups == gof_.layer_group_size.size() || last.repeated;
+  return is_complete ? next_place_ : next_place_ - 1;
 }
 
 CodedFrame FrameGofParser::take_frame(std::uint32_t frame) {
   CodedFrame& kept = frames_[frame];
-  if (kept.layer_groups > 0) {
+  if (kept.layer_groups > 0 && !kept.repeated) {
     memory_bytes_ -= memory_of_frame(header_.num_vertices, kept.residual.num_large());
   }
   CodedFrame taken = std::move(kept);

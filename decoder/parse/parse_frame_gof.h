@@ -62,6 +62,7 @@ class FrameGofParser {
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frame_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
   bool may_follow(const SliceEntry& unit);
+  void repeat_of_frame(BitReader& r, const SliceEntry& unit);
   void frame_section(BitReader& r, const SliceEntry& unit);
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);
 

@@ -55,6 +55,8 @@ void add_kind(const SkinnedGof& gof, GofSummary& summary) {
 }
 
 void add_kind(const FrameGof& gof, GofSummary& summary) {
+  const auto repeated = std::count_if(gof.frames->begin(), gof.frames->end(),
+                                      [](const CodedFrame& f) { return f.repeated; });
   summary.first_group = "frames";
   summary.layer_group_size = gof.layer_group_size;
   summary.figures = {
@@ -66,7 +68,9 @@ void add_kind(const FrameGof& gof, GofSummary& summary) {
        true},
       {"num_layers", "layer", "layers", size_of(gof.layer_step)},
       {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
-      {"num_frame_units", "frame unit", "frame units", size_of(summary.slices)}};
+      {"num_frame_units", "frame unit", "frame units", size_of(summary.slices)},
+      {"num_repeated_frames", "repeated frame", "repeated frames",
+       static_cast<std::uint32_t>(repeated), true}};
 }
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:

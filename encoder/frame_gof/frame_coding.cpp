@@ -82,6 +82,20 @@ void FrameCoding::adapt(Layer& layer, std::size_t first, std::size_t end) {
   }
 }
 
+EncodedGof::Unit FrameCoding::repeat(std::uint32_t distance, std::span<std::int32_t> positions,
+                                     CodedFrame* coded) {
+  const std::uint32_t number = recon_.place();
+  const FramePlace& place = order_[number];
+  CodedFrame frame;
+  frame.repeated = order_[number - distance].frame;
+  frame.layer_groups = static_cast<std::uint32_t>(settings_.layer_group_size.size());
+  recon_.decode(place, order_.last_use(place.frame), frame);
+  recon_.positions(positions);
+  if (coded != nullptr) *coded = frame;
+  return {UnitType::kFrame, writer_.repeat(place.frame, distance),
+          settings_.pattern.temporal_layer(place.depth)};
+}
+
 std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
                                                 std::span<std::int32_t> positions,
                                                 CodedFrame* coded) {

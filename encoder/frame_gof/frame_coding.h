@@ -31,6 +31,10 @@ class FrameCoding {
   std::vector<EncodedGof::Unit> code(std::span<const double> xyz,
                                      std::span<std::int32_t> positions,
                                      CodedFrame* coded = nullptr);
+  // In place of that, repeats the frame so many places before, at most max_repeat_distance, and
+  // of a temporal layer that is not higher.
+  EncodedGof::Unit repeat(std::uint32_t distance, std::span<std::int32_t> positions,
+                          CodedFrame* coded = nullptr);
 
  private:
   // The vertices of a layer, with their predictions.

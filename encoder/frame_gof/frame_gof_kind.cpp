@@ -14,6 +14,7 @@
 #include "common/mesh/coded_meshes.h"
 #include "encoder/frame_gof/frame_coding.h"
 #include "encoder/frame_gof/frame_settings.h"
+#include "encoder/frame_gof/repeated_frames.h"
 #include "encoder/gof/split_coder.h"
 
 namespace rlpc {
@@ -71,14 +72,30 @@ class FrameGofCoder : public GofCoder {
   EncodedGof encode(double step, double /*analysis_step*/) override;
 
  private:
+  const std::vector<std::uint32_t>& repeats();
+
   const SequenceMesh& mesh_;
   const CodedMesh& layers_;
   const EncoderSettings& settings_;
   const GofFrames& frames_;
+  std::vector<std::uint32_t> repeats_;  // by place in coding order: distance, or 0
 };
 
+// The same for each step.
+const std::vector<std::uint32_t>& FrameGofCoder::repeats() {
+  if (repeats_.empty()) {
+    const std::size_t values = 3 * std::size_t{frames_.num_vertices};
+    const std::uint64_t most = mesh_.header.level().max_gof_factors / values;
+    repeats_ = repeat_distances(
+        settings_.frames.pattern, frames_.xyz, values,
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(most, frames_.num_frames)));
+  }
+  return repeats_;
+}
+
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
-  const FrameSettings s = choose_frame_settings(mesh_.header, settings_, layers_, step);
+  FrameSettings s = choose_frame_settings(mesh_.header, settings_, layers_, step);
+  s.max_repeat_distance = *std::max_element(repeats().begin(), repeats().end());
   const std::size_t values = 3 * std::size_t{frames_.num_vertices};
   const GofHeader header{GofKind::kFrames, frames_.first_frame, frames_.num_frames};
   const DecodedSpan decoded(frames_.num_vertices, frames_.num_frames);
@@ -89,9 +106,13 @@ EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
   const bool has_cuts = s.pattern.temporal_layers > 1;
   for (std::uint32_t i = 0; i < frames_.num_frames; ++i) {
     const std::uint32_t f = coding.next_frame();
-    if (has_cuts) coded->emplace_back();
-    auto units = coding.code(std::span(frames_.xyz).subspan(f * values, values),
-                             decoded.frame(f), has_cuts ? &coded->back() : nullptr);
+    CodedFrame* const copy = has_cuts ? &coded->emplace_back() : nullptr;
+    if (repeats()[i] > 0) {
+      encoded.units.push_back(coding.repeat(repeats()[i], decoded.frame(f), copy));
+      continue;
+    }
+    auto units =
+        coding.code(std::span(frames_.xyz).subspan(f * values, values), decoded.frame(f), copy);
     std::move(units.begin(), units.end(), std::back_inserter(encoded.units));
   }
   encoded.frame = decoded.decoder();

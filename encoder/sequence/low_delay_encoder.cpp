@@ -8,6 +8,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/frame_gof/frame_settings.h"
+#include "encoder/frame_gof/repeated_frames.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/check_frames.h"
 #include "encoder/sequence/choices/grid_choice.h"
@@ -99,6 +100,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   step_ = std::max(step_for(spread), 1.0 / kExactFrameStep);
   gof_ = std::make_unique<Gof>();
   gof_->settings = choose_frame_settings(coding_->header(), settings_, layers, step_);
+  gof_->settings.max_repeat_distance = 1;
   gof_->announced = frames_of_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced,
                        settings_.target.kind == Target::kMaxError);
@@ -114,7 +116,14 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
   if (!frame) return frame.error();
   std::vector<std::int32_t> positions(xyz.size());
-  for (const auto& unit : gof_->coding->code(frame->xyz, positions)) {
+  std::vector<EncodedGof::Unit> units;
+  if (are_equal_on_grid(frame->xyz, gof_->before)) {
+    units.push_back(gof_->coding->repeat(1, positions));
+  } else {
+    units = gof_->coding->code(frame->xyz, positions);
+  }
+  gof_->before = frame->xyz;
+  for (const auto& unit : units) {
     if (!stream_->add_to_gof(write_unit(unit.type, unit.payload), sink_)) {
       return InputError{"the stream could not be written"};
     }

@@ -34,6 +34,7 @@ class LowDelayEncoder final : public FrameCoder {
     std::optional<FrameCoding> coding;  // refers to the settings
     std::uint32_t announced = 0;        // frames
     std::uint32_t coded = 0;
+    std::vector<double> before;  // the frame before, grid units
   };
 
   std::optional<InputError> begin_stream(std::span<const float> xyz);

@@ -48,6 +48,7 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
   w.flag(settings.learning_flag);
   if (settings.learning_flag) w.u(4, static_cast<std::uint32_t>(settings.prime_log2));
   w.flag(settings.frame_hash_flag);
+  w.ue(settings.max_repeat_distance);
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
   w.byte_alignment();
@@ -57,6 +58,24 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
 void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
   frame_ = frame.frame;
   contexts_.start_frame(place, frame.depth);
+}
+
+// 6.14.2 repeat_of_frame( )
+std::vector<std::uint8_t> FrameUnitWriter::repeat(std::uint32_t frame, std::uint32_t distance) {
+  frame_ = frame;
+  layer_group_ = 0;
+  BitWriter w;
+  start_unit(w);
+  w.flag(true);  // repeat_flag
+  w.ue(distance - 1);
+  w.byte_alignment();
+  return w.take();
+}
+
+void FrameUnitWriter::start_unit(BitWriter& w) const {
+  w.ue(frame_);
+  if (is_open_ended_) w.flag(false);  // gof_end_flag
+  w.ue(layer_group_);
 }
 
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
@@ -72,9 +91,9 @@ void FrameUnitWriter::write(std::int32_t residual) {
 
 std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc) {
   BitWriter w;
-  w.ue(frame_);
-  if (is_open_ended_) w.flag(false);  // gof_end_flag
-  w.ue(layer_group_);
+  start_unit(w);
+  const bool may_repeat = settings_.max_repeat_distance > 0 && layer_group_ == 0 && frame_ > 0;
+  if (may_repeat) w.flag(false);  // repeat_flag
   w.byte_alignment();
   const bool is_last = layer_group_ + 1 == settings_.layer_group_size.size();
   if (settings_.frame_hash_flag && is_last) w.u(32, frame_crc);
@@ -99,6 +118,11 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
   const FrameOrder order(gof.pattern, gof.num_frames);
   for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
     const CodedFrame& frame = (*gof.frames)[order[place].frame];
+    if (frame.repeated) {
+      const std::uint32_t distance = place - order.place_of(*frame.repeated);
+      payloads.frames.push_back(writer.repeat(order[place].frame, distance));
+      continue;
+    }
     if (frame.layer_groups == 0) continue;
     writer.start_frame(place, order[place]);
     std::uint32_t layer = 0;

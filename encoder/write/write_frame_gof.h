@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/bitstream/bit_writer.h"
 #include "common/frame_gof/frame_contexts.h"
 #include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_mesh.h"
@@ -33,6 +34,9 @@ class FrameUnitWriter {
   // finish_group().
   void start_frame(std::uint32_t place, const FramePlace& frame);
   void start_group(std::uint32_t layer_group);
+  // In place of these: the payload of the unit of a frame that repeats the one so many places
+  // before.
+  std::vector<std::uint8_t> repeat(std::uint32_t frame, std::uint32_t distance);
   // For each vertex start(), then write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
   FrameContexts& contexts() { return contexts_; }
@@ -42,6 +46,8 @@ class FrameUnitWriter {
   std::vector<std::uint8_t> finish_group(std::uint32_t frame_crc = 0);
 
  private:
+  void start_unit(BitWriter& w) const;
+
   const FrameSettings& settings_;
   bool is_open_ended_;
   FrameContexts contexts_;

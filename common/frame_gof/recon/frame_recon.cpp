@@ -81,6 +81,8 @@ FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int
 void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const CodedFrame& frame) {
   start_frame(place, last_use);
+  const std::vector<std::int32_t>* const repeated =
+      frame.repeated ? &kept_.at(*frame.repeated).values : nullptr;
   std::uint32_t layer = 0;
   for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
     const bool is_there = j < frame.layer_groups;
@@ -91,15 +93,22 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
         VertexMotion motion;
         for (std::size_t i = first; i < last; ++i) {
           const std::uint32_t v = vertices[i];
-          predict(v, motion, is_there);
-          Vec3i residual{};
-          if (is_there) {
-            for (std::size_t c = 0; c < 3; ++c) {
-              residual[c] = frame.residual[3 * std::size_t{v} + c];
+          const std::size_t own = 3 * std::size_t{v};
+          if (repeated == nullptr || settings_.learning_flag) predict(v, motion, is_there);
+          Vec3i values{};
+          if (repeated != nullptr) {
+            values = {(*repeated)[own], (*repeated)[own + 1], (*repeated)[own + 2]};
+          } else {
+            Vec3i residual{};
+            if (is_there) {
+              residual = {frame.residual[own], frame.residual[own + 1],
+                          frame.residual[own + 2]};
             }
+            values = position(v, motion, residual);
           }
-          set(v, motion, position(v, motion, residual), is_there);
-          adapt(v, motion, is_there, is_there ? frame.expected[v] : 0U);
+          set(v, motion, values, is_there);
+          const bool has_noise = is_there && repeated == nullptr;
+          adapt(v, motion, is_there, has_noise ? frame.expected[v] : 0U);
         }
       };
       if (layer == 0 || vertices.size() <= kTogether) {
@@ -409,7 +418,8 @@ void FrameRecon::end_frame() {
   // This one stays for one frame in any case: what is left of a period that turns out to be
   // shorter may be predicted from it.
   free = values_;
-  kept_[place_.frame] = {std::move(free), std::max(last_use_, number_ + 1)};
+  const std::uint32_t last_repeat = number_ + std::max(1U, settings_.max_repeat_distance);
+  kept_[place_.frame] = {std::move(free), std::max(last_use_, last_repeat)};
   ++number_;
 }
 

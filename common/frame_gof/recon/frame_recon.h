@@ -45,7 +45,8 @@ class FrameRecon {
   // Whether each frame but the first decodes alone; then skip_to() makes another place, from
   // the second on, the next, once the first has been decoded.
   bool has_independent_frames() const {
-    return settings_.pattern.kind == FramePattern::kFirst && !settings_.learning_flag;
+    return settings_.pattern.kind == FramePattern::kFirst && !settings_.learning_flag &&
+           settings_.max_repeat_distance == 0;
   }
   void skip_to(std::uint32_t place);
   // The last frame in grid units, [num_vertices][3].
@@ -116,7 +117,7 @@ class FrameRecon {
   FramePlace place_;                    // the last one started
   std::uint32_t last_use_ = 0;          // of its frame
   std::uint32_t temporal_layer_ = 0;    // likewise
-  std::map<std::uint32_t, Kept> kept_;  // frames that later ones are predicted from
+  std::map<std::uint32_t, Kept> kept_;  // frames that later ones need
   // [num_vertices][3], 1/16 grid units:
   std::vector<std::int32_t> values_;     // FrameValues
   std::vector<std::int32_t> reference_;  // Reference
