@@ -74,7 +74,9 @@ class Bench:
                 return Run(method, clusters, components, found["bpvf"],
                            found["metrics"]["kg_error_percent"], encode_seconds, decode_seconds)
             run = self._runs[key] = self.encode(settings, use)
-            what = f"N = {clusters:2d}, L = {components:3d}" if clusters else f"{settings[-1]} %"
+            what = ", ".join([f"N = {clusters:2d}"] * (clusters > 0)
+                             + [f"L = {components:3d}"] * (components > 0)
+                             + [f"{settings[-1]} %"] * (clusters == 0))
             self.say(f"{method:14}  {what:15}  {run.bpvf:7.3f} bpvf  KG {run.kg:.4f} %")
         return self._runs[key]
 
