@@ -107,11 +107,16 @@ struct MainTools {
 // cheapest for each GOF.
 enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
 
+// Weights with which a vertex of a GOF of frames is predicted from others: learned from the
+// frames before; those of 8.11, from the first frame; or equal ones for its ring, as in
+// Stefanoski et al. 2007.
+enum class FrameWeights : std::uint8_t { kLearned, kGeometry, kPlain };
+
 // Parameters of GOFs of frames, of the High profile.
 struct FrameTools {
   // From which frames each is predicted, and temporal layers to which a stream can be cut.
   FramePattern pattern;
-  bool learning = true;            // weights of prediction learned from the frames before
+  FrameWeights weights = FrameWeights::kLearned;
   std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
 
   bool operator==(const FrameTools&) const = default;

@@ -10,7 +10,8 @@ from tools_testing import INPUTS, NAMES, ToolsTest, main
 class Frames(ToolsTest):
     def test_the_bundled_animations_meet_their_target(self):
         for name in NAMES:
-            for how in ((), ("--frame-weights", "geometry"), ("--frame-pattern", "first"),
+            for how in ((), ("--frame-weights", "geometry"), ("--frame-weights", "plain"),
+                        ("--frame-pattern", "first"),
                         ("--frame-pattern", "dyadic:8"), ("--frame-pattern", "2<0,1<0+2@1")):
                 stream = self.path("a.rlpc")
                 report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind",
@@ -25,12 +26,13 @@ class Frames(ToolsTest):
 
     def test_learned_weights_take_fewer_bytes(self):
         sizes = {}
-        for weights in ("learned", "geometry"):
+        for weights in ("learned", "geometry", "plain"):
             stream = self.path(weights + ".rlpc")
             self.encode(stream, "--kg", 0.1, "--profile", "high", "--gof-kind", "frames",
                         "--frame-weights", weights)
             sizes[weights] = stream.stat().st_size
         self.assertLess(sizes["learned"], 0.6 * sizes["geometry"])
+        self.assertLess(sizes["geometry"], sizes["plain"])
 
     def test_bytes_do_not_depend_on_threads(self):
         streams = []
@@ -112,7 +114,8 @@ class Frames(ToolsTest):
                 (("--profile", "baseline", "--gof-kind", "bones"), "has no bones"),
                 (("--profile", "high", "--gof-kind", "frames", "--bones", 3), "no effect"),
                 (("--profile", "high", "--gof-kind", "bones", "--frame-weights", "geometry"),
-                 "need --profile high and --gof-kind frames")):
+                 "need --profile high and --gof-kind frames"),
+                (("--frame-weights", "plain"), "need --profile high and --gof-kind frames")):
             self.fails(64, words, "rlpcenc", INPUTS / "elephant.obj", *options, "-o",
                        self.path("a.rlpc"))
 

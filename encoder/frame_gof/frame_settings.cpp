@@ -40,9 +40,12 @@ FrameSettings choose_frame_settings(const SequenceHeader& header,
         std::clamp(std::floor(step * kExactFrameStep + 0.5), 1.0, double{kMaxFrameStep}));
     step *= kStepOfDepth;
   }
+  const FrameWeights weights = settings.frames.weights;
   s.weights = {kFrameDamping, kNearWeight, kNearScale, 0};
+  if (weights == FrameWeights::kPlain) s.weights = {};
   const std::uint64_t filters = std::uint64_t{header.num_vertices} * s.pattern.temporal_layers;
-  s.learning_flag = settings.frames.learning && filters <= header.level().max_learning_vertices;
+  s.learning_flag =
+      weights == FrameWeights::kLearned && filters <= header.level().max_learning_vertices;
   s.prime_log2 = s.learning_flag ? kPrime : 0;
   s.frame_hash_flag =
       (header.open_end_flag || settings.low_delay) && settings.hash_mode != HashMode::kNone;

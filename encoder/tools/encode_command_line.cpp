@@ -295,9 +295,13 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
          "entries (see below)")
       ->option_text("WORD")
       ->group(frames);
-  add_choice<bool>(app, "--frame-weights", t.learning, {{"learned", true}, {"geometry", false}},
-                   "Weights of prediction: learned (from the frames before, default), geometry "
-                   "(from the first; larger, faster)")
+  add_choice<FrameWeights>(
+      app, "--frame-weights", t.weights,
+      {{"learned", FrameWeights::kLearned},
+       {"geometry", FrameWeights::kGeometry},
+       {"plain", FrameWeights::kPlain}},
+      "Weights of prediction: learned (from the frames before, default), geometry (from the "
+      "first; larger, faster), plain (equal ones, as in the SSLPC paper)")
       ->group(frames);
 }
 

@@ -3,8 +3,13 @@
 import csv
 import dataclasses
 import json
+import lzma
 import subprocess
 import time
+
+
+FLAT = "Lorenzo + xz"  # as in scripts/compare
+XZ = {"id": lzma.FILTER_LZMA2, "preset": 9 | lzma.PRESET_EXTREME, "lc": 4, "pb": 0}
 
 
 class Failure(Exception):
@@ -69,9 +74,41 @@ class Bench:
                 return Run(method, clusters, components, found["bpvf"],
                            found["metrics"]["kg_error_percent"], encode_seconds, decode_seconds)
             run = self._runs[key] = self.encode(settings, use)
-            what = f"N = {clusters:2d}, L = {components:3d}" if clusters else settings[-1] + " %"
-            self.say(f"{method:7}  {what:15}  {run.bpvf:7.3f} bpvf  KG {run.kg:.4f} %")
+            what = ", ".join([f"N = {clusters:2d}"] * (clusters > 0)
+                             + [f"L = {components:3d}"] * (components > 0)
+                             + [f"{settings[-1]} %"] * (clusters == 0))
+            self.say(f"{method:14}  {what:15}  {run.bpvf:7.3f} bpvf  KG {run.kg:.4f} %")
         return self._runs[key]
+
+    def flat(self, bits):
+        """The Lorenzo predictor in space and time, on a grid of so many bits: as FLAT encodes."""
+        if ("flat", bits) not in self._runs:
+            coded, order, out, mesh = (self.folder / f"flat.{kind}"
+                                       for kind in ("coded", "order", "pc2", "obj"))
+            files = (self.sequence.mesh, self.sequence.points)
+            try:
+                self.call("peer_codec", "order", "lorenzo", *files, "-o", order)
+                _, encode_seconds = self.call("peer_codec", "encode", "lorenzo", *files, "--bits",
+                                              bits, "-o", coded)
+                _, decode_seconds = self.call("peer_codec", "decode", "lorenzo", coded,
+                                              "--order-map", order, "-o", out)
+                size = len(lzma.compress(coded.read_bytes(), filters=[XZ]))
+                found, _ = self.call("rlpccmp", files[0], "--points-a", files[1], files[0],
+                                     "--points-b", out, "--json", "--quiet")
+                kg = json.loads(found)["metrics"]["kg_error_percent"]
+            finally:
+                for path in (coded, order, out, mesh):
+                    path.unlink(missing_ok=True)
+            run = Run(FLAT, 0, 0, 8 * size / self.sequence.size, kg, encode_seconds,
+                      decode_seconds)
+            self._runs["flat", bits] = run
+            self.say(f"{FLAT:14}  {f'{bits} bits':15}  {run.bpvf:7.3f} bpvf  KG {run.kg:.4f} %")
+        return self._runs["flat", bits]
+
+    def info(self, settings, *options):
+        """What rlpcinfo says of a stream with these settings."""
+        return self.encode(settings, lambda stream, *_: json.loads(
+            self.call("rlpcinfo", stream, "--json", *options)[0]))
 
     def frame_errors(self, settings):
         """RMS error of each frame, in units."""

@@ -76,13 +76,16 @@ class Report:
             csv.writer(file).writerows([head, *rows])
         self.files.append(name)
 
+    def text(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        self.files.append(name)
+
     def save(self):
         """Writes report.md and index.html."""
         markdown = f"# {self.title}\n\n" + "\n".join(b.markdown() for b in self.blocks)
-        (self.folder / "report.md").write_text(markdown, encoding="utf-8")
+        self.text("report.md", markdown)
         page = ("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
                 f"<title>{html.escape(self.title)}</title><style>{report.STYLE}</style></head>"
                 f"<body><h1>{html.escape(self.title)}</h1>\n"
                 + "".join(b.html() for b in self.blocks) + "</body></html>\n")
-        (self.folder / "index.html").write_text(page, encoding="utf-8")
-        self.files += ["report.md", "index.html"]
+        self.text("index.html", page)

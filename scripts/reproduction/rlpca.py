@@ -1,23 +1,13 @@
 #!/usr/bin/env python3
 """The tables and figures of the RLPCA paper, made with our tools; called by scripts/reproduce."""
 
-import argparse
-import pathlib
 import re
-import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("comparison", "figures")]
-import inputs  # noqa: E402
-import measure  # noqa: E402
-import plots  # noqa: E402
-import report  # noqa: E402
-
-import bench as benches  # noqa: E402
-import page  # noqa: E402
-import rlpca_findings  # noqa: E402
-import rlpca_paths  # noqa: E402
-import rlpca_published as published  # noqa: E402
+import paper  # first: it adds folders to sys.path
+import rlpca_findings
+import rlpca_paths
+import rlpca_published as published
+from paper import OURS, page, plots, report
 
 METHODS = {  # options beside N, L and the quantisers, and a colour (as in figure 6 (a))
     "PCA": (["--frame", "world", "--no-rdo"], "#8a8a8a"),
@@ -25,7 +15,6 @@ METHODS = {  # options beside N, L and the quantisers, and a colour (as in figur
     "RLPCA": (["--frame", "lcf", "--no-rdo"], "#0072b2"),
     "ORLPCA": (["--frame", "lcf", "--rdo-rate", "vectors"], "#d55e00"),
 }
-OURS = {"Main": ("main", "#111111"), "High": ("high", "#8e44ad")}
 COMPONENTS = (2, 4, 6, 10, 15, 20, 30, 40)
 PCA_COMPONENTS = (5, 10, 20, 30, 45, 60, 80, 100)
 TARGETS = (3, 2, 1, 0.5, 0.3, 0.2, 0.1, 0.05)
@@ -51,13 +40,10 @@ NOT_TESTED = (
     "for the published numbers, CPCA.")
 
 
-class Reproduction:
+class Reproduction(paper.Paper):
     def __init__(self, bench, folder, quick):
-        self.bench, self.quick = bench, quick
-        self.step = 2 if quick else 1
-        self.sequence = bench.sequence
+        super().__init__("RLPCA", bench, folder, quick)
         self.model = published.model_of(self.sequence.num_vertices, self.sequence.num_frames)
-        self.report = page.Report(f"RLPCA on {self.sequence.name}", folder, bench.tools)
         self.curves = {}  # (method, N): runs
 
     def settings(self, method, clusters, components, bits=BITS):
@@ -67,9 +53,6 @@ class Reproduction:
     def run(self, method, clusters, components, bits=BITS):
         return self.bench.run(method, self.settings(method, clusters, components, bits), clusters,
                               components)
-
-    def at_error(self, name, kg):
-        return self.bench.run(name, ["--profile", OURS[name][0], "--kg", f"{kg:.6g}"])
 
     def run_curves(self):
         frames = self.sequence.num_frames
@@ -109,49 +92,37 @@ class Reproduction:
                 for r in (main, high):
                     cells += [f"{r.bpvf:.3f}", f"{r.kg:.4f}"]
             rows.append([*map(str, cells), *["-"] * (len(head) - len(cells))])
-        self.report.add(page.Heading("Table 1: rate, error and time"))
+        self.heading("Table 1: rate, error and time")
         table = report.Table("Table 1", head, rows)
         self.report.add(table)
         self.report.add(page.Text(NOTE))
         if self.model is published.COW:
             self.report.add(page.Text(COW_NOTE))
-        self.report.csv("table.csv", head, rows)
-        (self.report.folder / "table.md").write_text(table.markdown() + f"\n{NOTE}\n",
-                                                     encoding="utf-8")
-        self.report.files.append("table.md")
+        self.tables([table], NOTE)
         return done
 
     def plot_curves(self):
-        rows = [[r.method, r.clusters or "", r.components or "", r.bpvf, r.kg,
-                 f"{r.encode_seconds:.3f}", f"{r.decode_seconds:.3f}"]
-                for runs in self.curves.values() for r in runs]
-        self.report.csv("curves.csv", ["method", "clusters", "components", "bpvf",
-                                       "kg_error_percent", "encode_seconds", "decode_seconds"], rows)
-        axes = ("bits per vertex and frame (everything counted)", "KG error, per cent")
+        self.report.csv("curves.csv", *paper.curve_rows(self.curves))
         series = []
         for (method, clusters), runs in self.curves.items():
             if clusters == 20:  # in figure 6 (f)
                 continue
             name = f"{method}, N = {clusters}" if clusters > 1 else method
             colour = METHODS[method][1] if method in METHODS else OURS[method][1]
-            series.append(plots.Series(name, [(r.bpvf, r.kg) for r in runs if r.kg > 0], colour,
-                                       CLUSTERS.get(clusters, "solid"),
-                                       width=2.0 if method in METHODS else 2.8))
+            series.append(paper.line(name, runs, colour, CLUSTERS.get(clusters, "solid"),
+                                     2.0 if method in METHODS else 2.8))
         own = [row for row in published.TABLE if row.model is self.model]
         if own:
-            series += [plots.Series("RLPCA as published", [(r.bpvf, r.kg) for r in own],
-                                    METHODS["RLPCA"][1], "none", "square"),
-                       plots.Series("CPCA as published", [r.cpca[:2] for r in own], "#cc79a7",
-                                    "none", "square")]
-        self.report.add(page.Heading("Figure 6 (b), (c), (e): rate and distortion"))
-        title = f"{self.sequence.name}: rate and distortion, one group of frames"
-        self.report.plot("curves", plots.Plot(title, series, *axes))
-        self.report.add(page.Heading("Figure 6 (f): number of clusters"))
-        series = [plots.Series(f"RLPCA, N = {n}",
-                               [(r.bpvf, r.kg) for r in self.curves["RLPCA", n] if r.kg > 0],
-                               COUNT_COLOURS[n]) for n in sorted(CLUSTERS)]
-        self.report.plot("clusters", plots.Plot(f"{self.sequence.name}: number of clusters", series,
-                                                *axes))
+            series += [paper.published_points("RLPCA as published", [(r.bpvf, r.kg) for r in own],
+                                              METHODS["RLPCA"][1]),
+                       paper.published_points("CPCA as published", [r.cpca[:2] for r in own],
+                                              published.CPCA_COLOUR)]
+        self.heading("Figure 6 (b), (c), (e): rate and distortion")
+        self.plot("curves", "rate and distortion, one group of frames", series)
+        self.heading("Figure 6 (f): number of clusters")
+        self.plot("clusters", "number of clusters",
+                  [paper.line(f"RLPCA, N = {n}", self.curves["RLPCA", n], COUNT_COLOURS[n])
+                   for n in sorted(CLUSTERS)])
 
     def frames(self, name, heading, title, runs):
         """Figures of the error of each frame. runs: label, (method, N, L, colour). Returns the
@@ -164,9 +135,8 @@ class Reproduction:
                                        list(enumerate(errors[label])), colour, marker="none"))
         self.report.csv(f"{name}.csv", ["frame", *(f"{x}_rms_error" for x in errors)],
                         [[f, *e] for f, e in enumerate(zip(*errors.values()))])
-        self.report.add(page.Heading(heading))
-        self.report.plot(name, plots.Plot(f"{self.sequence.name}: {title}", series, "frame",
-                                          "RMS error, units", log_x=False, log_y=False))
+        self.heading(heading)
+        self.plot(name, title, series, "frame", "RMS error, units", log_x=False, log_y=False)
         return errors
 
     def seeds(self):
@@ -185,14 +155,13 @@ class Reproduction:
                                       "local_z"],
                         [[path.vertex, f, *world, *local] for path in found
                          for f, (world, local) in enumerate(zip(path.world, path.local))])
-        self.report.add(page.Heading("Figure 2: paths of six vertices"))
+        self.heading("Figure 2: paths of six vertices")
         for name, words in (("world", "world coordinates"), ("local", "local coordinates")):
             lines = rlpca_paths.projected([getattr(path, name) for path in found])
             series = [plots.Series(f"vertex {path.vertex}", line, colour, marker="none")
-                      for path, line, colour in zip(found, lines, plot_colours())]
-            self.report.plot(f"paths_{name}", plots.Plot(
-                f"{self.sequence.name}: six vertices in {words}, widest axes", series, "", "",
-                log_x=False, log_y=False))
+                      for path, line, colour in zip(found, lines, paper.COLOURS)]
+            self.plot(f"paths_{name}", f"six vertices in {words}, widest axes", series, "", "",
+                      log_x=False, log_y=False)
         return found
 
     def make(self):
@@ -209,60 +178,18 @@ class Reproduction:
                                 for (n, l), colour in SETTINGS.items()})
         paths = self.paths()
         items = rlpca_findings.claims_of_paper(self, methods, settings, paths)
-        self.report.add(page.Heading("Claims of the paper"))
+        self.heading("Claims of the paper")
         self.report.add(page.Items(items))
         self.report.add(page.Text(NOT_TESTED))
         own = [row for row in done if row[0].model is self.model]
         if own:
             found = rlpca_findings.against_published(self, own)
-            self.report.add(page.Heading("Against the published numbers"))
+            self.heading("Against the published numbers")
             self.report.add(page.Items(found))
             items += found
         self.report.save()
         return items
 
 
-def plot_colours():
-    return ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#111111")
-
-
-def find_sequences(words):
-    """The bundled elephant; bundled animations by name; or pairs of files (scripts/compare)."""
-    bundled = ROOT / "streams" / "inputs"
-    paths = [str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file() and
-             not pathlib.Path(word).exists() else word for word in words or ["elephant"]]
-    found = inputs.find(paths)
-    for one in found:
-        if not one.is_pair:
-            raise measure.Failure(f"{one.path}: expected a mesh (.obj) and a point cache (.pc2); "
-                                  "rlpcdec writes both")
-    return [measure.open_sequence(one.path, one.points) for one in found]
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", type=pathlib.Path, required=True)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("-o", dest="folder", type=pathlib.Path)
-    parser.add_argument("sequences", nargs="*")
-    options = parser.parse_args()
-    try:
-        sequences = find_sequences(options.sequences)
-        for sequence in sequences:
-            folder = options.folder or ROOT / "build" / "reproduce"
-            if options.folder is None or len(sequences) > 1:
-                folder = folder / sequence.name
-            folder.mkdir(parents=True, exist_ok=True)
-            bench = benches.Bench(options.bin.resolve(), sequence, folder,
-                                  lambda line: print(line, flush=True))
-            made = Reproduction(bench, folder, options.quick)
-            items = made.make()
-            print(f"\n{(folder / 'table.md').read_text(encoding='utf-8')}")
-            print("\n".join(items))
-            print(f"\nreproduce: wrote to {folder}: {', '.join(sorted(made.report.files))}")
-    except (benches.Failure, measure.Failure, plots.Failure) as failure:
-        sys.exit(f"reproduce: {failure}")
-
-
 if __name__ == "__main__":
-    main()
+    paper.main("rlpca", __doc__, Reproduction)

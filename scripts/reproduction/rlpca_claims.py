@@ -1,31 +1,7 @@
 """Which claims of the RLPCA paper hold for measured runs, in words."""
 
 import arithmetic
-
-
-SAME = 1e-3  # relative difference of errors
-
-
-def verdict(good, cases):
-    if cases == 0:
-        return "Not tested"
-    if good == cases:
-        return "Holds"
-    return "Holds mostly" if 2 * good > cases else "Does not hold"
-
-
-def counted(claim, good, cases, more=""):
-    """A claim about `cases` comparisons, `good` of which agree."""
-    found = f"{good} of {cases}" if cases else "no comparison is possible"
-    return f"{verdict(good, cases)}: {claim} ({found}{'; ' + more if more else ''})."
-
-
-def percent(ratio):
-    return f"{100 * (ratio - 1):+.0f} %"
-
-
-def curve(runs):
-    return [(r.kg, r.bpvf) for r in runs]
+from claims import SAME, NEGLIGIBLE, counted, curve, percent
 
 
 def equal_settings(claim, better, worse):
@@ -40,15 +16,6 @@ def equal_settings(claim, better, worse):
     return counted(claim, sum(r < 1 for r in different), len(different), more)
 
 
-def equal_rate(claim, pairs):
-    """Rates of two methods over the errors that both reach. pairs: name, better, worse."""
-    rates = [(name, arithmetic.bd_rate(curve(better), curve(worse)))
-             for name, better, worse in pairs]
-    rates = [(name, rate) for name, rate in rates if rate is not None]
-    more = ", ".join(f"{name}: {rate:+.0f} % bits at equal error" for name, rate in rates)
-    return counted(claim, sum(rate < 0 for _, rate in rates), len(rates), more)
-
-
 def frame_by_frame(claim, better, worse):
     """Errors of each frame; those that hardly differ do not count."""
     different = [(b, w) for b, w in zip(better, worse) if abs(b - w) > SAME * w]
@@ -58,11 +25,11 @@ def frame_by_frame(claim, better, worse):
 
 
 def quantiser(claim, coarse, fine):
-    """12 bits against more. Negligible: the error grows by less than 1 %."""
+    """12 bits against more."""
     ratios = [c.kg / f.kg for c, f in zip(coarse, fine) if f.kg > 0]
     more = "; ".join(f"N = {c.clusters}, L = {c.components}: error {percent(c.kg / f.kg)}"
                      for c, f in zip(coarse, fine) if f.kg > 0)
-    return counted(claim, sum(r < 1.01 for r in ratios), len(ratios), more)
+    return counted(claim, sum(r <= NEGLIGIBLE for r in ratios), len(ratios), more)
 
 
 def seeds(claim, rates):
@@ -82,16 +49,6 @@ def best_count(runs_of_count):
         wins[min(curves, key=lambda n: arithmetic.size_at(curves[n], kg))] += 1
     found = ", ".join(f"N = {n} at {count}" for n, count in wins.items())
     return f"Of {len(errors)} errors that all numbers of clusters reach, fewest bits: {found}."
-
-
-def at_published_errors(claim, runs, points):
-    """points: (kg, bpvf) of the paper; those beyond the runs do not count."""
-    least = min(run.kg for run in runs)
-    most = max(run.kg for run in runs)
-    ratios = [(kg, arithmetic.size_at(curve(runs), kg) / bpvf) for kg, bpvf in points
-              if least <= kg <= most]
-    more = ", ".join(f"KG {kg:g} %: {percent(ratio)} bits" for kg, ratio in ratios)
-    return counted(claim, sum(ratio < 1 for _, ratio in ratios), len(ratios), more)
 
 
 def published(rows):

@@ -1,9 +1,8 @@
 """Tests the claims of the RLPCA paper on the runs of a reproduction (rlpca.Reproduction)."""
 
-import json
-
 import arithmetic
-import rlpca_claims as claims
+import claims
+import rlpca_claims as rlpca
 import rlpca_paths
 
 BITS, FINE_BITS = 12, 16
@@ -17,10 +16,8 @@ def _seed_rates(made):
         for clusters in (10, 30):
             settings = made.settings("RLPCA", clusters, 10)
             settings[settings.index("--qdelta") + 1] = bits
-            out = made.bench.encode(settings, lambda stream, *_: made.bench.call(
-                "rlpcinfo", stream, "--json")[0])
-            rates.append((bits, clusters,
-                          json.loads(out)["bits"]["seed tracks"] / made.sequence.size))
+            rates.append((bits, clusters, made.bench.info(settings)["bits"]["seed tracks"]
+                          / made.sequence.size))
     return rates
 
 
@@ -34,11 +31,11 @@ def _at_settings(made):
                 for n in COUNTS]
 
     return [
-        claims.equal_settings("local coordinates have a smaller error than world coordinates, at "
+        rlpca.equal_settings("local coordinates have a smaller error than world coordinates, at "
                               "equal N and L", all_of("RLPCA"), all_of("LPCA")),
         claims.equal_rate("local coordinates take fewer bits than world coordinates, at equal error",
                           pairs("RLPCA", "LPCA")),
-        claims.equal_settings("distributing components by rate and distortion lowers the error, at "
+        rlpca.equal_settings("distributing components by rate and distortion lowers the error, at "
                               "equal N and L", all_of("ORLPCA"), all_of("RLPCA")),
         claims.equal_rate("distributing components by rate and distortion takes fewer bits, at "
                           "equal error", pairs("ORLPCA", "RLPCA")),
@@ -48,13 +45,13 @@ def _at_settings(made):
 
 def _of_frames(methods, settings):
     return [
-        claims.frame_by_frame("in each frame, RLPCA has a smaller error than LPCA, N = L = 10",
+        rlpca.frame_by_frame("in each frame, RLPCA has a smaller error than LPCA, N = L = 10",
                               methods["RLPCA"], methods["LPCA"]),
-        claims.frame_by_frame("in each frame, ORLPCA has a smaller error than RLPCA, N = L = 10",
+        rlpca.frame_by_frame("in each frame, ORLPCA has a smaller error than RLPCA, N = L = 10",
                               methods["ORLPCA"], methods["RLPCA"]),
-        claims.frame_by_frame("in each frame, more components lower the error, N = 20, L = 20 "
+        rlpca.frame_by_frame("in each frame, more components lower the error, N = 20, L = 20 "
                               "against 10", settings["(20, 20)"], settings["(20, 10)"]),
-        claims.frame_by_frame("in each frame, more clusters lower the error, L = 10, N = 20 against "
+        rlpca.frame_by_frame("in each frame, more clusters lower the error, L = 10, N = 20 against "
                               "10", settings["(20, 10)"], settings["(10, 10)"]),
     ]
 
@@ -79,12 +76,12 @@ def claims_of_paper(made, methods, settings, paths):
     steadier = [rlpca_paths.spread(p.local) < rlpca_paths.spread(p.world) for p in paths]
     return [
         *_at_settings(made), *_of_frames(methods, settings),
-        claims.quantiser(f"the error of {BITS} bits for eigenshapes and coefficients is negligible, "
+        rlpca.quantiser(f"the error of {BITS} bits for eigenshapes and coefficients is negligible, "
                          f"against {FINE_BITS} bits", coarse, fine),
-        claims.seeds("seeds take 0.01 to 1 bpvf with 12 to 16 bits", _seed_rates(made)),
+        rlpca.seeds("seeds take 0.01 to 1 bpvf with 12 to 16 bits", _seed_rates(made)),
         claims.counted("vertices vary less in local coordinates (RMS distance from their mean "
                        "position)", sum(steadier), len(steadier)),
-        claims.best_count({n: made.curves["RLPCA", n] for n in COUNTS}),
+        rlpca.best_count({n: made.curves["RLPCA", n] for n in COUNTS}),
         *_ours(made),
     ]
 
@@ -99,4 +96,4 @@ def against_published(made, rows):
              for method in ("RLPCA", "ORLPCA")
              for theirs, points in (("RLPCA", [(r.kg, r.bpvf) for r, *_ in rows]),
                                     ("CPCA", [(r.cpca[1], r.cpca[0]) for r, *_ in rows]))]
-    return items + claims.published(rows)
+    return items + rlpca.published(rows)

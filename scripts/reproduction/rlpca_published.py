@@ -27,6 +27,7 @@ class Row:
 CHICKEN = Model("chicken", 3030, 400)
 COW = Model("cow", 2904, 204)
 DOLPHIN = Model("dolphin", 6179, 101)
+CPCA_COLOUR = "#cc79a7"  # in plots
 
 TABLE = (
     Row(CHICKEN, 20, 20, 3.5, 0.008, 120, 69, (4.7, 0.076, 206, 214)),

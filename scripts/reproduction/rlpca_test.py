@@ -1,32 +1,15 @@
 #!/usr/bin/env python3
 """scripts/reproduce rlpca: its arithmetic and sentences, and with --bin a small run."""
 
-import argparse
 import csv
 import math
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
-import xml.etree.ElementTree
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("scripts/comparison", "scripts/figures",
-                                                  "scripts/reproduction", "conformance/cli")]
-import rlpca_claims as claims  # noqa: E402
-import rlpca_paths as paths  # noqa: E402
-import rlpca_published as published  # noqa: E402
-from bench import Run  # noqa: E402
-from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2  # noqa: E402
-
-
-class Tools:
-    folder = None  # --bin
-
-
-def runs(*points, clusters=10):
-    return [Run("", clusters, l, bpvf, kg, 0.0, 0.0) for l, bpvf, kg in points]
+from reproduction_testing import Reproduced, main, runs
+import rlpca_claims as claims
+import rlpca_paths as paths
+import rlpca_published as published
+from bench import Run
 
 
 class Published(unittest.TestCase):
@@ -59,17 +42,6 @@ class Claims(unittest.TestCase):
                             claims.equal_settings("x", better, worse))
         self.assertIn("Not tested", claims.equal_settings("x", runs(*self.WORSE, clusters=20), worse))
 
-    def test_equal_rate(self):
-        worse = runs(*self.WORSE)
-        half = runs(*((l, bpvf / 2, kg) for l, bpvf, kg in self.WORSE))
-        self.assertEqual(claims.equal_rate("x", [("N", half, worse)]),
-                         "Holds: x (1 of 1; N: -50 % bits at equal error).")
-        self.assertEqual(claims.equal_rate("x", [("N", worse, half), ("M", half, worse)]),
-                         "Does not hold: x (1 of 2; N: +100 % bits at equal error, "
-                         "M: -50 % bits at equal error).")
-        apart = runs((2, 1.0, 20.0), (4, 2.0, 10.0))
-        self.assertIn("Not tested", claims.equal_rate("x", [("N", apart, worse)]))
-
     def test_frames(self):
         self.assertEqual(claims.frame_by_frame("x", [1, 1, 1], [2, 2, 1]),
                          "Holds: x (2 of 2; 1 more frames are equal).")
@@ -90,12 +62,6 @@ class Claims(unittest.TestCase):
         self.assertEqual(claims.best_count({10: few, 20: many}),
                          "Of 2 errors that all numbers of clusters reach, fewest bits: N = 10 at 2, "
                          "N = 20 at 0.")
-
-
-    def test_at_published_errors(self):
-        self.assertEqual(claims.at_published_errors("x", runs(*self.WORSE),
-                                                    [(1.0, 4.0), (2.0, 0.5), (0.1, 1.0)]),
-                         "Does not hold: x (1 of 2; KG 1 %: -50 % bits, KG 2 %: +100 % bits).")
 
     def test_published(self):
         row = published.TABLE[3]
@@ -132,33 +98,10 @@ class Paths(unittest.TestCase):
         self.assertEqual(paths.projected(flat), [[(0.0, 0.0), (1.0, 0.5)]])
 
 
-class SmallRun(unittest.TestCase):
-    def setUp(self):
-        if Tools.folder is None:
-            self.skipTest("no --bin")
-        temporary = tempfile.TemporaryDirectory(prefix="rlpc-reproduce-test-")
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-
-    def reproduce(self, *arguments, code=0, tools=None):
-        done = subprocess.run([ROOT / "scripts" / "reproduce", *arguments, "--bin",
-                               tools or Tools.folder, "-o", self.folder / "out"],
-                              capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done
-
-    def rows(self, name):
-        with open(self.folder / "out" / name, newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-
+class SmallRun(Reproduced):
     def test_an_animation_of_the_user(self):
-        _, triangles = read_obj(INPUTS / "robot_arm.obj")
-        frames = read_pc2(INPUTS / "robot_arm.pc2")[:20]
-        mesh, points = self.folder / "my arm.obj", self.folder / "my cache.pc2"
-        write_obj(mesh, frames[0], triangles)
-        write_pc2(points, frames)
+        mesh, points, frames = self.short_arm(20)
         done = self.reproduce("rlpca", "--quick", mesh, points)
-        out = self.folder / "out"
         self.assertRegex(done.stdout, r"\n(Holds|Does not hold)")
         curves = self.rows("curves.csv")
         self.assertEqual({r["method"] for r in curves},
@@ -177,19 +120,14 @@ class SmallRun(unittest.TestCase):
         for c, expected in zip("xyz", frames[0][at:at + 3]):
             self.assertAlmostEqual(float(first[c]), expected, 5)
         self.assertTrue(math.isfinite(float(first["local_x"])))
-        with open(out / "table.csv", newline="", encoding="utf-8") as file:
+        with open(self.out / "table.csv", newline="", encoding="utf-8") as file:
             table = list(csv.reader(file))
         self.assertEqual(len(table), 1 + len(published.TABLE))
         self.assertTrue(all(row[0].endswith("(another sequence)") for row in table[1:]))
         cow = [row for row in table if row[0].startswith("cow")]
         self.assertTrue(all("-" not in row for row in cow))
-        for name in ("curves", "clusters", "frames", "frames_settings", "paths_world",
-                     "paths_local"):
-            xml.etree.ElementTree.parse(out / f"{name}.svg")
-            self.assertIn(f"({name}.svg)", (out / "report.md").read_text(encoding="utf-8"))
-        page = (out / "index.html").read_text(encoding="utf-8")
-        xml.etree.ElementTree.fromstring(page.split("\n", 1)[1])
-        self.assertEqual(sorted(p.name for p in out.iterdir() if p.suffix in (".rlpc", ".order")), [])
+        self.expect_pages(["curves", "clusters", "frames", "frames_settings", "paths_world",
+                           "paths_local"])
 
     def test_failures(self):
         lone = self.folder / "lone.obj"
@@ -202,13 +140,5 @@ class SmallRun(unittest.TestCase):
                                       "directory; leave out --bin to have the tools built\n")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", type=pathlib.Path)
-    options, rest = parser.parse_known_args()
-    Tools.folder = options.bin.resolve() if options.bin else None
-    unittest.main(argv=[sys.argv[0], *rest])
-
-
 if __name__ == "__main__":
-    main()
+    main(__doc__)

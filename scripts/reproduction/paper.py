@@ -1,0 +1,106 @@
+"""What the reproductions of all papers share: a report on one animation, the Main and High profiles
+beside it, and the command line."""
+
+import argparse
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("comparison", "figures")]
+import inputs  # noqa: E402
+import measure  # noqa: E402
+import plots  # noqa: E402
+import report  # noqa: E402
+
+import bench as benches  # noqa: E402
+import page  # noqa: E402
+
+OURS = {"Main": ("main", "#111111"), "High": ("high", "#8e44ad")}
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#111111")
+RATE = "bits per vertex and frame (everything counted)"
+KG = "KG error, per cent"
+
+
+class Paper:
+    """name: of the paper, in titles."""
+
+    def __init__(self, name, bench, folder, quick):
+        self.bench, self.quick = bench, quick
+        self.step = 2 if quick else 1  # of lists of settings
+        self.sequence = bench.sequence
+        self.report = page.Report(f"{name} on {self.sequence.name}", folder, bench.tools)
+
+    def at_error(self, name, kg):
+        """A run of Main or High."""
+        return self.bench.run(name, ["--profile", OURS[name][0], "--kg", f"{kg:.6g}"])
+
+    def plot(self, name, title, series, x_label=RATE, y_label=KG, **scales):
+        title = f"{self.sequence.name}: {title}"
+        self.report.plot(name, plots.Plot(title, series, x_label, y_label, **scales))
+
+    def heading(self, text):
+        self.report.add(page.Heading(text))
+
+    def tables(self, tables, note):
+        """Adds tables (report.Table), the first of them to table.csv; all to table.md."""
+        self.report.csv("table.csv", tables[0].head, tables[0].rows)
+        self.report.text("table.md", "\n".join([*(t.markdown() for t in tables), f"{note}\n"]))
+
+
+def curve_rows(curves):
+    """CSV of the runs of all curves: head, rows."""
+    return (["method", "clusters", "components", "bpvf", "kg_error_percent", "encode_seconds",
+             "decode_seconds"],
+            [[r.method, r.clusters or "", r.components or "", r.bpvf, r.kg,
+              f"{r.encode_seconds:.3f}", f"{r.decode_seconds:.3f}"]
+             for runs in curves.values() for r in runs])
+
+
+def line(name, runs, colour, style="solid", width=2.0):
+    points = [(r.bpvf, r.kg) for r in runs if r.kg > 0]
+    return plots.Series(name, points, colour, style, width=width)
+
+
+def published_points(name, points, colour):
+    """points: (bpvf, KG)."""
+    return plots.Series(name, list(points), colour, "none", "square")
+
+
+def find_sequences(words):
+    """The bundled elephant; bundled animations by name; or pairs of files (scripts/compare)."""
+    bundled = ROOT / "streams" / "inputs"
+    paths = [str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file() and
+             not pathlib.Path(word).exists() else word for word in words or ["elephant"]]
+    found = inputs.find(paths)
+    for one in found:
+        if not one.is_pair:
+            raise measure.Failure(f"{one.path}: expected a mesh (.obj) and a point cache (.pc2); "
+                                  "rlpcdec writes both")
+    return [measure.open_sequence(one.path, one.points) for one in found]
+
+
+def main(paper, description, reproduction):
+    """paper: a folder of build/reproduce. reproduction(bench, folder, quick).make() returns
+    sentences."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--bin", type=pathlib.Path, required=True)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("-o", dest="folder", type=pathlib.Path)
+    parser.add_argument("sequences", nargs="*")
+    options = parser.parse_args()
+    try:
+        sequences = find_sequences(options.sequences)
+        for sequence in sequences:
+            folder = options.folder or ROOT / "build" / "reproduce" / paper
+            if options.folder is None or len(sequences) > 1:
+                folder = folder / sequence.name
+            folder.mkdir(parents=True, exist_ok=True)
+            bench = benches.Bench(options.bin.resolve(), sequence, folder,
+                                  lambda text: print(text, flush=True))
+            made = reproduction(bench, folder, options.quick)
+            items = made.make()
+            print(f"\n{(folder / 'table.md').read_text(encoding='utf-8')}")
+            print("\n".join(items))
+            print(f"\nreproduce: wrote to {folder}: {', '.join(sorted(made.report.files))}")
+    except (benches.Failure, measure.Failure, plots.Failure) as failure:
+        sys.exit(f"reproduce: {failure}")

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""scripts/reproduce sslpc: its numbers and sentences, and with --bin a small run."""
+
+import unittest
+
+from reproduction_testing import Reproduced, main, runs
+import sslpc_findings as findings
+import sslpc_published as published
+
+
+class Published(unittest.TestCase):
+    def test_layers_are_those_of_the_paper(self):
+        for mesh in (published.CHICKEN, published.COW):
+            self.assertEqual(sum(mesh.layers), mesh.model.num_vertices)
+        self.assertEqual([round(100 * g, 1) for g in published.COW.growth[1:]],
+                         [37.9, 35.5, 38.2, 36.2, 39.3])
+        self.assertEqual([round(100 * g, 1) for g in published.CHICKEN.growth[1:]],
+                         [32.4, 39.4, 37.6, 37.0, 39.9, 38.7, 41.0])
+
+    def test_large_errors(self):
+        self.assertAlmostEqual(published.LARGE, 0.6)
+
+
+class Findings(unittest.TestCase):
+    COARSE, FINE = (1, 1.0, 1.0), (1, 4.0, 0.1)
+
+    def test_growth(self):
+        self.assertEqual(findings.layer_growth([100, 38, 52, 190], 3),
+                         "Holds mostly: each layer adds about 38 % of vertices, here within 6 "
+                         "points, the finest 3 (2 of 3; 38.0 %, 37.7 %, 100.0 %).")
+
+    def test_layers_of_the_cow(self):
+        self.assertEqual(findings.against_cow([5, 9, 1, 2, 3, 4, 6]),
+                         "Vertices of the finest layers, ours and published: 1 and 225, 2 and 290, "
+                         "3 and 423, 4 and 554, 6 and 819; ours go on to a base of 5 in 7 layers, "
+                         "that of the paper has 593.")
+
+    def test_large_errors(self):
+        flat = runs(self.COARSE, self.FINE)
+        for rate, words in ((0.8, "Holds"), (0.85, "Does not hold")):
+            found = findings.large_errors("X", 16, runs((1, rate, 1.0), (1, 1.0, 0.1)), flat)
+            self.assertIn(f"{words}: at KG errors above 0.6 %, X takes over 16 % fewer bits", found)
+            self.assertIn(f"1 of 1; KG 1 %: {100 * rate - 100:.0f} %" if words == "Holds" else
+                          "0 of 1", found)
+
+    def test_growing_gain(self):
+        worse = runs(self.COARSE, self.FINE)
+        for coarse, fine, words in ((0.5, 3.6, "Holds: x (1 of 1; KG 0.1 %: -10 %, KG 1 %: -50 %"),
+                                    (0.9, 2.0, "Does not hold: x (0 of 1")):
+            better = runs((1, coarse, 1.0), (1, fine, 0.1))
+            self.assertIn(words, findings.grows("x", better, worse))
+
+
+class SmallRun(Reproduced):
+    def test_an_animation_of_the_user(self):
+        mesh, points, frames = self.short_arm(17)
+        self.reproduce("sslpc", "--quick", mesh, points)
+        curves = self.rows("curves.csv")
+        methods = {row["method"] for row in curves}
+        self.assertLessEqual({"SSLPC", "STSLPC", "SSLPC, learned", "STSLPC, learned",
+                              "Lorenzo + xz", "Main", "High"}, methods)
+        self.assertEqual(len([m for m in methods if "layers" in m]), 4)
+        self.assertTrue(all(float(row["bpvf"]) > 0 for row in curves))
+        layers = self.rows("layers.csv")
+        ours = [int(row["ours, my arm"]) for row in layers if row["ours, my arm"]]
+        self.assertEqual(ours[-1], len(frames[0]) // 3)
+        self.assertEqual(ours[-1], sum(ours[:-1]))
+        cuts = self.rows("cuts.csv")
+        self.assertEqual(int(cuts[-1]["vertices"]), ours[-1])
+        self.assertEqual(cuts[-1]["of all frame bytes"], "100.0 %")
+        self.expect_pages(["curves"])
+
+
+if __name__ == "__main__":
+    main(__doc__)
