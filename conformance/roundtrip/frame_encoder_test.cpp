@@ -225,6 +225,40 @@ TEST(FrameEncoder, WithLowDelayAFrameIsOutWhenItIsIn) {
   }
 }
 
+// GOFs of equal length where their number is known; one where they may be of any length.
+TEST(FrameEncoder, WithLowDelayAndANumberOfFrames) {
+  MemoryFrames source = bending_tube(80, 50);
+  for (const std::uint32_t gof_frames : {20U, EncoderSettings::kWholeSequence}) {
+    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, gof_frames);
+    settings.low_delay = true;
+    const auto encoded = encode_frames(source, settings);
+    EXPECT_EQ(encoded.report.num_gofs, gof_frames == 20U ? 3U : 1U);
+    EXPECT_EQ(encoded.report.header.num_frames, 50U);
+    require_conforming(encoded.bytes);
+  }
+}
+
+TEST(FrameEncoder, WithLowDelayAPoseThatIsHeldTakesAFewBytes) {
+  MemoryFrames source = bending_tube(80, 2);
+  FrameFormat format = format_of(source);
+  format.num_frames = 0;
+  EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+  settings.low_delay = true;
+  StreamBytes bytes;
+  auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return true;
+  });
+  ASSERT_TRUE(encoder);
+  ASSERT_FALSE(encoder->add_frame(frame_of(source, 0)));
+  ASSERT_FALSE(encoder->add_frame(frame_of(source, 1)));
+  const std::size_t before = bytes.size();
+  for (int i = 0; i < 3; ++i) ASSERT_FALSE(encoder->add_frame(frame_of(source, 1)));
+  EXPECT_LE(bytes.size(), before + 3 * 16);
+  ASSERT_TRUE(encoder->finish());
+  require_conforming(bytes);
+}
+
 TEST(FrameEncoder, WithoutAFrameThereIsNoStream) {
   MemoryFrames source = bending_tube(8, 4);
   FrameFormat format = format_of(source);

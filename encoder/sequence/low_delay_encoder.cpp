@@ -63,9 +63,9 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
 
 std::uint32_t LowDelayEncoder::frames_of_gof() const {
   const std::uint32_t left = coding_->header().num_frames - num_added_;
-  const std::uint32_t longest = longest_gof(settings_);
+  const std::uint32_t longest = std::min(longest_gof(settings_), left);
   // GOFs of about the same length, if the number of frames is known.
-  if (coding_->header().open_end_flag) return std::min(longest, left);
+  if (coding_->header().open_end_flag) return longest;
   const std::uint32_t gofs = (left + longest - 1) / longest;
   return (left + gofs - 1) / gofs;
 }
