@@ -189,7 +189,7 @@ class WorstCases(MeasuredTest):
     """Streams at the limits of level 1, with fewer frames and components than make_worst_case
     usually gives them."""
 
-    KINDS = ("clusters", "bones", "tracks")
+    KINDS = ("clusters", "bones", "tracks", "frames")
     GOF = 4  # unit_type
     NEEDED = re.compile(r"needs at least (\d+) (KiB|MiB) of memory")
 

@@ -113,6 +113,18 @@ TEST(MemoryLimit, HoldsForSkinnedGofs) {
   }
 }
 
+TEST(MemoryLimit, HoldsForFrames) {
+  const std::uint32_t vertices = 3 * kAround;
+  const Size sizes[] = {{kVertices, 2, 1, 0, 0, 0},    // filters
+                        {kVertices, 3, 8, 0, 0, 0},    // of many temporal layers
+                        {vertices, 100, 1, 0, 0, 0},   // residuals
+                        {vertices, 70, 2, 0, 0, 60}};  // frames that can be repeated
+  for (const Size& size : sizes) {
+    SCOPED_TRACE(size.frames + size.components);
+    expect_within_estimate({1, Kind::kFrames, size, tube(size.vertices)}, 0.3);
+  }
+}
+
 constexpr Size kOfModel{3 * kAround, 1, 10, 50, 10};
 
 // Also where each is used, and then replaced by another.
@@ -211,7 +223,7 @@ std::vector<Mesh> meshes_of_any_kind() {
 }
 
 TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
-  for (const Kind kind : {Kind::kClusters, Kind::kBones, Kind::kTracks}) {
+  for (const Kind kind : {Kind::kClusters, Kind::kBones, Kind::kTracks, Kind::kFrames}) {
     SCOPED_TRACE(static_cast<int>(kind));
     for (const Mesh& mesh : meshes_of_any_kind()) {
       expect_within_estimate({1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles});

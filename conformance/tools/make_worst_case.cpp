@@ -2,7 +2,7 @@
 // GOF that takes a decoder about as much time and memory as a GOF of the level can, and prints
 // its size as JSON.
 //
-//   KIND            clusters, bones or tracks
+//   KIND            clusters, bones, tracks or frames
 //   --frames N      at most so many frames: faster, with as many factors
 //   --components N  at most so many components
 //   --beyond LIMIT  with more vertices, frames, values, clusters, factors or adaptive than the
@@ -19,7 +19,7 @@
 namespace rlpc::worst_case {
 namespace {
 
-constexpr std::array<const char*, 3> kKindNames{"clusters", "bones", "tracks"};
+constexpr std::array<const char*, 4> kKindNames{"clusters", "bones", "tracks", "frames"};
 
 struct Request {
   std::uint32_t level = 0;
@@ -90,8 +90,8 @@ std::optional<Request> request_of(const std::vector<std::string>& words) {
 int run(const std::vector<std::string>& words) {
   const auto request = request_of(words);
   if (!request) {
-    std::cerr << "usage: make_worst_case LEVEL clusters|bones|tracks OUT [--frames N] "
-                 "[--components N] [--beyond LIMIT]\n";
+    std::cerr << "usage: make_worst_case LEVEL clusters|bones|tracks|frames OUT "
+                 "[--frames N] [--components N] [--beyond LIMIT]\n";
     return 64;
   }
   if (write_file(*request)) return 0;

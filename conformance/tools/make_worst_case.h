@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -19,15 +20,16 @@
 namespace rlpc::worst_case {
 
 // A GOF of clusters (Baseline); a GOF of bones (Main); a GOF of tracks with its skinned model
-// (High).
-enum class Kind : std::uint8_t { kClusters, kBones, kTracks };
+// (High); a GOF of frames (High).
+enum class Kind : std::uint8_t { kClusters, kBones, kTracks, kFrames };
 
 struct Size {
   std::uint32_t vertices = 0;
   std::uint32_t frames = 1;
-  std::uint32_t components = 0;  // of the cluster, or trajectories
+  std::uint32_t components = 0;  // of the cluster, trajectories, or temporal layers of frames
   std::uint32_t bones = 0;       // or clusters
   std::uint32_t adaptive_factors = 0;
+  std::uint32_t repeats = 0;  // max_repeat_distance of frames
 
   std::uint64_t values() const { return std::uint64_t{vertices} * frames; }
 };
@@ -86,5 +88,6 @@ SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise);
 SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise);
 // Its member `model` is still null.
 SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise);
+FrameSettings make_frames(const Size& size, const CodedMesh& mesh);
 
 }  // namespace rlpc::worst_case

@@ -176,4 +176,26 @@ SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise
   return gof;
 }
 
+// An explicit pattern of the longest period, whose frames all have two references but the last.
+// All but a few have depth 0, so that filters of all temporal layers learn from them.
+FrameSettings make_frames(const Size& size, const CodedMesh& mesh) {
+  FrameSettings s;
+  s.pattern.kind = FramePattern::kExplicit;
+  s.pattern.entries.push_back({kMaxExplicitPeriod, {0, 0}, 0});
+  for (std::uint32_t offset = 1; offset < kMaxExplicitPeriod; ++offset) {
+    const std::uint32_t least = kMaxExplicitPeriod - size.components;
+    s.pattern.entries.push_back(
+        {offset, {offset - 1, kMaxExplicitPeriod}, offset > least ? offset - least : 0});
+  }
+  s.pattern.temporal_layers = size.components;
+  s.step.assign(s.pattern.num_depths(), 1);
+  s.learning_flag = true;
+  s.weights = {15, 15, 15, 0};
+  s.prime_log2 = 15;
+  s.max_repeat_distance = size.repeats;
+  s.layer_group_size = {mesh.num_layers()};
+  s.layer_step.assign(mesh.num_layers(), 1);
+  return s;
+}
+
 }  // namespace rlpc::worst_case

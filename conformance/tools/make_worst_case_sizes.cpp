@@ -46,14 +46,46 @@ void add_handle(std::vector<Triangle>& triangles, const Triangle& a, const Trian
   }
 }
 
+// With learned weights in so many temporal layers.
+Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temporal_layers) {
+  Size size;
+  size.frames = frames;
+  size.components = temporal_layers;
+  const std::uint64_t most = std::min<std::uint64_t>(
+      level.max_learning_vertices / temporal_layers, level.max_gof_values / frames);
+  size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);
+  if (size.vertices < 3 * kAround) return {};
+  size.repeats = static_cast<std::uint32_t>(level.max_gof_factors / (3 * size.vertices));
+  return size;
+}
+
+// The size with the most filters that adapt; of those that have as many, the one with the most
+// vertices.
+Size hardest_frames(const Level& level, const Most& most) {
+  Size best;
+  std::uint64_t highest = 0;
+  const std::uint32_t longest = std::min(most.frames, level.max_gof_frames);
+  for (std::uint32_t t = 1; t <= std::min(most.components, kMaxFrameDepths); ++t) {
+    for (std::uint32_t frames = 1; frames <= longest; ++frames) {
+      const Size size = largest_frames(level, frames, t);
+      if (size.values() * t <= highest) continue;
+      highest = size.values() * t;
+      best = size;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::uint64_t num_factors(Kind kind, const Size& size) {
+  if (kind == Kind::kFrames) return 3 * std::uint64_t{size.vertices} * size.repeats;
   return factors_without_components(kind, size) +
          size.components * factors_of_component(kind, size);
 }
 
 Size hardest_size(Kind kind, const Level& level, const Most& most) {
+  if (kind == Kind::kFrames) return hardest_frames(level, most);
   Size best;
   double highest = 0.0;
   for (std::uint32_t frames = 1; frames <= std::min(most.frames, level.max_gof_frames);

@@ -1,4 +1,5 @@
 // The units of the stream.
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -6,6 +7,7 @@
 #include "conformance/tools/make_worst_case.h"
 #include "encoder/write/write_cluster_gof.h"
 #include "encoder/write/write_connectivity.h"
+#include "encoder/write/write_frame_gof.h"
 #include "encoder/write/write_skinned_gof.h"
 #include "encoder/write/write_stream.h"
 
@@ -29,7 +31,7 @@ class StreamMaker {
 
  private:
   void set_header() {
-    header_.profile_idc = static_cast<std::uint32_t>(plan_.kind);
+    header_.profile_idc = std::min(static_cast<std::uint32_t>(plan_.kind), kProfileHigh);
     header_.level_idc = plan_.level;
     header_.num_vertices = plan_.size.vertices;
     header_.num_triangles = static_cast<std::uint32_t>(plan_.triangles.size());
@@ -60,8 +62,10 @@ class StreamMaker {
         SkinnedGof gof = make_bones(plan_.size, mesh, noise_);
         gof.first_frame = next_frame();
         units(UnitType::kGof, write_skinned_gof(gof, mesh, header_));
-      } else {
+      } else if (plan_.kind == Kind::kTracks) {
         models_and_tracks(mesh);
+      } else {
+        frames(mesh);
       }
     }
   }
@@ -78,6 +82,23 @@ class StreamMaker {
       gof.model = models[m];
       gof.model_idx = m;
       units(UnitType::kGof, write_tracks(gof, mesh, header_));
+    }
+  }
+
+  void frames(const CodedMesh& mesh) {
+    const FrameSettings settings = make_frames(plan_.size, mesh);
+    const GofHeader gof{GofKind::kFrames, next_frame(), plan_.size.frames};
+    unit(UnitType::kGof, write_frame_gof_unit(gof, settings));
+    const FrameOrder order(settings.pattern, gof.num_frames);
+    FrameUnitWriter writer(mesh, settings);
+    for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
+      writer.start_frame(place, order[place]);
+      writer.start_group(0);
+      for (const std::uint32_t v : mesh.vertices_of_layers(0, mesh.num_layers())) {
+        writer.start(v);
+        for (int c = 0; c < 3; ++c) writer.write(noise_.residual());
+      }
+      unit(UnitType::kFrame, writer.finish_group());
     }
   }
 

@@ -75,17 +75,18 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
   constexpr std::uint64_t kBytesPerVertex = 400;
   constexpr std::uint64_t kBytesOfFilter = 2600;
   constexpr std::uint64_t kBytesPerGroup = 6000;
-  constexpr std::uint64_t kBytesPerDepth = 2;  // and vertex
+  constexpr std::uint64_t kBytesPerState = 2;  // and vertex
   constexpr std::uint64_t kBytesOfKept = 24;   // a position, and as it is output
   const FramePattern& pattern = settings.pattern;
   const std::uint64_t depths = pattern.num_depths();
   const std::uint64_t kept =
       (pattern.kind == FramePattern::kExplicit ? pattern.period() : depths) +
       std::min<std::uint64_t>(settings.max_repeat_distance, num_frames);
+  const std::uint64_t states = depths + 1;  // of contexts
   const std::uint64_t filters = settings.learning_flag ? pattern.temporal_layers : 0;
   return num_frames * kBytesPerFrame +
-         depths * settings.layer_group_size.size() * kBytesPerGroup +
-         num_vertices * (kBytesPerVertex + filters * kBytesOfFilter + depths * kBytesPerDepth +
+         states * settings.layer_group_size.size() * kBytesPerGroup +
+         num_vertices * (kBytesPerVertex + filters * kBytesOfFilter + states * kBytesPerState +
                          kept * kBytesOfKept);
 }
 // The residuals of a frame, of which some are large.

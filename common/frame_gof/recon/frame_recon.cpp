@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
+#include <utility>
 
 #include "common/fixed_point.h"
 #include "common/int_math.h"
@@ -205,7 +206,12 @@ void FrameRecon::start_learning() {
       if (settings_.prime_log2 > 0 && mesh_.ring(v).size() > 1) prime(learned, v, variance);
     }
   });
-  learned_.assign(settings_.pattern.temporal_layers, learned);
+  learned_.clear();
+  learned_.reserve(settings_.pattern.temporal_layers);
+  learned_.push_back(std::move(learned));
+  while (learned_.size() < settings_.pattern.temporal_layers) {
+    learned_.push_back(learned_.front());
+  }
 }
 
 FilterState FrameRecon::filter(const Learned& learned, std::uint32_t v) const {
