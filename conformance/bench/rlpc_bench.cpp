@@ -25,6 +25,7 @@
 
 #include "common/kernels/component_sum.h"
 #include "conformance/bench/bench_animation.h"
+#include "conformance/bench/frame_bench.h"
 #include "conformance/bench/high_bench.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/rlpc_encoder.h"
@@ -245,6 +246,7 @@ int main(int argc, char** argv) {
   for (const Animation& animation : animations()) {
     register_all(animation);
     rlpc::bench::register_high(animation);
+    rlpc::bench::register_frames(animation);
   }
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -1,0 +1,10 @@
+// Benchmarks of GOFs of frames: encoding with low delay, and decoding.
+#pragma once
+
+#include "conformance/bench/bench_animation.h"
+
+namespace rlpc::bench {
+
+void register_frames(const Animation& animation);
+
+}  // namespace rlpc::bench
