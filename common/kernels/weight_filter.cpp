@@ -30,7 +30,10 @@ void WeightFilter::start(std::span<const std::int32_t> weights, std::size_t ring
   }
 }
 
-FilterShifts::FilterShifts(const FilterForm& form, std::int64_t scale, std::uint32_t largest) {
+FilterShifts::FilterShifts(const FilterForm& form, std::int64_t noise, std::int64_t variance,
+                           std::uint32_t largest) {
+  variance = std::max<std::int64_t>(variance, 0);
+  const std::int64_t scale = noise + variance + (variance >> kVarianceKeptLog2);
   narrow = std::max(floor_log2(largest) - (kGainBits - 1), 0);
   const int exponent = floor_log2(static_cast<std::uint64_t>(scale)) - kGainBits;
   inverse =
@@ -79,7 +82,7 @@ void adapt_filter(const FilterForm& form, const FilterState& filter,
     scale += gain[i] * offset[i];
     largest = std::max(largest, magnitude(gain[i]));
   }
-  const FilterShifts shifts(form, std::max(scale, least_scale), largest);
+  const FilterShifts shifts(form, least_scale, scale - least_scale, largest);
   std::array<std::int32_t, kMaxFilterSize> change{};
   for (std::size_t i = 0; i < n; ++i) {
     gain[i] = static_cast<std::int32_t>(round2(gain[i], shifts.narrow));

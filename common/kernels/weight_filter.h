@@ -16,6 +16,10 @@ inline constexpr std::int32_t kMaxAdaptiveWeight = (1 << 19) - 1;
 inline constexpr int kSpreadFractionBits = 28;
 inline constexpr int kOffsetLog2 = 9;  // of the largest offset, shifted
 inline constexpr int kGainBits = 14;
+// The part of the variance along the offsets that a sample leaves at least. Gains of 14 bits
+// need it: with 1/2^14, filters diverge in GOFs of frames, with 1/2^12, hardly any; 1/2^8 takes
+// up to 1 % more bytes.
+inline constexpr int kVarianceKeptLog2 = 10;
 inline constexpr int kSpreadShift = 12;      // of the first spread, from a step of the walk
 inline constexpr int kLaterSpreadShift = 9;  // likewise, at later component groups
 
@@ -67,8 +71,10 @@ struct FilterShifts {
   int spreading;
   std::int32_t inverse;
 
-  // scale: of 8.15.3; largest: magnitude of the gains, at least 1.
-  FilterShifts(const FilterForm& form, std::int64_t scale, std::uint32_t largest);
+  // noise, variance: the two parts of the scale of 8.15.3, that of the residual, and that along
+  // the offsets; largest: magnitude of the gains, at least 1.
+  FilterShifts(const FilterForm& form, std::int64_t noise, std::int64_t variance,
+               std::uint32_t largest);
 };
 
 // 8.19.4: the variance of a residual after a shift of offsets, in the unit of the scale.

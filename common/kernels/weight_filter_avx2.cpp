@@ -115,9 +115,7 @@ RLPC_AVX2 void adapt_vectors(const FilterState& filter, const std::int32_t* offs
                                  _mm256_slli_epi64(odd[k], 32 - kGainShift), kOddHalves);
     sums = _mm256_add_epi64(sums, product_sums(gain[k], offset[k]));
   }
-  const std::int64_t least_scale = noise(shift);
-  const FilterShifts shifts(kForm, least_scale + std::max<std::int64_t>(sum_of(sums), 0),
-                            bits_of(gain));
+  const FilterShifts shifts(kForm, noise(shift), sum_of(sums), bits_of(gain));
   // Gain and change have 16 bits each, interleaved: a product of pairs is that of 8.15.3.
   Vectors<kVectors> pairs;
   const __m256i inverse = _mm256_set1_epi32(shifts.inverse);

@@ -73,8 +73,9 @@ struct FilterOfText {
       scale += gain[i] * shifted[i];
     }
     ASSERT_LT(most_of(gain), std::int64_t{1} << 30);
-    ASSERT_LT(std::abs(scale), std::int64_t{1} << 46);
     scale = std::max(scale, noise);
+    scale += (scale - noise) >> 10;
+    ASSERT_LT(scale, std::int64_t{1} << 46);
     const int narrow = std::max(floor_log2(static_cast<std::uint64_t>(most_of(gain))) - 13, 0);
     const int exponent = floor_log2(static_cast<std::uint64_t>(scale)) - 14;
     const std::int64_t inverse = (1 << 29) / (scale >> exponent);
