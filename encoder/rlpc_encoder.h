@@ -114,8 +114,10 @@ enum class FrameWeights : std::uint8_t { kLearned, kGeometry, kPlain };
 
 // Parameters of GOFs of frames, of the High profile.
 struct FrameTools {
-  // From which frames each is predicted, and temporal layers to which a stream can be cut.
-  FramePattern pattern;
+  // From which frames each is predicted; none: the cheapest of several patterns, for each GOF.
+  // FramePattern::temporal_layers is not used.
+  std::optional<FramePattern> pattern;
+  std::uint32_t temporal_layers = 1;  // to which a stream can be cut, 1 to 8
   FrameWeights weights = FrameWeights::kLearned;
   std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
 
@@ -182,7 +184,7 @@ struct EncoderSettings {
 
   // Temporal layers that the stream can be cut to.
   std::uint32_t temporal_layers() const {
-    return usable_kinds() == KindChoice::kFrames ? frames.pattern.temporal_layers
+    return usable_kinds() == KindChoice::kFrames ? frames.temporal_layers
                                                  : main.temporal_layers;
   }
   // The kinds of GOF that the target leaves.
@@ -208,6 +210,12 @@ struct TemporalCut {
   double kg_error_percent = 0.0;
 };
 
+// GOFs of frames with the same pattern.
+struct PatternCount {
+  FramePattern pattern;
+  std::uint32_t gofs = 0;
+};
+
 struct EncodeReport {
   SequenceHeader header;
   Metrics metrics;  // of the decoded float32 positions, in input vertex order
@@ -220,6 +228,7 @@ struct EncodeReport {
   double step = 0.0;                        // quantiser step, units; 0 with qu and qc
   std::uint32_t trials = 0;                 // encodings during the search for the target
   bool target_met = true;                   // the target is not exceeded
+  std::vector<PatternCount> patterns;       // of GOFs of frames, in order of appearance
   std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };

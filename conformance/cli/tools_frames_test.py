@@ -11,6 +11,7 @@ class Frames(ToolsTest):
     def test_the_bundled_animations_meet_their_target(self):
         for name in NAMES:
             for how in ((), ("--frame-weights", "geometry"), ("--frame-weights", "plain"),
+                        ("--frame-pattern", "previous"),
                         ("--frame-pattern", "first"),
                         ("--frame-pattern", "dyadic:8"), ("--frame-pattern", "2<0,1<0+2@1")):
                 stream = self.path("a.rlpc")
@@ -39,7 +40,7 @@ class Frames(ToolsTest):
         for threads in (1, 3):
             stream = self.path(f"{threads}.rlpc")
             self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames",
-                        "--threads", threads)
+                        "--threads", threads, preset="medium")
             streams.append(stream.read_bytes())
         self.assertEqual(*streams)
 
@@ -48,6 +49,37 @@ class Frames(ToolsTest):
                        self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile", "high",
                        "--gof-kind", "frames")
         self.assertIn("3 GOFs of frames, ", said.out.decode())
+        self.assertRegex(said.out.decode(), "[1-3] GOFs? of frames with pattern [a-z]")
+
+    def test_the_pattern_is_chosen(self):
+        options = ("--kg", 0.3, "--profile", "high", "--gof-kind", "frames")
+        sizes = {}
+        for pattern in ("auto", "previous", "first", "dyadic:16"):
+            stream = self.path(pattern + ".rlpc")
+            report = self.encode(stream, *options, "--frame-pattern", pattern, preset="medium")
+            sizes[pattern] = stream.stat().st_size
+            self.assertEqual(sum(count["gofs"] for count in report["frame_patterns"]), 1)
+            if pattern != "auto":
+                self.assertEqual(report["frame_patterns"][0]["frame_pattern"], pattern)
+        self.assertLess(sizes["auto"], 0.96 * sizes["previous"])
+        self.assertLess(sizes["auto"], 1.02 * min(sizes.values()))
+        self.encode(self.path("d.rlpc"), *options, preset="medium")
+        self.assertEqual(self.path("d.rlpc").read_bytes(), self.path("auto.rlpc").read_bytes())
+
+    def test_the_pattern_has_the_temporal_layers(self):
+        stream = self.path("a.rlpc")
+        for layers in (2, 5, 7):
+            report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames",
+                                 "--temporal-layers", layers)
+            self.assertEqual(len(report["temporal_cuts"]), layers - 1)
+            gof = self.ok("rlpcinfo", stream, "--json").json()["gofs"][0]
+            self.assertEqual(gof["num_temporal_layers"], layers)
+        mesh = INPUTS / "elephant.obj"
+        for options, words in ((("--temporal-layers", 8), "there are 1 to 7 temporal layers"),
+                               (("--temporal-layers", 2, "--frame-pattern", "previous"),
+                                "this pattern has 1 to 1 temporal layers")):
+            self.fails(64, words, "rlpcenc", mesh, "-o", stream, "--profile", "high",
+                       "--gof-kind", "frames", *options)
 
     def test_rlpcinfo_lists_frame_units(self):
         stream = self.path("a.rlpc")

@@ -134,10 +134,10 @@ class ToolsTest(unittest.TestCase):
             self.assertEqual(result.err.count("\n"), 1, result.err)
         return result
 
-    def encode(self, output, *options, name="elephant"):
+    def encode(self, output, *options, name="elephant", preset="fast"):
         return self.ok("rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2", "-o",
                        output,
-                       "--json", "--preset", "fast", *options).json()
+                       "--json", "--preset", preset, *options).json()
 
     def clip(self, frames):
         """The first frames of the elephant as clip.obj and clip.pc2; (triangles, frames)."""

@@ -1,20 +1,14 @@
 #include "encoder/frame_gof/frame_gof_kind.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <memory>
-#include <span>
-#include <utility>
 #include <vector>
 
-#include "common/frame_gof/recon/frame_recon.h"
 #include "common/mesh/coded_meshes.h"
-#include "encoder/frame_gof/frame_coding.h"
+#include "encoder/frame_gof/frame_encoding.h"
 #include "encoder/frame_gof/frame_settings.h"
-#include "encoder/frame_gof/repeated_frames.h"
+#include "encoder/frame_gof/pattern_search.h"
 #include "encoder/gof/split_coder.h"
 
 namespace rlpc {
@@ -24,43 +18,7 @@ namespace {
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
 
-// Positions of all frames of a span, as a decoder outputs them.
-class DecodedSpan {
- public:
-  DecodedSpan(std::uint32_t num_vertices, std::uint32_t num_frames)
-      : values_(3 * std::size_t{num_vertices}),
-        positions_(std::make_shared<std::vector<std::int32_t>>(values_ * num_frames)) {}
-
-  std::span<std::int32_t> frame(std::uint32_t f) const {
-    return std::span(*positions_).subspan(f * values_, values_);
-  }
-  DecodeFrame decoder() const {
-    return [span = *this](std::uint32_t f, std::span<std::int32_t> out) {
-      std::copy_n(span.frame(f).begin(), span.values_, out.begin());
-    };
-  }
-
- private:
-  std::size_t values_;
-  std::shared_ptr<std::vector<std::int32_t>> positions_;
-};
-
-// coded: in coding order. Frames of higher temporal layers are absent.
-DecodeFrame decode_cut(const CodedMesh& mesh, const FrameSettings& s,
-                       const std::vector<CodedFrame>& coded, int position_bits,
-                       std::uint32_t temporal_layers) {
-  const DecodedSpan decoded(mesh.num_vertices(), static_cast<std::uint32_t>(coded.size()));
-  const FrameOrder order(s.pattern, static_cast<std::uint32_t>(coded.size()));
-  FrameRecon recon(mesh, s, position_bits);
-  for (std::uint32_t place = 0; place < order.num_frames(); ++place) {
-    const FramePlace& next = order[place];
-    const bool is_there = s.pattern.temporal_layer(next.depth) < temporal_layers;
-    recon.decode(next, order.last_use(next.frame), is_there ? coded[place] : CodedFrame{});
-    recon.positions(decoded.frame(next.frame));
-  }
-  return decoded.decoder();
-}
-
+// The pattern that is chosen at a step stands for all within kAnalysisServes.
 class FrameGofCoder : public GofCoder {
  public:
   FrameGofCoder(const SequenceMesh& mesh, const CodedMesh& layers,
@@ -72,55 +30,25 @@ class FrameGofCoder : public GofCoder {
   EncodedGof encode(double step, double /*analysis_step*/) override;
 
  private:
-  const std::vector<std::uint32_t>& repeats();
-
   const SequenceMesh& mesh_;
   const CodedMesh& layers_;
   const EncoderSettings& settings_;
   const GofFrames& frames_;
-  std::vector<std::uint32_t> repeats_;  // by place in coding order: distance, or 0
+  std::vector<FramePattern> patterns_;  // that are still to be compared
+  double chosen_at_ = 0.0;              // the step that the pattern was chosen at
 };
 
-// The same for each step.
-const std::vector<std::uint32_t>& FrameGofCoder::repeats() {
-  if (repeats_.empty()) {
-    const std::size_t values = 3 * std::size_t{frames_.num_vertices};
-    const std::uint64_t most = mesh_.header.level().max_gof_factors / values;
-    repeats_ = repeat_distances(
-        settings_.frames.pattern, frames_.xyz, values,
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(most, frames_.num_frames)));
-  }
-  return repeats_;
-}
-
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
-  FrameSettings s = choose_frame_settings(mesh_.header, settings_, layers_, step);
-  s.max_repeat_distance = *std::max_element(repeats().begin(), repeats().end());
-  const std::size_t values = 3 * std::size_t{frames_.num_vertices};
-  const GofHeader header{GofKind::kFrames, frames_.first_frame, frames_.num_frames};
-  const DecodedSpan decoded(frames_.num_vertices, frames_.num_frames);
-  EncodedGof encoded;
-  encoded.units.push_back({UnitType::kGof, write_frame_gof_unit(header, s)});
-  FrameCoding coding(layers_, s, mesh_.header, frames_.num_frames);
-  auto coded = std::make_shared<std::vector<CodedFrame>>();
-  const bool has_cuts = s.pattern.temporal_layers > 1;
-  for (std::uint32_t i = 0; i < frames_.num_frames; ++i) {
-    const std::uint32_t f = coding.next_frame();
-    CodedFrame* const copy = has_cuts ? &coded->emplace_back() : nullptr;
-    if (repeats()[i] > 0) {
-      encoded.units.push_back(coding.repeat(repeats()[i], decoded.frame(f), copy));
-      continue;
-    }
-    auto units =
-        coding.code(std::span(frames_.xyz).subspan(f * values, values), decoded.frame(f), copy);
-    std::move(units.begin(), units.end(), std::back_inserter(encoded.units));
+  if (patterns_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
+    chosen_at_ = step;
+    patterns_ = patterns_of(settings_, mesh_.header.open_end_flag, frames_.num_frames);
   }
-  encoded.frame = decoded.decoder();
-  if (has_cuts) {
-    encoded.cut = [layers = &layers_, s, coded, bits = mesh_.header.position_bits](int most) {
-      return decode_cut(*layers, s, *coded, bits, static_cast<std::uint32_t>(most));
-    };
-  }
+  EncodedGof encoded = encode_cheapest(patterns_, frames_.num_frames, [&](const auto& pattern) {
+    return std::make_unique<FrameEncoding>(
+        layers_, mesh_.header, frames_,
+        choose_frame_settings(mesh_.header, settings_, layers_, pattern, step));
+  });
+  patterns_ = encoded.patterns;
   return encoded;
 }
 

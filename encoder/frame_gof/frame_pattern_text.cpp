@@ -78,4 +78,20 @@ std::optional<FramePattern> parse_frame_pattern_text(std::string_view text) {
   return words.is_empty() ? std::optional(pattern) : std::nullopt;
 }
 
+std::string frame_pattern_text(const FramePattern& pattern) {
+  using std::to_string;
+  if (pattern.kind == FramePattern::kPrevious) return "previous";
+  if (pattern.kind == FramePattern::kFirst) return "first";
+  if (pattern.kind == FramePattern::kDyadic) return "dyadic:" + to_string(pattern.period());
+  std::string text;
+  for (const PatternEntry& entry : pattern.entries) {
+    const auto [a, b] = entry.reference;
+    if (!text.empty()) text += ",";
+    text += to_string(entry.offset) + "<" + to_string(a);
+    if (a != b) text += "+" + to_string(b);
+    if (entry.depth > 0) text += "@" + to_string(entry.depth);
+  }
+  return text;
+}
+
 }  // namespace rlpc

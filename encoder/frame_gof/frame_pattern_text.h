@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "common/frame_gof/frame_order.h"
@@ -11,5 +12,7 @@ namespace rlpc {
 // "previous", "first", "dyadic:16", or entries such as "2<0,1<0+2@1", not checked otherwise.
 // None: it is none of these.
 std::optional<FramePattern> parse_frame_pattern_text(std::string_view text);
+// The reverse.
+std::string frame_pattern_text(const FramePattern& pattern);
 
 }  // namespace rlpc

@@ -22,6 +22,13 @@ TEST(FramePatternText, Entries) {
   EXPECT_EQ(pattern->entries, expected);
 }
 
+TEST(FramePatternText, IsWrittenAsItIsRead) {
+  for (const char* const text : {"previous", "first", "dyadic:2", "dyadic:64", "1<0",
+                                 "2<0,1<0+2@1", "4<0,2<0+4@1,1<0+2@2,3<2+4@2"}) {
+    EXPECT_EQ(frame_pattern_text(*parse_frame_pattern_text(text)), text);
+  }
+}
+
 TEST(FramePatternText, IsReadToItsEnd) {
   for (const char* const text : {"", "next", "dyadic", "dyadic:", "dyadic:12", "dyadic:8x", "1",
                                  "1<", "1<0,", "1<0+", "1<0@", "1<0@1x", "<0", "1<0 2<0"}) {

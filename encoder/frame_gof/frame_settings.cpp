@@ -25,13 +25,27 @@ constexpr int kPrime = 6;
 // frames are no references, so that their errors stay with them.
 constexpr double kStepOfDepth = 1.2;
 
+// The root mean square of the steps of a period, in steps of depth 0.
+double mean_step(const FramePattern& pattern) {
+  const FrameOrder order(pattern, pattern.period() + 1);
+  double sum = 0.0;
+  for (std::uint32_t place = 1; place < order.num_frames(); ++place) {
+    double step = 1.0;
+    for (std::uint32_t d = 0; d < order[place].depth; ++d) step *= kStepOfDepth;
+    sum += step * step;
+  }
+  return std::sqrt(sum / pattern.period());
+}
+
 }  // namespace
 
 FrameSettings choose_frame_settings(const SequenceHeader& header,
                                     const EncoderSettings& settings, const CodedMesh& layers,
-                                    double step) {
+                                    const FramePattern& pattern, double step) {
   FrameSettings s;
-  s.pattern = settings.frames.pattern;
+  s.pattern = pattern;
+  s.pattern.temporal_layers = settings.frames.temporal_layers;
+  step /= mean_step(s.pattern);
   s.exact_flag = settings.target.kind == Target::kLossless;
   s.step.assign(s.pattern.num_depths(), kExactFrameStep);
   for (std::uint32_t& of_depth : s.step) {

@@ -8,9 +8,11 @@
 
 namespace rlpc {
 
-// step: quantiser step, in grid steps; not used if the target is lossless.
+// step: quantiser step, in grid steps; not used if the target is lossless. Of a pattern with
+// several depths, the root mean square of theirs, so that the error, and what a bit is worth,
+// are about those of other patterns.
 FrameSettings choose_frame_settings(const SequenceHeader& header,
                                     const EncoderSettings& settings, const CodedMesh& layers,
-                                    double step);
+                                    const FramePattern& pattern, double step);
 
 }  // namespace rlpc

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/frame_gof/frame_order.h"
 #include "common/syntax/stream_format.h"
 
 namespace rlpc {
@@ -53,12 +54,15 @@ struct EncodedGof {
   DecodeCut cut;  // empty: there is one temporal layer
   // The skinned model among the units, if later spans may use it; otherwise null.
   std::shared_ptr<const KeptModel> model;
-  std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
-  std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
-  std::uint32_t clusters = 0;         // clusters of all GOFs, or bones
-  std::uint32_t max_clusters = 0;     // of a GOF
-  std::uint32_t components = 0;       // components of all clusters, or trajectories
-  std::uint32_t max_components = 0;   // components of the largest cluster, or trajectories
+  // The squared error of all frames, in squared grid steps; none: not known.
+  std::optional<double> squared_error;
+  std::vector<FramePattern> patterns;  // of each GOF of frames
+  std::uint64_t num_factors = 0;       // NumFactors of the specification, the largest
+  std::uint64_t adaptive_values = 0;   // adaptive factors times vertices
+  std::uint32_t clusters = 0;          // clusters of all GOFs, or bones
+  std::uint32_t max_clusters = 0;      // of a GOF
+  std::uint32_t components = 0;        // components of all clusters, or trajectories
+  std::uint32_t max_components = 0;    // components of the largest cluster, or trajectories
 };
 
 // Encodes one span, repeatedly. Choices made for it last as long as the coder. The analysis

@@ -1,8 +1,11 @@
 // The Lagrange multiplier for all choices between rate and distortion in the encoder.
 #pragma once
 
+#include <algorithm>
+
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
+#include "encoder/math/det_math.h"
 
 namespace rlpc {
 
@@ -21,13 +24,25 @@ inline double bits_of(const EncodedGof& encoded) {
 }
 
 // tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
-// frame, and decoding takes time.
+// frame, unless each is predicted from others, and decoding takes time.
 inline constexpr std::uint32_t kErrorFrames = 24;
 
-// D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample, and bits
-// of its units.
+// D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample unless it
+// is known, and bits of its units.
 inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
-  return squared_error(frames, encoded.frame, kErrorFrames) + lambda(step) * bits_of(encoded);
+  const double error = encoded.squared_error
+                           ? *encoded.squared_error
+                           : squared_error(frames, encoded.frame, kErrorFrames);
+  return error + lambda(step) * bits_of(encoded);
+}
+
+// Bits at equal error, about, for comparison at one step: of encodings whose errors differ
+// much. Lagrangian costs take the rate for a line, which favours small errors then.
+inline double bits_at_equal_error(double bits, double squared_error) {
+  // tuned (off: 0): The rate is about this power of the squared error.
+  constexpr double kRateOfError = -0.25;
+  constexpr double kLeastError = 1e-6;  // fixed: above zero
+  return bits * det_exp2(-kRateOfError * det_log2(std::max(squared_error, kLeastError)));
 }
 
 }  // namespace rlpc

@@ -53,12 +53,16 @@ EncodedGof SplitCoder::encode(double step, double analysis_step) {
     part.frames.xyz = {};
   });
   EncodedGof all;
+  all.squared_error = 0.0;
   std::vector<DecodeFrame> decoders;
   std::vector<DecodeCut> cuts;
   for (EncodedGof& encoded : encoded_parts) {
     for (auto& unit : encoded.units) all.units.push_back(std::move(unit));
     if (encoded.cut) cuts.push_back(std::move(encoded.cut));
     decoders.push_back(std::move(encoded.frame));
+    if (!encoded.squared_error) all.squared_error.reset();
+    if (all.squared_error) *all.squared_error += *encoded.squared_error;
+    all.patterns.insert(all.patterns.end(), encoded.patterns.begin(), encoded.patterns.end());
     all.num_factors = std::max(all.num_factors, encoded.num_factors);
     all.adaptive_values = std::max(all.adaptive_values, encoded.adaptive_values);
     all.clusters += encoded.clusters;

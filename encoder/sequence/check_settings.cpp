@@ -88,12 +88,26 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "without a delay, a rate cannot be searched for: use --quality, --kg, --max-error or "
         "--lossless BITS instead of --bpvf"};
   }
-  const FramePattern::Kind pattern = s.frames.pattern.kind;
+  const FramePattern::Kind pattern = s.frames.pattern.value_or(FramePattern{}).kind;
   if (pattern != FramePattern::kPrevious && pattern != FramePattern::kFirst) {
     return InputError{
         "low delay needs frames that are coded in their order: use --frame-pattern previous or "
         "first"};
   }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_pattern(const EncoderSettings& s) {
+  const std::uint32_t layers = s.frames.temporal_layers;
+  if (!s.frames.pattern && !s.low_delay) {
+    constexpr std::uint32_t kMost = kMaxPatternPeriodLog2 + 1;  // fixed: format
+    if (layers >= 1 && layers <= kMost) return std::nullopt;
+    return InputError{"without --frame-pattern, there are 1 to " + std::to_string(kMost) +
+                      " temporal layers (--temporal-layers)"};
+  }
+  FramePattern pattern = s.frames.pattern.value_or(FramePattern{});
+  pattern.temporal_layers = layers;
+  if (auto error = error_of_pattern(pattern)) return InputError{*error};
   return std::nullopt;
 }
 
@@ -129,9 +143,9 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
         "the settings of bones and trajectories have no effect on GOFs without "
         "bones: leave them out, or use --gof-kind auto or bones"};
   }
-  if (auto error = error_of_pattern(s.frames.pattern)) return InputError{*error};
+  if (auto error = check_pattern(s)) return error;
   if (kinds == KindChoice::kAuto &&
-      (s.frames.pattern.temporal_layers > 1 || s.frames.layer_groups > 1)) {
+      (s.frames.temporal_layers > 1 || s.frames.layer_groups > 1)) {
     return InputError{
         "layers of GOFs of frames need GOFs of this kind alone: use --gof-kind frames"};
   }

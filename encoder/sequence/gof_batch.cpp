@@ -29,6 +29,16 @@ std::optional<InputError> for_each_gof(
 
 }  // namespace
 
+void count_patterns(const std::vector<FramePattern>& patterns,
+                    std::vector<PatternCount>& counts) {
+  for (const FramePattern& pattern : patterns) {
+    const auto same = [&](const PatternCount& count) { return count.pattern == pattern; };
+    auto found = std::find_if(counts.begin(), counts.end(), same);
+    if (found == counts.end()) found = counts.insert(found, {pattern, 0});
+    ++found->gofs;
+  }
+}
+
 GofBatch::GofBatch(const SequenceCoding& coding, FrameSource& source,
                    const std::vector<GofSpan>& spans, const Options& options)
     : coding_(coding), source_(source), options_(options), gofs_(spans.size()) {
@@ -123,10 +133,10 @@ InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof&
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     if (!gofs[g].has_own_hashes) gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
-  return MeasuredGof{
-      {std::move(gofs), LevelNeeds(encoded), encoded.clusters, encoded.components,
-       options_.keep_decoded ? encoded.frame : nullptr, encoded.model, encoded.cut},
-      std::move(metrics)};
+  return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
+                      encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
+                      encoded.model, encoded.cut, encoded.patterns},
+                     std::move(metrics)};
 }
 
 InputResult<GofBatch::MeasuredGof> GofBatch::encode(Gof& gof, double step,

@@ -27,8 +27,13 @@ struct CodedGof {
   DecodeFrame frame;             // empty unless Options::keep_decoded
   // The skinned model that it brings; null: none, or Options::keep_decoded is not set.
   std::shared_ptr<const KeptModel> model;
-  DecodeCut cut;  // of GOFs with one temporal layer: empty
+  DecodeCut cut;                       // of GOFs with one temporal layer: empty
+  std::vector<FramePattern> patterns;  // of each GOF of frames
 };
+
+// Adds patterns of GOFs to those counted before.
+void count_patterns(const std::vector<FramePattern>& patterns,
+                    std::vector<PatternCount>& counts);
 
 // All GOFs of a batch, encoded at one step.
 struct BatchTrial {

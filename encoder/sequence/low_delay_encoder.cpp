@@ -99,7 +99,9 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   }
   step_ = std::max(step_for(spread), 1.0 / kExactFrameStep);
   gof_ = std::make_unique<Gof>();
-  gof_->settings = choose_frame_settings(coding_->header(), settings_, layers, step_);
+  gof_->settings =
+      choose_frame_settings(coding_->header(), settings_, layers,
+                            settings_.frames.pattern.value_or(FramePattern{}), step_);
   gof_->settings.max_repeat_distance = 1;
   gof_->announced = frames_of_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced,

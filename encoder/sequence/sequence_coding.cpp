@@ -9,6 +9,7 @@
 #include "common/io/messages.h"
 #include "common/parallel/for_each.h"
 #include "encoder/cluster_gof/cluster_gof_kind.h"
+#include "encoder/frame_gof/pattern_search.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/choices/gof_kinds.h"
@@ -60,6 +61,28 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
       header.num_frames <= alone ? alone : frames(kBytesOfPosition + 2 * kFactorsOfModel));
 }
 
+namespace {
+
+// Of a vertex of a GOF of frames, or a span of them, that a thread encodes by each pattern that
+// it may have: positions, as doubles and floats and decoded, and what each pattern learns.
+std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
+                              std::uint32_t num_frames) {
+  constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
+  constexpr std::uint64_t kDecoded = 12;     // fixed: memory
+  constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
+  const KindChoice kinds = settings.usable_kinds();
+  if (settings.profile != Profile::kHigh ||
+      (kinds != KindChoice::kAuto && kinds != KindChoice::kFrames)) {
+    return 0;
+  }
+  const std::uint64_t patterns =
+      settings.low_delay ? 1 : patterns_of(settings, header.open_end_flag, num_frames).size();
+  return kOfFrame * num_frames +
+         patterns * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
+}
+
+}  // namespace
+
 InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
                                         const SequenceHeader& header, std::uint32_t longest_gof,
                                         std::uint32_t kept_frames, std::uint64_t source_bytes) {
@@ -76,7 +99,9 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
       has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
   // Each thread has a GOF of its own, or a candidate for one; another model is in force.
   const std::uint64_t of_thread =
-      header.num_vertices * kBytesOfPosition * longest_gof + of_model;
+      header.num_vertices * std::max(kBytesOfPosition * longest_gof,
+                                     bytes_of_frames(settings, header, longest_gof)) +
+      of_model;
   const std::uint64_t of_vertex = kOfVertex + kKept * kept_frames;
   const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
                                header.num_triangles * kOfTriangle + of_thread + of_model;

@@ -44,11 +44,11 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     if (!s.low_delay) return "--box needs --low-delay";
     std::copy_n(line.box.begin(), 6, o.box.emplace().begin());
   }
-  if (!line.frame_pattern.empty()) {
+  if (!line.frame_pattern.empty() && line.frame_pattern != "auto") {
     const auto pattern = parse_frame_pattern_text(line.frame_pattern);
     if (!pattern) {
-      return "--frame-pattern: expected previous, first, dyadic:16 or entries such as "
-             "2<0,1<0+2@1, found `" +
+      return "--frame-pattern: expected auto, previous, first, dyadic:16 or entries such "
+             "as 2<0,1<0+2@1, found `" +
              line.frame_pattern + "`";
     }
     s.frames.pattern = *pattern;
@@ -61,7 +61,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
   if (s.usable_kinds() == KindChoice::kFrames) {
-    s.frames.pattern.temporal_layers = std::exchange(s.main.temporal_layers, 1);
+    s.frames.temporal_layers = std::exchange(s.main.temporal_layers, 1);
     s.frames.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
   }
   const bool asked =

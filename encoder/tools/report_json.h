@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/metrics/surface_metrics.h"
 #include "encoder/rlpc_encoder.h"
@@ -67,6 +68,10 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
       {"step", r.step},
       {"trials", r.trials},
       {"target_met", r.target_met}};
+  for (const PatternCount& count : r.patterns) {
+    json["frame_patterns"].push_back(
+        {{"frame_pattern", frame_pattern_text(count.pattern)}, {"gofs", count.gofs}});
+  }
   for (const TemporalCut& cut : r.temporal_cuts) {
     json["temporal_cuts"].push_back({{"temporal_layers", cut.layers},
                                      {"bytes", cut.bytes},

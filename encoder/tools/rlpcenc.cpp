@@ -22,6 +22,7 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
@@ -68,6 +69,10 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
                 cut.kg_error_percent);
   }
   if (!o.verbose) return;
+  for (const PatternCount& of_pattern : r.patterns) {
+    std::printf("  %u GOF%s of frames with pattern %s\n", of_pattern.gofs, s(of_pattern.gofs),
+                frame_pattern_text(of_pattern.pattern).c_str());
+  }
   if (r.clusters == 0) {
     std::printf("  %u GOF%s of frames, %u trial%s\n", r.num_gofs, s(r.num_gofs), r.trials,
                 s(r.trials));

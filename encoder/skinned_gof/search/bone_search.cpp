@@ -7,6 +7,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/gof/component_cost.h"
+#include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 
 namespace rlpc {
@@ -50,14 +51,6 @@ Rig translation_rig(const GofFrames& frames) {
 }
 
 constexpr double kLeastError = 1e-6;  // fixed: above zero
-
-// Bits at equal error, about, for comparison at one step. Lagrangian costs take the rate for a
-// line, which favours small errors where errors differ much.
-double bits_at_equal_error(const SkinnedTrial& trial) {
-  // tuned (off: 0): The rate is about this power of the squared error.
-  constexpr double kRateOfError = -0.25;
-  return trial.bits * det_exp2(-kRateOfError * det_log2(std::max(trial.error, kLeastError)));
-}
 
 }  // namespace
 
@@ -289,7 +282,7 @@ bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first
     const SkinnedTrials at_error(context_, frames_,
                                  trials.step() * det_exp2(det_log2(ratio) / kErrorPower));
     const SkinnedTrial whole = at_error.whole(drafts[i]->candidate);
-    bits[i] = bits_at_equal_error(whole);
+    bits[i] = bits_at_equal_error(whole.bits, whole.error);
   });
   return bits[1] < bits[0];
 }
@@ -299,7 +292,7 @@ std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const Skinned
                                 std::optional<double> wanted_error) const {
   std::vector<double> bits;
   for (const BestTrial& draft : drafts) {
-    bits.push_back(bits_at_equal_error(*draft));
+    bits.push_back(bits_at_equal_error(draft->bits, draft->error));
   }
   const auto first =
       static_cast<std::size_t>(std::min_element(bits.begin(), bits.end()) - bits.begin());

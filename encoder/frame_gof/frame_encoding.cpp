@@ -1,0 +1,114 @@
+#include "encoder/frame_gof/frame_encoding.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include "common/frame_gof/recon/frame_recon.h"
+#include "encoder/frame_gof/repeated_frames.h"
+#include "encoder/gof/lagrangian.h"
+#include "encoder/write/write_frame_gof.h"
+
+namespace rlpc {
+namespace {
+
+// coded: in coding order. Frames of higher temporal layers are absent.
+DecodeFrame decode_cut(const CodedMesh& mesh, const FrameSettings& s,
+                       const std::vector<CodedFrame>& coded, int position_bits,
+                       std::uint32_t temporal_layers) {
+  const DecodedSpan decoded(mesh.num_vertices(), static_cast<std::uint32_t>(coded.size()));
+  const FrameOrder order(s.pattern, static_cast<std::uint32_t>(coded.size()));
+  FrameRecon recon(mesh, s, position_bits);
+  for (std::uint32_t place = 0; place < order.num_frames(); ++place) {
+    const FramePlace& next = order[place];
+    const bool is_there = s.pattern.temporal_layer(next.depth) < temporal_layers;
+    recon.decode(next, order.last_use(next.frame), is_there ? coded[place] : CodedFrame{});
+    recon.positions(decoded.frame(next.frame));
+  }
+  return decoded.decoder();
+}
+
+// repeat_distances() of a GOF, as far as its level allows.
+std::vector<std::uint32_t> repeats_of(const SequenceHeader& header, const GofFrames& frames,
+                                      const FramePattern& pattern) {
+  const std::size_t values = 3 * std::size_t{frames.num_vertices};
+  const std::uint64_t most = header.level().max_gof_factors / values;
+  return repeat_distances(
+      pattern, frames.xyz, values,
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(most, frames.num_frames)));
+}
+
+FrameSettings with_repeats(FrameSettings settings, const std::vector<std::uint32_t>& repeats) {
+  settings.max_repeat_distance = *std::max_element(repeats.begin(), repeats.end());
+  return settings;
+}
+
+}  // namespace
+
+DecodedSpan::DecodedSpan(std::uint32_t num_vertices, std::uint32_t num_frames)
+    : values_(3 * std::size_t{num_vertices}),
+      positions_(std::make_shared<std::vector<std::int32_t>>(values_ * num_frames)) {}
+
+DecodeFrame DecodedSpan::decoder() const {
+  return [span = *this](std::uint32_t f, std::span<std::int32_t> out) {
+    std::copy_n(span.frame(f).begin(), span.values_, out.begin());
+  };
+}
+
+FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header,
+                             const GofFrames& frames, const FrameSettings& settings)
+    : mesh_(mesh),
+      header_(header),
+      frames_(frames),
+      repeats_(repeats_of(header, frames, settings.pattern)),
+      settings_(with_repeats(settings, repeats_)),
+      coding_(mesh, settings_, header, frames.num_frames),
+      decoded_(frames.num_vertices, frames.num_frames) {
+  const GofHeader gof{GofKind::kFrames, frames.first_frame, frames.num_frames};
+  encoded_.units.push_back({UnitType::kGof, write_frame_gof_unit(gof, settings_)});
+  if (settings_.pattern.temporal_layers > 1) {
+    coded_ = std::make_shared<std::vector<CodedFrame>>();
+  }
+}
+
+void FrameEncoding::code_to(std::uint32_t count) {
+  const std::size_t values = 3 * std::size_t{frames_.num_vertices};
+  for (; num_coded_ < count; ++num_coded_) {
+    const std::uint32_t f = coding_.next_frame();
+    const auto xyz = std::span(frames_.xyz).subspan(f * values, values);
+    const auto positions = decoded_.frame(f);
+    CodedFrame* const copy = coded_ ? &coded_->emplace_back() : nullptr;
+    if (repeats_[num_coded_] > 0) {
+      encoded_.units.push_back(coding_.repeat(repeats_[num_coded_], positions, copy));
+    } else {
+      auto units = coding_.code(xyz, positions, copy);
+      std::move(units.begin(), units.end(), std::back_inserter(encoded_.units));
+    }
+    for (std::size_t i = 0; i < values; ++i) {
+      const double d = positions[i] - xyz[i];
+      squared_error_ += d * d;
+    }
+  }
+}
+
+double FrameEncoding::cost() const {
+  const double bits = bits_of(encoded_);
+  return settings_.exact_flag ? bits : bits_at_equal_error(bits, squared_error_);
+}
+
+EncodedGof FrameEncoding::finish() {
+  code_to(frames_.num_frames);
+  encoded_.patterns = {settings_.pattern};
+  encoded_.squared_error = squared_error_;
+  encoded_.frame = decoded_.decoder();
+  if (coded_) {
+    encoded_.cut = [mesh = &mesh_, s = settings_, coded = coded_,
+                    bits = header_.position_bits](int most) {
+      return decode_cut(*mesh, s, *coded, bits, static_cast<std::uint32_t>(most));
+    };
+  }
+  return std::move(encoded_);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,64 @@
+// One encoding of a GOF of frames at one step, which can stop between frames.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/frame_gof/frame_gof.h"
+#include "common/mesh/coded_mesh.h"
+#include "common/syntax/sequence_header.h"
+#include "encoder/frame_gof/frame_coding.h"
+#include "encoder/gof/gof_coder.h"
+#include "encoder/gof/gof_frames.h"
+
+namespace rlpc {
+
+// Positions of all frames of a span, as a decoder outputs them. Copies share them.
+class DecodedSpan {
+ public:
+  DecodedSpan(std::uint32_t num_vertices, std::uint32_t num_frames);
+
+  std::span<std::int32_t> frame(std::uint32_t f) const {
+    return std::span(*positions_).subspan(f * values_, values_);
+  }
+  DecodeFrame decoder() const;
+
+ private:
+  std::size_t values_;
+  std::shared_ptr<std::vector<std::int32_t>> positions_;
+};
+
+class FrameEncoding {
+ public:
+  // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
+  // earlier ones on the grid are not coded again.
+  FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
+                const FrameSettings& settings);
+  FrameEncoding(const FrameEncoding&) = delete;
+  FrameEncoding& operator=(const FrameEncoding&) = delete;
+
+  const FramePattern& pattern() const { return settings_.pattern; }
+  // Codes frames until the first `count` in coding order are coded.
+  void code_to(std::uint32_t count);
+  // Of the frames coded so far: bits at equal error, or bits if they are lossless.
+  double cost() const;
+  // Codes the remaining frames. Once.
+  EncodedGof finish();
+
+ private:
+  const CodedMesh& mesh_;
+  const SequenceHeader& header_;
+  const GofFrames& frames_;
+  const std::vector<std::uint32_t> repeats_;  // by place in coding order: distance, or 0
+  const FrameSettings settings_;
+  FrameCoding coding_;
+  DecodedSpan decoded_;
+  EncodedGof encoded_;
+  std::shared_ptr<std::vector<CodedFrame>> coded_;  // null: there is one temporal layer
+  std::uint32_t num_coded_ = 0;
+  double squared_error_ = 0.0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,71 @@
+#include "encoder/frame_gof/pattern_search.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+namespace {
+
+// fixed: measured: at KG errors of 0.3 to 0.01 % on eight animations, periods of 8 and 32
+// frames never win by more than 2 %.
+constexpr std::array<int, 2> kPeriodsLog2{4, 6};
+
+FramePattern dyadic(int period_log2) { return {FramePattern::kDyadic, period_log2, {}, 1}; }
+
+// The first frames of a GOF that all patterns code in whole periods: at least a part.
+std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uint32_t period) {
+  const std::size_t periods = ((num_frames - 1) / part + period - 1) / period;
+  return static_cast<std::uint32_t>(
+      std::min<std::size_t>(num_frames, 1 + std::max<std::size_t>(periods, 1) * period));
+}
+
+}  // namespace
+
+std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
+                                      std::uint32_t num_frames) {
+  const FrameTools& tools = settings.frames;
+  if (tools.pattern) return {*tools.pattern};
+  // Frames from both sides predict smooth motion best; the first, where a surface trembles
+  // about a shape. Without loss, frames are too noisy for the mean of two to gain anything.
+  std::vector<FramePattern> patterns;
+  if (tools.temporal_layers == 1) {
+    patterns.push_back({});
+    patterns.push_back({FramePattern::kFirst, 1, {}, 1});
+  }
+  // A GOF that is not longer than the period has the order of a shorter one.
+  for (const int log2 : kPeriodsLog2) {
+    const FramePattern pattern = dyadic(log2);
+    const bool may_win =
+        num_frames > pattern.period() && settings.target.kind != Target::kLossless;
+    if (tools.temporal_layers > pattern.num_depths()) continue;
+    if (patterns.empty() || may_win) patterns.push_back(pattern);
+  }
+  if (is_open_ended || settings.preset == Preset::kFast) patterns.resize(1);
+  return patterns;
+}
+
+EncodedGof encode_cheapest(
+    const std::vector<FramePattern>& patterns, std::uint32_t num_frames,
+    const std::function<std::unique_ptr<FrameEncoding>(const FramePattern&)>& make) {
+  std::vector<std::unique_ptr<FrameEncoding>> left;
+  std::uint32_t period = 1;
+  for (const FramePattern& pattern : patterns) {
+    left.push_back(make(pattern));
+    period = std::max(period, pattern.period());
+  }
+  for (std::size_t part = std::bit_ceil(left.size()); left.size() > 1; part /= 2) {
+    const std::uint32_t end = whole_periods(num_frames, part, period);
+    for_each(left.size(), [&](std::size_t i) { left[i]->code_to(end); });
+    std::stable_sort(left.begin(), left.end(),
+                     [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
+    left.resize(end == num_frames ? 1 : (left.size() + 1) / 2);
+  }
+  return left.front()->finish();
+}
+
+}  // namespace rlpc
