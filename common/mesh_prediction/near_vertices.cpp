@@ -10,9 +10,18 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 1024;    // vertices of a pass
-constexpr std::size_t kFewCandidates = 4;  // below, vertices of the base are candidates
-constexpr std::size_t kBaseWindow = 256;   // vertices of the base
+constexpr std::size_t kTogether = 1024;  // vertices of a pass
+
+// Round numbers of the format; what others cost is measured on whole files of robot, knight,
+// q-spider, cow and morph-stress at a KG error of 0.1 %, each frame predicted from the one
+// before.
+//
+// Below, vertices of the base are candidates. Half: +1.4 % on average, robot +5.2 %; double:
+// -1.1 %, robot -3.8 %, knight up to +0.9 %; four times: worse again.
+constexpr std::size_t kFewCandidates = 4;
+// Vertices of the base, which bound the time. Half: robot +0.6 %; double: +2.7 %; the others
+// have smaller bases, or do not need them.
+constexpr std::size_t kBaseWindow = 256;
 
 struct NearList {
   std::array<std::uint32_t, kMaxNear> vertices;
