@@ -35,7 +35,7 @@ class EachFilter : public testing::TestWithParam<std::size_t> {
     start(ring, size, kSpreadShift, random);
     text_.is_of_frames = true;
     text_.neighbours = size - 5;
-    text_.start_spread(19);
+    text_.start_spread_of_frames();
     for (std::size_t i = 0; i < size; ++i) {
       filter_.walk[i] = static_cast<std::int32_t>(text_.random_walk(i));
       filter_.spread[i * filter_.stride + i] = static_cast<std::int32_t>(text_.spread[i][i]);

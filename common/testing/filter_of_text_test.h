@@ -26,10 +26,16 @@ struct FilterOfText {
   List weight;
   std::vector<List> spread;
 
-  // shift: 12, or 9 at later component groups; 19 in 8.19.
+  // shift: 12, or 9 at later component groups.
   void start_spread(int shift) {
     spread.assign(weight.size(), List(weight.size(), 0));
     for (std::size_t i = 0; i < weight.size(); ++i) spread[i][i] = random_walk(i) << shift;
+  }
+  void start_spread_of_frames() {
+    start_spread(21);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      spread[i][i] = std::min<std::int64_t>(1 << 26, spread[i][i]);
+    }
   }
 
   static std::int64_t most_of(const List& list) {

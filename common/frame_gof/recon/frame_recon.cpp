@@ -17,7 +17,9 @@ constexpr std::size_t kTogether = 128;  // vertices of a pass
 constexpr std::int32_t kRingWalk = 64;
 constexpr std::int32_t kNearWalk = 16;
 constexpr std::int32_t kErrorWalk = 128;
-constexpr int kFirstSpreadShift = 19;
+// The larger, the faster a filter learns: 19 takes 1 % more bytes where frames are predicted
+// from the one before, 3.5 % with dyadic patterns, up to 7 % with five temporal layers.
+constexpr int kFirstSpreadShift = 21;
 constexpr std::int64_t kMostMotion = std::int64_t{1} << 29;
 constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
 
@@ -201,7 +203,8 @@ void FrameRecon::start_learning() {
             clip3(-kMaxAdaptiveWeight, kMaxAdaptiveWeight, weights[k] * kFiner));
       }
       for (std::size_t k = 0; k < state.size; ++k) {
-        state.spread[k * state.stride + k] = state.walk[k] << kFirstSpreadShift;
+        state.spread[k * state.stride + k] =
+            std::min(kFrameFilter.max_spread, state.walk[k] << kFirstSpreadShift);
       }
       if (settings_.prime_log2 > 0 && mesh_.ring(v).size() > 1) prime(learned, v, variance);
     }
