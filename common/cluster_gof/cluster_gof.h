@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/cluster_gof/cluster_map.h"
 #include "common/components/component_limits.h"
 #include "common/mesh/mesh.h"
 #include "common/syntax/gof_header.h"
@@ -61,8 +62,5 @@ struct ClusterGof : GofHeader {
 
   bool operator==(const ClusterGof&) const = default;
 };
-
-// Value of cluster_of_vertex for seed vertices, which are reconstructed from their tracks.
-inline constexpr std::uint16_t kSeedCluster = 0xFFFF;
 
 }  // namespace rlpc

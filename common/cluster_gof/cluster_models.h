@@ -11,16 +11,14 @@
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/cluster_gof/cluster_map.h"
 #include "common/components/track_models.h"
 #include "common/int_math.h"
-#include "common/mesh/topology.h"
 
 namespace rlpc {
 
-struct ClusterModels {
+struct ClusterModels : ClusterMapModels {
   BitModel lcf_flag;
-  std::array<BitModel, 3> cluster_predicted_flag;
-  std::vector<BitModel> cluster_idx;  // [node of the binary tree]
   std::array<BitModel, kMaxPredictorOrder> temporal_predictor;
   std::array<BitModel, kMaxSpatialPredictor> spatial_predictor;
   ResidualModels header;
@@ -29,27 +27,6 @@ struct ClusterModels {
   ResidualModels spatial;
   std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
 };
-
-// 9.6.2 Predicted cluster, from the neighbours already decoded.
-struct ClusterPrediction {
-  std::uint16_t cluster = 0;
-  // Of cluster_predicted_flag; 0: no neighbour, 1: the neighbours agree, 2: they differ.
-  std::size_t context = 0;
-};
-
-inline ClusterPrediction predict_cluster(std::span<const std::uint32_t> earlier_neighbours,
-                                         std::span<const std::uint16_t> cluster_of_vertex,
-                                         std::uint16_t previous) {
-  ClusterPrediction prediction{previous, 0};
-  for (const std::uint32_t u : earlier_neighbours) {
-    const std::uint16_t cluster = cluster_of_vertex[u];
-    if (cluster == kSeedCluster) continue;
-    if (prediction.context != 0 && cluster != prediction.cluster) prediction.context = 2;
-    prediction.context = std::max<std::size_t>(prediction.context, 1);
-    prediction.cluster = cluster;
-  }
-  return prediction;
-}
 
 // 9.6.4 Expected magnitude of a temporal residual.
 class TemporalContext {

@@ -4,6 +4,7 @@
 
 #include "common/cluster_gof/cluster_models.h"
 #include "common/int_math.h"
+#include "decoder/parse/parse_cluster_map.h"
 #include "decoder/parse/parse_component_header.h"
 #include "decoder/parse/parse_track.h"
 #include "decoder/parse/section_reader.h"
@@ -46,8 +47,6 @@ class ClusterSectionParser {
   bool failed() const { return section_.failed(); }
   void cluster_headers();
   void cluster_seeds(std::size_t cluster_index);
-  void cluster_map();
-  std::uint16_t cluster_idx(const ClusterPrediction& prediction);
   void count_factors(std::uint64_t more, const char* element);
   // Fails if the memory needed so far exceeds the caller's limit.
   void take_memory(std::uint64_t bytes, const char* element);
@@ -103,33 +102,6 @@ void ClusterSectionParser::cluster_seeds(std::size_t cluster_index) {
     gof_.seed_tracks.push_back({s[k], anchor, {}});
     gof_.cluster_of_vertex[s[k]] = kSeedCluster;
   }
-}
-
-// 6.5.3 cluster_map( )
-void ClusterSectionParser::cluster_map() {
-  const int depth = ceil_log2(gof_.clusters.size());
-  models_.cluster_idx.resize(std::size_t{1} << depth);
-  std::uint16_t previous = 0;
-  for (std::uint32_t v = 0; v < header_.num_vertices && !failed(); ++v) {
-    if (gof_.cluster_of_vertex[v] == kSeedCluster) continue;
-    if (gof_.clusters.size() > 1) {
-      previous = cluster_idx(
-          predict_cluster(topology_.earlier_neighbours[v], gof_.cluster_of_vertex, previous));
-    }
-    gof_.cluster_of_vertex[v] = previous;
-  }
-  section_.check_overrun("cluster_idx");
-}
-
-std::uint16_t ClusterSectionParser::cluster_idx(const ClusterPrediction& prediction) {
-  if (section_.bin(models_.cluster_predicted_flag[prediction.context],
-                   "cluster_predicted_flag")) {
-    return prediction.cluster;
-  }
-  const std::uint32_t index = section_.tree(models_.cluster_idx, "cluster_idx");
-  if (index < gof_.clusters.size()) return static_cast<std::uint16_t>(index);
-  section_.fail("R-GOF-08", "cluster_idx");
-  return 0;
 }
 
 // NumFactors of 6.5.4 and 6.5.5
@@ -229,7 +201,10 @@ void ClusterSectionParser::component(std::size_t coded_vertices, Component& comp
 // 6.5.1 gof_section( )
 void ClusterSectionParser::parse() {
   cluster_headers();
-  if (!failed()) cluster_map();
+  if (!failed()) {
+    parse_cluster_map(section_, topology_, models_, gof_.clusters.size(),
+                      gof_.cluster_of_vertex);
+  }
   if (!failed()) seed_tracks();
   if (!failed()) component_counts();
   if (!failed()) components();

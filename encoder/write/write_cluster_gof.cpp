@@ -6,6 +6,7 @@
 #include "common/cluster_gof/cluster_models.h"
 #include "common/int_math.h"
 #include "encoder/write/section_writer.h"
+#include "encoder/write/write_cluster_map.h"
 #include "encoder/write/write_gof_header.h"
 
 namespace rlpc {
@@ -22,8 +23,6 @@ class ClusterSectionWriter {
  private:
   void header_delta(HeaderField field, int value, int previous);
   void cluster_headers();
-  void cluster_map();
-  void cluster_idx(const ClusterPrediction& prediction, std::uint16_t cluster);
   void seed_tracks();
   void component_counts();
   void component(const Component& component);
@@ -54,33 +53,6 @@ void ClusterSectionWriter::cluster_headers() {
       assert(v < header_.num_vertices);
       section_.bypass(ceil_log2(header_.num_vertices), v);
     }
-  }
-}
-
-// 6.5.3 cluster_map( )
-void ClusterSectionWriter::cluster_map() {
-  models_.cluster_idx.resize(std::size_t{1} << ceil_log2(gof_.clusters.size()));
-  if (gof_.clusters.size() == 1) return;
-  std::uint16_t previous = 0;
-  for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
-    if (gof_.cluster_of_vertex[v] == kSeedCluster) continue;
-    const auto neighbours = topology_.earlier_neighbours[v];
-    cluster_idx(predict_cluster(neighbours, gof_.cluster_of_vertex, previous),
-                gof_.cluster_of_vertex[v]);
-    previous = gof_.cluster_of_vertex[v];
-  }
-}
-
-void ClusterSectionWriter::cluster_idx(const ClusterPrediction& prediction,
-                                       std::uint16_t cluster) {
-  const bool predicted = prediction.cluster == cluster;
-  section_.bin(models_.cluster_predicted_flag[prediction.context], predicted);
-  if (predicted) return;
-  std::uint32_t node = 1;
-  for (int bit = ceil_log2(gof_.clusters.size()) - 1; bit >= 0; --bit) {
-    const bool one = ((cluster >> bit) & 1) != 0;
-    section_.bin(models_.cluster_idx[node], one);
-    node = 2 * node + (one ? 1 : 0);
   }
 }
 
@@ -135,7 +107,7 @@ void ClusterSectionWriter::component(const Component& component) {
 // 6.5.1 gof_section( )
 std::vector<std::uint8_t> ClusterSectionWriter::write() {
   cluster_headers();
-  cluster_map();
+  write_cluster_map(section_, topology_, models_, gof_.clusters.size(), gof_.cluster_of_vertex);
   seed_tracks();
   component_counts();
   for (const Cluster& cluster : gof_.clusters) {
