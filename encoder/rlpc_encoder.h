@@ -120,6 +120,10 @@ struct FrameTools {
   std::uint32_t temporal_layers = 1;  // to which a stream can be cut, 1 to 8
   FrameWeights weights = FrameWeights::kLearned;
   std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
+  // Parts of the mesh that can each move by one affine motion in a frame, up to 1024; 0: none;
+  // not given: the cheapest of several numbers, for each GOF.
+  std::optional<std::uint32_t> patches;
+  PartitionMethod partition = PartitionMethod::kMotion;  // what makes patches; not kSeeds
 
   bool operator==(const FrameTools&) const = default;
 };
@@ -210,9 +214,10 @@ struct TemporalCut {
   double kg_error_percent = 0.0;
 };
 
-// GOFs of frames with the same pattern.
+// GOFs of frames with the same pattern, and the same number of patches.
 struct PatternCount {
   FramePattern pattern;
+  std::uint32_t patches = 0;
   std::uint32_t gofs = 0;
 };
 

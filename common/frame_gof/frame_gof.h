@@ -8,6 +8,7 @@
 
 #include "common/frame_gof/compact_residuals.h"
 #include "common/frame_gof/frame_order.h"
+#include "common/frame_gof/patch_motion.h"
 #include "common/mesh/weight_settings.h"
 #include "common/syntax/gof_header.h"
 
@@ -31,6 +32,7 @@ struct CodedFrame {
   // The frame that it is equal to: it then has its layer groups, and nothing of what follows.
   std::optional<std::uint32_t> repeated;
   std::optional<FrameCrc> frame_crc;
+  FramePatches patches;
   CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
   std::vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
 
@@ -48,6 +50,8 @@ struct FrameSettings {
   std::uint32_t max_repeat_distance = 0;  // in coding order; 0: no frame repeats another
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
   std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
+  std::uint32_t num_patches = 0;
+  PatchOfVertex patch_of_vertex;  // [num_vertices] if there are patches
 
   bool operator==(const FrameSettings&) const = default;
 };

@@ -33,6 +33,7 @@ class CodedMesh {
     return topology_.parallelograms[v];
   }
 
+  const Topology& topology() const { return topology_; }
   // 8.18: of the High profile alone.
   const RestOrder& rest_order() const { return *rest_order_; }
 

@@ -91,6 +91,12 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
   for (std::uint8_t& step : gof.layer_step) {
     if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(kMaxLayerStep));
   }
+  if (below(2) == 0) {
+    gof.num_patches = 1 + below(6);
+    for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
+      gof.patch_of_vertex.push_back(static_cast<std::uint16_t>(below(gof.num_patches)));
+    }
+  }
   auto frames = std::make_shared<std::vector<CodedFrame>>(num_frames);
   std::vector<std::uint32_t> most(gof.pattern.temporal_layers,
                                   static_cast<std::uint32_t>(gof.layer_group_size.size()));
@@ -114,10 +120,20 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
         continue;
       }
     }
+    for (std::uint32_t p = 0; place > 0 && p < gof.num_patches; ++p) {
+      PatchMotion& patch = frame.patches.emplace_back();
+      patch.mode = static_cast<PatchMode>(below(kPatchModes));
+      for (std::int32_t& residual : patch.residual) {
+        if (patch.mode == PatchMode::kNeighbours) break;
+        residual = static_cast<std::int32_t>(random() & ((1U << below(most_bits + 1)) - 1));
+        if (below(2) == 0) residual = -residual;
+      }
+    }
     frame.residual = CompactResiduals(3 * std::size_t{mesh.num_vertices()});
     std::uint32_t layers = 0;
     for (std::uint32_t j = 0; j < groups; ++j) layers += gof.layer_group_size[j];
     for (const std::uint32_t v : mesh.vertices_of_layers(0, layers)) {
+      if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto magnitude =
             static_cast<std::int32_t>(random() & ((1U << below(most_bits + 1)) - 1));

@@ -63,9 +63,9 @@ class Help(ToolsTest):
 
     def test_the_profile_of_an_option(self):
         groups = self.page("rlpcenc", "--help-all").split("\n\n")
-        for heading, options in (("All profiles", ("--profile", "--components")),
+        for heading, options in (("All profiles", ("--profile", "--components", "--partition")),
                                  ("Main and High profiles only", ("--bones", "--layer-groups")),
-                                 ("Baseline profile only", ("--clusters", "--seeds", "--partition"))):
+                                 ("Baseline profile only", ("--clusters", "--seeds"))):
             group = [text for text in groups if text.startswith(heading)]
             self.assertEqual(len(group), 1, heading)
             for option in options:

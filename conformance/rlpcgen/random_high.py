@@ -153,6 +153,15 @@ class HighSource(random_main.MainSource):
     def _frame_residual(self, ns, indices, arguments):
         return self.residual()
 
+    def _num_patches(self, ns, indices, arguments):
+        return self.numbers.pick([0, 0, self.numbers.between(1, min(5, ns["MaxClusters"]))])
+
+    def _patch_mode(self, ns, indices, arguments):
+        return self.numbers.between(0, 2)
+
+    def _patch_residual(self, ns, indices, arguments):
+        return self.residual()
+
     def _num_local_groups(self, ns, indices, arguments):
         return min(self.plan.local_groups, 255 - ns["num_component_groups"])
 

@@ -171,7 +171,8 @@ TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   settings.layer_step.assign(mesh().num_layers(), kMaxLayerStep);
   const std::vector<double> xyz = animation();
   FrameGofPayloads payloads;
-  payloads.first = write_frame_gof_unit({GofKind::kFrames, 0, kFrames}, settings);
+  payloads.first =
+      write_frame_gof_unit({GofKind::kFrames, 0, kFrames}, settings, mesh().topology());
   std::vector<std::int32_t> expected(kFrames * frame_size());
   const Threads use(2);
   FrameCoding coding(mesh(), settings, header_, kFrames);

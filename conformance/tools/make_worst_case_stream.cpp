@@ -88,7 +88,7 @@ class StreamMaker {
   void frames(const CodedMesh& mesh) {
     const FrameSettings settings = make_frames(plan_.size, mesh);
     const GofHeader gof{GofKind::kFrames, next_frame(), plan_.size.frames};
-    unit(UnitType::kGof, write_frame_gof_unit(gof, settings));
+    unit(UnitType::kGof, write_frame_gof_unit(gof, settings, mesh.topology()));
     const FrameOrder order(settings.pattern, gof.num_frames);
     FrameUnitWriter writer(mesh, settings);
     for (std::uint32_t place = 0; place < gof.num_frames; ++place) {

@@ -82,16 +82,19 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
   const std::uint64_t kept =
       (pattern.kind == FramePattern::kExplicit ? pattern.period() : depths) +
       std::min<std::uint64_t>(settings.max_repeat_distance, num_frames);
-  const std::uint64_t states = depths + 1;  // of contexts
+  const std::uint64_t states = depths + 1;      // of contexts
+  constexpr std::uint64_t kBytesOfPatch = 160;  // its contexts, and its last motion
   const std::uint64_t filters = settings.learning_flag ? pattern.temporal_layers : 0;
   return num_frames * kBytesPerFrame +
          states * settings.layer_group_size.size() * kBytesPerGroup +
+         states * settings.num_patches * kBytesOfPatch +
          num_vertices * (kBytesPerVertex + filters * kBytesOfFilter + states * kBytesPerState +
                          kept * kBytesOfKept);
 }
-// The residuals of a frame, of which some are large.
-constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_t num_large) {
-  return 5 * num_vertices + 32 * num_large;
+// The residuals of a frame, of which some are large, and the motion of its patches.
+constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_t num_large,
+                                        std::uint64_t num_patches) {
+  return 5 * num_vertices + 32 * num_large + sizeof(PatchMotion) * num_patches;
 }
 
 // Skinned models that are kept, with their reconstructions.

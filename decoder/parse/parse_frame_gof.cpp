@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "decoder/parse/memory_estimate.h"
+#include "decoder/parse/parse_cluster_map.h"
 #include "decoder/parse/parse_frame_pattern.h"
 #include "decoder/parse/parse_layers.h"
 #include "decoder/parse/section_reader.h"
@@ -56,11 +57,15 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   if (!groups.empty()) gof_.layer_group_size = groups;
   gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
   if (!gof_.exact_flag) parse_layer_steps(r, gof_.layer_step);
+  gof_.num_patches =
+      r.ue("num_patches", {0, std::int64_t{header_.level().max_clusters}}, "R-LVL-06");
   r.byte_alignment();
-  r.expect_end();
+  if (gof_.num_patches == 0) r.expect_end();
   if (r.error()) return *r.error();
   memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
   if (!has_memory(r, 0, "frames_of_gof")) return *r.error();
+  if (gof_.num_patches > 0) patch_map(r);
+  if (r.error()) return *r.error();
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
   order_.emplace(gof_.pattern, gof_.num_frames);
@@ -70,6 +75,16 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
   end_temporal_layer_ = std::min(cut_.max_temporal_layers, gof_.pattern.temporal_layers);
   return true;
+}
+
+// 6.14.3 patch_map( )
+void FrameGofParser::patch_map(BitReader& r) {
+  SectionReader section(r, "patch_map");
+  ClusterMapModels models;
+  gof_.patch_of_vertex.assign(header_.num_vertices, 0);
+  parse_cluster_map(section, mesh_.topology(), models, gof_.num_patches, gof_.patch_of_vertex);
+  section.finish();
+  patch_contexts_.emplace(gof_.num_patches, gof_.pattern.num_depths());
 }
 
 FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
@@ -195,12 +210,12 @@ std::uint32_t FrameGofParser::complete_places() const {
 CodedFrame FrameGofParser::take_frame(std::uint32_t frame) {
   CodedFrame& kept = frames_[frame];
   if (kept.layer_groups > 0 && !kept.repeated) {
-    memory_bytes_ -= memory_of_frame(header_.num_vertices, kept.residual.num_large());
+    memory_bytes_ -=
+        memory_of_frame(header_.num_vertices, kept.residual.num_large(), kept.patches.size());
   }
-  CodedFrame taken = std::move(kept);
-  kept.residual = {};
-  kept.expected = {};
+  CodedFrame taken = std::exchange(kept, {});
   kept.layer_groups = taken.layer_groups;
+  kept.repeated = taken.repeated;
   return taken;
 }
 
@@ -213,29 +228,58 @@ struct OfVertex {
   ResidualModels& models() const { return contexts.models(); }
   void update(std::int32_t residual) const { contexts.update(residual); }
 };
+// The motion of one patch.
+struct OfPatch {
+  PatchContexts& contexts;
+  std::size_t value = 0;
+  std::uint32_t expected() const { return contexts.expected(value); }
+  ResidualModels& models() const { return contexts.models(value); }
+  void update(std::int32_t residual) { contexts.update(value++, residual); }
+};
 
 }  // namespace
+
+// 6.14.3 patch_motions( )
+void FrameGofParser::patch_motions(SectionReader& section, CodedFrame& frame) {
+  frame.patches.resize(gof_.num_patches);
+  for (std::size_t p = 0; p < frame.patches.size() && !section.failed(); ++p) {
+    PatchMotion& patch = frame.patches[p];
+    patch_contexts_->start(p);
+    patch.mode = static_cast<PatchMode>(
+        section.truncated_unary(patch_contexts_->mode_models(), "patch_mode"));
+    patch_contexts_->set_mode(patch.mode);
+    if (patch.mode != PatchMode::kNeighbours) {
+      section.residuals(OfPatch{*patch_contexts_}, patch.residual, "patch_residual");
+    }
+    section.check_overrun("patch_mode");
+  }
+}
 
 // 6.14.2 frame_section( )
 void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
   CodedFrame& frame = frames_[unit.frame_idx];
   const std::uint64_t num_vertices = header_.num_vertices;
+  const std::uint32_t place = order_->place_of(unit.frame_idx);
+  const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
   if (unit.layer_group_idx == 0) {
-    const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices);
+    const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
     if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
     frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
     frame.expected.assign(header_.num_vertices, 0);
-    const std::uint32_t place = order_->place_of(unit.frame_idx);
     contexts_->start_frame(place, (*order_)[place].depth);
-    memory_bytes_ += memory_of_frame(num_vertices, 0);
+    if (num_patches > 0) patch_contexts_->start_frame((*order_)[place].depth);
+    memory_bytes_ += memory_of_frame(num_vertices, 0, num_patches);
   }
   const std::uint64_t large_before = frame.residual.num_large();
   SectionReader section(r, "frame_section");
   contexts_->start_group(unit.layer_group_idx);
+  if (unit.layer_group_idx == 0 && num_patches > 0) patch_motions(section, frame);
   std::uint32_t first = 0;
   for (std::uint32_t j = 0; j < unit.layer_group_idx; ++j) first += gof_.layer_group_size[j];
   const std::uint32_t end = first + gof_.layer_group_size[unit.layer_group_idx];
   for (const std::uint32_t v : mesh_.vertices_of_layers(first, end)) {
+    if (section.failed()) return;
+    if (mode_of(frame.patches, gof_.patch_of_vertex, v) == PatchMode::kAlone) continue;
     contexts_->start(v);
     frame.expected[v] = contexts_->frame_expected();
     std::array<std::int32_t, 3> residuals{};
@@ -244,12 +288,12 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
       if (residuals[c] != 0) frame.residual.set(3 * std::size_t{v} + c, residuals[c]);
     }
     section.check_overrun("frame_residual");
-    if (section.failed()) return;
   }
   section.finish();
+  if (section.failed()) return;
   frame.residual.sort();
   frame.layer_groups = unit.layer_group_idx + 1;
-  memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before);
+  memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before, 0);
 }
 
 FrameGof FrameGofParser::finish() {

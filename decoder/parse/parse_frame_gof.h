@@ -9,11 +9,13 @@
 #include "common/bitstream/bit_reader.h"
 #include "common/frame_gof/frame_contexts.h"
 #include "common/frame_gof/frame_gof.h"
+#include "common/frame_gof/patch_contexts.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/parse/memory_limit.h"
+#include "decoder/parse/section_reader.h"
 #include "decoder/slice_cut.h"
 
 namespace rlpc {
@@ -59,10 +61,12 @@ class FrameGofParser {
 
  private:
   void weights(BitReader& r);
+  void patch_map(BitReader& r);
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frame_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
   bool may_follow(const SliceEntry& unit);
   void repeat_of_frame(BitReader& r, const SliceEntry& unit);
+  void patch_motions(SectionReader& section, CodedFrame& frame);
   void frame_section(BitReader& r, const SliceEntry& unit);
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);
 
@@ -73,6 +77,7 @@ class FrameGofParser {
   FrameGof gof_;  // without its frames
   std::vector<CodedFrame> frames_;
   std::optional<FrameContexts> contexts_;
+  std::optional<PatchContexts> patch_contexts_;  // if there are patches
   std::optional<FrameOrder> order_;
   std::uint32_t next_place_ = 0;  // LastPlace + 1
   // Frames of each temporal layer: those before next_place_ - 1, and [temporal layer][layer

@@ -70,7 +70,8 @@ void add_kind(const FrameGof& gof, GofSummary& summary) {
       {"num_layer_groups", "layer group", "layer groups", size_of(gof.layer_group_size)},
       {"num_frame_units", "frame unit", "frame units", size_of(summary.slices)},
       {"num_repeated_frames", "repeated frame", "repeated frames",
-       static_cast<std::uint32_t>(repeated), true}};
+       static_cast<std::uint32_t>(repeated), true},
+      {"num_patches", "patch", "patches", gof.num_patches, true}};
 }
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:

@@ -26,7 +26,9 @@ FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
       to_nearest_(to_nearest),
       order_(settings.pattern, num_frames),
       recon_(mesh, settings, header.position_bits),
-      writer_(mesh, settings, header.open_end_flag) {}
+      writer_(mesh, settings, header.open_end_flag) {
+  if (settings.num_patches > 0) patch_search_.emplace(mesh, settings);
+}
 
 // Vertices of the base depend on each other: they are predicted when they are coded.
 void FrameCoding::predict(Layer& layer, std::uint32_t index) {
@@ -50,13 +52,19 @@ void FrameCoding::choose(Layer& layer, std::span<const double> xyz, CodedFrame* 
     const std::uint32_t v = layer.vertices[i];
     VertexMotion& motion = layer.motions[i];
     if (is_base) recon_.predict(v, motion);
+    if (mode_of(patches_, settings_.patch_of_vertex, v) == PatchMode::kAlone) {
+      layer.expected[i] = 0;
+      recon_.set(v, motion, recon_.position(v, motion, {}));
+      if (is_base) recon_.adapt(v, motion, true, 0);
+      continue;
+    }
     writer_.start(v);
     layer.expected[i] = contexts.frame_expected();
     const double step = static_cast<double>(recon_.step(v)) * (kPoint / kStepUnits);
     Vec3i residual{};
     for (std::size_t c = 0; c < 3; ++c) {
       const double value = xyz[3 * std::size_t{v} + c];
-      const double start = recon_.start_of(motion, c);
+      const double start = recon_.start_of(v, motion, c);
       if (to_nearest_) {
         residual[c] = rounded_residual((value * kPoint - start) / step, 0.5);
       } else if (settings_.exact_flag) {
@@ -104,10 +112,17 @@ std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
   const FramePlace& place = order_[number];
   recon_.start_frame(place, order_.last_use(place.frame));
   writer_.start_frame(number, place);
+  patches_.clear();
+  if (patch_search_ && number > 0) {
+    patches_ = patch_search_->choose(xyz, place.depth, writer_.patch_contexts(), recon_);
+    recon_.move_patches(patches_);
+    writer_.set_patches(patches_);
+  }
   if (coded != nullptr) {
     coded->layer_groups = static_cast<std::uint32_t>(settings_.layer_group_size.size());
     coded->residual = CompactResiduals(3 * std::size_t{mesh_.num_vertices()});
     coded->expected.assign(mesh_.num_vertices(), 0);
+    coded->patches = patches_;
   }
   Layer* current = &layers_[0];
   Layer* before = &layers_[1];

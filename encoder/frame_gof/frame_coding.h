@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "common/frame_gof/recon/frame_recon.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/frame_gof/patch_search.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/write/write_frame_gof.h"
 
@@ -54,6 +56,8 @@ class FrameCoding {
   FrameOrder order_;
   FrameRecon recon_;
   FrameUnitWriter writer_;
+  std::optional<PatchSearch> patch_search_;  // if there are patches
+  FramePatches patches_;                     // of the frame
   Layer layers_[2];  // of which one adapts while residuals of the other are chosen
 };
 

@@ -66,7 +66,8 @@ FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header
       coding_(mesh, settings_, header, frames.num_frames),
       decoded_(frames.num_vertices, frames.num_frames) {
   const GofHeader gof{GofKind::kFrames, frames.first_frame, frames.num_frames};
-  encoded_.units.push_back({UnitType::kGof, write_frame_gof_unit(gof, settings_)});
+  encoded_.units.push_back(
+      {UnitType::kGof, write_frame_gof_unit(gof, settings_, mesh.topology())});
   if (settings_.pattern.temporal_layers > 1) {
     coded_ = std::make_shared<std::vector<CodedFrame>>();
   }
@@ -99,7 +100,7 @@ double FrameEncoding::cost() const {
 
 EncodedGof FrameEncoding::finish() {
   code_to(frames_.num_frames);
-  encoded_.patterns = {settings_.pattern};
+  encoded_.choices = {choice()};
   encoded_.squared_error = squared_error_;
   encoded_.frame = decoded_.decoder();
   if (coded_) {

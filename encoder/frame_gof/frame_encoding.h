@@ -39,7 +39,7 @@ class FrameEncoding {
   FrameEncoding(const FrameEncoding&) = delete;
   FrameEncoding& operator=(const FrameEncoding&) = delete;
 
-  const FramePattern& pattern() const { return settings_.pattern; }
+  FrameChoice choice() const { return {settings_.pattern, settings_.num_patches}; }
   // Codes frames until the first `count` in coding order are coded.
   void code_to(std::uint32_t count);
   // Of the frames coded so far: bits at equal error, or bits if they are lossless.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace {
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
 
-// The pattern that is chosen at a step stands for all within kAnalysisServes.
+// What is chosen at a step stands for all within kAnalysisServes.
 class FrameGofCoder : public GofCoder {
  public:
   FrameGofCoder(const SequenceMesh& mesh, const CodedMesh& layers,
@@ -34,22 +35,49 @@ class FrameGofCoder : public GofCoder {
   const CodedMesh& layers_;
   const EncoderSettings& settings_;
   const GofFrames& frames_;
-  std::vector<FramePattern> patterns_;  // that are still to be compared
-  double chosen_at_ = 0.0;              // the step that the pattern was chosen at
+  void choose(const StartEncoding& start);
+  const PatchOfVertex& patches(std::uint32_t count);
+
+  std::vector<FrameChoice> choices_;                // that are still to be compared
+  std::map<std::uint32_t, PatchOfVertex> patches_;  // by their number
+  double chosen_at_ = 0.0;                          // the step that choices were made at
 };
 
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
-  if (patterns_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
+  const StartEncoding start = [&](const FrameChoice& choice) {
+    FrameSettings chosen =
+        choose_frame_settings(mesh_.header, settings_, layers_, choice.pattern, step);
+    set_patches(chosen, patches(choice.num_patches));
+    return std::make_unique<FrameEncoding>(layers_, mesh_.header, frames_, chosen);
+  };
+  if (choices_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
     chosen_at_ = step;
-    patterns_ = patterns_of(settings_, mesh_.header.open_end_flag, frames_.num_frames);
+    choose(start);
   }
-  EncodedGof encoded = encode_cheapest(patterns_, frames_.num_frames, [&](const auto& pattern) {
-    return std::make_unique<FrameEncoding>(
-        layers_, mesh_.header, frames_,
-        choose_frame_settings(mesh_.header, settings_, layers_, pattern, step));
-  });
-  patterns_ = encoded.patterns;
+  EncodedGof encoded = cheapest(choices_, frames_.num_frames, start)->finish();
+  choices_ = encoded.choices;
   return encoded;
+}
+
+// First the number of patches; patterns are then compared with these.
+void FrameGofCoder::choose(const StartEncoding& start) {
+  const bool is_open_ended = mesh_.header.open_end_flag;
+  const auto patterns = patterns_of(settings_, is_open_ended, frames_.num_frames);
+  const auto numbers =
+      choices_of_patches(patterns, patches_of(settings_, is_open_ended, frames_.num_frames));
+  const std::uint32_t patches =
+      numbers.size() > 1 ? cheapest(numbers, frames_.num_frames, start)->choice().num_patches
+                         : numbers.front().num_patches;
+  choices_.clear();
+  for (const FramePattern& pattern : patterns) choices_.push_back({pattern, patches});
+}
+
+const PatchOfVertex& FrameGofCoder::patches(std::uint32_t count) {
+  PatchOfVertex& patches = patches_[count];
+  if (patches.empty()) {
+    patches = divide_into_patches(mesh_.header, settings_, frames_, mesh_.triangles, count);
+  }
+  return patches;
 }
 
 class FrameGofKind : public GofEncoder {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "encoder/gof/layer_groups.h"
+#include "encoder/partition/partition.h"
 
 namespace rlpc {
 namespace {
@@ -67,6 +68,19 @@ FrameSettings choose_frame_settings(const SequenceHeader& header,
       layer_group_sizes(layers, settings.frames.layer_groups, settings.frames.layer_groups);
   s.layer_step.assign(layers.num_layers(), kMaxLayerStep);
   return s;
+}
+
+PatchOfVertex divide_into_patches(const SequenceHeader& header, const EncoderSettings& settings,
+                                  const GofFrames& frames, std::span<const Triangle> triangles,
+                                  std::uint32_t count) {
+  const std::uint32_t most = std::min(count, header.level().max_clusters);
+  if (most == 0) return {};
+  return partition_vertices(settings.frames.partition, frames, triangles, most);
+}
+
+void set_patches(FrameSettings& settings, const PatchOfVertex& patch_of_vertex) {
+  settings.patch_of_vertex = patch_of_vertex;
+  settings.num_patches = num_parts(patch_of_vertex);
 }
 
 }  // namespace rlpc

@@ -1,9 +1,14 @@
 // Chooses the settings of a GOF of frames.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/mesh/mesh.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/gof/gof_frames.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
@@ -14,5 +19,14 @@ namespace rlpc {
 FrameSettings choose_frame_settings(const SequenceHeader& header,
                                     const EncoderSettings& settings, const CodedMesh& layers,
                                     const FramePattern& pattern, double step);
+
+// The patch of each vertex, for at most so many patches; empty if that is 0. Takes up to some
+// seconds for 10,000 vertices.
+//
+//   triangles  of the mesh whose vertices are in the order of the frames
+PatchOfVertex divide_into_patches(const SequenceHeader& header, const EncoderSettings& settings,
+                                  const GofFrames& frames, std::span<const Triangle> triangles,
+                                  std::uint32_t count);
+void set_patches(FrameSettings& settings, const PatchOfVertex& patch_of_vertex);
 
 }  // namespace rlpc

@@ -15,6 +15,11 @@ namespace {
 // frames never win by more than 2 %.
 constexpr std::array<int, 2> kPeriodsLog2{4, 6};
 
+// tuned (off: 0): Numbers of patches that are compared, besides none.
+constexpr std::uint32_t kFewPatches = 16;
+// tuned (off: 0): Likewise.
+constexpr std::uint32_t kManyPatches = 48;
+
 FramePattern dyadic(int period_log2) { return {FramePattern::kDyadic, period_log2, {}, 1}; }
 
 // The first frames of a GOF that all patterns code in whole periods: at least a part.
@@ -49,14 +54,35 @@ std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_o
   return patterns;
 }
 
-EncodedGof encode_cheapest(
-    const std::vector<FramePattern>& patterns, std::uint32_t num_frames,
-    const std::function<std::unique_ptr<FrameEncoding>(const FramePattern&)>& make) {
+std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_open_ended,
+                                      std::uint32_t num_frames) {
+  if (settings.frames.patches) return {*settings.frames.patches};
+  if (is_open_ended || settings.preset == Preset::kFast || num_frames == 1) return {0};
+  return {0, kFewPatches, kManyPatches};
+}
+
+std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
+                                            const std::vector<std::uint32_t>& patches) {
+  if (patches.size() == 1) return {{patterns.front(), patches.front()}};
+  std::vector<FramePattern> compared{patterns.front()};
+  const auto dyadic = std::find_if(
+      patterns.begin() + 1, patterns.end(),
+      [](const FramePattern& pattern) { return pattern.kind == FramePattern::kDyadic; });
+  if (dyadic != patterns.end()) compared.push_back(*dyadic);
+  std::vector<FrameChoice> choices;
+  for (const FramePattern& pattern : compared) {
+    for (const std::uint32_t count : patches) choices.push_back({pattern, count});
+  }
+  return choices;
+}
+
+std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
+                                        std::uint32_t num_frames, const StartEncoding& start) {
   std::vector<std::unique_ptr<FrameEncoding>> left;
   std::uint32_t period = 1;
-  for (const FramePattern& pattern : patterns) {
-    left.push_back(make(pattern));
-    period = std::max(period, pattern.period());
+  for (const FrameChoice& choice : choices) {
+    left.push_back(start(choice));
+    period = std::max(period, choice.pattern.period());
   }
   for (std::size_t part = std::bit_ceil(left.size()); left.size() > 1; part /= 2) {
     const std::uint32_t end = whole_periods(num_frames, part, period);
@@ -65,7 +91,7 @@ EncodedGof encode_cheapest(
                      [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
     left.resize(end == num_frames ? 1 : (left.size() + 1) / 2);
   }
-  return left.front()->finish();
+  return std::move(left.front());
 }
 
 }  // namespace rlpc

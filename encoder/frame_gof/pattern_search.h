@@ -1,4 +1,4 @@
-// Chooses the pattern of a GOF of frames by its bits at equal error.
+// Chooses the pattern and the number of patches of a GOF of frames by its bits at equal error.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,23 @@ namespace rlpc {
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames);
 
-// Encodes a GOF by each pattern, side by side on several threads. Half of them end early, the
-// costlier ones, each time twice as many frames are coded; the last choice is made at half of
-// the frames. What is coded in vain takes as long as one encoding by the chosen pattern, if
-// there are four.
-//
-//   make  starts the encoding by a pattern
-EncodedGof encode_cheapest(
-    const std::vector<FramePattern>& patterns, std::uint32_t num_frames,
-    const std::function<std::unique_ptr<FrameEncoding>(const FramePattern&)>& make);
+// Likewise, numbers of patches, ascending.
+std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_open_ended,
+                                      std::uint32_t num_frames);
+
+// The choices that numbers of patches are compared by: with the first pattern, and if there is
+// one, with the first whose frames are predicted from both sides, where motions are small.
+std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
+                                            const std::vector<std::uint32_t>& patches);
+
+// Starts the encoding of a GOF by a choice.
+using StartEncoding = std::function<std::unique_ptr<FrameEncoding>(const FrameChoice&)>;
+
+// Encodes a GOF by each choice, side by side on several threads. Half of them end early, the
+// costlier ones, each time twice as many frames are coded; the last comparison is made at half
+// of the frames. What is coded in vain takes as long as one encoding, if there are four choices
+// that take equally long. Returns the one that is left, which may not have ended.
+std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
+                                        std::uint32_t num_frames, const StartEncoding& start);
 
 }  // namespace rlpc

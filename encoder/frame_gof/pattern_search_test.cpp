@@ -24,6 +24,7 @@ class PatternSearch : public testing::Test {
   PatternSearch() {
     settings_.profile = Profile::kHigh;
     settings_.kinds = KindChoice::kFrames;
+    settings_.frames.patches = 0;
     header_.profile_idc = kProfileHigh;
     header_.num_vertices = kRings * kSides;
     header_.position_bits = 16;
@@ -53,7 +54,7 @@ class PatternSearch : public testing::Test {
   std::string chosen(const GofFrames& frames) {
     settings_.frames.pattern.reset();
     const EncodedGof best = encoded(frames);
-    EXPECT_EQ(best.patterns.size(), 1U);
+    EXPECT_EQ(best.choices.size(), 1U);
     for (const char* const text : {"previous", "first", "dyadic:16", "dyadic:64"}) {
       settings_.frames.pattern = parse_frame_pattern_text(text);
       const EncodedGof other = encoded(frames);
@@ -62,7 +63,7 @@ class PatternSearch : public testing::Test {
           << text;
     }
     settings_.frames.pattern.reset();
-    return frame_pattern_text(best.patterns.front());
+    return frame_pattern_text(best.choices.front().pattern);
   }
 
   EncoderSettings settings_;
@@ -124,6 +125,25 @@ TEST_F(PatternSearch, KnowsItsError) {
   EXPECT_NEAR(*gof.squared_error, squared_error(frames, gof.frame), 1e-6 * *gof.squared_error);
 }
 
+// Two halves that move against each other, with bumps that no neighbours tell.
+TEST_F(PatternSearch, RigidPartsGetPatches) {
+  settings_.frames.patches.reset();
+  const GofFrames frames = tube(40, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    std::minstd_rand random(v * 3 + c + 1);
+    random.discard(3);
+    const auto bump = static_cast<double>(random() % 600);
+    const double along = v < kRings * kSides / 2 ? 1.0 : -1.0;
+    return bump + along * 30.0 * f * (c == 0 ? 1.0 : 0.3) +
+           (c == 2 ? 900 * std::sin(0.4 * f) : 0);
+  });
+  const EncodedGof best = encoded(frames);
+  ASSERT_EQ(best.choices.size(), 1U);
+  EXPECT_GT(best.choices.front().num_patches, 0U);
+  settings_.frames.patches = 0;
+  settings_.frames.pattern = best.choices.front().pattern;
+  EXPECT_LT(bits_of(best), 0.8 * bits_of(encoded(frames)));
+}
+
 std::string texts(const std::vector<FramePattern>& patterns) {
   std::string text;
   for (const FramePattern& pattern : patterns) text += frame_pattern_text(pattern) + " ";
@@ -162,6 +182,30 @@ TEST(PatternsOf, HaveTheTemporalLayersOfTheSettings) {
   EXPECT_EQ(texts(patterns_of(settings, true, 65)), "dyadic:16 ");
   settings.frames.temporal_layers = 7;
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "dyadic:64 ");
+}
+
+TEST(PatchesOf, AreSeveralUnlessThereIsNoTimeToCompareOrToWait) {
+  EncoderSettings settings;
+  const std::vector<std::uint32_t> none{0};
+  EXPECT_GT(patches_of(settings, false, 65).size(), 1U);
+  EXPECT_EQ(patches_of(settings, true, 65), none);
+  EXPECT_EQ(patches_of(settings, false, 1), none);
+  settings.preset = Preset::kFast;
+  EXPECT_EQ(patches_of(settings, false, 65), none);
+  settings.frames.patches = 7;
+  EXPECT_EQ(patches_of(settings, true, 65), std::vector<std::uint32_t>{7});
+}
+
+TEST(PatchesOf, AreComparedByTwoPatterns) {
+  const FramePattern previous;
+  const FramePattern first{FramePattern::kFirst, 1, {}, 1};
+  const FramePattern dyadic{FramePattern::kDyadic, 4, {}, 1};
+  const std::vector<FrameChoice> expected{
+      {previous, 0}, {previous, 9}, {dyadic, 0}, {dyadic, 9}};
+  EXPECT_EQ(choices_of_patches({previous, first, dyadic}, {0, 9}), expected);
+  EXPECT_EQ(choices_of_patches({previous, first}, {0, 9}).size(), 2U);
+  EXPECT_EQ(choices_of_patches({dyadic}, {0, 9}).size(), 2U);
+  EXPECT_EQ(choices_of_patches({previous, first, dyadic}, {3}).size(), 1U);
 }
 
 }  // namespace

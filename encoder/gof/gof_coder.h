@@ -40,6 +40,14 @@ inline constexpr std::uint32_t kModelIdx = 0;  // fixed: any would do
 // A skinned model as it was coded, with all that later spans need to use it.
 struct KeptModel;
 
+// What has been chosen for a GOF of frames.
+struct FrameChoice {
+  FramePattern pattern;
+  std::uint32_t num_patches = 0;
+
+  bool operator==(const FrameChoice&) const = default;
+};
+
 // One encoding of a span.
 struct EncodedGof {
   struct Unit {
@@ -56,13 +64,13 @@ struct EncodedGof {
   std::shared_ptr<const KeptModel> model;
   // The squared error of all frames, in squared grid steps; none: not known.
   std::optional<double> squared_error;
-  std::vector<FramePattern> patterns;  // of each GOF of frames
-  std::uint64_t num_factors = 0;       // NumFactors of the specification, the largest
-  std::uint64_t adaptive_values = 0;   // adaptive factors times vertices
-  std::uint32_t clusters = 0;          // clusters of all GOFs, or bones
-  std::uint32_t max_clusters = 0;      // of a GOF
-  std::uint32_t components = 0;        // components of all clusters, or trajectories
-  std::uint32_t max_components = 0;    // components of the largest cluster, or trajectories
+  std::vector<FrameChoice> choices;   // of each GOF of frames
+  std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
+  std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
+  std::uint32_t clusters = 0;         // clusters of all GOFs, or bones
+  std::uint32_t max_clusters = 0;     // of a GOF
+  std::uint32_t components = 0;       // components of all clusters, or trajectories
+  std::uint32_t max_components = 0;   // components of the largest cluster, or trajectories
 };
 
 // Encodes one span, repeatedly. Choices made for it last as long as the coder. The analysis

@@ -62,7 +62,7 @@ EncodedGof SplitCoder::encode(double step, double analysis_step) {
     decoders.push_back(std::move(encoded.frame));
     if (!encoded.squared_error) all.squared_error.reset();
     if (all.squared_error) *all.squared_error += *encoded.squared_error;
-    all.patterns.insert(all.patterns.end(), encoded.patterns.begin(), encoded.patterns.end());
+    all.choices.insert(all.choices.end(), encoded.choices.begin(), encoded.choices.end());
     all.num_factors = std::max(all.num_factors, encoded.num_factors);
     all.adaptive_values = std::max(all.adaptive_values, encoded.adaptive_values);
     all.clusters += encoded.clusters;

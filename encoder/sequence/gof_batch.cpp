@@ -29,12 +29,16 @@ std::optional<InputError> for_each_gof(
 
 }  // namespace
 
-void count_patterns(const std::vector<FramePattern>& patterns,
+void count_patterns(const std::vector<FrameChoice>& choices,
                     std::vector<PatternCount>& counts) {
-  for (const FramePattern& pattern : patterns) {
-    const auto same = [&](const PatternCount& count) { return count.pattern == pattern; };
+  for (const FrameChoice& choice : choices) {
+    const auto same = [&](const PatternCount& count) {
+      return count.pattern == choice.pattern && count.patches == choice.num_patches;
+    };
     auto found = std::find_if(counts.begin(), counts.end(), same);
-    if (found == counts.end()) found = counts.insert(found, {pattern, 0});
+    if (found == counts.end()) {
+      found = counts.insert(found, {choice.pattern, choice.num_patches, 0});
+    }
     ++found->gofs;
   }
 }
@@ -135,7 +139,7 @@ InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof&
   }
   return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
                       encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
-                      encoded.model, encoded.cut, encoded.patterns},
+                      encoded.model, encoded.cut, encoded.choices},
                      std::move(metrics)};
 }
 

@@ -27,13 +27,12 @@ struct CodedGof {
   DecodeFrame frame;             // empty unless Options::keep_decoded
   // The skinned model that it brings; null: none, or Options::keep_decoded is not set.
   std::shared_ptr<const KeptModel> model;
-  DecodeCut cut;                       // of GOFs with one temporal layer: empty
-  std::vector<FramePattern> patterns;  // of each GOF of frames
+  DecodeCut cut;                     // of GOFs with one temporal layer: empty
+  std::vector<FrameChoice> choices;  // of each GOF of frames
 };
 
-// Adds patterns of GOFs to those counted before.
-void count_patterns(const std::vector<FramePattern>& patterns,
-                    std::vector<PatternCount>& counts);
+// Adds what was chosen for GOFs to what was counted before.
+void count_patterns(const std::vector<FrameChoice>& choices, std::vector<PatternCount>& counts);
 
 // All GOFs of a batch, encoded at one step.
 struct BatchTrial {

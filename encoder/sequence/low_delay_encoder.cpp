@@ -103,12 +103,27 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
       choose_frame_settings(coding_->header(), settings_, layers,
                             settings_.frames.pattern.value_or(FramePattern{}), step_);
   gof_->settings.max_repeat_distance = 1;
+  if (auto error = divide(xyz)) return error;
   gof_->announced = frames_of_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced,
                        settings_.target.kind == Target::kMaxError);
   const GofHeader header{GofKind::kFrames, num_added_, gof_->announced};
-  const Bytes unit = write_unit(UnitType::kGof, write_frame_gof_unit(header, gof_->settings));
+  const Bytes unit = write_unit(
+      UnitType::kGof, write_frame_gof_unit(header, gof_->settings, layers.topology()));
   if (!stream_->begin_gof(unit, sink_)) return InputError{"the stream could not be written"};
+  return std::nullopt;
+}
+
+// Patches, if they are wanted, are made from the first frame: no motion is known yet.
+std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
+  const std::uint32_t count = settings_.frames.patches.value_or(0);
+  if (count == 0) return std::nullopt;
+  SpanBuffer buffer(format_.num_vertices, 1);
+  buffer.add(xyz);
+  const auto frame = coding_->read_frames(buffer, {0, 1, 1});
+  if (!frame) return frame.error();
+  set_patches(gof_->settings, divide_into_patches(coding_->header(), settings_, *frame,
+                                                  coding_->mesh().triangles, count));
   return std::nullopt;
 }
 

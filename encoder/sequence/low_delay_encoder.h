@@ -39,6 +39,7 @@ class LowDelayEncoder final : public FrameCoder {
 
   std::optional<InputError> begin_stream(std::span<const float> xyz);
   std::optional<InputError> begin_gof(std::span<const float> xyz);
+  std::optional<InputError> divide(std::span<const float> xyz);
   std::optional<InputError> code_frame(std::span<const float> xyz);
   bool end_gof();
   double step_for(double rms_spread) const;

@@ -63,8 +63,8 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
 
 namespace {
 
-// Of a vertex of a GOF of frames, or a span of them, that a thread encodes by each pattern that
-// it may have: positions, as doubles and floats and decoded, and what each pattern learns.
+// Of a vertex of a GOF of frames, or a span of them, that a thread encodes by each choice that
+// is compared: positions, as doubles and floats and decoded, and what each encoding learns.
 std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
                               std::uint32_t num_frames) {
   constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
@@ -75,10 +75,14 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
       (kinds != KindChoice::kAuto && kinds != KindChoice::kFrames)) {
     return 0;
   }
-  const std::uint64_t patterns =
-      settings.low_delay ? 1 : patterns_of(settings, header.open_end_flag, num_frames).size();
+  std::size_t choices = 1;
+  if (!settings.low_delay) {
+    const auto patterns = patterns_of(settings, header.open_end_flag, num_frames);
+    const auto patches = patches_of(settings, header.open_end_flag, num_frames);
+    choices = std::max(patterns.size(), choices_of_patches(patterns, patches).size());
+  }
   return kOfFrame * num_frames +
-         patterns * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
+         choices * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
     }
     report.clusters += gof.clusters;
     report.components += gof.components;
-    count_patterns(gof.patterns, report.patterns);
+    count_patterns(gof.choices, report.patterns);
   }
   bool ok = stream_->write_lead(header, sink);
   for (const CodedGof& span : best.trial.gofs) {

@@ -170,7 +170,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
   coded_.report.target_met = coded_.report.target_met && best->met;
   coded_.report.clusters += coded.clusters;
   coded_.report.components += coded.components;
-  count_patterns(coded.patterns, coded_.report.patterns);
+  count_patterns(coded.choices, coded_.report.patterns);
   coded_.step = best->step;
   if (auto error = keep_to_level(coded.needs)) return error;
   std::mutex reading;

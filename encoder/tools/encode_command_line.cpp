@@ -129,8 +129,8 @@ const CLI::Validator kBits(
     "");
 
 // Adds an option that takes one of a few words.
-template <class T>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
+template <class T, class To>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, To& value,
                         const std::map<std::string, T>& words, const std::string& what) {
   const auto set = [&value, words](const std::string& word) { value = words.at(word); };
   return app.add_option_function<std::string>(name, set, what)
@@ -283,6 +283,17 @@ void add_method_options(CLI::App& app, EncodeCommandLine& line) {
       ->check(CLI::Range(1, 1024))
       ->option_text("N")
       ->group(method);
+  add_choice<PartitionMethod>(
+      app, "--partition", line.partition,
+      {{"seeds", PartitionMethod::kSeeds},
+       {"kway", PartitionMethod::kKway},
+       {"lloyd", PartitionMethod::kLloyd},
+       {"spectral", PartitionMethod::kSpectral},
+       {"motion", PartitionMethod::kMotion}},
+      "What makes clusters of the Baseline profile and patches of the High profile: seeds "
+      "(motion relative to them; default of Baseline), kway (few edges between equal parts), "
+      "lloyd (near vertices), spectral (concave creases), motion (affine; default of High)")
+      ->group(method);
 }
 
 void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
@@ -303,6 +314,14 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
        {"plain", FrameWeights::kPlain}},
       "Weights of prediction: learned (from the frames before, default), geometry (from the "
       "first; larger, faster), plain (equal ones, as in the SSLPC paper)")
+      ->group(frames);
+  app.add_option(
+         "--patches", t.patches,
+         "Parts of the mesh that can each follow one affine motion in a frame, in place "
+         "of their neighbours; 0: none (default: the cheapest of 0, 16 and 48 for each "
+         "GOF)")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N")
       ->group(frames);
 }
 
@@ -342,16 +361,6 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
                         {"spread", SeedMode::kSpread}},
                        "Vertices that carry local coordinate frames: auto (default), first or "
                        "triangle (the first or the most stable triangle at a vertex), spread")
-      ->group(baseline);
-  add_choice<PartitionMethod>(
-      app, "--partition", t.partition,
-      {{"seeds", PartitionMethod::kSeeds},
-       {"kway", PartitionMethod::kKway},
-       {"lloyd", PartitionMethod::kLloyd},
-       {"spectral", PartitionMethod::kSpectral},
-       {"motion", PartitionMethod::kMotion}},
-      "What makes clusters: seeds (motion relative to them, default), kway (few edges between "
-      "equal parts), lloyd (near vertices), spectral (concave creases), motion (affine)")
       ->group(baseline);
   add_choice<MotionMeasure>(
       app, "--motion", t.motion,

@@ -21,6 +21,7 @@ struct EncodeCommandLine {
   std::string fps;
   std::optional<std::string> gof;  // none: chosen by the profile
   std::string frame_pattern;
+  std::optional<PartitionMethod> partition;
   std::vector<float> box;
   std::string metadata_path;
   std::optional<double> kg;

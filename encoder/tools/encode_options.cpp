@@ -53,6 +53,15 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     }
     s.frames.pattern = *pattern;
   }
+  if (line.partition && s.profile == Profile::kHigh) {
+    if (*line.partition == PartitionMethod::kSeeds) {
+      return "--partition: patches are not made from seeds: use motion, kway, lloyd or "
+             "spectral";
+    }
+    s.frames.partition = *line.partition;
+  } else if (line.partition) {
+    s.baseline.partition = *line.partition;
+  }
   for (const NamedQuality& q : kQualities) {
     if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
   }

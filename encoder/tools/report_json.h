@@ -69,8 +69,9 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
       {"trials", r.trials},
       {"target_met", r.target_met}};
   for (const PatternCount& count : r.patterns) {
-    json["frame_patterns"].push_back(
-        {{"frame_pattern", frame_pattern_text(count.pattern)}, {"gofs", count.gofs}});
+    json["frame_patterns"].push_back({{"frame_pattern", frame_pattern_text(count.pattern)},
+                                      {"num_patches", count.patches},
+                                      {"gofs", count.gofs}});
   }
   for (const TemporalCut& cut : r.temporal_cuts) {
     json["temporal_cuts"].push_back({{"temporal_layers", cut.layers},

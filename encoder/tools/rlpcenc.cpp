@@ -70,8 +70,12 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   if (!o.verbose) return;
   for (const PatternCount& of_pattern : r.patterns) {
-    std::printf("  %u GOF%s of frames with pattern %s\n", of_pattern.gofs, s(of_pattern.gofs),
+    std::printf("  %u GOF%s of frames with pattern %s", of_pattern.gofs, s(of_pattern.gofs),
                 frame_pattern_text(of_pattern.pattern).c_str());
+    if (of_pattern.patches > 0) {
+      std::printf(" and %u patch%s", of_pattern.patches, of_pattern.patches == 1 ? "" : "es");
+    }
+    std::printf("\n");
   }
   if (r.clusters == 0) {
     std::printf("  %u GOF%s of frames, %u trial%s\n", r.num_gofs, s(r.num_gofs), r.trials,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/bitstream/bit_writer.h"
+#include "encoder/write/write_cluster_map.h"
 #include "encoder/write/write_gof_header.h"
 #include "encoder/write/write_layers.h"
 #include "encoder/write/write_residual.h"
@@ -34,7 +35,8 @@ void write_frame_pattern(BitWriter& w, const FramePattern& pattern) {
 }  // namespace
 
 std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
-                                               const FrameSettings& settings) {
+                                               const FrameSettings& settings,
+                                               const Topology& topology) {
   BitWriter w;
   write_gof_header(w, gof, kProfileHigh);
   write_frame_pattern(w, settings.pattern);
@@ -51,13 +53,39 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
   w.ue(settings.max_repeat_distance);
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
+  w.ue(settings.num_patches);
   w.byte_alignment();
-  return w.take();
+  std::vector<std::uint8_t> payload = w.take();
+  if (settings.num_patches == 0) return payload;
+  SectionWriter section;  // 6.14.3 patch_map( )
+  ClusterMapModels models;
+  write_cluster_map(section, topology, models, settings.num_patches, settings.patch_of_vertex);
+  const std::vector<std::uint8_t> map = section.finish();
+  payload.insert(payload.end(), map.begin(), map.end());
+  return payload;
 }
 
 void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
   frame_ = frame.frame;
   contexts_.start_frame(place, frame.depth);
+  if (place > 0) patch_contexts_.start_frame(frame.depth);
+  patches_.clear();
+}
+
+// 6.14.3 patch_motions( )
+void FrameUnitWriter::write_patches() {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    patch_contexts_.start(p);
+    section_->truncated_unary(patch_contexts_.mode_models(),
+                              static_cast<int>(patches_[p].mode));
+    patch_contexts_.set_mode(patches_[p].mode);
+    if (patches_[p].mode == PatchMode::kNeighbours) continue;
+    for (std::size_t i = 0; i < kMotionValues; ++i) {
+      const std::int32_t residual = patches_[p].residual[i];
+      section_->residual(patch_contexts_.models(i), patch_contexts_.expected(i), residual);
+      patch_contexts_.update(i, residual);
+    }
+  }
 }
 
 // 6.14.2 repeat_of_frame( )
@@ -82,6 +110,7 @@ void FrameUnitWriter::start_group(std::uint32_t layer_group) {
   layer_group_ = layer_group;
   contexts_.start_group(layer_group);
   section_.emplace();
+  if (layer_group == 0) write_patches();
 }
 
 void FrameUnitWriter::write(std::int32_t residual) {
@@ -113,7 +142,7 @@ std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames) {
 
 FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
   FrameGofPayloads payloads;
-  payloads.first = write_frame_gof_unit(gof, gof);
+  payloads.first = write_frame_gof_unit(gof, gof, mesh.topology());
   FrameUnitWriter writer(mesh, gof);
   const FrameOrder order(gof.pattern, gof.num_frames);
   for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
@@ -125,11 +154,13 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
     }
     if (frame.layer_groups == 0) continue;
     writer.start_frame(place, order[place]);
+    writer.set_patches(frame.patches);
     std::uint32_t layer = 0;
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
       writer.start_group(j);
       const std::uint32_t end = layer + gof.layer_group_size[j];
       for (const std::uint32_t v : mesh.vertices_of_layers(layer, end)) {
+        if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;
         writer.start(v);
         for (std::size_t c = 0; c < 3; ++c)
           writer.write(frame.residual[3 * std::size_t{v} + c]);

@@ -9,6 +9,7 @@
 #include "common/bitstream/bit_writer.h"
 #include "common/frame_gof/frame_contexts.h"
 #include "common/frame_gof/frame_gof.h"
+#include "common/frame_gof/patch_contexts.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/write/section_writer.h"
@@ -17,7 +18,8 @@ namespace rlpc {
 
 // 6.14 frames_of_gof( ): the payload of the GOF unit. Settings must be legal.
 std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
-                                               const FrameSettings& settings);
+                                               const FrameSettings& settings,
+                                               const Topology& topology);
 
 // Writes frame units, residual by residual: an encoder can choose each by its cost.
 class FrameUnitWriter {
@@ -27,12 +29,15 @@ class FrameUnitWriter {
                   bool is_open_ended = false)
       : settings_(settings),
         is_open_ended_(is_open_ended),
-        contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()) {}
+        contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
+        patch_contexts_(settings.num_patches, settings.pattern.num_depths()) {}
 
   // Each frame, in coding order: start_frame(), with its place, and for each of its layer
-  // groups start_group(), the vertices of its layers in the order of the mesh, and
-  // finish_group().
+  // groups start_group(), the vertices of its layers in the order of the mesh but for those
+  // that patches move alone, and finish_group(). If the GOF has patches, set_patches() comes
+  // second in each frame but the first.
   void start_frame(std::uint32_t place, const FramePlace& frame);
+  void set_patches(const FramePatches& patches) { patches_ = patches; }
   void start_group(std::uint32_t layer_group);
   // In place of these: the payload of the unit of a frame that repeats the one so many places
   // before.
@@ -40,6 +45,7 @@ class FrameUnitWriter {
   // For each vertex start(), then write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
   FrameContexts& contexts() { return contexts_; }
+  const PatchContexts& patch_contexts() const { return patch_contexts_; }
   void write(std::int32_t residual);
   // The payload of the unit. frame_crc: used in the last layer group if the GOF has hashes of
   // frames.
@@ -47,10 +53,13 @@ class FrameUnitWriter {
 
  private:
   void start_unit(BitWriter& w) const;
+  void write_patches();
 
   const FrameSettings& settings_;
   bool is_open_ended_;
   FrameContexts contexts_;
+  PatchContexts patch_contexts_;
+  FramePatches patches_;  // of the frame
   std::uint32_t frame_ = 0;
   std::uint32_t layer_group_ = 0;
   std::optional<SectionWriter> section_;

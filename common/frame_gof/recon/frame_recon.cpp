@@ -84,6 +84,7 @@ FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int
 void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const CodedFrame& frame) {
   start_frame(place, last_use);
+  if (patches_) move_patches(frame.patches);
   const std::vector<std::int32_t>* const repeated =
       frame.repeated ? &kept_.at(*frame.repeated).values : nullptr;
   std::uint32_t layer = 0;
@@ -97,7 +98,8 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
         for (std::size_t i = first; i < last; ++i) {
           const std::uint32_t v = vertices[i];
           const std::size_t own = 3 * std::size_t{v};
-          if (repeated == nullptr || settings_.learning_flag) predict(v, motion, is_there);
+          const bool is_predicted = repeated == nullptr && !follows_patch(v);
+          if (is_predicted || settings_.learning_flag) predict(v, motion, is_there);
           Vec3i values{};
           if (repeated != nullptr) {
             values = {(*repeated)[own], (*repeated)[own + 1], (*repeated)[own + 2]};
@@ -143,6 +145,10 @@ void FrameRecon::start_frame(const FramePlace& place, std::uint32_t last_use) {
   if (number_ > 0) make_reference();
 }
 
+void FrameRecon::move_patches(const FramePatches& patches) {
+  patches_->start_frame(reference_, place_.depth, settings_.step[place_.depth], patches);
+}
+
 // 8.19.3 MakeReference( f )
 void FrameRecon::make_reference() {
   const std::vector<std::int32_t>& a = kept_.at(place_.first).values;
@@ -171,6 +177,10 @@ void FrameRecon::start_motion() {
                    std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]},
                    &near_);
   if (settings_.learning_flag) start_learning();
+  if (settings_.num_patches > 0) {
+    patches_.emplace(settings_.num_patches, settings_.patch_of_vertex, values_,
+                     settings_.pattern.num_depths(), value_bits_);
+  }
 }
 
 // 8.19.4 StartLearning( )
@@ -345,9 +355,11 @@ void FrameRecon::gather_errors(const Learned& learned, std::uint32_t v, VertexMo
   }
 }
 
-std::int32_t FrameRecon::start_of(const VertexMotion& motion, std::size_t c) const {
-  if (!settings_.exact_flag) return motion.prediction[c];
-  return static_cast<std::int32_t>(round2(motion.prediction[c], kPointFractionBits) *
+std::int32_t FrameRecon::start_of(std::uint32_t v, const VertexMotion& motion,
+                                  std::size_t c) const {
+  const std::int32_t start = follows_patch(v) ? patches_->moved(v, c) : motion.prediction[c];
+  if (!settings_.exact_flag) return start;
+  return static_cast<std::int32_t>(round2(start, kPointFractionBits) *
                                    (1 << kPointFractionBits));
 }
 
@@ -358,7 +370,7 @@ Vec3i FrameRecon::position(std::uint32_t v, const VertexMotion& motion,
   Vec3i values{};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int64_t difference = round2(residual[c] * of_step, kPointFractionBits);
-    values[c] = clip_signed(value_bits_, start_of(motion, c) + difference);
+    values[c] = clip_signed(value_bits_, start_of(v, motion, c) + difference);
   }
   return values;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/frame_gof/frame_gof.h"
+#include "common/frame_gof/recon/patch_recon.h"
 #include "common/int_math.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
@@ -46,16 +47,18 @@ class FrameRecon {
   // the second on, the next, once the first has been decoded.
   bool has_independent_frames() const {
     return settings_.pattern.kind == FramePattern::kFirst && !settings_.learning_flag &&
-           settings_.max_repeat_distance == 0;
+           settings_.max_repeat_distance == 0 && settings_.num_patches == 0;
   }
   void skip_to(std::uint32_t place);
   // The last frame in grid units, [num_vertices][3].
   void positions(std::span<std::int32_t> positions) const;
 
-  // The parts of decode( ). Each frame: start_frame(), with the next place in coding order; for
-  // the vertices of a layer, predict() and set(), and at any time after that adapt();
-  // end_frame(). is_there: the frame has their layer group; expected: then FrameNoise.
+  // The parts of decode( ). Each frame: start_frame(), with the next place in coding order, and
+  // move_patches() if it has patches; for the vertices of a layer, predict() and set(), and at
+  // any time after that adapt(); end_frame(). is_there: the frame has their layer group;
+  // expected: then FrameNoise.
   void start_frame(const FramePlace& place, std::uint32_t last_use);
+  void move_patches(const FramePatches& patches);
   void predict(std::uint32_t v, VertexMotion& motion, bool is_there = true) const;
   // 8.19.3: the position that residuals, in steps, lead to.
   Vec3i position(std::uint32_t v, const VertexMotion& motion, const Vec3i& residual) const;
@@ -64,15 +67,18 @@ class FrameRecon {
   void adapt(std::uint32_t v, VertexMotion& motion, bool is_there, std::uint32_t expected);
   void end_frame();
 
-  // What residuals are relative to, with 4 fractional bits: the prediction, rounded to the grid
-  // if positions are exact.
-  std::int32_t start_of(const VertexMotion& motion, std::size_t c) const;
+  // What residuals are relative to, with 4 fractional bits: the prediction, or where the patch
+  // moves to; rounded to the grid if positions are exact.
+  std::int32_t start_of(std::uint32_t v, const VertexMotion& motion, std::size_t c) const;
   // FrameStep of a vertex, 1/256 grid units.
   std::int64_t step(std::uint32_t v) const {
     return std::int64_t{settings_.step[place_.depth]} * settings_.layer_step[mesh_.layer_of(v)];
   }
   // The place in coding order that is in progress, or comes next.
   std::uint32_t place() const { return number_; }
+  // Of the frame in progress, unless it is the first.
+  std::span<const std::int32_t> reference() const { return reference_; }
+  const PatchRecon& patches() const { return *patches_; }
 
  private:
   // 8.19.4: what a temporal layer learns.
@@ -90,6 +96,9 @@ class FrameRecon {
     std::uint32_t last_use = 0;
   };
 
+  bool follows_patch(std::uint32_t v) const {
+    return patches_ && patches_->mode(v) != PatchMode::kNeighbours;
+  }
   void start_motion();
   void start_learning();
   void prime(Learned& learned, std::uint32_t v, std::int64_t variance);
@@ -125,6 +134,7 @@ class FrameRecon {
   // From the second frame on:
   VertexLists near_;
   std::optional<GeometryWeights> weights_;
+  std::optional<PatchRecon> patches_;
   // If the weights are learned:
   std::vector<std::int32_t> plain_error_;  // of this frame
   std::vector<std::size_t> first_;         // [num_vertices]: of its filter

@@ -1,0 +1,105 @@
+#include "common/frame_gof/recon/patch_recon.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "common/fixed_point.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::int64_t kMostOffset = std::int64_t{1} << 29;
+constexpr std::int64_t kMostMatrix = std::int64_t{1} << 18;
+
+}  // namespace
+
+// 8.19.5 StartPatches( )
+PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_vertex,
+                       std::span<const std::int32_t> first, std::uint32_t num_depths,
+                       int value_bits)
+    : patch_of_vertex_(patch_of_vertex),
+      value_bits_(value_bits),
+      size_(num_patches, 0),
+      reach_(num_patches, 1),
+      last_(num_depths, std::vector<Motion>(num_patches, Motion{})),
+      modes_(num_patches, PatchMode::kNeighbours),
+      centres_(num_patches),
+      motion_(num_patches) {
+  for (const std::uint16_t p : patch_of_vertex) ++size_[p];
+  const std::vector<Vec3i> centre = centres(first);
+  std::vector<std::int64_t> sum(num_patches, 0);
+  for (std::size_t v = 0; v < patch_of_vertex.size(); ++v) {
+    std::int64_t largest = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int64_t distance =
+          std::int64_t{first[3 * v + c]} - centre[patch_of_vertex[v]][c];
+      largest = std::max(largest, std::abs(distance));
+    }
+    sum[patch_of_vertex[v]] += largest;
+  }
+  for (std::size_t p = 0; p < num_patches; ++p) {
+    if (size_[p] > 0) reach_[p] = std::max<std::int64_t>(1, div_round(sum[p], size_[p]));
+  }
+}
+
+std::vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) const {
+  std::vector<Vec3l> sum(size_.size());
+  for (std::size_t v = 0; v < patch_of_vertex_.size(); ++v) {
+    for (std::size_t c = 0; c < 3; ++c) sum[patch_of_vertex_[v]][c] += frame[3 * v + c];
+  }
+  std::vector<Vec3i> centres(size_.size());
+  for (std::size_t p = 0; p < size_.size(); ++p) {
+    if (size_[p] == 0) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      centres[p][c] = static_cast<std::int32_t>(div_round(sum[p][c], size_[p]));
+    }
+  }
+  return centres;
+}
+
+PatchRecon::Motion PatchRecon::motion(
+    std::size_t patch, std::uint32_t depth, std::uint32_t step,
+    const std::array<std::int32_t, kMotionValues>& residual) const {
+  Motion motion = last_[depth][patch];
+  for (std::size_t i = 0; i < kMotionValues; ++i) {
+    const std::int64_t difference = std::int64_t{residual[i]} * step;
+    if (i < kOffsetValues) {
+      motion[i] = static_cast<std::int32_t>(
+          clip3(-kMostOffset, kMostOffset, motion[i] + round2(difference, kMotionStepLog2)));
+    } else {
+      const std::int64_t turn =
+          div_round(difference * (1 << (kMatrixFractionBits - kMotionStepLog2)), reach_[patch]);
+      motion[i] = static_cast<std::int32_t>(clip3(-kMostMatrix, kMostMatrix, motion[i] + turn));
+    }
+  }
+  return motion;
+}
+
+// 8.19.5 MovePatches( f )
+void PatchRecon::start_frame(std::span<const std::int32_t> reference, std::uint32_t depth,
+                             std::uint32_t step, const FramePatches& patches) {
+  reference_ = reference;
+  std::fill(modes_.begin(), modes_.end(), PatchMode::kNeighbours);
+  if (patches.empty()) return;
+  centres_ = centres(reference);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    modes_[p] = patches[p].mode;
+    if (modes_[p] == PatchMode::kNeighbours) continue;
+    motion_[p] = last_[depth][p] = motion(p, depth, step, patches[p].residual);
+  }
+}
+
+// 8.19.5 MovedByPatch( v, c )
+std::int32_t PatchRecon::moved(std::uint32_t v, std::size_t c) const {
+  const std::uint16_t p = patch_of_vertex_[v];
+  const Motion& motion = motion_[p];
+  const std::int32_t* const own = &reference_[3 * std::size_t{v}];
+  std::int64_t sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += std::int64_t{motion[kOffsetValues + 3 * c + k]} *
+           (std::int64_t{own[k]} - centres_[p][k]);
+  }
+  return clip_signed(value_bits_, own[c] + motion[c] + round2(sum, kMatrixFractionBits));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,63 @@
+// 8.19.5 Motion of patches.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/frame_gof/patch_motion.h"
+#include "common/int_math.h"
+#include "common/mesh/mesh.h"
+
+namespace rlpc {
+
+inline constexpr int kMatrixFractionBits = 16;
+inline constexpr int kMotionStepLog2 = 2;  // steps of motions are finer than those of residuals
+
+class PatchRecon {
+ public:
+  // first: the first frame of the GOF, [num_vertices][3], 1/16 grid units, like all positions
+  // here. It must not be empty; patch_of_vertex must outlive it.
+  PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_vertex,
+             std::span<const std::int32_t> first, std::uint32_t num_depths, int value_bits);
+
+  // Each frame but the first, in coding order. reference: must outlive the frame. step: of the
+  // frame, 1/16 grid units. patches: of the frame; empty: none moves.
+  void start_frame(std::span<const std::int32_t> reference, std::uint32_t depth,
+                   std::uint32_t step, const FramePatches& patches);
+
+  PatchMode mode(std::uint32_t v) const { return modes_[patch_of_vertex_[v]]; }
+  // MovedPoint of v in its patch.
+  std::int32_t moved(std::uint32_t v, std::size_t c) const;
+
+  // What an encoder chooses motions by: the centre of the reference frame, and the motion from
+  // which residuals differ, offset and matrix.
+  using Motion = std::array<std::int32_t, kMotionValues>;
+  Vec3i centre(std::size_t patch) const { return centres_[patch]; }
+  const Motion& last_motion(std::uint32_t depth, std::size_t patch) const {
+    return last_[depth][patch];
+  }
+  std::int64_t reach(std::size_t patch) const { return reach_[patch]; }
+  std::size_t num_patches() const { return reach_.size(); }
+  // The motion that residuals lead to.
+  Motion motion(std::size_t patch, std::uint32_t depth, std::uint32_t step,
+                const std::array<std::int32_t, kMotionValues>& residual) const;
+  // The centres of all patches of a frame.
+  std::vector<Vec3i> centres(std::span<const std::int32_t> frame) const;
+
+ private:
+  const PatchOfVertex& patch_of_vertex_;
+  int value_bits_;
+  std::vector<std::uint32_t> size_;        // [num_patches]
+  std::vector<std::int64_t> reach_;        // [num_patches]: PatchReach
+  std::vector<std::vector<Motion>> last_;  // [depth][num_patches]: PatchMotion
+  // Of the frame:
+  std::span<const std::int32_t> reference_;
+  std::vector<PatchMode> modes_;
+  std::vector<Vec3i> centres_;
+  std::vector<Motion> motion_;
+};
+
+}  // namespace rlpc
