@@ -25,6 +25,26 @@ class Frames(ToolsTest):
                 self.assertEqual(sum(gof["num_frame_units"] for gof in gofs),
                                  sum(gof["num_frames"] for gof in gofs))
 
+    def test_vertices_that_follow_motions_are_counted(self):
+        stream = self.path("a.rlpc")
+        self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+                    "--frame-weights", "plain", "--partition", "kway", "--patches", 6,
+                    name="robot_arm")
+        self.ok("rlpcdec", stream, "--verify")
+        info = self.ok("rlpcinfo", stream, "--json").json()
+        moved = 0
+        for gof in info["gofs"]:
+            self.assertEqual(gof["num_patches"], 6)
+            first, *later = gof["vertices_of_frame"]
+            self.assertEqual(first["from_neighbours"], info["num_vertices"])
+            self.assertEqual(len(later), gof["num_frames"] - 1)
+            for modes in later:
+                self.assertIn(sum(modes.values()), (0, info["num_vertices"]))
+                moved += sum(modes.values()) - modes["from_neighbours"]
+        self.assertGreater(moved, 0)
+        self.assertRegex(self.ok("rlpcinfo", stream, "--gofs").out.decode(),
+                         r"\d+ frames with motions of patches; vertices that follow them, on ")
+
     def test_learned_weights_take_fewer_bytes(self):
         sizes = {}
         for weights in ("learned", "geometry", "plain"):

@@ -72,6 +72,7 @@ void add_kind(const FrameGof& gof, GofSummary& summary) {
       {"num_repeated_frames", "repeated frame", "repeated frames",
        static_cast<std::uint32_t>(repeated), true},
       {"num_patches", "patch", "patches", gof.num_patches, true}};
+  summary.vertex_modes = vertex_modes(gof);
 }
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:

@@ -15,6 +15,7 @@
 #include "common/syntax/access_unit.h"
 #include "decoder/slice_cut.h"
 #include "decoder/stream/stream_reader.h"
+#include "decoder/stream/vertex_modes.h"
 
 namespace rlpc {
 
@@ -94,6 +95,7 @@ struct GofSummary : SlicedSummary {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::shared_ptr<const ModelSummary> model;  // that it uses; null: none
+  std::vector<VertexModes> vertex_modes;      // [num_frames] if it has patches
 
   // Bytes and slices are its own; layers are those of its skinned model.
   SliceTotals totals(const SliceGroups& groups) const;

@@ -222,8 +222,8 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                    ->option_text("FILE")
                    ->group(report);
   auto* pictures = app.add_option("--pictures", o.pictures,
-                                  "Also write SVG pictures of clusters or bones, and of vertex "
-                                  "layers, to this folder")
+                                  "Also write SVG pictures of clusters, bones or patches, and "
+                                  "of vertex layers, to this folder")
                        ->option_text("FOLDER")
                        ->group(report);
   auto* frame =

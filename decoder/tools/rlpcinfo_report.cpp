@@ -58,6 +58,16 @@ void add_temporal_layers(const GofSummary& gof, nlohmann::ordered_json& json) {
   }
 }
 
+// How many vertices of each frame follow the motion of their patch.
+void add_vertex_modes(const GofSummary& gof, nlohmann::ordered_json& json) {
+  for (const VertexModes& modes : gof.vertex_modes) {
+    json["vertices_of_frame"].push_back(
+        {{"from_neighbours", modes.from_neighbours},
+         {"motion_with_residuals", modes.with_residuals},
+         {"motion_without_residuals", modes.without_residuals}});
+  }
+}
+
 nlohmann::ordered_json json_of(const GofSummary& gof) {
   nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
                                  {"num_frames", gof.num_frames}};
@@ -66,6 +76,7 @@ nlohmann::ordered_json json_of(const GofSummary& gof) {
   if (has_slices(gof.kind)) {
     add_slices(gof, json);
     add_temporal_layers(gof, json);
+    add_vertex_modes(gof, json);
   } else {
     json["bytes"] = gof.bytes;
   }
@@ -238,6 +249,26 @@ void print_model(const ModelSummary& model) {
   print_slices(model, "model to here");
 }
 
+// "  49 frames with motions of patches; ..."
+void print_vertex_modes(const GofSummary& gof) {
+  std::uint32_t frames = 0;
+  double with = 0;
+  double without = 0;
+  for (const VertexModes& modes : gof.vertex_modes) {
+    if (modes.with_residuals + modes.without_residuals == 0) continue;
+    ++frames;
+    with += modes.with_residuals;
+    without += modes.without_residuals;
+  }
+  if (gof.vertex_modes.empty()) return;
+  std::printf("  %s with motions of patches", counted(frames, {"frame", "frames"}).c_str());
+  if (frames > 0) {
+    std::printf("; vertices that follow them, on average: %.1f with residuals, %.1f without",
+                with / frames, without / frames);
+  }
+  std::printf("\n");
+}
+
 void print_gof(const GofSummary& gof) {
   std::printf("\n  frames %u to %u: ", gof.first_frame, gof.first_frame + gof.num_frames - 1);
   if (!has_slices(gof.kind)) {
@@ -250,6 +281,7 @@ void print_gof(const GofSummary& gof) {
   const char* units = gof.kind == GofKind::kFrames ? "frame units" : "slices";
   std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
   print_slices(gof, "GOF to here");
+  print_vertex_modes(gof);
 }
 
 // Each skinned model is listed before the first GOF that uses it; those that none uses, at the
