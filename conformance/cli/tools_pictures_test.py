@@ -40,6 +40,8 @@ def groups_of(v):
     elif v["gof_kind"] in (1, 2):
         groups["bones"] = [min(zip(weights, bones), key=lambda pair: (-pair[0], pair[1]))[1]
                            for weights, bones in zip(v["WeightsOfVertex"], v["BonesOfVertex"])]
+    elif v["num_patches"] > 0:
+        groups["patches"] = list(v["ClusterOfVertex"])
     v["MakeLayers"]()
     groups["layers"] = list(v["LayerOfVertex"])
     return groups, seeds
@@ -116,10 +118,12 @@ class Pictures(CutTest):
         self.assertEqual(names, {"clusters", "bones", "layers"})
 
     def test_random_streams(self):
+        names = set()
         for profile in ("main", "high"):
             for seed in range(12):
                 with self.subTest(profile, seed=seed):
-                    self.check(self.random_stream(seed, profile))
+                    names |= self.check(self.random_stream(seed, profile))
+        self.assertEqual(names, {"clusters", "bones", "patches", "layers"})
 
     def test_encoded_clusters(self):
         """Large enough that most triangles are within a cluster."""
@@ -129,6 +133,13 @@ class Pictures(CutTest):
                     self.path("a.rlpc"), "--profile", "baseline", "--partition", partition,
                     "--clusters", 12, "-q")
             self.assertEqual(self.check(self.path("a.rlpc")), {"clusters", "layers"})
+
+    def test_encoded_patches(self):
+        self.clip(4)
+        self.ok("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "-o",
+                self.path("a.rlpc"), "--profile", "high", "--gof-kind", "frames", "--partition",
+                "kway", "--patches", 12, "-q")
+        self.assertEqual(self.check(self.path("a.rlpc")), {"patches", "layers"})
 
     def colours(self, path):
         """[colours of the paths] by class."""

@@ -115,19 +115,39 @@ class Pictures {
   std::vector<Point> back_;
 };
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return grouped_text(count) + " " + noun + (count == 1 ? "" : "s");
+struct Noun {
+  const char* one;
+  const char* many;
+};
+
+Noun noun_of(GroupKind kind) {
+  switch (kind) {
+    case GroupKind::kNone:
+      break;
+    case GroupKind::kClusters:
+      return {"cluster", "clusters"};
+    case GroupKind::kBones:
+      return {"bone", "bones"};
+    case GroupKind::kPatches:
+      return {"patch", "patches"};
+  }
+  return {"group", "groups"};
+}
+
+std::string counted(std::size_t count, const Noun& noun) {
+  return grouped_text(count) + " " + (count == 1 ? noun.one : noun.many);
 }
 
 std::string title_of(const VertexGroups& groups) {
+  std::string title = counted(groups.num_groups, noun_of(groups.kind));
+  if (groups.kind == GroupKind::kPatches) return title;
   if (groups.kind == GroupKind::kClusters) {
-    const std::string title = counted(groups.num_groups, "cluster");
     if (groups.seeds.empty()) return title + ", none with a seed triangle";
     if (groups.seeds.size() == groups.num_groups) return title + ", seed triangles outlined";
     return title + ", " + grouped_text(groups.seeds.size()) +
            " with a seed triangle, which is outlined";
   }
-  return counted(groups.num_groups, "bone") + "; each vertex shows that of the greatest weight";
+  return title + "; each vertex shows that of the greatest weight";
 }
 
 std::string frames_text(const PicturedFrame& frame) {
@@ -148,19 +168,19 @@ std::vector<GofPicture> gof_pictures(const PicturedFrame& frame, std::uint32_t m
     const CoarseMesh whole = frame.meshes->mesh(frame.meshes->num_layers());
     const std::vector<Colour> colours =
         group_colours(groups.num_groups, groups.of_vertex, whole.triangles);
-    const bool are_clusters = groups.kind == GroupKind::kClusters;
-    all.push_back(pictures.of(are_clusters ? "clusters" : "bones",
-                              are_clusters ? "cluster" : "bone", title_of(groups),
+    const Noun noun = noun_of(groups.kind);
+    all.push_back(pictures.of(noun.many, noun.one, title_of(groups),
                               {groups.of_vertex, colours, groups.seeds}));
     all.back().notes.insert(all.back().notes.begin(), frames_text(frame) + ".");
   }
   const auto layer_of_vertex = frame.meshes->layer_of_vertex();
   const std::vector<std::uint32_t> layers(layer_of_vertex.begin(), layer_of_vertex.end());
   const std::vector<Colour> colours = ramp_colours(frame.meshes->num_layers());
-  all.push_back(pictures.of(
-      "layers", "layer",
-      counted(frame.meshes->num_layers(), "vertex layer") + ", of which 0 is the coarsest",
-      {layers, colours, {}}));
+  all.push_back(
+      pictures.of("layers", "layer",
+                  counted(frame.meshes->num_layers(), {"vertex layer", "vertex layers"}) +
+                      ", of which 0 is the coarsest",
+                  {layers, colours, {}}));
   all.back().notes.insert(all.back().notes.begin(),
                           "Frame " + std::to_string(frame.frame) + ".");
   return all;

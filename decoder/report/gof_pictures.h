@@ -1,4 +1,5 @@
-// Pictures of a frame: the clusters or bones that code it, and the vertex layers of the mesh.
+// Pictures of a frame: the clusters, bones or patches that code it, and the vertex layers of
+// the mesh.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct PicturedFrame {
 };
 
 struct GofPicture {
-  std::string name;   // "clusters", "bones" or "layers"
+  std::string name;   // "clusters", "bones", "patches" or "layers"
   std::string title;  // of one line, as are the notes
   std::vector<std::string> notes;
   std::string body;  // elements of an SVG
@@ -32,7 +33,7 @@ struct GofPicture {
   double height = 0;
 };
 
-// Clusters or bones, if the GOF has them, then the layers.
+// Clusters, bones or patches, if the GOF has them, then the layers.
 std::vector<GofPicture> gof_pictures(const PicturedFrame& frame, std::uint32_t max_triangles);
 
 // A whole SVG file, for light and dark backgrounds.

@@ -74,6 +74,15 @@ TEST_F(GofPictures, OfGofsOfFramesShowLayersAlone) {
   EXPECT_EQ(all[0].name, "layers");
 }
 
+TEST_F(GofPictures, ShowPatches) {
+  frame_.groups.kind = GroupKind::kPatches;
+  frame_.groups.seeds.clear();
+  const auto all = gof_pictures(frame_, 10000);
+  EXPECT_EQ(all[0].name, "patches");
+  EXPECT_EQ(all[0].title, "2 patches");
+  EXPECT_EQ(all[0].notes[1], "The list has each patch with its number of vertices.");
+}
+
 TEST_F(GofPictures, OfBonesSayWhich) {
   frame_.groups.kind = GroupKind::kBones;
   frame_.groups.seeds.clear();

@@ -39,7 +39,12 @@ void add_kind(const SkinnedGof& gof, const StreamContext& context, VertexGroups&
   }
 }
 
-void add_kind(const FrameGof&, const StreamContext&, VertexGroups&) {}
+void add_kind(const FrameGof& gof, const StreamContext&, VertexGroups& groups) {
+  if (gof.num_patches == 0) return;
+  groups.kind = GroupKind::kPatches;
+  groups.num_groups = gof.num_patches;
+  groups.of_vertex.assign(gof.patch_of_vertex.begin(), gof.patch_of_vertex.end());
+}
 
 }  // namespace
 

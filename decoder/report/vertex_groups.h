@@ -1,4 +1,4 @@
-// What the vertices of a GOF belong to, for pictures: its clusters, or its bones.
+// What the vertices of a GOF belong to, for pictures: its clusters, bones or patches.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace rlpc {
 
-enum class GroupKind : std::uint8_t { kNone, kClusters, kBones };
+enum class GroupKind : std::uint8_t { kNone, kClusters, kBones, kPatches };
 
 struct VertexGroups {
-  GroupKind kind = GroupKind::kNone;  // kNone: a GOF of frames has neither
+  GroupKind kind = GroupKind::kNone;  // kNone: a GOF of frames without patches
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::uint32_t num_groups = 0;

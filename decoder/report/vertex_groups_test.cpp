@@ -72,7 +72,20 @@ TEST_F(Bones, OfAGofOfTracksAreThoseOfItsModel) {
   EXPECT_EQ(found(), (Groups{2, 1, 1}));
 }
 
-TEST(VertexGroups, GofsOfFramesHaveNone) {
+TEST(VertexGroups, PatchesOfAGofOfFrames) {
+  FrameGof gof;
+  gof.num_patches = 3;
+  gof.patch_of_vertex = {0, 2, 1, 2};
+  AccessUnit access_unit;
+  access_unit.gof = gof;
+  const VertexGroups groups = vertex_groups(access_unit, StreamContext());
+  EXPECT_EQ(groups.kind, GroupKind::kPatches);
+  EXPECT_EQ(groups.num_groups, 3U);
+  EXPECT_EQ(groups.of_vertex, (Groups{0, 2, 1, 2}));
+  EXPECT_TRUE(groups.seeds.empty());
+}
+
+TEST(VertexGroups, GofsOfFramesWithoutPatchesHaveNone) {
   AccessUnit access_unit;
   access_unit.gof = FrameGof();
   const VertexGroups groups = vertex_groups(access_unit, StreamContext());
