@@ -51,11 +51,24 @@ def panel(index, view, lines):
     return [f'<g transform="translate({index * PANEL} 0)">', view, *words, "</g>"]
 
 
+def side_by_side(panels):
+    """A picture of these panels. panels: (picture of rlpcinfo, title, caption)"""
+    drawn = []
+    for index, (svg, *lines) in enumerate(panels):
+        drawn += panel(index, front_view(svg), lines)
+    width, height = PANEL * len(panels), HEIGHT + CAPTION
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
+        f'height="{height}" font-family="sans-serif" font-size="17" text-anchor="middle">',
+        "<style>text{fill:#222}@media(prefers-color-scheme:dark){text{fill:#ddd}}</style>", *drawn,
+        "</svg>", ""])
+
+
 def picture(tools, name, clusters):
     panels = []
     with tempfile.TemporaryDirectory(prefix="rlpc-partitions-") as folder:
         folder = pathlib.Path(folder)
-        for index, partition in enumerate(PARTITIONS):
+        for partition in PARTITIONS:
             stream = folder / f"{partition}.rlpc"
             report = json.loads(run(
                 tools / "rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2", "-o", stream,
@@ -63,14 +76,9 @@ def picture(tools, name, clusters):
                 "--gof", "all", "--kg", KG_PERCENT, "--json", "-q"))
             run(tools / "rlpcinfo", stream, "--pictures", folder / partition)
             svg = (folder / partition / "clusters.svg").read_text(encoding="utf-8")
-            panels += panel(index, front_view(svg), [
-                f"--partition {partition}", f"{report['bytes'] / 1000:.1f} kB, {report['bpvf']:.2f} bpvf"])
-    width, height = PANEL * len(PARTITIONS), HEIGHT + CAPTION
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
-        f'height="{height}" font-family="sans-serif" font-size="17" text-anchor="middle">',
-        "<style>text{fill:#222}@media(prefers-color-scheme:dark){text{fill:#ddd}}</style>", *panels,
-        "</svg>", ""])
+            panels.append((svg, f"--partition {partition}",
+                           f"{report['bytes'] / 1000:.1f} kB, {report['bpvf']:.2f} bpvf"))
+    return side_by_side(panels)
 
 
 def main():

@@ -4,6 +4,7 @@ import csv
 import dataclasses
 import json
 import lzma
+import math
 import subprocess
 import time
 
@@ -25,6 +26,7 @@ class Run:
     kg: float
     encode_seconds: float
     decode_seconds: float
+    psnr: float = math.nan  # dB, mean of frames
 
 
 class Bench:
@@ -72,7 +74,8 @@ class Bench:
                 _, decode_seconds = self.call("rlpcdec", stream, "--verify")
                 found = self.measure(stream, order)
                 return Run(method, clusters, components, found["bpvf"],
-                           found["metrics"]["kg_error_percent"], encode_seconds, decode_seconds)
+                           found["metrics"]["kg_error_percent"], encode_seconds, decode_seconds,
+                           found["metrics"]["mean_psnr_db"])
             run = self._runs[key] = self.encode(settings, use)
             what = ", ".join([f"N = {clusters:2d}"] * (clusters > 0)
                              + [f"L = {components:3d}"] * (components > 0)
@@ -110,15 +113,19 @@ class Bench:
         return self.encode(settings, lambda stream, *_: json.loads(
             self.call("rlpcinfo", stream, "--json", *options)[0]))
 
-    def frame_errors(self, settings):
-        """RMS error of each frame, in units."""
+    def frames(self, settings, use=lambda stream: None):
+        """Metrics of each frame, as rows of rlpccmp; and use(stream)."""
         path = self.folder / "frames.tmp.csv"
 
-        def use(stream, order, _):
+        def measured(stream, order, _):
             self.measure(stream, order, "--csv", path)
             with open(path, newline="", encoding="utf-8") as file:
-                return [float(row["rms_error"]) for row in csv.DictReader(file)]
+                return list(csv.DictReader(file)), use(stream)
         try:
-            return self.encode(settings, use)
+            return self.encode(settings, measured)
         finally:
             path.unlink(missing_ok=True)
+
+    def frame_errors(self, settings):
+        """RMS error of each frame, in units."""
+        return [float(row["rms_error"]) for row in self.frames(settings)[0]]

@@ -43,13 +43,13 @@ class Items:
 
 @dataclasses.dataclass
 class Figure:
-    """A plot in a file of its own (Plot.save)."""
+    """An SVG that is also in a file of its own."""
     name: str
-    plot: plots.Plot
+    title: str
     svg: str
 
     def markdown(self):
-        return f"![{self.plot.title}]({self.name}.svg)\n"
+        return f"![{self.title}]({self.name}.svg)\n"
 
     def html(self):
         return f"<figure>{self.svg[self.svg.index('<svg'):]}</figure>\n"
@@ -69,7 +69,11 @@ class Report:
         tool = self.tools / "plot_svg"
         self.files += [f"{name}.{kind}" for kind in plot.save(tool, self.folder / name)]
         svg = (self.folder / f"{name}.svg").read_text(encoding="utf-8")
-        self.add(Figure(name, plot, svg))
+        self.add(Figure(name, plot.title, svg))
+
+    def picture(self, name, title, svg):
+        self.text(f"{name}.svg", svg)
+        self.add(Figure(name, title, svg))
 
     def csv(self, name, head, rows):
         with open(self.folder / name, "w", newline="", encoding="utf-8") as file:
