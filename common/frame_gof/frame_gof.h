@@ -31,6 +31,8 @@ struct CodedFrame {
   std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
   // The frame that it is equal to: it then has its layer groups, and nothing of what follows.
   std::optional<std::uint32_t> repeated;
+  // The frame that it is predicted from, in place of the references of its pattern.
+  std::optional<std::uint32_t> reference;
   std::optional<FrameCrc> frame_crc;
   FramePatches patches;
   CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
@@ -47,7 +49,7 @@ struct FrameSettings {
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
   bool frame_hash_flag = false;
-  std::uint32_t max_repeat_distance = 0;  // in coding order; 0: no frame repeats another
+  std::uint32_t max_earlier_distance = 0;          // in coding order, of repeated and reference
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
   std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
   std::uint32_t num_patches = 0;

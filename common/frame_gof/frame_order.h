@@ -50,6 +50,10 @@ struct FramePlace {
   std::uint32_t second = 0;  // SecondReference
   std::uint32_t depth = 0;
 
+  // With another reference, the only one.
+  FramePlace from(std::uint32_t reference) const {
+    return {frame, reference, reference, depth};
+  }
   bool operator==(const FramePlace&) const = default;
 };
 

@@ -79,7 +79,7 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
                  static_cast<int>(below(16)), 0};
   if (gof.learning_flag) gof.prime_log2 = static_cast<int>(below(16));
   gof.frame_hash_flag = below(2) == 0;
-  gof.max_repeat_distance = below(3) == 0 ? 1 + below(5) : 0;
+  gof.max_earlier_distance = below(3) == 0 ? 1 + below(5) : 0;
   std::uint32_t left = mesh.num_layers();
   gof.layer_group_size.clear();
   while (left > 0) {
@@ -110,14 +110,17 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
     for (std::size_t t = 1; t < most.size(); ++t) most[t] = std::min(most[t], most[t - 1]);
     frame.layer_groups = groups;
     if (groups == 0) continue;
-    if (place > 0 && gof.max_repeat_distance > 0 && below(4) == 0) {
-      const std::uint32_t distance = 1 + below(std::min(place, gof.max_repeat_distance));
+    if (place > 0 && gof.max_earlier_distance > 0 && below(4) == 0) {
+      const std::uint32_t distance = 1 + below(std::min(place, gof.max_earlier_distance));
       const FramePlace& before = order[place - distance];
       if (gof.pattern.temporal_layer(before.depth) <=
           gof.pattern.temporal_layer(order[place].depth)) {
-        frame.repeated = before.frame;
-        frame.layer_groups = (*frames)[before.frame].layer_groups;
-        continue;
+        if (below(2) == 0) {
+          frame.repeated = before.frame;
+          frame.layer_groups = (*frames)[before.frame].layer_groups;
+          continue;
+        }
+        frame.reference = before.frame;
       }
     }
     for (std::uint32_t p = 0; place > 0 && p < gof.num_patches; ++p) {

@@ -83,20 +83,23 @@ class HighSource(random_main.MainSource):
 
     _frame_hash_flag = _exact_flag
 
-    def _max_repeat_distance(self, ns, indices, arguments):
+    def _max_earlier_distance(self, ns, indices, arguments):
         return self.numbers.pick([0, 0, self.numbers.between(1, 4)])
 
+    def _earlier_flag(self, ns, indices, arguments):
+        return int(bool(self._earlier(ns)) and self.numbers.chance(40))
+
     def _repeat_flag(self, ns, indices, arguments):
-        return int(bool(self._repeatable(ns)) and self.numbers.chance(25))
+        return self.numbers.between(0, 1)
 
-    def _repeat_distance_minus1(self, ns, indices, arguments):
-        return self.numbers.pick(self._repeatable(ns))
+    def _earlier_distance_minus1(self, ns, indices, arguments):
+        return self.numbers.pick(self._earlier(ns))
 
-    def _repeatable(self, ns):
+    def _earlier(self, ns):
         place = ns["PlaceOfFrame"][ns["frame_idx"]]
         layer = ns["TemporalLayerOfFrame"]
         most = layer(ns["frame_idx"])
-        return [i for i in range(min(place, ns["max_repeat_distance"]))
+        return [i for i in range(min(place, ns["max_earlier_distance"]))
                 if layer(ns["FrameOrder"][place - 1 - i]) <= most]
 
     def _pattern_period_log2(self, ns, indices, arguments):

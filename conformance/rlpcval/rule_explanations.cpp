@@ -126,7 +126,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The number of layers was taken from another pattern.",
      "A pattern has at most as many temporal layers as its frames have depths."},
     {"R-FRM-08", "7.14.2",
-     "A frame repeats one that is too far back, before the GOF, or of a higher temporal layer.",
+     "An earlier frame is too far back, before the GOF, or of a higher temporal layer.",
      "The distance was counted in output order, or across the start of the GOF.",
      "Count frames in coding order; repeat only frames that are still there if temporal layers "
      "are left out."},

@@ -52,7 +52,7 @@ class GofWarnings {
 void GofWarnings::add(const FrameGof& gof) {
   raise(needed_.max_gof_values, num_vertices() * gof.num_frames);
   raise(needed_.max_clusters, gof.num_patches);
-  raise(needed_.max_gof_factors, 3 * num_vertices() * gof.max_repeat_distance);
+  raise(needed_.max_gof_factors, 3 * num_vertices() * gof.max_earlier_distance);
   if (gof.learning_flag) {
     raise(needed_.max_learning_vertices, num_vertices() * gof.pattern.temporal_layers);
   }

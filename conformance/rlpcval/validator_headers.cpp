@@ -364,12 +364,12 @@ bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   }
   (void)r.u(1, "frame_hash_flag");
   SliceCounts counts;
-  const std::int64_t distance = r.ue("max_repeat_distance");
-  counts.max_repeat = static_cast<std::uint32_t>(distance);
-  const std::uint64_t repeated = 3 * std::uint64_t{header.num_vertices} * counts.max_repeat;
-  good &= r.require(repeated <= level.max_gof_factors, "R-LVL-05",
-                    level_allows(header.level_idc, level.max_gof_factors,
-                                 " coordinates of frames that can be repeated"));
+  const std::int64_t distance = r.ue("max_earlier_distance");
+  counts.max_earlier = static_cast<std::uint32_t>(distance);
+  const std::uint64_t kept = 3 * std::uint64_t{header.num_vertices} * counts.max_earlier;
+  good &= r.require(
+      kept <= level.max_gof_factors, "R-LVL-05",
+      level_allows(header.level_idc, level.max_gof_factors, " coordinates of earlier frames"));
   counts.frames = gof.num_frames;
   counts.open_end = header.open_end_flag;
   if (!check_layer_groups(r, num_layers, counts.layer_groups)) return false;
@@ -444,11 +444,12 @@ bool check_frame_header(ElementReader& r, const SliceCounts& counts) {
   const std::int64_t layers = r.ue("layer_group_idx");
   good &= r.require(layers < counts.layer_groups, "R-FRM-02",
                     "the GOF has " + std::to_string(counts.layer_groups) + " layer groups");
-  const bool may_repeat = counts.max_repeat > 0 && layers == 0 && frame > 0;
-  if (may_repeat && r.u(1, "repeat_flag") != 0) {
+  const bool may_be_earlier = counts.max_earlier > 0 && layers == 0 && frame > 0;
+  if (may_be_earlier && r.u(1, "earlier_flag") != 0) {
     // Parsing checks the rest of R-FRM-08.
-    good &= r.require(r.ue("repeat_distance_minus1") < std::int64_t{counts.max_repeat},
-                      "R-FRM-08", at_most(counts.max_repeat - 1));
+    good &= r.require(r.ue("earlier_distance_minus1") < std::int64_t{counts.max_earlier},
+                      "R-FRM-08", at_most(counts.max_earlier - 1));
+    (void)r.u(1, "repeat_flag");
   }
   return good && r.readable();
 }

@@ -177,7 +177,7 @@ TEST_P(CodedFrames, AreDecodedAsTheEncoderExpects) {
   const Threads use(2);
   FrameCoding coding(mesh(), settings, header_, kFrames);
   for (std::uint32_t i = 0; i < kFrames; ++i) {
-    const std::uint32_t f = coding.next_frame();
+    const std::uint32_t f = coding.next_place().frame;
     auto units = coding.code(std::span(xyz).subspan(f * frame_size(), frame_size()),
                              std::span(expected).subspan(f * frame_size(), frame_size()));
     ASSERT_EQ(units.size(), 2U);

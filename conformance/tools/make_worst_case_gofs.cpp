@@ -192,7 +192,7 @@ FrameSettings make_frames(const Size& size, const CodedMesh& mesh) {
   s.learning_flag = true;
   s.weights = {15, 15, 15, 0};
   s.prime_log2 = 15;
-  s.max_repeat_distance = size.repeats;
+  s.max_earlier_distance = size.repeats;
   s.layer_group_size = {mesh.num_layers()};
   s.layer_step.assign(mesh.num_layers(), 1);
   return s;

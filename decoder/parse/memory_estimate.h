@@ -81,7 +81,7 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
   const std::uint64_t depths = pattern.num_depths();
   const std::uint64_t kept =
       (pattern.kind == FramePattern::kExplicit ? pattern.period() : depths) +
-      std::min<std::uint64_t>(settings.max_repeat_distance, num_frames);
+      std::min<std::uint64_t>(settings.max_earlier_distance, num_frames);
   const std::uint64_t states = depths + 1;      // of contexts
   constexpr std::uint64_t kBytesOfPatch = 160;  // its contexts, and its last motion
   const std::uint64_t filters = settings.learning_flag ? pattern.temporal_layers : 0;

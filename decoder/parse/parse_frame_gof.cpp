@@ -52,7 +52,7 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   gof_.frame_hash_flag = r.flag("frame_hash_flag");
   const std::uint64_t values = 3 * std::uint64_t{header_.num_vertices};
   const auto most = static_cast<std::int64_t>(header_.level().max_gof_factors / values);
-  gof_.max_repeat_distance = r.ue("max_repeat_distance", {0, most}, "R-LVL-05");
+  gof_.max_earlier_distance = r.ue("max_earlier_distance", {0, most}, "R-LVL-05");
   const auto groups = parse_layer_groups(r, mesh_.num_layers());
   if (!groups.empty()) gof_.layer_group_size = groups;
   gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
@@ -160,8 +160,12 @@ void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
     return;
   }
   if (!may_follow(unit)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
-  const bool may_repeat = gof_.max_repeat_distance > 0 && group == 0 && unit.frame_idx > 0;
-  if (may_repeat && r.flag("repeat_flag")) return repeat_of_frame(r, unit);
+  const bool may_be_earlier = gof_.max_earlier_distance > 0 && group == 0 && unit.frame_idx > 0;
+  if (may_be_earlier && r.flag("earlier_flag")) {
+    earlier_frame(r, unit);
+    if (r.error()) return;
+    if (frames_[unit.frame_idx].repeated) return end_repeat(r, unit);
+  }
   r.byte_alignment();
   if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
     const std::uint64_t at = r.bit_pos();
@@ -174,26 +178,33 @@ void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
   last_unit_ = unit;
 }
 
-// 6.14.2 repeat_of_frame( )
-void FrameGofParser::repeat_of_frame(BitReader& r, const SliceEntry& unit) {
+// 6.14.2 earlier_frame( )
+void FrameGofParser::earlier_frame(BitReader& r, const SliceEntry& unit) {
   const std::uint64_t at = r.bit_pos();
   const std::uint32_t distance =
-      r.ue("repeat_distance_minus1", {0, std::int64_t{gof_.max_repeat_distance} - 1},
+      r.ue("earlier_distance_minus1", {0, std::int64_t{gof_.max_earlier_distance} - 1},
            "R-FRM-08") +
       1;
   if (r.error()) return;
   const std::uint32_t place = order_->place_of(unit.frame_idx);
-  const FramePlace* const repeated = distance > place ? nullptr : &(*order_)[place - distance];
-  if (repeated == nullptr ||
-      gof_.pattern.temporal_layer(repeated->depth) > unit.temporal_layer_idx) {
-    r.fail(Errc::kInvalid, "R-FRM-08", "repeat_distance_minus1", at);
+  const FramePlace* const earlier = distance > place ? nullptr : &(*order_)[place - distance];
+  if (earlier == nullptr ||
+      gof_.pattern.temporal_layer(earlier->depth) > unit.temporal_layer_idx) {
+    r.fail(Errc::kInvalid, "R-FRM-08", "earlier_distance_minus1", at);
   }
+  const bool is_repeated = r.flag("repeat_flag");
+  if (r.error()) return;
+  CodedFrame& frame = frames_[unit.frame_idx];
+  (is_repeated ? frame.repeated : frame.reference) = earlier->frame;
+}
+
+// A frame that repeats another has the same layer groups.
+void FrameGofParser::end_repeat(BitReader& r, const SliceEntry& unit) {
   r.byte_alignment();
   r.expect_end();
   if (r.error()) return;
   CodedFrame& frame = frames_[unit.frame_idx];
-  frame.repeated = repeated->frame;
-  frame.layer_groups = frames_[repeated->frame].layer_groups;
+  frame.layer_groups = frames_[*frame.repeated].layer_groups;
   for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
     ++frames_of_group_[unit.temporal_layer_idx][j];
   }

@@ -65,7 +65,8 @@ class FrameGofParser {
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frame_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
   bool may_follow(const SliceEntry& unit);
-  void repeat_of_frame(BitReader& r, const SliceEntry& unit);
+  void earlier_frame(BitReader& r, const SliceEntry& unit);
+  void end_repeat(BitReader& r, const SliceEntry& unit);
   void patch_motions(SectionReader& section, CodedFrame& frame);
   void frame_section(BitReader& r, const SliceEntry& unit);
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);

@@ -106,12 +106,14 @@ EncodedGof::Unit FrameCoding::repeat(std::uint32_t distance, std::span<std::int3
 
 std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
                                                 std::span<std::int32_t> positions,
-                                                CodedFrame* coded) {
+                                                CodedFrame* coded, std::uint32_t distance) {
   std::vector<EncodedGof::Unit> units;
   const std::uint32_t number = recon_.place();
-  const FramePlace& place = order_[number];
+  FramePlace place = order_[number];
+  if (distance > 0) place = place.from(order_[number - distance].frame);
   recon_.start_frame(place, order_.last_use(place.frame));
   writer_.start_frame(number, place);
+  writer_.set_reference(distance);
   patches_.clear();
   if (patch_search_ && number > 0) {
     patches_ = patch_search_->choose(xyz, place.depth, writer_.patch_contexts(), recon_);
@@ -123,6 +125,7 @@ std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
     coded->residual = CompactResiduals(3 * std::size_t{mesh_.num_vertices()});
     coded->expected.assign(mesh_.num_vertices(), 0);
     coded->patches = patches_;
+    if (distance > 0) coded->reference = place.first;
   }
   Layer* current = &layers_[0];
   Layer* before = &layers_[1];

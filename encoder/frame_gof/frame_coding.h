@@ -25,16 +25,19 @@ class FrameCoding {
   FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
               const SequenceHeader& header, std::uint32_t num_frames, bool to_nearest = false);
 
-  // The frame that comes next in coding order.
-  std::uint32_t next_frame() const { return order_[recon_.place()].frame; }
+  // The frame that comes next in coding order, and the one so many places before it.
+  const FramePlace& next_place() const { return order_[recon_.place()]; }
+  std::uint32_t frame_before(std::uint32_t distance) const {
+    return order_[recon_.place() - distance].frame;
+  }
   // Codes it; xyz [num_vertices][3], in grid units, unrounded. Returns its frame units, and
   // writes its positions as a decoder outputs them. coded: unless null, set to the frame as a
-  // parser would return it.
+  // parser would return it. distance: unless 0, it is predicted from the frame so many places
+  // before, at most max_earlier_distance, and of a temporal layer that is not higher.
   std::vector<EncodedGof::Unit> code(std::span<const double> xyz,
                                      std::span<std::int32_t> positions,
-                                     CodedFrame* coded = nullptr);
-  // In place of that, repeats the frame so many places before, at most max_repeat_distance, and
-  // of a temporal layer that is not higher.
+                                     CodedFrame* coded = nullptr, std::uint32_t distance = 0);
+  // In place of that, repeats such a frame.
   EncodedGof::Unit repeat(std::uint32_t distance, std::span<std::int32_t> positions,
                           CodedFrame* coded = nullptr);
 

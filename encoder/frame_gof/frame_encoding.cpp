@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/frame_gof/recon/frame_recon.h"
-#include "encoder/frame_gof/repeated_frames.h"
+#include "encoder/frame_gof/earlier_frames.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/write/write_frame_gof.h"
 
@@ -29,18 +29,20 @@ DecodeFrame decode_cut(const CodedMesh& mesh, const FrameSettings& s,
   return decoded.decoder();
 }
 
-// repeat_distances() of a GOF, as far as its level allows.
-std::vector<std::uint32_t> repeats_of(const SequenceHeader& header, const GofFrames& frames,
-                                      const FramePattern& pattern) {
+// earlier_frames() of a GOF, as far as its level allows.
+std::vector<EarlierFrame> earlier_of(const SequenceHeader& header, const GofFrames& frames,
+                                     const FramePattern& pattern) {
   const std::size_t values = 3 * std::size_t{frames.num_vertices};
   const std::uint64_t most = header.level().max_gof_factors / values;
-  return repeat_distances(
+  return earlier_frames(
       pattern, frames.xyz, values,
       static_cast<std::uint32_t>(std::min<std::uint64_t>(most, frames.num_frames)));
 }
 
-FrameSettings with_repeats(FrameSettings settings, const std::vector<std::uint32_t>& repeats) {
-  settings.max_repeat_distance = *std::max_element(repeats.begin(), repeats.end());
+FrameSettings with_distance(FrameSettings settings, const std::vector<EarlierFrame>& earlier) {
+  for (const EarlierFrame& frame : earlier) {
+    settings.max_earlier_distance = std::max(settings.max_earlier_distance, frame.distance);
+  }
   return settings;
 }
 
@@ -61,10 +63,11 @@ FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header
     : mesh_(mesh),
       header_(header),
       frames_(frames),
-      repeats_(repeats_of(header, frames, settings.pattern)),
-      settings_(with_repeats(settings, repeats_)),
+      earlier_(earlier_of(header, frames, settings.pattern)),
+      settings_(with_distance(settings, earlier_)),
       coding_(mesh, settings_, header, frames.num_frames),
-      decoded_(frames.num_vertices, frames.num_frames) {
+      decoded_(frames.num_vertices, frames.num_frames),
+      bits_of_pattern_(settings.pattern.num_depths(), 0.0) {
   const GofHeader gof{GofKind::kFrames, frames.first_frame, frames.num_frames};
   encoded_.units.push_back(
       {UnitType::kGof, write_frame_gof_unit(gof, settings_, mesh.topology())});
@@ -76,14 +79,16 @@ FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header
 void FrameEncoding::code_to(std::uint32_t count) {
   const std::size_t values = 3 * std::size_t{frames_.num_vertices};
   for (; num_coded_ < count; ++num_coded_) {
-    const std::uint32_t f = coding_.next_frame();
-    const auto xyz = std::span(frames_.xyz).subspan(f * values, values);
-    const auto positions = decoded_.frame(f);
+    const FramePlace& place = coding_.next_place();
+    const auto xyz = frame_xyz(place.frame);
+    const auto positions = decoded_.frame(place.frame);
     CodedFrame* const copy = coded_ ? &coded_->emplace_back() : nullptr;
-    if (repeats_[num_coded_] > 0) {
-      encoded_.units.push_back(coding_.repeat(repeats_[num_coded_], positions, copy));
+    if (earlier_[num_coded_].is_equal) {
+      encoded_.units.push_back(coding_.repeat(earlier_[num_coded_].distance, positions, copy));
     } else {
-      auto units = coding_.code(xyz, positions, copy);
+      const std::uint32_t distance = reference_distance(place);
+      auto units = coding_.code(xyz, positions, copy, distance);
+      if (distance == 0) bits_of_pattern_[place.depth] = bits_of(units);
       std::move(units.begin(), units.end(), std::back_inserter(encoded_.units));
     }
     for (std::size_t i = 0; i < values; ++i) {
@@ -91,6 +96,30 @@ void FrameEncoding::code_to(std::uint32_t count) {
       squared_error_ += d * d;
     }
   }
+}
+
+// From how many places before the next frame is predicted, in place of what its pattern says:
+// if both what is expected of that, and what the last frame took, cost more; else 0.
+std::uint32_t FrameEncoding::reference_distance(const FramePlace& place) const {
+  const std::uint32_t distance = earlier_[num_coded_].distance;
+  if (distance == 0) return 0;
+  const std::uint32_t step = settings_.step[place.depth];
+  const auto xyz = frame_xyz(place.frame);
+  const double from_earlier =
+      bits_from(mesh_, xyz, frame_xyz(coding_.frame_before(distance)), step);
+  const double before = bits_of_pattern_[place.depth];
+  if (before > 0.0 && from_earlier >= before) return 0;
+  std::vector<double> reference(xyz.size());
+  const auto first = frame_xyz(place.first);
+  const auto second = frame_xyz(place.second);
+  const double of_second =
+      place.first == place.second
+          ? 0.0
+          : static_cast<double>(place.frame - place.first) / (place.second - place.first);
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    reference[i] = first[i] + of_second * (second[i] - first[i]);
+  }
+  return from_earlier < bits_from(mesh_, xyz, reference, step) ? distance : 0;
 }
 
 double FrameEncoding::cost() const {

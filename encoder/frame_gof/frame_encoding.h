@@ -9,6 +9,7 @@
 #include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/frame_gof/earlier_frames.h"
 #include "encoder/frame_gof/frame_coding.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
@@ -33,7 +34,8 @@ class DecodedSpan {
 class FrameEncoding {
  public:
   // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
-  // earlier ones on the grid are not coded again.
+  // earlier ones on the grid are not coded again; those that are nearly equal to one are
+  // predicted from it if that is cheaper.
   FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
                 const FrameSettings& settings);
   FrameEncoding(const FrameEncoding&) = delete;
@@ -48,16 +50,24 @@ class FrameEncoding {
   EncodedGof finish();
 
  private:
+  std::uint32_t reference_distance(const FramePlace& place) const;
+  std::span<const double> frame_xyz(std::uint32_t f) const {
+    const std::size_t values = 3 * std::size_t{frames_.num_vertices};
+    return std::span(frames_.xyz).subspan(f * values, values);
+  }
+
   const CodedMesh& mesh_;
   const SequenceHeader& header_;
   const GofFrames& frames_;
-  const std::vector<std::uint32_t> repeats_;  // by place in coding order: distance, or 0
+  const std::vector<EarlierFrame> earlier_;  // by place in coding order
   const FrameSettings settings_;
   FrameCoding coding_;
   DecodedSpan decoded_;
   EncodedGof encoded_;
   std::shared_ptr<std::vector<CodedFrame>> coded_;  // null: there is one temporal layer
   std::uint32_t num_coded_ = 0;
+  // [depth]: bits of the last frame that was predicted as the pattern says; 0: there is none.
+  std::vector<double> bits_of_pattern_;
   double squared_error_ = 0.0;
 };
 

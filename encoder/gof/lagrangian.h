@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
@@ -17,11 +18,12 @@ inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 // The squared error, in squared grid steps, that one bit is worth at a quantiser step.
 inline double lambda(double step) { return kLambda * step * step; }
 
-inline double bits_of(const EncodedGof& encoded) {
+inline double bits_of(std::span<const EncodedGof::Unit> units) {
   double bits = 0.0;
-  for (const auto& unit : encoded.units) bits += 8.0 * static_cast<double>(unit.payload.size());
+  for (const auto& unit : units) bits += 8.0 * static_cast<double>(unit.payload.size());
   return bits;
 }
+inline double bits_of(const EncodedGof& encoded) { return bits_of(encoded.units); }
 
 // tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
 // frame, unless each is predicted from others, and decoding takes time.

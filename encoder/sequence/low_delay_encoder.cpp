@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "common/parallel/for_each.h"
+#include "encoder/frame_gof/earlier_frames.h"
 #include "encoder/frame_gof/frame_settings.h"
-#include "encoder/frame_gof/repeated_frames.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/check_frames.h"
 #include "encoder/sequence/choices/grid_choice.h"
@@ -102,7 +102,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   gof_->settings =
       choose_frame_settings(coding_->header(), settings_, layers,
                             settings_.frames.pattern.value_or(FramePattern{}), step_);
-  gof_->settings.max_repeat_distance = 1;
+  gof_->settings.max_earlier_distance = 1;
   if (auto error = divide(xyz)) return error;
   gof_->announced = frames_of_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced,

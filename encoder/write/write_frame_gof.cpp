@@ -50,7 +50,7 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
   w.flag(settings.learning_flag);
   if (settings.learning_flag) w.u(4, static_cast<std::uint32_t>(settings.prime_log2));
   w.flag(settings.frame_hash_flag);
-  w.ue(settings.max_repeat_distance);
+  w.ue(settings.max_earlier_distance);
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
   w.ue(settings.num_patches);
@@ -70,6 +70,7 @@ void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) 
   contexts_.start_frame(place, frame.depth);
   if (place > 0) patch_contexts_.start_frame(frame.depth);
   patches_.clear();
+  reference_distance_ = 0;
 }
 
 // 6.14.3 patch_motions( )
@@ -88,14 +89,15 @@ void FrameUnitWriter::write_patches() {
   }
 }
 
-// 6.14.2 repeat_of_frame( )
+// 6.14.2 frame_of_group( ), of a frame that repeats another
 std::vector<std::uint8_t> FrameUnitWriter::repeat(std::uint32_t frame, std::uint32_t distance) {
   frame_ = frame;
   layer_group_ = 0;
   BitWriter w;
   start_unit(w);
-  w.flag(true);  // repeat_flag
+  w.flag(true);  // earlier_flag
   w.ue(distance - 1);
+  w.flag(true);  // repeat_flag
   w.byte_alignment();
   return w.take();
 }
@@ -121,8 +123,13 @@ void FrameUnitWriter::write(std::int32_t residual) {
 std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc) {
   BitWriter w;
   start_unit(w);
-  const bool may_repeat = settings_.max_repeat_distance > 0 && layer_group_ == 0 && frame_ > 0;
-  if (may_repeat) w.flag(false);  // repeat_flag
+  if (settings_.max_earlier_distance > 0 && layer_group_ == 0 && frame_ > 0) {
+    w.flag(reference_distance_ > 0);  // earlier_flag
+    if (reference_distance_ > 0) {
+      w.ue(reference_distance_ - 1);
+      w.flag(false);  // repeat_flag
+    }
+  }
   w.byte_alignment();
   const bool is_last = layer_group_ + 1 == settings_.layer_group_size.size();
   if (settings_.frame_hash_flag && is_last) w.u(32, frame_crc);
@@ -154,6 +161,7 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
     }
     if (frame.layer_groups == 0) continue;
     writer.start_frame(place, order[place]);
+    if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
     writer.set_patches(frame.patches);
     std::uint32_t layer = 0;
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {

@@ -37,6 +37,8 @@ class FrameUnitWriter {
   // that patches move alone, and finish_group(). If the GOF has patches, set_patches() comes
   // second in each frame but the first.
   void start_frame(std::uint32_t place, const FramePlace& frame);
+  // Then, if it is predicted from the frame so many places before, in place of its references.
+  void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
   void set_patches(const FramePatches& patches) { patches_ = patches; }
   void start_group(std::uint32_t layer_group);
   // In place of these: the payload of the unit of a frame that repeats the one so many places
@@ -60,6 +62,8 @@ class FrameUnitWriter {
   FrameContexts contexts_;
   PatchContexts patch_contexts_;
   FramePatches patches_;  // of the frame
+  std::uint32_t reference_distance_ =
+      0;  // of the frame; 0: it has the references of its pattern
   std::uint32_t frame_ = 0;
   std::uint32_t layer_group_ = 0;
   std::optional<SectionWriter> section_;

@@ -83,7 +83,7 @@ FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int
 // 8.19.1 DecodeFrame( f )
 void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const CodedFrame& frame) {
-  start_frame(place, last_use);
+  start_frame(frame.reference ? place.from(*frame.reference) : place, last_use);
   if (patches_) move_patches(frame.patches);
   const std::vector<std::int32_t>* const repeated =
       frame.repeated ? &kept_.at(*frame.repeated).values : nullptr;
@@ -178,7 +178,8 @@ void FrameRecon::start_motion() {
                    &near_);
   if (settings_.learning_flag) start_learning();
   if (settings_.num_patches > 0) {
-    patches_.emplace(settings_.num_patches, settings_.patch_of_vertex, values_,
+    patches_.emplace(settings_.num_patches, settings_.patch_of_vertex,
+                     mesh_.vertices_of_layers(0, settings_.layer_group_size[0]), values_,
                      settings_.pattern.num_depths(), value_bits_);
   }
 }
@@ -439,7 +440,7 @@ void FrameRecon::end_frame() {
   // This one stays for one frame in any case: what is left of a period that turns out to be
   // shorter may be predicted from it.
   free = values_;
-  const std::uint32_t last_repeat = number_ + std::max(1U, settings_.max_repeat_distance);
+  const std::uint32_t last_repeat = number_ + std::max(1U, settings_.max_earlier_distance);
   kept_[place_.frame] = {std::move(free), std::max(last_use_, last_repeat)};
   ++number_;
 }

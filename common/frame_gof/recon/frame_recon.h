@@ -47,7 +47,7 @@ class FrameRecon {
   // the second on, the next, once the first has been decoded.
   bool has_independent_frames() const {
     return settings_.pattern.kind == FramePattern::kFirst && !settings_.learning_flag &&
-           settings_.max_repeat_distance == 0 && settings_.num_patches == 0;
+           settings_.max_earlier_distance == 0 && settings_.num_patches == 0;
   }
   void skip_to(std::uint32_t place);
   // The last frame in grid units, [num_vertices][3].

@@ -15,9 +15,11 @@ constexpr std::int64_t kMostMatrix = std::int64_t{1} << 18;
 
 // 8.19.5 StartPatches( )
 PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_vertex,
+                       std::span<const std::uint32_t> vertices,
                        std::span<const std::int32_t> first, std::uint32_t num_depths,
                        int value_bits)
     : patch_of_vertex_(patch_of_vertex),
+      vertices_(vertices),
       value_bits_(value_bits),
       size_(num_patches, 0),
       reach_(num_patches, 1),
@@ -25,33 +27,49 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
       modes_(num_patches, PatchMode::kNeighbours),
       centres_(num_patches),
       motion_(num_patches) {
-  for (const std::uint16_t p : patch_of_vertex) ++size_[p];
+  for (const std::uint32_t v : vertices) ++size_[patch_of_vertex[v]];
   const std::vector<Vec3i> centre = centres(first);
-  std::vector<std::int64_t> sum(num_patches, 0);
-  for (std::size_t v = 0; v < patch_of_vertex.size(); ++v) {
+  const auto distance = [&](std::uint32_t v, std::size_t patch) {
     std::int64_t largest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::int64_t distance =
-          std::int64_t{first[3 * v + c]} - centre[patch_of_vertex[v]][c];
-      largest = std::max(largest, std::abs(distance));
+      const std::int64_t own = first[3 * std::size_t{v} + c];
+      largest = std::max(largest, std::abs(own - centre[patch][c]));
     }
-    sum[patch_of_vertex[v]] += largest;
+    return largest;
+  };
+  std::vector<std::int64_t> sum(num_patches, 0);
+  for (const std::uint32_t v : vertices)
+    sum[patch_of_vertex[v]] += distance(v, patch_of_vertex[v]);
+  const auto empty = std::find(size_.begin(), size_.end(), std::size_t{0});
+  std::int64_t of_all = 0;
+  if (empty != size_.end()) {
+    const auto patch = static_cast<std::size_t>(empty - size_.begin());
+    for (const std::uint32_t v : vertices) of_all += distance(v, patch);
   }
   for (std::size_t p = 0; p < num_patches; ++p) {
-    if (size_[p] > 0) reach_[p] = std::max<std::int64_t>(1, div_round(sum[p], size_[p]));
+    const std::size_t size = size_[p] > 0 ? size_[p] : vertices.size();
+    const std::int64_t mean =
+        div_round(size_[p] > 0 ? sum[p] : of_all, static_cast<std::int64_t>(size));
+    reach_[p] = std::max<std::int64_t>(1, mean);
   }
 }
 
 std::vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) const {
   std::vector<Vec3l> sum(size_.size());
-  for (std::size_t v = 0; v < patch_of_vertex_.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) sum[patch_of_vertex_[v]][c] += frame[3 * v + c];
+  Vec3l of_all{};
+  for (const std::uint32_t v : vertices_) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int32_t value = frame[3 * std::size_t{v} + c];
+      sum[patch_of_vertex_[v]][c] += value;
+      of_all[c] += value;
+    }
   }
   std::vector<Vec3i> centres(size_.size());
   for (std::size_t p = 0; p < size_.size(); ++p) {
-    if (size_[p] == 0) continue;
+    const Vec3l& total = size_[p] > 0 ? sum[p] : of_all;
+    const auto count = static_cast<std::int64_t>(size_[p] > 0 ? size_[p] : vertices_.size());
     for (std::size_t c = 0; c < 3; ++c) {
-      centres[p][c] = static_cast<std::int32_t>(div_round(sum[p][c], size_[p]));
+      centres[p][c] = static_cast<std::int32_t>(div_round(total[c], count));
     }
   }
   return centres;

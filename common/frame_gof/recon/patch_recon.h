@@ -18,10 +18,12 @@ inline constexpr int kMotionStepLog2 = 2;  // steps of motions are finer than th
 
 class PatchRecon {
  public:
+  // vertices: those of the lowest layer group; they and patch_of_vertex must outlive it.
   // first: the first frame of the GOF, [num_vertices][3], 1/16 grid units, like all positions
-  // here. It must not be empty; patch_of_vertex must outlive it.
+  // here.
   PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_vertex,
-             std::span<const std::int32_t> first, std::uint32_t num_depths, int value_bits);
+             std::span<const std::uint32_t> vertices, std::span<const std::int32_t> first,
+             std::uint32_t num_depths, int value_bits);
 
   // Each frame but the first, in coding order. reference: must outlive the frame. step: of the
   // frame, 1/16 grid units. patches: of the frame; empty: none moves.
@@ -44,13 +46,15 @@ class PatchRecon {
   // The motion that residuals lead to.
   Motion motion(std::size_t patch, std::uint32_t depth, std::uint32_t step,
                 const std::array<std::int32_t, kMotionValues>& residual) const;
-  // The centres of all patches of a frame.
-  std::vector<Vec3i> centres(std::span<const std::int32_t> frame) const;
 
  private:
+  // For each patch; for those without vertices in the lowest layer group, of that group.
+  std::vector<Vec3i> centres(std::span<const std::int32_t> frame) const;
+
   const PatchOfVertex& patch_of_vertex_;
+  std::span<const std::uint32_t> vertices_;  // of the lowest layer group
   int value_bits_;
-  std::vector<std::uint32_t> size_;        // [num_patches]
+  std::vector<std::size_t> size_;          // [num_patches]: vertices of the group
   std::vector<std::int64_t> reach_;        // [num_patches]: PatchReach
   std::vector<std::vector<Motion>> last_;  // [depth][num_patches]: PatchMotion
   // Of the frame:
