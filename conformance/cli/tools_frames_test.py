@@ -45,6 +45,29 @@ class Frames(ToolsTest):
         self.assertRegex(self.ok("rlpcinfo", stream, "--gofs").out.decode(),
                          r"\d+ frames with motions of patches; vertices that follow them, on ")
 
+    def test_patches_without_knowing_the_motion(self):
+        stream = self.path("a.rlpc")
+        for partition in ("kway", "motion"):
+            report = self.encode(stream, "--max-error", 0.004, "--profile", "high", "--low-delay",
+                                 "--partition", partition, "--patches", 6, name="robot_arm")
+            self.assertLess(report["metrics"]["max_error"], 0.004)
+            self.ok("rlpcdec", stream, "--verify")
+            gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
+            for gof in gofs:
+                self.assertEqual(gof["num_patches"], 6)
+            self.assertTrue(any(sum(modes.values()) > modes["from_neighbours"]
+                                for gof in gofs for modes in gof["vertices_of_frame"]))
+
+    def test_patches_that_there_cannot_be(self):
+        mesh, stream = INPUTS / "elephant.obj", self.path("a.rlpc")
+        for options, words in (
+                (("--profile", "high", "--partition", "seeds"), "patches are not made from seeds"),
+                (("--profile", "main", "--partition", "kway"), "--partition needs --profile baseline"),
+                (("--profile", "main", "--patches", 3), "need --profile high and --gof-kind frames"),
+                (("--profile", "high", "--patches", 2000), "2000 not in range")):
+            self.fails(64, words, "rlpcenc", mesh, "-o", stream, *options)
+            self.assertFalse(stream.exists())
+
     def test_learned_weights_take_fewer_bytes(self):
         sizes = {}
         for weights in ("learned", "geometry", "plain"):

@@ -27,7 +27,7 @@ FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
       order_(settings.pattern, num_frames),
       recon_(mesh, settings, header.position_bits),
       writer_(mesh, settings, header.open_end_flag) {
-  if (settings.num_patches > 0) patch_search_.emplace(mesh, settings);
+  if (settings.num_patches > 0) patch_search_.emplace(mesh, settings, to_nearest);
 }
 
 // Vertices of the base depend on each other: they are predicted when they are coded.

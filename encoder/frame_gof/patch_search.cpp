@@ -71,9 +71,12 @@ constexpr double kRidge = 1e-6;
 
 }  // namespace
 
-PatchSearch::PatchSearch(const CodedMesh& mesh, const FrameSettings& settings)
+PatchSearch::PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest)
     : mesh_(mesh),
       settings_(settings),
+      most_alone_(settings.exact_flag ? 0.0
+                  : to_nearest        ? 0.5
+                                      : std::numeric_limits<double>::infinity()),
       vertices_(settings.num_patches),
       wanted_(3 * std::size_t{mesh.num_vertices()}),
       left_(wanted_.size()),
@@ -151,7 +154,7 @@ double PatchSearch::cost_alone(std::size_t patch) const {
   for (const std::uint32_t v : vertices_[patch]) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double left = left_[3 * std::size_t{v} + c];
-      if (settings_.exact_flag && left != 0.0) return std::numeric_limits<double>::max();
+      if (std::abs(left) > most_alone_) return std::numeric_limits<double>::max();
       error += left * left;
     }
   }

@@ -16,7 +16,8 @@ namespace rlpc {
 class PatchSearch {
  public:
   // The mesh must have layers; mesh and settings, which have patches, must outlive it.
-  PatchSearch(const CodedMesh& mesh, const FrameSettings& settings);
+  // to_nearest: residuals are rounded to nearest, and no coordinate errs by more than that.
+  PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest);
 
   // Of the frame that recon has started, not the first of its GOF; xyz [num_vertices][3], in
   // grid units. contexts: those of the writer, which has started the frame. Predicts all
@@ -44,6 +45,7 @@ class PatchSearch {
 
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
+  double most_alone_;  // error of a coordinate of a patch without residuals, in steps
   std::vector<std::vector<std::uint32_t>> vertices_;  // of each patch
   // [num_vertices][3]: residuals in steps, from neighbours and from motions.
   std::vector<double> wanted_;
