@@ -257,7 +257,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Many components, bones or trajectories over many vertices and frames.",
      "Use fewer of them, shorter GOFs or fewer skinned models at a time, or raise level_idc "
      "(Table B-1)."},
-    {"R-LVL-06", "7.5", "A GOF has more clusters, or bones, than its level allows.",
+    {"R-LVL-06", "7.5", "A GOF has more clusters, bones or patches than its level allows.",
      "Their number was chosen without regard to the level.",
      "Use fewer of them, or raise level_idc; no level has more than 1024."},
     {"R-LVL-07", "7.2", "A critical unit is larger than its level allows.",

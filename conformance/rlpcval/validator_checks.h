@@ -1,0 +1,22 @@
+// What the checks of several headers share.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "conformance/rlpcval/validator_elements.h"
+
+namespace rlpc {
+
+// What was expected, for reports.
+std::string at_most(std::uint64_t limit);
+std::string between(std::int64_t low, std::int64_t high);
+std::string level_allows(std::uint32_t level_idc, std::uint64_t limit, const char* what);
+
+bool check_alignment(ElementReader& r);
+
+// 6.11 layer_groups( ). False if it is not known where it ends.
+bool check_layer_groups(ElementReader& r, std::uint32_t num_layers,
+                        std::uint32_t& layer_groups);
+
+}  // namespace rlpc
