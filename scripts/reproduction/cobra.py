@@ -263,9 +263,7 @@ class Reproduction(paper.Paper):
         self.report.add(page.Text(STUDY_NOTE))
         self.plot_basis()
         items = cobra_findings.claims_of_paper(self, near)
-        self.heading("Claims of the paper")
-        self.report.add(page.Items(items))
-        self.report.add(page.Text(NOT_TESTED))
+        self.claims(items, NOT_TESTED)
         self.report.save()
         return items
 

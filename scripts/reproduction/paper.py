@@ -41,6 +41,11 @@ class Paper:
     def heading(self, text):
         self.report.add(page.Heading(text))
 
+    def claims(self, items, not_tested):
+        self.heading("Claims of the paper")
+        self.report.add(page.Items(items))
+        self.report.add(page.Text(not_tested))
+
     def tables(self, tables, note):
         """Adds tables (report.Table), the first of them to table.csv; all to table.md."""
         self.report.csv("table.csv", tables[0].head, tables[0].rows)

@@ -272,9 +272,7 @@ class Reproduction(paper.Paper):
         self.plot_frames()
         self.draw_clusters()
         items = registration_findings.claims_of_paper(self, seconds)
-        self.heading("Claims of the paper")
-        self.report.add(page.Items(items))
-        self.report.add(page.Text(NOT_TESTED))
+        self.claims(items, NOT_TESTED)
         self.report.save()
         return items
 

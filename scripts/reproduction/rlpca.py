@@ -178,9 +178,7 @@ class Reproduction(paper.Paper):
                                 for (n, l), colour in SETTINGS.items()})
         paths = self.paths()
         items = rlpca_findings.claims_of_paper(self, methods, settings, paths)
-        self.heading("Claims of the paper")
-        self.report.add(page.Items(items))
-        self.report.add(page.Text(NOT_TESTED))
+        self.claims(items, NOT_TESTED)
         own = [row for row in done if row[0].model is self.model]
         if own:
             found = rlpca_findings.against_published(self, own)

@@ -177,9 +177,7 @@ class Reproduction(paper.Paper):
         self.report.add(page.Text(NOTE))
         self.report.add(page.Text(FLAT_NOTE))
         items = sslpc_findings.claims_of_paper(self, ours)
-        self.heading("Claims of the paper")
-        self.report.add(page.Items(items))
-        self.report.add(page.Text(NOT_TESTED))
+        self.claims(items, NOT_TESTED)
         self.report.save()
         return items
 
