@@ -94,16 +94,8 @@ class EarlierSearch {
   std::uint32_t nearest(std::uint32_t place) const {
     const FramePlace& own = order_[place];
     const auto xyz = sample(own.frame);
-    const auto first = sample(own.first);
-    const auto second = sample(own.second);
-    const double of_second =
-        own.first == own.second
-            ? 0.0
-            : static_cast<double>(own.frame - own.first) / (own.second - own.first);
-    std::vector<double> reference(sampled_);
-    for (std::size_t i = 0; i < sampled_; ++i) {
-      reference[i] = first[i] + of_second * (second[i] - first[i]);
-    }
+    const std::vector<double> reference =
+        reference_of(own, sample(own.first), sample(own.second));
     double least = squared_distance(xyz, reference);
     std::uint32_t distance = 0;
     for (std::uint32_t d = 1; d <= std::min({place, max_distance_, kMostSearched}); ++d) {
@@ -137,6 +129,19 @@ double entropy(double mean) {
 bool are_equal_on_grid(std::span<const double> xyz, std::span<const double> other) {
   return std::equal(xyz.begin(), xyz.end(), other.begin(), other.end(),
                     [](double a, double b) { return on_grid(a) == on_grid(b); });
+}
+
+std::vector<double> reference_of(const FramePlace& place, std::span<const double> first,
+                                 std::span<const double> second) {
+  const double of_second =
+      place.first == place.second
+          ? 0.0
+          : static_cast<double>(place.frame - place.first) / (place.second - place.first);
+  std::vector<double> reference(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    reference[i] = first[i] + of_second * (second[i] - first[i]);
+  }
+  return reference;
 }
 
 std::vector<EarlierFrame> earlier_frames(const FramePattern& pattern,

@@ -14,6 +14,11 @@ namespace rlpc {
 // Whether two frames are equal once their coordinates, in grid units, are rounded to the grid.
 bool are_equal_on_grid(std::span<const double> xyz, std::span<const double> other);
 
+// What a frame is predicted from, as Reference of 8.19.3: its reference frames, weighted by
+// their distances.
+std::vector<double> reference_of(const FramePlace& place, std::span<const double> first,
+                                 std::span<const double> second);
+
 struct EarlierFrame {
   std::uint32_t distance = 0;  // in places of the coding order; 0: there is none
   bool is_equal = false;       // on the grid

@@ -109,16 +109,8 @@ std::uint32_t FrameEncoding::reference_distance(const FramePlace& place) const {
       bits_from(mesh_, xyz, frame_xyz(coding_.frame_before(distance)), step);
   const double before = bits_of_pattern_[place.depth];
   if (before > 0.0 && from_earlier >= before) return 0;
-  std::vector<double> reference(xyz.size());
-  const auto first = frame_xyz(place.first);
-  const auto second = frame_xyz(place.second);
-  const double of_second =
-      place.first == place.second
-          ? 0.0
-          : static_cast<double>(place.frame - place.first) / (place.second - place.first);
-  for (std::size_t i = 0; i < xyz.size(); ++i) {
-    reference[i] = first[i] + of_second * (second[i] - first[i]);
-  }
+  const std::vector<double> reference =
+      reference_of(place, frame_xyz(place.first), frame_xyz(place.second));
   return from_earlier < bits_from(mesh_, xyz, reference, step) ? distance : 0;
 }
 

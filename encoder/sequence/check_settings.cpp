@@ -153,8 +153,9 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
   const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kFrames;
   if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
     return InputError{
-        "--frame-pattern, --frame-weights and --patches need --profile high and --gof-kind "
-        "frames: use these, or leave them out"};
+        "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
+        "need "
+        "--profile high and --gof-kind frames: use these, or leave them out"};
   }
   return std::nullopt;
 }

@@ -302,9 +302,10 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
   app.add_option(
          "--frame-pattern", line.frame_pattern,
          "What frames are predicted from: previous (the one before), first (of the GOF), "
-         "dyadic "
-         "(those around, in periods of 2, 4, ... 64: dyadic:16), entries (see below), or auto "
-         "(default: the cheapest of previous, first, dyadic:16 and dyadic:64 for each GOF)")
+         "dyadic (those around, in periods of 2, 4, ... 64: dyadic:16), entries (see below), "
+         "or "
+         "auto (default: the cheapest of previous, first, dyadic:16 and dyadic:64 for each "
+         "GOF)")
       ->option_text("WORD")
       ->group(frames);
   add_choice<FrameWeights>(

@@ -25,8 +25,7 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
       reach_(num_patches, 1),
       last_(num_depths, std::vector<Motion>(num_patches, Motion{})),
       modes_(num_patches, PatchMode::kNeighbours),
-      centres_(num_patches),
-      motion_(num_patches) {
+      centres_(num_patches) {
   for (const std::uint32_t v : vertices) ++size_[patch_of_vertex[v]];
   const std::vector<Vec3i> centre = centres(first);
   const auto distance = [&](std::uint32_t v, std::size_t patch) {
@@ -97,20 +96,21 @@ PatchRecon::Motion PatchRecon::motion(
 void PatchRecon::start_frame(std::span<const std::int32_t> reference, std::uint32_t depth,
                              std::uint32_t step, const FramePatches& patches) {
   reference_ = reference;
+  depth_ = depth;
   std::fill(modes_.begin(), modes_.end(), PatchMode::kNeighbours);
   if (patches.empty()) return;
   centres_ = centres(reference);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     modes_[p] = patches[p].mode;
     if (modes_[p] == PatchMode::kNeighbours) continue;
-    motion_[p] = last_[depth][p] = motion(p, depth, step, patches[p].residual);
+    last_[depth][p] = motion(p, depth, step, patches[p].residual);
   }
 }
 
 // 8.19.5 MovedByPatch( v, c )
 std::int32_t PatchRecon::moved(std::uint32_t v, std::size_t c) const {
   const std::uint16_t p = patch_of_vertex_[v];
-  const Motion& motion = motion_[p];
+  const Motion& motion = last_[depth_][p];
   const std::int32_t* const own = &reference_[3 * std::size_t{v}];
   std::int64_t sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {

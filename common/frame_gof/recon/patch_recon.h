@@ -59,9 +59,9 @@ class PatchRecon {
   std::vector<std::vector<Motion>> last_;  // [depth][num_patches]: PatchMotion
   // Of the frame:
   std::span<const std::int32_t> reference_;
+  std::uint32_t depth_ = 0;
   std::vector<PatchMode> modes_;
   std::vector<Vec3i> centres_;
-  std::vector<Motion> motion_;
 };
 
 }  // namespace rlpc
