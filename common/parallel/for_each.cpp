@@ -1,6 +1,6 @@
 #include "common/parallel/for_each.h"
 
-#include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -23,8 +23,8 @@ class ThreadPool::Impl {
     {
       const std::lock_guard lock(mutex_);
       ends_ = true;
+      change();
     }
-    changed_.notify_all();
     for (std::thread& other : others_) other.join();
   }
   Impl(const Impl&) = delete;
@@ -37,18 +37,19 @@ class ThreadPool::Impl {
     Loop loop{.pass = pass, .count = count, .depth = depth_of_thread + 1};
     std::unique_lock lock(mutex_);
     loops_.push_back(&loop);
-    changed_.notify_all();
-    while (loop.is_open()) run_pass(loop, lock);
+    change();
+    while (loop.is_open()) run_passes(loop, lock);
     // Others are in passes of this loop: helps those that are no further out than it, so that
     // the thread is never within two passes of a depth.
-    while (loop.running > 0) {
+    while (loop.threads > 0) {
       Loop* const inner = innermost(loop.depth);
       if (inner != nullptr) {
-        run_pass(*inner, lock);
+        run_passes(*inner, lock);
       } else {
-        changed_.wait(lock);
+        wait(lock);
       }
     }
+    std::erase(loops_, &loop);
     if (loop.failure) std::rethrow_exception(loop.failure);
   }
 
@@ -57,43 +58,43 @@ class ThreadPool::Impl {
     const std::function<void(std::size_t)>& pass;
     std::size_t count = 0;
     std::size_t depth = 0;  // 1: not within a pass of another loop
-    std::size_t next = 0;
-    std::size_t running = 0;  // passes that are not done
+    std::atomic<std::size_t> next = 0;
+    std::size_t threads = 0;  // that are within it
     std::exception_ptr failure = {};
 
-    bool is_open() const { return next < count; }
+    bool is_open() const { return next.load(std::memory_order_relaxed) < count; }
   };
 
+  // Of those that are open.
   Loop* innermost(std::size_t least_depth) const {
     Loop* found = nullptr;
     for (Loop* const loop : loops_) {
-      if (loop->depth < least_depth) continue;
+      if (loop->depth < least_depth || !loop->is_open()) continue;
       if (found == nullptr || loop->depth > found->depth) found = loop;
     }
     return found;
   }
 
-  // Runs the next pass of a loop that is open, without the lock.
-  void run_pass(Loop& loop, std::unique_lock<std::mutex>& lock) {
-    const std::size_t i = loop.next++;
-    if (!loop.is_open()) std::erase(loops_, &loop);
-    ++loop.running;
+  // Runs passes of a loop, without the lock, until none is left or another loop begins.
+  void run_passes(Loop& loop, std::unique_lock<std::mutex>& lock) {
+    ++loop.threads;
+    const std::size_t changes = changes_;
     lock.unlock();
     const std::size_t before = std::exchange(depth_of_thread, loop.depth);
     std::exception_ptr failure;
     try {
-      loop.pass(i);
+      for (std::size_t i = loop.next++; i < loop.count; i = loop.next++) {
+        loop.pass(i);
+        if (changes_ != changes) break;
+      }
     } catch (...) {
       failure = std::current_exception();
+      loop.next = loop.count;
     }
     depth_of_thread = before;
     lock.lock();
     if (failure && !loop.failure) loop.failure = std::move(failure);
-    if (loop.failure && loop.is_open()) {
-      loop.next = loop.count;
-      std::erase(loops_, &loop);
-    }
-    if (--loop.running == 0 && !loop.is_open()) changed_.notify_all();
+    if (--loop.threads == 0 && !loop.is_open()) change();
   }
 
   void help() {
@@ -102,20 +103,41 @@ class ThreadPool::Impl {
     for (;;) {
       Loop* const loop = innermost(0);
       if (loop != nullptr) {
-        run_pass(*loop, lock);
+        run_passes(*loop, lock);
       } else if (ends_) {
         return;
       } else {
-        changed_.wait(lock);
+        wait(lock);
       }
     }
   }
 
+  // With the lock: a loop began, or its last pass is done; or ends_.
+  void change() {
+    ++changes_;
+    if (sleepers_ > 0) changed_.notify_all();
+  }
+
+  // Until a change. Loops over the vertices of a layer are short and follow each other closely,
+  // so a thread does not sleep at once: to wake it takes longer than such a loop.
+  void wait(std::unique_lock<std::mutex>& lock) {
+    const std::size_t changes = changes_;
+    lock.unlock();
+    for (int i = 0; i < kYields && changes_ == changes; ++i) std::this_thread::yield();
+    lock.lock();
+    ++sleepers_;
+    changed_.wait(lock, [&] { return changes_ != changes; });
+    --sleepers_;
+  }
+
+  static constexpr int kYields = 200;
   static thread_local std::size_t depth_of_thread;  // of the pass that it is in
 
   std::mutex mutex_;
-  std::condition_variable changed_;  // a loop began, or its last pass is done; or ends_
-  std::vector<Loop*> loops_;         // those that are open
+  std::condition_variable changed_;
+  std::atomic<std::size_t> changes_ = 0;  // written with the lock
+  std::size_t sleepers_ = 0;
+  std::vector<Loop*> loops_;
   bool ends_ = false;
   std::vector<std::thread> others_;
 };

@@ -12,7 +12,9 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 128;  // vertices of a pass
+// Vertices of a pass: some 20 us.
+constexpr std::size_t kLearnTogether = 32;
+constexpr std::size_t kTogether = 128;
 
 constexpr std::int32_t kRingWalk = 64;
 constexpr std::int32_t kNearWalk = 16;
@@ -116,10 +118,11 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
           adapt(v, motion, is_there, has_noise ? frame.expected[v] : 0U);
         }
       };
-      if (layer == 0 || vertices.size() <= kTogether) {
+      const std::size_t together = settings_.learning_flag ? kLearnTogether : kTogether;
+      if (layer == 0 || vertices.size() <= together) {
         decode_range(0, vertices.size());
       } else {
-        for_ranges(vertices.size(), kTogether, decode_range);
+        for_ranges(vertices.size(), together, decode_range);
       }
     }
   }
@@ -203,7 +206,7 @@ void FrameRecon::start_learning() {
   learned.filters.assign(size, 0);
   const std::int64_t variance = std::int64_t{1}
                                 << (kVarianceFractionBits + settings_.prime_log2);
-  for_ranges(num_vertices, kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(num_vertices, kLearnTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);
       const FilterState state = filter(learned, v);
