@@ -124,6 +124,9 @@ struct FrameTools {
   // not given: the cheapest of several numbers, for each GOF.
   std::optional<std::uint32_t> patches;
   PartitionMethod partition = PartitionMethod::kMotion;  // what makes patches; not kSeeds
+  // Frames that share a frame unit, at most; not given: some 4 kB of them, one if frames are
+  // written as they come. Frames of several layer groups share none.
+  std::optional<std::uint32_t> frames_per_unit;
 
   bool operator==(const FrameTools&) const = default;
 };

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ class RangeEncoder {
       renormalize();
     }
   }
+
+  // Bytes so far, but for those that finish() adds.
+  std::size_t size() const { return bytes_.size() + pending_ff_ + (has_cache_ ? 1 : 0); }
 
   // Ends the section: one more byte suffices, as range >= 2^24. The encoder cannot be used
   // afterwards.

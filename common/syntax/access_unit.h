@@ -26,8 +26,9 @@ struct SliceEntry {
   std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
   std::uint64_t bytes = 0;             // size of the unit
   std::uint32_t temporal_layer_idx = 0;
-  std::uint32_t frame_idx = 0;  // of a frame unit
-  bool is_gof_end = false;      // the GOF ends before that frame; the unit has no residuals
+  std::uint32_t frame_idx = 0;   // of a frame unit: its first frame
+  std::uint32_t num_frames = 1;  // likewise
+  bool is_gof_end = false;       // the GOF ends before that frame; the unit has no residuals
 };
 
 // 7.14.2: those of the frames of a GOF that have one; empty if the GOF has none.

@@ -83,7 +83,8 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
   std::uint32_t left = mesh.num_layers();
   gof.layer_group_size.clear();
   while (left > 0) {
-    const std::uint32_t size = gof.layer_group_size.size() == 3 ? left : 1 + below(left);
+    const bool is_last = gof.layer_group_size.size() == 3 || below(4) == 0;
+    const std::uint32_t size = is_last ? left : 1 + below(left);
     gof.layer_group_size.push_back(size);
     left -= size;
   }

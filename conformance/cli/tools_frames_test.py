@@ -22,8 +22,20 @@ class Frames(ToolsTest):
                 self.ok("rlpcdec", stream, "--verify", "--threads", 3)
                 gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
                 self.assertTrue(all("num_frame_units" in gof for gof in gofs), (name, how))
-                self.assertEqual(sum(gof["num_frame_units"] for gof in gofs),
-                                 sum(gof["num_frames"] for gof in gofs))
+                for gof in gofs:
+                    self.assertEqual(len(gof["slices"]), gof["num_frame_units"])
+                    self.assertLess(gof["num_frame_units"], gof["num_frames"])
+                    self.assertEqual(sum(unit["num_frames"] for unit in gof["slices"]),
+                                     gof["num_frames"])
+
+    def test_frames_share_units(self):
+        stream = self.path("a.rlpc")
+        for number, units in ((1, 20), (6, 5), (100, 2)):  # the first frame has its own
+            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+                        "--frames-per-unit", number)
+            self.ok("rlpcdec", stream, "--verify")
+            gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
+            self.assertEqual([gof["num_frame_units"] for gof in gofs], [units] * 3)
 
     def test_vertices_that_follow_motions_are_counted(self):
         stream = self.path("a.rlpc")
@@ -138,11 +150,11 @@ class Frames(ToolsTest):
         self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
         self.assertGreater(info["bits"]["frames"], 0.5 * 8 * info["bytes"])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("frame GOFs: 3, with ", "20 frame units each", "frame units in bytes"):
+        for words in ("frame GOFs: 3, with ", "2 frame units each", "frame units in bytes"):
             self.assertIn(words, said)
         page = self.path("a.html")
         self.ok("rlpcinfo", stream, "--html", page)
-        self.assertIn("Units of frames 20", page.read_text())
+        self.assertIn("Units of frames 2", page.read_text())
 
     def test_lossless_on_a_grid_and_again_on_its_own(self):
         mesh, points = INPUTS / "elephant.obj", INPUTS / "elephant.pc2"

@@ -25,6 +25,7 @@ class HighSource(random_main.MainSource):
 
     temporal_layer = 0  # of the slice
     ends_gof = False  # by the frame unit
+    unit_frames = 1  # of the frame unit
 
     def _profile_idc(self, ns, indices, arguments):
         return 2
@@ -96,9 +97,9 @@ class HighSource(random_main.MainSource):
         return self.numbers.pick(self._earlier(ns))
 
     def _earlier(self, ns):
-        place = ns["PlaceOfFrame"][ns["frame_idx"]]
+        place = ns["PlaceOfFrame"][ns["UnitFrame"]]
         layer = ns["TemporalLayerOfFrame"]
-        most = layer(ns["frame_idx"])
+        most = layer(ns["UnitFrame"])
         return [i for i in range(min(place, ns["max_earlier_distance"]))
                 if layer(ns["FrameOrder"][place - 1 - i]) <= most]
 
@@ -149,6 +150,9 @@ class HighSource(random_main.MainSource):
 
     def _frame_idx(self, ns, indices, arguments):
         return self.slice[0]
+
+    def _unit_frames_minus1(self, ns, indices, arguments):
+        return self.unit_frames - 1
 
     def _frame_crc(self, ns, indices, arguments):
         return None  # the right one
@@ -235,17 +239,22 @@ class HighSequence(random_main.MainSequence):
         """The frame units of a GOF; from some frame on, fewer layer groups, or none."""
         ns, source = self._writer.ns, self._writer.source
         most = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
-        for place in range(ns["NumGofFrames"]):
+        place = -1
+        while place + 1 < ns["NumGofFrames"]:
+            place += 1
             frame = ns["FrameOrder"][place]
             layer = ns["TemporalLayerOfFrame"](frame)
             if self._n.chance(self._plan.cut_percent):
                 most[layer] = self._n.between(0, most[layer])
                 most[layer:] = [min(n, most[layer]) for n in most[layer:]]
+            source.unit_frames = self._unit_frames(place)
             for group in range(most[layer]):
                 source.slice = frame, group
                 self._unit("FRAME")
                 if ns["repeat_flag"]:
                     break
+            if most[layer] > 0:
+                place += source.unit_frames - 1
             # Where no period is cut off, the order stays.
             if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
                     and sorted(ns["FrameOrder"][:place + 1]) == list(range(place + 1))
@@ -254,6 +263,15 @@ class HighSequence(random_main.MainSequence):
                 self._unit("FRAME")
                 source.ends_gof = False
                 break
+
+    def _unit_frames(self, place):
+        """How many frames share a unit that begins at a place."""
+        ns = self._writer.ns
+        if ns["num_layer_groups_minus1"] > 0 or self._n.chance(50):
+            return 1
+        layers = [ns["TemporalLayerOfFrame"](f) for f in ns["FrameOrder"][place:]]
+        run = next((i for i, layer in enumerate(layers) if layer != layers[0]), len(layers))
+        return self._n.between(1, run)
 
     def _temporal_layers(self):
         """The slices of the temporal layers but the first, some of them cut off."""

@@ -161,7 +161,8 @@ class StreamWriter:
         self._model_pending = False  # a skinned model that is not decoded yet
         self.frame_hashes = []
         self.running_hash = 0
-        self._crc_at = None  # of a frame, which is known once its residuals are written
+        self._num_crcs = 0  # hashes of frames in the unit
+        self._crcs = []  # those that are known once it has been written: (number, place)
         self._decoded_frames = 0  # of a GOF of frames
         self._counts_gof = False  # the last GOF is in gof_frames
 
@@ -227,7 +228,9 @@ class StreamWriter:
             return self.ns[descriptor](*arguments)
         value = self.source.value(self, name, tuple(indices), descriptor, arguments)
         if name == "frame_crc" and value is None:
-            self._crc_at, value = len(self.data), 0
+            self._crcs.append((self._num_crcs, len(self.data)))
+            value = 0
+        self._num_crcs += name == "frame_crc"
         if descriptor in BIT_DESCRIPTORS:
             self._put_code(name, value, descriptor, arguments)
         else:
@@ -338,8 +341,7 @@ class StreamWriter:
             self._counts_gof = False
         elif code == ns["FRAME"]:
             self._end_gof_early()
-        if self._crc_at is not None:
-            self._put_frame_crc()
+        self._put_frame_crcs()
         if finish is not None:
             changed = finish(bytes(self.data[start + 5:]))
             del self.data[start + 5:]
@@ -419,19 +421,21 @@ class StreamWriter:
         crc = self.source.override("unit_crc", zlib.crc32(self.data[start:]))
         self.put_bytes(crc.to_bytes(4, "big"))
 
-    def _put_frame_crc(self):
-        """The hash of the frame whose last frame unit has been written."""
-        ns, frame = self.ns, self.ns["frame_idx"]
-        while self._decoded_frames <= ns["PlaceOfFrame"][frame]:
-            ns["NextPlace"] = self._decoded_frames
-            ns["DecodeFrame"](ns["FrameOrder"][self._decoded_frames])
-            self._decoded_frames += 1
-        ns["NextPlace"] = 0  # decoding the GOF begins afresh
-        ns["RoundFrame"](frame)
-        crc = ns["HashOfPositions"](0)
-        self.data[self._crc_at:self._crc_at + 4] = crc.to_bytes(4, "big")
-        self.ns["FrameCrc"][frame][0] = crc
-        self._crc_at = None
+    def _put_frame_crcs(self):
+        """The hashes of the frames whose last frame unit has been written."""
+        ns = self.ns
+        for number, at in self._crcs:
+            frame = ns["CodedFrames"][number]
+            while self._decoded_frames <= ns["PlaceOfFrame"][frame]:
+                ns["NextPlace"] = self._decoded_frames
+                ns["DecodeFrame"](ns["FrameOrder"][self._decoded_frames])
+                self._decoded_frames += 1
+            ns["NextPlace"] = 0  # decoding the GOF begins afresh
+            ns["RoundFrame"](frame)
+            crc = ns["HashOfPositions"](0)
+            self.data[at:at + 4] = crc.to_bytes(4, "big")
+            ns["FrameCrc"][frame][0] = crc
+        self._crcs, self._num_crcs = [], 0
 
     def _start_model(self):
         self.model_indices.append(self.ns["model_idx"])

@@ -76,7 +76,7 @@ TEST_F(FrameGofs, AreParsedAsTheyWereWritten) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     const FrameGof gof = random_frame_gof(seed, mesh(), kFrames);
-    const auto read = parsed(write_frame_gof(gof, mesh()));
+    const auto read = parsed(write_frame_gof(gof, mesh(), 1 + seed % 4));
     ASSERT_TRUE(read) << read.error().rule;
     EXPECT_EQ(static_cast<const FrameSettings&>(*read), gof);
     for (std::uint32_t f = 0; f < kFrames; ++f) {
@@ -87,6 +87,29 @@ TEST_F(FrameGofs, AreParsedAsTheyWereWritten) {
       EXPECT_EQ(a.residual, b.residual) << "frame " << f;
     }
   }
+}
+
+TEST_F(FrameGofs, AreTheSameHoweverFramesShareUnits) {
+  std::size_t num_shared = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const FrameGof gof = random_frame_gof(seed, mesh(), kFrames);
+    const auto alone = write_frame_gof(gof, mesh());
+    const auto read_alone = parsed(alone);
+    ASSERT_TRUE(read_alone);
+    for (const std::uint32_t per_unit : {2U, kFrames}) {
+      const auto shared = write_frame_gof(gof, mesh(), per_unit);
+      if (gof.layer_group_size.size() > 1) {
+        EXPECT_EQ(shared.frames, alone.frames);
+        continue;
+      }
+      num_shared += alone.frames.size() - shared.frames.size();
+      const auto read = parsed(shared);
+      ASSERT_TRUE(read) << read.error().rule;
+      EXPECT_EQ(decoded(*read), decoded(*read_alone));
+    }
+  }
+  EXPECT_GT(num_shared, 20U);
 }
 
 TEST_F(FrameGofs, AreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {

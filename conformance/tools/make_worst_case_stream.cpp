@@ -98,7 +98,8 @@ class StreamMaker {
         writer.start(v);
         for (int c = 0; c < 3; ++c) writer.write(noise_.residual());
       }
-      unit(UnitType::kFrame, writer.finish_group());
+      writer.end_group();
+      unit(UnitType::kFrame, writer.finish_unit());
     }
   }
 

@@ -107,7 +107,7 @@ Result<bool> FrameGofParser::frame(BitReader& r, std::uint64_t unit_bit_pos) {
     unit.is_gof_end = true;
     last_unit_ = unit;
   } else {
-    frame_of_group(r, unit, unit_bit_pos);
+    frames_of_group(r, unit, unit_bit_pos);
   }
   if (r.error()) return *r.error();
   return true;
@@ -130,6 +130,17 @@ void FrameGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
   r.fail(Errc::kInvalid, "R-FRM-04", "frame_unit", unit_bit_pos);
 }
 
+// 8.19.1 FrameRun( more )
+bool FrameGofParser::is_run(const SliceEntry& unit) const {
+  const std::uint32_t first = order_->place_of(unit.frame_idx);
+  if (unit.num_frames > gof_.num_frames - first) return false;
+  for (std::uint32_t i = 1; i < unit.num_frames; ++i) {
+    const FramePlace& place = (*order_)[first + i];
+    if (gof_.pattern.temporal_layer(place.depth) != unit.temporal_layer_idx) return false;
+  }
+  return true;
+}
+
 // 8.19.1 FrameMayFollow( )
 bool FrameGofParser::may_follow(const SliceEntry& unit) {
   const std::uint32_t place = order_->place_of(unit.frame_idx);
@@ -139,76 +150,95 @@ bool FrameGofParser::may_follow(const SliceEntry& unit) {
   for (std::uint32_t p = next_place_ == 0 ? 0 : next_place_ - 1; p < place; ++p) {
     ++frames_before_[gof_.pattern.temporal_layer((*order_)[p].depth)];
   }
-  next_place_ = place + 1;
   for (std::uint32_t t = 0; t <= unit.temporal_layer_idx; ++t) {
     if (frames_of_group_[t][group] != frames_before_[t]) return false;
   }
+  next_place_ = place + unit.num_frames;
+  frames_before_[unit.temporal_layer_idx] += unit.num_frames - 1;
   return true;
 }
 
-// 6.14.2 frame_of_group( )
-void FrameGofParser::frame_of_group(BitReader& r, SliceEntry& unit,
-                                    std::uint64_t unit_bit_pos) {
+// 6.14.2 frames_of_group( )
+void FrameGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
+                                     std::uint64_t unit_bit_pos) {
   const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
   unit.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
   if (r.error()) return;
   const std::uint32_t group = unit.layer_group_idx;
-  const FramePlace& place = (*order_)[order_->place_of(unit.frame_idx)];
-  unit.temporal_layer_idx = gof_.pattern.temporal_layer(place.depth);
+  const std::uint32_t first = order_->place_of(unit.frame_idx);
+  unit.temporal_layer_idx = gof_.pattern.temporal_layer((*order_)[first].depth);
+  if (num_groups == 1) {
+    const std::uint64_t at = r.bit_pos();
+    const std::int64_t most = std::int64_t{gof_.num_frames} - first - 1;
+    unit.num_frames = r.ue("unit_frames_minus1", {0, most}, "R-FRM-09") + 1;
+    if (!r.error() && !is_run(unit)) {
+      r.fail(Errc::kInvalid, "R-FRM-09", "unit_frames_minus1", at);
+    }
+    if (r.error()) return;
+  }
   if (group >= end_layer_group_ || unit.temporal_layer_idx >= end_temporal_layer_) {
     is_cut_ = true;
     return;
   }
   if (!may_follow(unit)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
-  const bool may_be_earlier = gof_.max_earlier_distance > 0 && group == 0 && unit.frame_idx > 0;
-  if (may_be_earlier && r.flag("earlier_flag")) {
-    earlier_frame(r, unit);
-    if (r.error()) return;
-    if (frames_[unit.frame_idx].repeated) return end_repeat(r, unit);
+  std::vector<std::uint32_t> coded;  // places
+  for (std::uint32_t i = 0; i < unit.num_frames && !r.error(); ++i) {
+    if (frame_start(r, unit, first + i)) coded.push_back(first + i);
   }
+  if (r.error()) return;
   r.byte_alignment();
   if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
-    const std::uint64_t at = r.bit_pos();
-    frames_[unit.frame_idx].frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
+    for (const std::uint32_t place : coded) {
+      const std::uint64_t at = r.bit_pos();
+      frame_at(place).frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
+      if (r.error()) return;
+    }
   }
-  if (r.error()) return;
-  frame_section(r, unit);
-  if (r.error()) return;
-  ++frames_of_group_[unit.temporal_layer_idx][group];
-  last_unit_ = unit;
+  if (coded.empty()) {
+    r.expect_end();
+  } else if (!r.error()) {
+    frame_section(r, unit, coded);
+  }
+  if (!r.error()) last_unit_ = unit;
+}
+
+// 6.14.2 frame_start( )
+bool FrameGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place) {
+  CodedFrame& frame = frame_at(place);
+  const bool may_be_earlier =
+      gof_.max_earlier_distance > 0 && unit.layer_group_idx == 0 && place > 0;
+  if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
+  if (r.error()) return false;
+  std::vector<std::uint32_t>& frames_of_group = frames_of_group_[unit.temporal_layer_idx];
+  if (!frame.repeated) {
+    ++frames_of_group[unit.layer_group_idx];
+    frame.layer_groups = unit.layer_group_idx + 1;
+    return true;
+  }
+  // It has the same layer groups.
+  frame.layer_groups = frames_[*frame.repeated].layer_groups;
+  for (std::uint32_t j = 0; j < frame.layer_groups; ++j) ++frames_of_group[j];
+  return false;
 }
 
 // 6.14.2 earlier_frame( )
-void FrameGofParser::earlier_frame(BitReader& r, const SliceEntry& unit) {
+void FrameGofParser::earlier_frame(BitReader& r, std::uint32_t place) {
   const std::uint64_t at = r.bit_pos();
   const std::uint32_t distance =
       r.ue("earlier_distance_minus1", {0, std::int64_t{gof_.max_earlier_distance} - 1},
            "R-FRM-08") +
       1;
   if (r.error()) return;
-  const std::uint32_t place = order_->place_of(unit.frame_idx);
+  const FramePattern& pattern = gof_.pattern;
   const FramePlace* const earlier = distance > place ? nullptr : &(*order_)[place - distance];
   if (earlier == nullptr ||
-      gof_.pattern.temporal_layer(earlier->depth) > unit.temporal_layer_idx) {
+      pattern.temporal_layer(earlier->depth) > pattern.temporal_layer((*order_)[place].depth)) {
     r.fail(Errc::kInvalid, "R-FRM-08", "earlier_distance_minus1", at);
   }
   const bool is_repeated = r.flag("repeat_flag");
   if (r.error()) return;
-  CodedFrame& frame = frames_[unit.frame_idx];
+  CodedFrame& frame = frame_at(place);
   (is_repeated ? frame.repeated : frame.reference) = earlier->frame;
-}
-
-// A frame that repeats another has the same layer groups.
-void FrameGofParser::end_repeat(BitReader& r, const SliceEntry& unit) {
-  r.byte_alignment();
-  r.expect_end();
-  if (r.error()) return;
-  CodedFrame& frame = frames_[unit.frame_idx];
-  frame.layer_groups = frames_[*frame.repeated].layer_groups;
-  for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
-    ++frames_of_group_[unit.temporal_layer_idx][j];
-  }
-  last_unit_ = unit;
 }
 
 std::uint32_t FrameGofParser::complete_places() const {
@@ -267,24 +297,38 @@ void FrameGofParser::patch_motions(SectionReader& section, CodedFrame& frame) {
 }
 
 // 6.14.2 frame_section( )
-void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
-  CodedFrame& frame = frames_[unit.frame_idx];
+void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
+                                   std::span<const std::uint32_t> places) {
   const std::uint64_t num_vertices = header_.num_vertices;
-  const std::uint32_t place = order_->place_of(unit.frame_idx);
-  const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
-  if (unit.layer_group_idx == 0) {
-    const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
-    if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
-    frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
-    frame.expected.assign(header_.num_vertices, 0);
-    contexts_->start_frame(place, (*order_)[place].depth);
-    if (num_patches > 0) patch_contexts_->start_frame((*order_)[place].depth);
-    memory_bytes_ += memory_of_frame(num_vertices, 0, num_patches);
-  }
-  const std::uint64_t large_before = frame.residual.num_large();
   SectionReader section(r, "frame_section");
   contexts_->start_group(unit.layer_group_idx);
-  if (unit.layer_group_idx == 0 && num_patches > 0) patch_motions(section, frame);
+  for (const std::uint32_t place : places) {
+    CodedFrame& frame = frame_at(place);
+    const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
+    if (unit.layer_group_idx == 0) {
+      const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
+      if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
+      frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
+      frame.expected.assign(header_.num_vertices, 0);
+      contexts_->start_frame(place, (*order_)[place].depth);
+      if (num_patches > 0) {
+        patch_contexts_->start_frame((*order_)[place].depth);
+        patch_motions(section, frame);
+      }
+      memory_bytes_ += memory_of_frame(num_vertices, 0, num_patches);
+    }
+    const std::uint64_t large_before = frame.residual.num_large();
+    frame_residuals(section, unit, place);
+    if (section.failed()) return;
+    frame.residual.sort();
+    memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before, 0);
+  }
+  section.finish();
+}
+
+void FrameGofParser::frame_residuals(SectionReader& section, const SliceEntry& unit,
+                                     std::uint32_t place) {
+  CodedFrame& frame = frame_at(place);
   std::uint32_t first = 0;
   for (std::uint32_t j = 0; j < unit.layer_group_idx; ++j) first += gof_.layer_group_size[j];
   const std::uint32_t end = first + gof_.layer_group_size[unit.layer_group_idx];
@@ -300,11 +344,6 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit) {
     }
     section.check_overrun("frame_residual");
   }
-  section.finish();
-  if (section.failed()) return;
-  frame.residual.sort();
-  frame.layer_groups = unit.layer_group_idx + 1;
-  memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before, 0);
 }
 
 FrameGof FrameGofParser::finish() {

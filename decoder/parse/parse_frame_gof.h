@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -63,12 +64,17 @@ class FrameGofParser {
   void weights(BitReader& r);
   void patch_map(BitReader& r);
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
-  void frame_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
+  void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
+  bool is_run(const SliceEntry& unit) const;
   bool may_follow(const SliceEntry& unit);
-  void earlier_frame(BitReader& r, const SliceEntry& unit);
-  void end_repeat(BitReader& r, const SliceEntry& unit);
+  // False: the frame repeats another.
+  bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
+  void earlier_frame(BitReader& r, std::uint32_t place);
   void patch_motions(SectionReader& section, CodedFrame& frame);
-  void frame_section(BitReader& r, const SliceEntry& unit);
+  void frame_section(BitReader& r, const SliceEntry& unit,
+                     std::span<const std::uint32_t> places);
+  void frame_residuals(SectionReader& section, const SliceEntry& unit, std::uint32_t place);
+  CodedFrame& frame_at(std::uint32_t place) { return frames_[(*order_)[place].frame]; }
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);
 
   const SequenceHeader& header_;

@@ -30,7 +30,9 @@ void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
                       {"temporal_layer_idx", slice.temporal_layer_idx},
                       {"num_trajectories", slice.num_trajectories},
                       {"bytes", slice.bytes}});
-    if (summary.figure("num_frame_units") > 0) slices.back()["frame_idx"] = slice.frame_idx;
+    if (summary.figure("num_frame_units") == 0) continue;
+    slices.back()["frame_idx"] = slice.frame_idx;
+    slices.back()["num_frames"] = slice.is_gof_end ? 0 : slice.num_frames;
   }
   nlohmann::ordered_json components = nlohmann::ordered_json::array();
   for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {

@@ -20,9 +20,10 @@ constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass, some 10 us
 
 FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
                          const SequenceHeader& header, std::uint32_t num_frames,
-                         bool to_nearest)
+                         const UnitLimits& limits, bool to_nearest)
     : mesh_(mesh),
       settings_(settings),
+      limits_(limits),
       to_nearest_(to_nearest),
       order_(settings.pattern, num_frames),
       recon_(mesh, settings, header.position_bits),
@@ -90,8 +91,24 @@ void FrameCoding::adapt(Layer& layer, std::size_t first, std::size_t end) {
   }
 }
 
-EncodedGof::Unit FrameCoding::repeat(std::uint32_t distance, std::span<std::int32_t> positions,
-                                     CodedFrame* coded) {
+void FrameCoding::end_unit(std::uint32_t number, std::vector<EncodedGof::Unit>& units) {
+  const auto temporal_layer = [&](std::uint32_t place) {
+    return settings_.pattern.temporal_layer(order_[place].depth);
+  };
+  const std::uint32_t next = number + 1;
+  const bool may_go_on = settings_.layer_group_size.size() == 1 && number > 0 &&
+                         next < order_.num_frames() &&
+                         temporal_layer(next) == temporal_layer(number);
+  if (may_go_on && writer_.unit_frames() < limits_.frames &&
+      writer_.unit_bytes() < limits_.bytes) {
+    return;
+  }
+  units.push_back({UnitType::kFrame, writer_.finish_unit(), temporal_layer(number)});
+}
+
+std::vector<EncodedGof::Unit> FrameCoding::repeat(std::uint32_t distance,
+                                                  std::span<std::int32_t> positions,
+                                                  CodedFrame* coded) {
   const std::uint32_t number = recon_.place();
   const FramePlace& place = order_[number];
   CodedFrame frame;
@@ -100,8 +117,10 @@ EncodedGof::Unit FrameCoding::repeat(std::uint32_t distance, std::span<std::int3
   recon_.decode(place, order_.last_use(place.frame), frame);
   recon_.positions(positions);
   if (coded != nullptr) *coded = frame;
-  return {UnitType::kFrame, writer_.repeat(place.frame, distance),
-          settings_.pattern.temporal_layer(place.depth)};
+  writer_.repeat(place.frame, distance);
+  std::vector<EncodedGof::Unit> units;
+  end_unit(number, units);
+  return units;
 }
 
 std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
@@ -157,8 +176,8 @@ std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
       if (coded != nullptr) coded->residual.sort();
     }
     const std::uint32_t crc = settings_.frame_hash_flag ? crc32_of_positions(positions) : 0;
-    units.push_back({UnitType::kFrame, writer_.finish_group(crc),
-                     settings_.pattern.temporal_layer(place.depth)});
+    writer_.end_group(crc);
+    end_unit(number, units);
   }
   return units;
 }

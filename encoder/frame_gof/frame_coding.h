@@ -1,6 +1,7 @@
 // Codes a GOF of frames (6.14, 8.19): frame by frame, layer by layer, in closed loop.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,6 +17,13 @@
 
 namespace rlpc {
 
+// A frame unit ends once it has so many frames, or so many bytes; and where frames cannot share
+// it: after the first frame of a GOF, and between temporal layers.
+struct UnitLimits {
+  std::uint32_t frames = 1;
+  std::size_t bytes = 0;
+};
+
 // Codes one frame after the other. Memory is that of a decoder, and the predictions of two
 // layers. Vertices of a layer are predicted, and adapt, on several threads.
 class FrameCoding {
@@ -23,23 +31,28 @@ class FrameCoding {
   // The mesh must have layers; mesh and settings must outlive it. num_frames: of the GOF.
   // to_nearest: residuals are rounded to nearest, not chosen by rate and distortion.
   FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
-              const SequenceHeader& header, std::uint32_t num_frames, bool to_nearest = false);
+              const SequenceHeader& header, std::uint32_t num_frames,
+              const UnitLimits& limits = {}, bool to_nearest = false);
 
   // The frame that comes next in coding order, and the one so many places before it.
   const FramePlace& next_place() const { return order_[recon_.place()]; }
   std::uint32_t frame_before(std::uint32_t distance) const {
     return order_[recon_.place() - distance].frame;
   }
-  // Codes it; xyz [num_vertices][3], in grid units, unrounded. Returns its frame units, and
-  // writes its positions as a decoder outputs them. coded: unless null, set to the frame as a
-  // parser would return it. distance: unless 0, it is predicted from the frame so many places
-  // before, at most max_earlier_distance, and of a temporal layer that is not higher.
+  // Codes it; xyz [num_vertices][3], in grid units, unrounded. Returns the frame units that
+  // end with it, and writes its positions as a decoder outputs them. coded: unless null, set to
+  // the frame as a parser would return it. distance: unless 0, it is predicted from the frame
+  // so many places before, at most max_earlier_distance, and of a temporal layer that is not
+  // higher.
   std::vector<EncodedGof::Unit> code(std::span<const double> xyz,
                                      std::span<std::int32_t> positions,
                                      CodedFrame* coded = nullptr, std::uint32_t distance = 0);
   // In place of that, repeats such a frame.
-  EncodedGof::Unit repeat(std::uint32_t distance, std::span<std::int32_t> positions,
-                          CodedFrame* coded = nullptr);
+  std::vector<EncodedGof::Unit> repeat(std::uint32_t distance,
+                                       std::span<std::int32_t> positions,
+                                       CodedFrame* coded = nullptr);
+  // Of the frame unit that has not ended.
+  std::size_t unit_bytes() const { return writer_.unit_bytes(); }
 
  private:
   // The vertices of a layer, with their predictions.
@@ -52,9 +65,13 @@ class FrameCoding {
   void predict(Layer& layer, std::uint32_t index);
   void choose(Layer& layer, std::span<const double> xyz, CodedFrame* coded);
   void adapt(Layer& layer, std::size_t first, std::size_t end);
+  // After a frame, or with several layer groups, after each of them: ends the unit if it has
+  // to.
+  void end_unit(std::uint32_t number, std::vector<EncodedGof::Unit>& units);
 
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
+  UnitLimits limits_;
   bool to_nearest_;
   FrameOrder order_;
   FrameRecon recon_;

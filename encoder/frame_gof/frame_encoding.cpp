@@ -59,21 +59,26 @@ DecodeFrame DecodedSpan::decoder() const {
 }
 
 FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header,
-                             const GofFrames& frames, const FrameSettings& settings)
+                             const GofFrames& frames, const FrameSettings& settings,
+                             const UnitLimits& limits)
     : mesh_(mesh),
       header_(header),
       frames_(frames),
       earlier_(earlier_of(header, frames, settings.pattern)),
       settings_(with_distance(settings, earlier_)),
-      coding_(mesh, settings_, header, frames.num_frames),
+      coding_(mesh, settings_, header, frames.num_frames, limits),
       decoded_(frames.num_vertices, frames.num_frames),
       bits_of_pattern_(settings.pattern.num_depths(), 0.0) {
   const GofHeader gof{GofKind::kFrames, frames.first_frame, frames.num_frames};
-  encoded_.units.push_back(
-      {UnitType::kGof, write_frame_gof_unit(gof, settings_, mesh.topology())});
+  add({{UnitType::kGof, write_frame_gof_unit(gof, settings_, mesh.topology())}});
   if (settings_.pattern.temporal_layers > 1) {
     coded_ = std::make_shared<std::vector<CodedFrame>>();
   }
+}
+
+void FrameEncoding::add(std::vector<EncodedGof::Unit> units) {
+  bits_of_units_ += bits_of(units);
+  std::move(units.begin(), units.end(), std::back_inserter(encoded_.units));
 }
 
 void FrameEncoding::code_to(std::uint32_t count) {
@@ -84,12 +89,12 @@ void FrameEncoding::code_to(std::uint32_t count) {
     const auto positions = decoded_.frame(place.frame);
     CodedFrame* const copy = coded_ ? &coded_->emplace_back() : nullptr;
     if (earlier_[num_coded_].is_equal) {
-      encoded_.units.push_back(coding_.repeat(earlier_[num_coded_].distance, positions, copy));
+      add(coding_.repeat(earlier_[num_coded_].distance, positions, copy));
     } else {
       const std::uint32_t distance = reference_distance(place);
-      auto units = coding_.code(xyz, positions, copy, distance);
-      if (distance == 0) bits_of_pattern_[place.depth] = bits_of(units);
-      std::move(units.begin(), units.end(), std::back_inserter(encoded_.units));
+      const double before = bits();
+      add(coding_.code(xyz, positions, copy, distance));
+      if (distance == 0) bits_of_pattern_[place.depth] = bits() - before;
     }
     for (std::size_t i = 0; i < values; ++i) {
       const double d = positions[i] - xyz[i];
@@ -115,8 +120,7 @@ std::uint32_t FrameEncoding::reference_distance(const FramePlace& place) const {
 }
 
 double FrameEncoding::cost() const {
-  const double bits = bits_of(encoded_);
-  return settings_.exact_flag ? bits : bits_at_equal_error(bits, squared_error_);
+  return settings_.exact_flag ? bits() : bits_at_equal_error(bits(), squared_error_);
 }
 
 EncodedGof FrameEncoding::finish() {

@@ -37,7 +37,7 @@ class FrameEncoding {
   // earlier ones on the grid are not coded again; those that are nearly equal to one are
   // predicted from it if that is cheaper.
   FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
-                const FrameSettings& settings);
+                const FrameSettings& settings, const UnitLimits& limits);
   FrameEncoding(const FrameEncoding&) = delete;
   FrameEncoding& operator=(const FrameEncoding&) = delete;
 
@@ -50,6 +50,10 @@ class FrameEncoding {
   EncodedGof finish();
 
  private:
+  void add(std::vector<EncodedGof::Unit> units);
+  double bits() const {
+    return bits_of_units_ + 8.0 * static_cast<double>(coding_.unit_bytes());
+  }
   std::uint32_t reference_distance(const FramePlace& place) const;
   std::span<const double> frame_xyz(std::uint32_t f) const {
     const std::size_t values = 3 * std::size_t{frames_.num_vertices};
@@ -66,6 +70,7 @@ class FrameEncoding {
   EncodedGof encoded_;
   std::shared_ptr<std::vector<CodedFrame>> coded_;  // null: there is one temporal layer
   std::uint32_t num_coded_ = 0;
+  double bits_of_units_ = 0.0;
   // [depth]: bits of the last frame that was predicted as the pattern says; 0: there is none.
   std::vector<double> bits_of_pattern_;
   double squared_error_ = 0.0;

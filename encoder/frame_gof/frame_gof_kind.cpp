@@ -1,7 +1,9 @@
 #include "encoder/frame_gof/frame_gof_kind.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -18,6 +20,15 @@ namespace {
 // tuned (off: 1): GOFs of frames are tried where trajectories number at least this fraction of
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
+
+// fixed: A unit costs some 13 bytes beside its residuals, 0.3 % of this.
+constexpr std::size_t kUnitBytes = 4096;
+
+UnitLimits unit_limits(const EncoderSettings& settings) {
+  constexpr auto kAny = std::numeric_limits<std::uint32_t>::max();
+  const auto& frames = settings.frames.frames_per_unit;
+  return frames ? UnitLimits{*frames, kAny} : UnitLimits{kAny, kUnitBytes};
+}
 
 // What is chosen at a step stands for all within kAnalysisServes.
 class FrameGofCoder : public GofCoder {
@@ -48,7 +59,8 @@ EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
     FrameSettings chosen =
         choose_frame_settings(mesh_.header, settings_, layers_, choice.pattern, step);
     set_patches(chosen, patches(choice.num_patches));
-    return std::make_unique<FrameEncoding>(layers_, mesh_.header, frames_, chosen);
+    return std::make_unique<FrameEncoding>(layers_, mesh_.header, frames_, chosen,
+                                           unit_limits(settings_));
   };
   if (choices_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
     chosen_at_ = step;

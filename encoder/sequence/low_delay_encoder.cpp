@@ -105,7 +105,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   gof_->settings.max_earlier_distance = 1;
   if (auto error = divide(xyz)) return error;
   gof_->announced = frames_of_gof();
-  gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced,
+  gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced, UnitLimits{},
                        settings_.target.kind == Target::kMaxError);
   const GofHeader header{GofKind::kFrames, num_added_, gof_->announced};
   const Bytes unit = write_unit(
@@ -135,7 +135,7 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   std::vector<std::int32_t> positions(xyz.size());
   std::vector<EncodedGof::Unit> units;
   if (are_equal_on_grid(frame->xyz, gof_->before)) {
-    units.push_back(gof_->coding->repeat(1, positions));
+    units = gof_->coding->repeat(1, positions);
   } else {
     units = gof_->coding->code(frame->xyz, positions);
   }

@@ -324,6 +324,12 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
       ->check(CLI::Range(0, 1024))
       ->option_text("N")
       ->group(frames);
+  app.add_option("--frames-per-unit", t.frames_per_unit,
+                 "Frames that share a unit of the stream, at most (default: some 4 kB of "
+                 "them; always one with --low-delay or several --layer-groups)")
+      ->check(CLI::Range(1, 65536))
+      ->option_text("N")
+      ->group(frames);
 }
 
 void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {

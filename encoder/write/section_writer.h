@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +42,8 @@ class SectionWriter {
       if (!more) break;
     }
   }
+  // Bytes so far.
+  std::size_t size() const { return re_.size(); }
   // Ends the section and returns its bytes; the writer cannot be used afterwards.
   std::vector<std::uint8_t> finish() { return re_.finish(); }
 

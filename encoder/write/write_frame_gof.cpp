@@ -89,29 +89,16 @@ void FrameUnitWriter::write_patches() {
   }
 }
 
-// 6.14.2 frame_of_group( ), of a frame that repeats another
-std::vector<std::uint8_t> FrameUnitWriter::repeat(std::uint32_t frame, std::uint32_t distance) {
-  frame_ = frame;
+void FrameUnitWriter::repeat(std::uint32_t frame, std::uint32_t distance) {
   layer_group_ = 0;
-  BitWriter w;
-  start_unit(w);
-  w.flag(true);  // earlier_flag
-  w.ue(distance - 1);
-  w.flag(true);  // repeat_flag
-  w.byte_alignment();
-  return w.take();
-}
-
-void FrameUnitWriter::start_unit(BitWriter& w) const {
-  w.ue(frame_);
-  if (is_open_ended_) w.flag(false);  // gof_end_flag
-  w.ue(layer_group_);
+  unit_frames_.push_back({.frame = frame, .distance = distance, .is_repeated = true});
 }
 
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
   layer_group_ = layer_group;
   contexts_.start_group(layer_group);
-  section_.emplace();
+  unit_frames_.push_back({.frame = frame_, .distance = reference_distance_});
+  if (!section_) section_.emplace();
   if (layer_group == 0) write_patches();
 }
 
@@ -120,22 +107,38 @@ void FrameUnitWriter::write(std::int32_t residual) {
   contexts_.update(residual);
 }
 
-std::vector<std::uint8_t> FrameUnitWriter::finish_group(std::uint32_t frame_crc) {
+void FrameUnitWriter::end_group(std::uint32_t frame_crc) {
+  unit_frames_.back().crc = frame_crc;
+}
+
+// 6.14.2 frame_unit( )
+std::vector<std::uint8_t> FrameUnitWriter::finish_unit() {
+  const std::size_t num_groups = settings_.layer_group_size.size();
+  assert(unit_frames_.size() == 1 || num_groups == 1);
   BitWriter w;
-  start_unit(w);
-  if (settings_.max_earlier_distance > 0 && layer_group_ == 0 && frame_ > 0) {
-    w.flag(reference_distance_ > 0);  // earlier_flag
-    if (reference_distance_ > 0) {
-      w.ue(reference_distance_ - 1);
-      w.flag(false);  // repeat_flag
-    }
+  w.ue(unit_frames_.front().frame);
+  if (is_open_ended_) w.flag(false);  // gof_end_flag
+  w.ue(layer_group_);
+  if (num_groups == 1) w.ue(static_cast<std::uint32_t>(unit_frames_.size() - 1));
+  for (const UnitFrame& frame : unit_frames_) {
+    if (settings_.max_earlier_distance == 0 || layer_group_ > 0 || frame.frame == 0) continue;
+    w.flag(frame.distance > 0);  // earlier_flag
+    if (frame.distance == 0) continue;
+    w.ue(frame.distance - 1);
+    w.flag(frame.is_repeated);
   }
   w.byte_alignment();
-  const bool is_last = layer_group_ + 1 == settings_.layer_group_size.size();
-  if (settings_.frame_hash_flag && is_last) w.u(32, frame_crc);
+  if (settings_.frame_hash_flag && layer_group_ + 1 == num_groups) {
+    for (const UnitFrame& frame : unit_frames_) {
+      if (!frame.is_repeated) w.u(32, frame.crc);
+    }
+  }
+  unit_frames_.clear();
   std::vector<std::uint8_t> payload = w.take();
+  if (!section_) return payload;
   const std::vector<std::uint8_t> section = section_->finish();
   payload.insert(payload.end(), section.begin(), section.end());
+  section_.reset();
   return payload;
 }
 
@@ -147,19 +150,31 @@ std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames) {
   return w.take();
 }
 
-FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
+FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
+                                 std::uint32_t frames_per_unit) {
   FrameGofPayloads payloads;
   payloads.first = write_frame_gof_unit(gof, gof, mesh.topology());
   FrameUnitWriter writer(mesh, gof);
   const FrameOrder order(gof.pattern, gof.num_frames);
+  const auto layer_of = [&](std::uint32_t place) {
+    return gof.pattern.temporal_layer(order[place].depth);
+  };
+  std::uint32_t first = 0;  // of the unit
+  const auto finish_unit = [&] { payloads.frames.push_back(writer.finish_unit()); };
   for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
     const CodedFrame& frame = (*gof.frames)[order[place].frame];
+    const bool is_absent = frame.layer_groups == 0 && !frame.repeated;
+    if (writer.has_unit() &&
+        (is_absent || place - first == frames_per_unit || layer_of(place) != layer_of(first))) {
+      finish_unit();
+    }
+    if (is_absent) continue;
+    if (!writer.has_unit()) first = place;
     if (frame.repeated) {
-      const std::uint32_t distance = place - order.place_of(*frame.repeated);
-      payloads.frames.push_back(writer.repeat(order[place].frame, distance));
+      writer.repeat(order[place].frame, place - order.place_of(*frame.repeated));
+      if (gof.layer_group_size.size() > 1) finish_unit();
       continue;
     }
-    if (frame.layer_groups == 0) continue;
     writer.start_frame(place, order[place]);
     if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
     writer.set_patches(frame.patches);
@@ -174,9 +189,11 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh) {
           writer.write(frame.residual[3 * std::size_t{v} + c]);
       }
       layer = end;
-      payloads.frames.push_back(writer.finish_group(frame.frame_crc.value_or(FrameCrc{}).crc));
+      writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
+      if (gof.layer_group_size.size() > 1) finish_unit();
     }
   }
+  if (writer.has_unit()) finish_unit();
   return payloads;
 }
 

@@ -34,27 +34,38 @@ class FrameUnitWriter {
 
   // Each frame, in coding order: start_frame(), with its place, and for each of its layer
   // groups start_group(), the vertices of its layers in the order of the mesh but for those
-  // that patches move alone, and finish_group(). If the GOF has patches, set_patches() comes
-  // second in each frame but the first.
+  // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
+  // second in each frame but the first. finish_unit() comes after each layer group; or, if
+  // there is only one, after one or more frames of a temporal layer.
   void start_frame(std::uint32_t place, const FramePlace& frame);
   // Then, if it is predicted from the frame so many places before, in place of its references.
   void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
   void set_patches(const FramePatches& patches) { patches_ = patches; }
   void start_group(std::uint32_t layer_group);
-  // In place of these: the payload of the unit of a frame that repeats the one so many places
-  // before.
-  std::vector<std::uint8_t> repeat(std::uint32_t frame, std::uint32_t distance);
+  // In place of these: the frame repeats the one so many places before.
+  void repeat(std::uint32_t frame, std::uint32_t distance);
   // For each vertex start(), then write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
   FrameContexts& contexts() { return contexts_; }
   const PatchContexts& patch_contexts() const { return patch_contexts_; }
   void write(std::int32_t residual);
-  // The payload of the unit. frame_crc: used in the last layer group if the GOF has hashes of
-  // frames.
-  std::vector<std::uint8_t> finish_group(std::uint32_t frame_crc = 0);
+  // frame_crc: used in the last layer group if the GOF has hashes of frames.
+  void end_group(std::uint32_t frame_crc = 0);
+  // Of the unit: whether it has frames, their number, and the bytes of its section so far.
+  bool has_unit() const { return !unit_frames_.empty(); }
+  std::size_t unit_frames() const { return unit_frames_.size(); }
+  std::size_t unit_bytes() const { return section_ ? section_->size() : 0; }
+  // Its payload.
+  std::vector<std::uint8_t> finish_unit();
 
  private:
-  void start_unit(BitWriter& w) const;
+  struct UnitFrame {
+    std::uint32_t frame = 0;
+    std::uint32_t distance = 0;  // of the frame that it repeats, or is predicted from; or 0
+    bool is_repeated = false;
+    std::uint32_t crc = 0;
+  };
+
   void write_patches();
 
   const FrameSettings& settings_;
@@ -65,7 +76,9 @@ class FrameUnitWriter {
   std::uint32_t reference_distance_ =
       0;  // of the frame; 0: it has the references of its pattern
   std::uint32_t frame_ = 0;
+  // Of the unit:
   std::uint32_t layer_group_ = 0;
+  std::vector<UnitFrame> unit_frames_;
   std::optional<SectionWriter> section_;
 };
 
@@ -77,7 +90,9 @@ struct FrameGofPayloads {
   std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> frames;
 };
-// The whole GOF, with the layer groups that each frame has.
-FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh);
+// The whole GOF, with the layer groups that each frame has. frames_per_unit: at most; several
+// share a unit only if there is one layer group, and if they are of one temporal layer.
+FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
+                                 std::uint32_t frames_per_unit = 1);
 
 }  // namespace rlpc

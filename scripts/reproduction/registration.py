@@ -120,6 +120,7 @@ class Reproduction(paper.Paper):
                 self.details[method] = self.detail(method, best[0][0])
 
     def detail(self, method, kg):
+        """Of its frames, each in a unit of its own, so that each has a size."""
         pictures = self.report.folder / "pictures.tmp"
 
         def use(stream):
@@ -127,7 +128,8 @@ class Reproduction(paper.Paper):
             svg = (pictures / "patches.svg").read_text(encoding="utf-8")
             return json.loads(self.bench.call("rlpcinfo", stream, "--json")[0]), svg
         try:
-            rows, (info, svg) = self.bench.frames(self.settings(method, kg), use)
+            settings = [*self.settings(method, kg), "--frames-per-unit", 1]
+            rows, (info, svg) = self.bench.frames(settings, use)
         finally:
             shutil.rmtree(pictures, ignore_errors=True)
         return registration_frames.Detail(info, rows, svg)
