@@ -14,6 +14,7 @@
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/weight_settings.h"
+#include "common/rest/rest_shape.h"
 #include "common/syntax/gof_header.h"
 
 namespace rlpc {
@@ -22,11 +23,9 @@ inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
 inline constexpr std::uint32_t kMaxComponentGroups = 255;
 inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
 inline constexpr int kMaxWeightBits = 7;
-inline constexpr int kRestWeightBits = 6;  // of rest_edge_weight and rest_ring_weight
 inline constexpr std::uint32_t kMaxStepIdx = 239;
 inline constexpr int kMaxInfluences = 8;
-inline constexpr int kMaxExtraBones = 4;        // of a vertex
-inline constexpr std::size_t kRestFactors = 3;  // the first spatial factors: rest positions
+inline constexpr int kMaxExtraBones = 4;  // of a vertex
 inline constexpr int kMaxTemporalWeights = 3;
 inline constexpr int kTemporalWeightOffset = 256;
 // Values of temporal_predictor: the orders, then 1 to kMaxTemporalWeights weights.
@@ -83,28 +82,6 @@ struct Trajectory {
   bool operator==(const Trajectory&) const = default;
 };
 
-// 6.11 rest_of_rig( ): how rest positions are coded in the High profile.
-struct RestSettings {
-  bool order_flag = false;  // in an order of their own; the others are of this order
-  int edge_weight = 0;      // sixteenths
-  int ring_weight = 0;      // sixteenths
-  bool axes_flag = false;
-  bool counterparts_flag = false;
-
-  bool operator==(const RestSettings&) const = default;
-};
-
-// 6.12.4: the counterpart of a vertex, as coded.
-struct Counterpart {
-  bool flag = false;      // counterpart_flag: the inherited one
-  bool new_flag = false;  // new_counterpart_flag: that of the elements below
-  bool mirrored = false;
-  std::uint8_t hinge = 0;
-  std::uint32_t idx = 0;
-
-  bool operator==(const Counterpart&) const = default;
-};
-
 // 6.13: what has vertices in a skinned GOF. In a skinned model, bones and trajectories are
 // without motion. Values of absent slices are zero; reconstruction then predicts the influences
 // (8.14.1).
@@ -157,9 +134,6 @@ struct SkinnedGof : GofHeader, SkinnedModel {
 inline TrackFrames track_frames(const SkinnedGof& gof) {
   return {gof.num_frames, gof.track_levels, gof.num_temporal_layers};
 }
-
-// Width of rest positions, including 4 fractional bits.
-constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
 // Factors [first, end) of the spatial factors of a GOF or skinned model, as declared.
 struct FactorGroup {

@@ -10,7 +10,7 @@
 #include "common/bitstream/residual_models.h"
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/mesh/coded_mesh.h"
-#include "common/skinned_gof/counterparts.h"
+#include "common/rest/counterparts.h"
 #include "common/skinned_gof/influences.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"

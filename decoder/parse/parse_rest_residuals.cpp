@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "common/int_math.h"
-#include "common/skinned_gof/counterparts.h"
-#include "common/skinned_gof/rest_contexts.h"
+#include "common/rest/counterparts.h"
+#include "common/rest/rest_contexts.h"
 
 namespace rlpc {
 namespace {
@@ -42,8 +42,9 @@ bool parse_counterpart(SectionReader& section, std::size_t num_hinges,
 
 }  // namespace
 
-void parse_rest_residuals(SectionReader& section, const RestOrder& order, VertexModels& models,
-                          SkinnedModel& model) {
+void parse_rest_residuals(SectionReader& section, const RestOrder& order,
+                          std::span<std::int32_t> residuals, std::span<Counterpart> choices) {
+  RestModels models;
   CounterpartModels flags;
   Counterparts counterparts(order);
   RestContexts contexts(order);
@@ -51,15 +52,15 @@ void parse_rest_residuals(SectionReader& section, const RestOrder& order, Vertex
     counterparts.start(v);
     const std::size_t num_hinges = order.hinges(v).size();
     bool used = false;
-    if (model.rest.counterparts_flag && num_hinges > 0) {
-      used = parse_counterpart(section, num_hinges, flags, counterparts, model.counterparts[v]);
+    if (!choices.empty() && num_hinges > 0) {
+      used = parse_counterpart(section, num_hinges, flags, counterparts, choices[v]);
     }
     if (section.failed()) return;
     counterparts.finish(used);
     const RestClass rest_class = counterparts.class_of(v);
     contexts.start(v, rest_class, counterparts);
     for (std::size_t c = 0; c < kRestFactors; ++c) {
-      std::int32_t& residual = model.vertex_residual[0][v * kRestFactors + c];
+      std::int32_t& residual = residuals[v * kRestFactors + c];
       residual = section.residual(models[static_cast<std::size_t>(rest_class)],
                                   contexts.expected(c), "vertex_residual");
       contexts.update(c, residual);

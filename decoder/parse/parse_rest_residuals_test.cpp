@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/int_math.h"
-#include "common/skinned_gof/counterparts.h"
-#include "common/skinned_gof/rest_contexts.h"
+#include "common/rest/counterparts.h"
+#include "common/rest/rest_contexts.h"
 #include "common/testing/skinned_gof_recipe.h"
 #include "decoder/parse/skinned_gof_units_test.h"
 

@@ -221,7 +221,8 @@ void SkinnedGofParser::SliceParser::parse() {
     if (failed()) return;
   }
   if (gof_.rest.order_flag && group_ == 0 && layers_ == 0) {
-    parse_rest_residuals(section_, parser_.mesh_->rest_order(), *state_.vertex_models, gof_);
+    parse_rest_residuals(section_, parser_.mesh_->rest_order(), gof_.vertex_residual[0],
+                         gof_.counterparts);
   }
   section_.finish();
   if (failed()) return;

@@ -7,10 +7,9 @@
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/rest_order.h"
-#include "common/skinned_gof/counterparts.h"
-#include "common/skinned_gof/rest_contexts.h"
-#include "common/skinned_gof/skinned_gof.h"
-#include "common/skinned_gof/slice_models.h"
+#include "common/rest/counterparts.h"
+#include "common/rest/rest_contexts.h"
+#include "common/rest/rest_shape.h"
 
 namespace rlpc {
 
@@ -18,9 +17,9 @@ namespace rlpc {
 // finish(). Section: a SectionWriter, or a class that counts bits.
 class RestWriter {
  public:
-  // All must outlive it.
-  RestWriter(const RestOrder& order, VertexModels& models)
-      : order_(order), models_(models), counterparts_(order), contexts_(order) {}
+  // The order must outlive it.
+  explicit RestWriter(const RestOrder& order)
+      : order_(order), counterparts_(order), contexts_(order) {}
 
   void start(std::uint32_t v) {
     v_ = v;
@@ -84,7 +83,7 @@ class RestWriter {
   }
 
   const RestOrder& order_;
-  VertexModels& models_;
+  RestModels models_;
   Counterparts counterparts_;
   CounterpartModels flags_;
   RestContexts contexts_;

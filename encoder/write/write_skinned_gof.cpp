@@ -226,7 +226,7 @@ void SliceWriter::spatial_residuals(SectionWriter& section, std::uint32_t v,
 
 // 6.12.4 rest_residuals( v ), of all vertices
 void SliceWriter::rest_residuals(SectionWriter& section) {
-  RestWriter writer(mesh_.rest_order(), *vertex_models_);
+  RestWriter writer(mesh_.rest_order());
   for (const std::uint32_t v : mesh_.rest_order().order()) {
     const std::int32_t* const residual = &gof_.vertex_residual[0][v * kRestFactors];
     writer.start(v);

@@ -16,13 +16,13 @@ def _of_kinds(folder):
 
 _BITS = {"common", "common/bitstream"}
 _MESH = _BITS | {"common/mesh"}
-_GOFS = _MESH | {"common/syntax", "common/components"} | _of_kinds("common/{}")
+_GOFS = _MESH | {"common/syntax", "common/components", "common/rest"} | _of_kinds("common/{}")
 _RECON = {"common/kernels", "common/mesh_prediction", "common/parallel"} | _of_kinds("common/{}/recon")
 _PARSE = {"decoder/parse", "decoder/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
-_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math",
+_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/rest",
                             "encoder/write"}
-_QUANTISE = {"encoder/skinned_gof/fit", "encoder/skinned_gof/tracks", "encoder/skinned_gof/rest"}
+_QUANTISE = {"encoder/skinned_gof/fit", "encoder/skinned_gof/tracks"}
 _SKINNED = _QUANTISE | {"encoder/skinned_gof/quantise", "encoder/skinned_gof/search",
                         "encoder/skinned_gof/reuse"}
 
@@ -32,12 +32,14 @@ ROOMS = {
     "common/bitstream": {"common"},
     "common/mesh": _BITS,
     "common/components": _BITS,
+    # Positions in an order of their own (8.18): rest positions, first frames.
+    "common/rest": _MESH,
     "common/syntax": _GOFS,
-    **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components"}),
+    **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components", "common/rest"}),
     "common/kernels": {"common", "common/components"},
     "common/parallel": set(),
     "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels",
-                               "common/parallel"},
+                               "common/parallel", "common/rest"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
     "common/c_api": {"common"},
     "common/testing": _GOFS,
@@ -78,8 +80,8 @@ ROOMS = {
                           "encoder/math"},
     **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER | {"encoder/partition"}),
     "encoder/skinned_gof": _ENCODER | _SKINNED,
-    **dict.fromkeys(("encoder/skinned_gof/fit", "encoder/skinned_gof/tracks",
-                     "encoder/skinned_gof/rest"), _ENCODER),
+    **dict.fromkeys(("encoder/skinned_gof/fit", "encoder/skinned_gof/tracks"), _ENCODER),
+    "encoder/rest": _ENCODER,
     "encoder/skinned_gof/quantise": _ENCODER | _QUANTISE,
     "encoder/skinned_gof/search": _ENCODER | _QUANTISE | {"encoder/skinned_gof/quantise"},
     "encoder/skinned_gof/reuse": _ENCODER | _SKINNED - {"encoder/skinned_gof/reuse"},

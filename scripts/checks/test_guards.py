@@ -296,7 +296,8 @@ class Constants(RealTree):
     def test_an_encoder_without_tags_is_told(self):
         with self.without("encoder/skinned_gof"), self.without("encoder/cluster_gof"), \
                 self.without("encoder/frame_gof"), self.without("encoder/gof"), \
-                self.without("encoder/partition"), self.without("encoder/sequence"):
+                self.without("encoder/partition"), self.without("encoder/rest"), \
+                self.without("encoder/sequence"):
             found = check_constants.check(self.root)[0]
         self.assertIn("no tuned constant is found: the check sees nothing", found)
 

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/mesh_prediction/rest_recon.h"
 #include "common/parallel/for_each.h"
 #include "common/skinned_gof/influences.h"
-#include "common/skinned_gof/recon/rest_recon.h"
 
 namespace rlpc {
 namespace {
@@ -132,9 +132,12 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
 }
 
 std::vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
-  return model.rest.order_flag
-             ? rlpc::recon_rest(mesh_.rest_order(), model, position_bits_)
-             : recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
+  if (!model.rest.order_flag) {
+    return recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
+  }
+  const RestOrder& order = mesh_.rest_order();
+  const RestRecon recon(order, model.rest, model.rest_step, position_bits_);
+  return rlpc::recon_rest(recon, order, model.vertex_residual[0], model.counterparts);
 }
 
 void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {

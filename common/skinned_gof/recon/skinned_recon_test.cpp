@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
+#include "common/mesh_prediction/rest_recon.h"
 #include "common/parallel/for_each.h"
-#include "common/skinned_gof/recon/rest_recon.h"
 #include "common/testing/filter_of_text_test.h"
 #include "common/testing/random_skinned_gof.h"
 
@@ -60,7 +60,10 @@ class TextRecon {
  private:
   // 8.18: against the text only where specdec decodes the same streams.
   void take_rest() {
-    const auto values = recon_rest(mesh_.rest_order(), gof_, from_.header.position_bits);
+    const RestRecon recon(mesh_.rest_order(), gof_.rest, gof_.rest_step,
+                          from_.header.position_bits);
+    const auto values =
+        recon_rest(recon, mesh_.rest_order(), gof_.vertex_residual[0], gof_.counterparts);
     factors.resize(kRestFactors);
     for (std::size_t i = 0; i < values.size(); ++i) {
       factors[i % kRestFactors].push_back(values[i]);

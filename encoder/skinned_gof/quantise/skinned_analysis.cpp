@@ -11,10 +11,10 @@
 #include "encoder/gof/gof_coder.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
+#include "encoder/rest/rest_coding.h"
 #include "encoder/skinned_gof/quantise/mean_motion.h"
 #include "encoder/skinned_gof/quantise/span_bones.h"
 #include "encoder/skinned_gof/quantise/spatial_left.h"
-#include "encoder/skinned_gof/rest/rest_coding.h"
 
 namespace rlpc {
 namespace {

@@ -1,10 +1,10 @@
-#include "encoder/skinned_gof/rest/counterpart_search.h"
+#include "encoder/rest/counterpart_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "common/skinned_gof/recon/rest_recon.h"
+#include "common/mesh_prediction/rest_recon.h"
 #include "encoder/math/det_math.h"
 
 namespace rlpc {

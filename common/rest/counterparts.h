@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/mesh/rest_order.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/rest/rest_shape.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/rest/counterpart_search.h"
+#include "encoder/rest/counterpart_search.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
-#include "encoder/skinned_gof/rest/rest_coding.h"
+#include "encoder/rest/rest_coding.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 
-#include "common/skinned_gof/recon/rest_recon.h"
+#include "common/mesh_prediction/rest_recon.h"
 #include "common/skinned_gof/slice_models.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
-#include "encoder/skinned_gof/rest/counterpart_search.h"
+#include "encoder/rest/counterpart_search.h"
 #include "encoder/write/bit_cost.h"
 #include "encoder/write/write_residual.h"
 #include "encoder/write/write_rest.h"
@@ -83,7 +83,7 @@ class RestCoder {
         wanted_(wanted),
         step_(rest_step),
         recon_(order, settings, rest_step, position_bits),
-        writer_(order, models_) {
+        writer_(order) {
     coded_.settings = settings;
     coded_.residual.resize(wanted.size());
     if (!settings.counterparts_flag) return;
@@ -151,7 +151,6 @@ class RestCoder {
   double step_;
   CodedRest coded_;
   RestRecon recon_;
-  VertexModels models_;
   CountingSection<BitCost> section_;
   RestWriter writer_;
   std::optional<CounterpartSearch> search_;

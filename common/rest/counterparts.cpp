@@ -1,4 +1,4 @@
-#include "common/skinned_gof/counterparts.h"
+#include "common/rest/counterparts.h"
 
 #include <cassert>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/mesh/coded_mesh.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/rest/rest_shape.h"
 
 namespace rlpc {
 

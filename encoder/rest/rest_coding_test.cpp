@@ -1,4 +1,4 @@
-#include "encoder/skinned_gof/rest/rest_coding.h"
+#include "encoder/rest/rest_coding.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "common/int_math.h"
 #include "common/mesh/coded_meshes.h"
-#include "common/skinned_gof/recon/rest_recon.h"
+#include "common/mesh_prediction/rest_recon.h"
 
 namespace rlpc {
 namespace {
@@ -100,13 +100,9 @@ TEST(RestCoding, ValuesAreWithinHalfAStepAsDecoded) {
   for (const bool copied : {false, true}) {
     const TwoSheets sheets(copied);
     const Coded coded(sheets, true);
-    SkinnedGof gof;
-    gof.rest = coded.rest.settings;
-    gof.rest_step = kStep;
-    gof.counterparts = coded.rest.counterparts;
-    gof.vertex_residual = {coded.rest.residual};
-    const auto decoded =
-        recon_rest(coded.meshes[Prediction::kLayers].rest_order(), gof, kPositionBits);
+    const RestOrder& order = coded.meshes[Prediction::kLayers].rest_order();
+    const RestRecon recon(order, coded.rest.settings, kStep, kPositionBits);
+    const auto decoded = recon_rest(recon, order, coded.rest.residual, coded.rest.counterparts);
     EXPECT_EQ(decoded, coded.rest.values);
     for (std::size_t v = 0; v < sheets.wanted.size() / 3; ++v) {
       double square = 0.0;

@@ -12,8 +12,8 @@
 #include "common/mesh/rest_order.h"
 #include "common/mesh/topology.h"
 #include "common/mesh_prediction/rest_prediction.h"
-#include "common/skinned_gof/counterparts.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/rest/counterparts.h"
+#include "common/rest/rest_shape.h"
 
 namespace rlpc {
 

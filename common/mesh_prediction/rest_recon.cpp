@@ -1,4 +1,4 @@
-#include "common/skinned_gof/recon/rest_recon.h"
+#include "common/mesh_prediction/rest_recon.h"
 
 #include <array>
 
@@ -56,22 +56,22 @@ void RestRecon::finish(const Vec3i& residual) {
   }
 }
 
-std::vector<std::int32_t> recon_rest(const RestOrder& order, const SkinnedModel& model,
-                                     int position_bits) {
-  RestRecon recon(order, model.rest, model.rest_step, position_bits);
-  Counterparts counterparts(order);
+std::vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
+                                     std::span<const std::int32_t> residuals,
+                                     std::span<const Counterpart> counterparts) {
+  Counterparts found(order);
   for (const std::uint32_t v : order.order()) {
     bool used = false;
-    if (!model.counterparts.empty()) {
-      const Counterpart& choice = model.counterparts[v];
-      counterparts.start(v);
-      if (choice.new_flag) counterparts.set_new(choice);
+    if (!counterparts.empty()) {
+      const Counterpart& choice = counterparts[v];
+      found.start(v);
+      if (choice.new_flag) found.set_new(choice);
       used = choice.flag || choice.new_flag;
     }
-    recon.start(v, used ? &counterparts.pairs() : nullptr);
-    const std::int32_t* const residual = &model.vertex_residual[0][v * kRestFactors];
+    recon.start(v, used ? &found.pairs() : nullptr);
+    const std::int32_t* const residual = &residuals[v * kRestFactors];
     recon.finish({residual[0], residual[1], residual[2]});
-    if (!model.counterparts.empty()) counterparts.finish(used);
+    if (!counterparts.empty()) found.finish(used);
   }
   return std::move(recon.values());
 }

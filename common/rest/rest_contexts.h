@@ -9,7 +9,7 @@
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
 #include "common/mesh/rest_order.h"
-#include "common/skinned_gof/counterparts.h"
+#include "common/rest/counterparts.h"
 
 namespace rlpc {
 
@@ -18,6 +18,9 @@ struct CounterpartModels {
   std::array<BitModel, 4> counterpart_flag;      // by Counterparts::context( )
   std::array<BitModel, 2> new_counterpart_flag;  // by whether one was inherited
 };
+
+// The models of residuals, by RestClass.
+using RestModels = std::array<ResidualModels, kRestClasses>;
 
 class RestContexts {
  public:

@@ -8,8 +8,8 @@
 #include "common/mesh/mesh.h"
 #include "common/mesh/rest_order.h"
 #include "common/mesh_prediction/rest_prediction.h"
-#include "common/skinned_gof/counterparts.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/rest/counterparts.h"
+#include "common/rest/rest_shape.h"
 
 namespace rlpc {
 
@@ -46,8 +46,10 @@ class RestRecon {
   RestAxes axes_{};
 };
 
-// 8.18.6 Reconstruction: ReconstructRest( ), rest positions, [num_vertices][3].
-std::vector<std::int32_t> recon_rest(const RestOrder& order, const SkinnedModel& model,
-                                     int position_bits);
+// 8.18.6 Reconstruction: ReconstructRest( ): all vertices, with their residuals, [num_vertices]
+// [3], and counterparts, [num_vertices] or empty. Positions, [num_vertices][3].
+std::vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
+                                     std::span<const std::int32_t> residuals,
+                                     std::span<const Counterpart> counterparts);
 
 }  // namespace rlpc
