@@ -72,7 +72,7 @@ struct BaselineTools {
   MotionMeasure motion = MotionMeasure::kAuto;  // of kSeeds
 };
 
-// How rest positions may be coded: as the other values, in an order of their own (8.18), or
+// How rest positions, and first frames of GOFs of frames, may be coded: as the other values, in an order of their own (8.18), or
 // that with counterparts. Each includes those before it.
 enum class RestTools : std::uint8_t { kPrediction, kOrder, kCounterparts };
 
@@ -124,6 +124,7 @@ struct FrameTools {
   // not given: the cheapest of several numbers, for each GOF.
   std::optional<std::uint32_t> patches;
   PartitionMethod partition = PartitionMethod::kMotion;  // what makes patches; not kSeeds
+  std::optional<RestTools> rest;  // of the first frame of a GOF; at most; none: kCounterparts
   // Frames that share a frame unit, at most; not given: some 4 kB of them, one if frames are
   // written as they come. Frames of several layer groups share none.
   std::optional<std::uint32_t> frames_per_unit;

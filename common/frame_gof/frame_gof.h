@@ -10,6 +10,7 @@
 #include "common/frame_gof/frame_order.h"
 #include "common/frame_gof/patch_motion.h"
 #include "common/mesh/weight_settings.h"
+#include "common/rest/rest_shape.h"
 #include "common/syntax/gof_header.h"
 
 namespace rlpc {
@@ -37,6 +38,8 @@ struct CodedFrame {
   FramePatches patches;
   CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
   std::vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
+  // [num_vertices] in a first frame with an order of its own, if there are counterparts.
+  std::vector<Counterpart> counterparts;
 
   bool operator==(const CodedFrame&) const = default;
 };
@@ -52,6 +55,7 @@ struct FrameSettings {
   std::uint32_t max_earlier_distance = 0;          // in coding order, of repeated and reference
   std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
   std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
+  RestSettings rest;                               // of the first frame
   std::uint32_t num_patches = 0;
   PatchOfVertex patch_of_vertex;  // [num_vertices] if there are patches
 

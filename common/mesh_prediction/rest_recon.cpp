@@ -1,6 +1,9 @@
 #include "common/mesh_prediction/rest_recon.h"
 
 #include <array>
+#include <cstdint>
+
+#include "common/fixed_point.h"
 
 namespace rlpc {
 namespace {
@@ -42,6 +45,8 @@ void RestRecon::start(std::uint32_t v, const HingePairs* counterparts) {
     axes_ = predictor.axes(order_.hinges(v));
   }
   if (!settings_.axes_flag) axes_ = RestPrediction::world();
+  if (!settings_.exact_flag) return;
+  for (std::int64_t& of_axis : prediction_) of_axis = to_grid(of_axis);
 }
 
 void RestRecon::finish(const Vec3i& residual) {

@@ -9,8 +9,10 @@ namespace rlpc {
 inline constexpr int kRestWeightBits = 6;       // of rest_edge_weight and rest_ring_weight
 inline constexpr std::size_t kRestFactors = 3;  // of a vertex: the coordinates
 
-// 6.11 rest_of_rig( ): how rest positions are coded in the High profile.
+// 6.11 rest_order( ): how rest positions are coded in the High profile, or the first frame of a
+// GOF of frames.
 struct RestSettings {
+  bool exact_flag = false;  // RestExact
   bool order_flag = false;  // in an order of their own; the others are of this order
   int edge_weight = 0;      // sixteenths
   int ring_weight = 0;      // sixteenths

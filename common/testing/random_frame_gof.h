@@ -92,6 +92,10 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
   for (std::uint8_t& step : gof.layer_step) {
     if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(kMaxLayerStep));
   }
+  if (gof.layer_group_size.size() == 1 && below(2) == 0) {
+    gof.rest = {gof.exact_flag, true, static_cast<int>(below(64)), static_cast<int>(below(64)),
+                below(2) == 0,  false};
+  }
   if (below(2) == 0) {
     gof.num_patches = 1 + below(6);
     for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {

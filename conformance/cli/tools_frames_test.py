@@ -28,6 +28,18 @@ class Frames(ToolsTest):
                     self.assertEqual(sum(unit["num_frames"] for unit in gof["slices"]),
                                      gof["num_frames"])
 
+    def test_a_first_frame_in_an_order_of_its_own_is_smaller(self):
+        stream, sizes = self.path("a.rlpc"), {}
+        for how in (["--kg", 0.1], ["--lossless", 12], ["--kg", 0.1, "--low-delay"]):
+            for rest in ("prediction", "order", "auto"):
+                self.encode(stream, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+                            "--rest", rest, *how)
+                self.ok("rlpcdec", stream, "--verify")
+                info = self.ok("rlpcinfo", stream, "--json").json()
+                sizes[rest] = sum(gof["slices"][0]["bytes"] for gof in info["gofs"])
+            self.assertLess(sizes["order"], 0.97 * sizes["prediction"], how)
+            self.assertLessEqual(sizes["auto"], sizes["order"], how)
+
     def test_frames_share_units(self):
         stream = self.path("a.rlpc")
         for number, units in ((1, 20), (6, 5), (100, 2)):  # the first frame has its own

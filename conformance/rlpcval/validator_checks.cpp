@@ -1,5 +1,7 @@
 #include "conformance/rlpcval/validator_checks.h"
 
+#include "common/rest/rest_shape.h"
+
 namespace rlpc {
 
 std::string at_most(std::uint64_t limit) { return "at most " + std::to_string(limit); }
@@ -14,6 +16,15 @@ bool check_alignment(ElementReader& r) {
   const std::uint64_t failures = r.failures();
   r.byte_alignment();
   return r.readable() && r.failures() == failures;
+}
+
+// 6.11 rest_order( exact )
+void read_rest_order(ElementReader& r) {
+  if (r.u(1, "rest_order_flag") == 0) return;
+  (void)r.u(kRestWeightBits, "rest_edge_weight");
+  (void)r.u(kRestWeightBits, "rest_ring_weight");
+  (void)r.u(1, "rest_axes_flag");
+  (void)r.u(1, "rest_counterparts_flag");
 }
 
 // 6.11 layer_groups( ). False if it is not known where it ends.

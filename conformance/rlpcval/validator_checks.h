@@ -15,6 +15,8 @@ std::string level_allows(std::uint32_t level_idc, std::uint64_t limit, const cha
 
 bool check_alignment(ElementReader& r);
 
+// 6.11 rest_order( exact ), which can have any values.
+void read_rest_order(ElementReader& r);
 // 6.11 layer_groups( ). False if it is not known where it ends.
 bool check_layer_groups(ElementReader& r, std::uint32_t num_layers,
                         std::uint32_t& layer_groups);

@@ -113,6 +113,7 @@ bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   for (std::uint32_t i = 0; !is_exact && i < num_layers; ++i) {
     (void)r.u(4, "layer_step_minus1");
   }
+  if (counts.layer_groups == 1) read_rest_order(r);
   const std::int64_t patches = r.ue("num_patches");
   good &= r.require(patches <= std::int64_t{level.max_clusters}, "R-LVL-06",
                     level_allows(header.level_idc, level.max_clusters, " patches"));

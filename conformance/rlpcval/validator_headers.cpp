@@ -159,15 +159,6 @@ bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   return r.readable();
 }
 
-// 6.11 rest_of_rig( )
-void read_rest(ElementReader& r, const SequenceHeader& header) {
-  if (header.profile_idc < kProfileHigh || r.u(1, "rest_order_flag") == 0) return;
-  (void)r.u(kRestWeightBits, "rest_edge_weight");
-  (void)r.u(kRestWeightBits, "rest_ring_weight");
-  (void)r.u(1, "rest_axes_flag");
-  (void)r.u(1, "rest_counterparts_flag");
-}
-
 // 6.11 rig_header( ). False if the section after it cannot be read.
 bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                std::optional<SliceCounts>& counts) {
@@ -189,7 +180,7 @@ bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num
       !check_layers(r, header, num_layers, slices.layer_groups)) {
     return false;
   }
-  read_rest(r, header);
+  if (header.profile_idc >= kProfileHigh) read_rest_order(r);
   if (good_groups && r.readable()) {
     slices.component_groups = static_cast<std::uint32_t>(groups);
     counts = slices;

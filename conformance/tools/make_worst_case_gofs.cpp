@@ -148,7 +148,7 @@ SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise) {
 SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise) {
   SkinnedModel model;
   fill_model(model, size, mesh, noise, 0);
-  model.rest = {true, 8, 8, true, true};
+  model.rest = {false, true, 8, 8, true, true};
   model.counterparts.resize(size.vertices);
   return model;
 }

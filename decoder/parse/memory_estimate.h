@@ -73,6 +73,7 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
                                       const FrameSettings& settings) {
   constexpr std::uint64_t kBytesPerFrame = 160;
   constexpr std::uint64_t kBytesPerVertex = 400;
+  constexpr std::uint64_t kBytesOfOrder = 100;  // of the first frame: residuals, counterparts
   constexpr std::uint64_t kBytesOfFilter = 2600;
   constexpr std::uint64_t kBytesPerGroup = 6000;
   constexpr std::uint64_t kBytesPerState = 2;  // and vertex
@@ -88,8 +89,9 @@ inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t 
   return num_frames * kBytesPerFrame +
          states * settings.layer_group_size.size() * kBytesPerGroup +
          states * settings.num_patches * kBytesOfPatch +
-         num_vertices * (kBytesPerVertex + filters * kBytesOfFilter + states * kBytesPerState +
-                         kept * kBytesOfKept);
+         num_vertices *
+             (kBytesPerVertex + (settings.rest.order_flag ? kBytesOfOrder : 0) +
+              filters * kBytesOfFilter + states * kBytesPerState + kept * kBytesOfKept);
 }
 // The residuals of a frame, of which some are large, and the motion of its patches.
 constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_t num_large,

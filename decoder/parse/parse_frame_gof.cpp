@@ -10,6 +10,7 @@
 #include "decoder/parse/parse_cluster_map.h"
 #include "decoder/parse/parse_frame_pattern.h"
 #include "decoder/parse/parse_layers.h"
+#include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
@@ -57,6 +58,7 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   if (!groups.empty()) gof_.layer_group_size = groups;
   gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
   if (!gof_.exact_flag) parse_layer_steps(r, gof_.layer_step);
+  if (gof_.layer_group_size.size() == 1) gof_.rest = parse_rest_settings(r, gof_.exact_flag);
   gof_.num_patches =
       r.ue("num_patches", {0, std::int64_t{header_.level().max_clusters}}, "R-LVL-06");
   r.byte_alignment();
@@ -318,7 +320,11 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
       memory_bytes_ += memory_of_frame(num_vertices, 0, num_patches);
     }
     const std::uint64_t large_before = frame.residual.num_large();
-    frame_residuals(section, unit, place);
+    if (place == 0 && gof_.rest.order_flag) {
+      positions_in_order(section, frame);
+    } else {
+      frame_residuals(section, unit, place);
+    }
     if (section.failed()) return;
     frame.residual.sort();
     memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before, 0);
@@ -326,6 +332,17 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
   section.finish();
 }
 
+// 6.14.2 positions_in_order( )
+void FrameGofParser::positions_in_order(SectionReader& section, CodedFrame& frame) {
+  std::vector<std::int32_t> residuals(frame.residual.size());
+  if (gof_.rest.counterparts_flag) frame.counterparts.resize(header_.num_vertices);
+  parse_rest_residuals(section, mesh_.rest_order(), residuals, frame.counterparts);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i] != 0) frame.residual.set(i, residuals[i]);
+  }
+}
+
+// 6.14.2 residuals_of_frame( )
 void FrameGofParser::frame_residuals(SectionReader& section, const SliceEntry& unit,
                                      std::uint32_t place) {
   CodedFrame& frame = frame_at(place);

@@ -73,6 +73,7 @@ class FrameGofParser {
   void patch_motions(SectionReader& section, CodedFrame& frame);
   void frame_section(BitReader& r, const SliceEntry& unit,
                      std::span<const std::uint32_t> places);
+  void positions_in_order(SectionReader& section, CodedFrame& frame);
   void frame_residuals(SectionReader& section, const SliceEntry& unit, std::uint32_t place);
   CodedFrame& frame_at(std::uint32_t place) { return frames_[(*order_)[place].frame]; }
   bool has_memory(BitReader& r, std::uint64_t more, const char* element);

@@ -42,6 +42,18 @@ bool parse_counterpart(SectionReader& section, std::size_t num_hinges,
 
 }  // namespace
 
+RestSettings parse_rest_settings(BitReader& r, bool exact) {
+  RestSettings rest;
+  rest.order_flag = r.flag("rest_order_flag");
+  if (!rest.order_flag) return rest;
+  rest.exact_flag = exact;
+  rest.edge_weight = static_cast<int>(r.u(kRestWeightBits, "rest_edge_weight"));
+  rest.ring_weight = static_cast<int>(r.u(kRestWeightBits, "rest_ring_weight"));
+  rest.axes_flag = r.flag("rest_axes_flag");
+  rest.counterparts_flag = r.flag("rest_counterparts_flag");
+  return rest;
+}
+
 void parse_rest_residuals(SectionReader& section, const RestOrder& order,
                           std::span<std::int32_t> residuals, std::span<Counterpart> choices) {
   RestModels models;

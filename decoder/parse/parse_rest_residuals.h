@@ -1,14 +1,18 @@
-// 6.12.4 Rest residuals of a vertex, parsing side.
+// 6.12.4: positions in an order of their own, parsing side.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "common/bitstream/bit_reader.h"
 #include "common/mesh/rest_order.h"
 #include "common/rest/rest_shape.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
+
+// 6.11 rest_order( exact )
+RestSettings parse_rest_settings(BitReader& r, bool exact);
 
 // rest_residuals( v ) of all vertices, in their order: residuals, [num_vertices][3], and
 // counterparts, [num_vertices], or empty if there are none. Errors are left in the section.

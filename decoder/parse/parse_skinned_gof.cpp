@@ -7,6 +7,7 @@
 #include "decoder/parse/bone_parser.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_layers.h"
+#include "decoder/parse/parse_rest_residuals.h"
 #include "decoder/parse/parse_slice.h"
 #include "decoder/parse/section_reader.h"
 
@@ -46,18 +47,6 @@ void SkinnedGofParser::layers(BitReader& r) {
   if (groups.empty()) return;
   gof_.layer_group_size = groups;
   parse_layer_steps(r, gof_.layer_step);
-}
-
-// 6.11 rest_of_rig( )
-void SkinnedGofParser::rest(BitReader& r) {
-  if (header_.profile_idc < kProfileHigh) return;
-  RestSettings& rest = gof_.rest;
-  rest.order_flag = r.flag("rest_order_flag");
-  if (!rest.order_flag) return;
-  rest.edge_weight = static_cast<int>(r.u(kRestWeightBits, "rest_edge_weight"));
-  rest.ring_weight = static_cast<int>(r.u(kRestWeightBits, "rest_ring_weight"));
-  rest.axes_flag = r.flag("rest_axes_flag");
-  rest.counterparts_flag = r.flag("rest_counterparts_flag");
 }
 
 // NumFactors, and the memory.
@@ -129,7 +118,7 @@ void SkinnedGofParser::rig_header(BitReader& r) {
   if (r.error()) return;
   mesh_ = &meshes_[gof_.prediction];
   layers(r);
-  rest(r);
+  if (header_.profile_idc >= kProfileHigh) gof_.rest = parse_rest_settings(r, false);
   if (!r.error()) gof_.bones.resize(num_bones);
 }
 

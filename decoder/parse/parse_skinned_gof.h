@@ -69,7 +69,6 @@ class SkinnedGofParser {
   void levels_of_tracks(BitReader& r);
   void start_temporal_layers();
   void layers(BitReader& r);
-  void rest(BitReader& r);
   void load_model();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);

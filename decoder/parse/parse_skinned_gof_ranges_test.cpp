@@ -147,7 +147,7 @@ TEST(ParseSkinnedGofRanges, AdaptiveFactorsAreThoseOfTheHighProfile) {
   EXPECT_EQ(parsed.gof.weights.num_adaptive_factors, 0U);
 }
 
-// 6.11 rest_of_rig( ): with any prediction.
+// 6.11 rest_order( ): with any prediction.
 TEST(ParseSkinnedGofRanges, RestPositionsHaveAnOrderOfTheirOwnInTheHighProfile) {
   for (const std::uint32_t weight : {0U, 16U, 63U}) {
     SkinnedGofRecipe recipe;

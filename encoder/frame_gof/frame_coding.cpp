@@ -123,6 +123,32 @@ std::vector<EncodedGof::Unit> FrameCoding::repeat(std::uint32_t distance,
   return units;
 }
 
+std::vector<EncodedGof::Unit> FrameCoding::code_in_order(const CodedRest& first,
+                                                         std::span<std::int32_t> positions,
+                                                         CodedFrame* coded) {
+  const FramePlace& place = order_[0];
+  recon_.start_frame(place, order_.last_use(place.frame));
+  recon_.set_positions(first.values);
+  recon_.end_frame();
+  recon_.positions(positions);
+  writer_.start_frame(0, place);
+  writer_.start_group(0);
+  writer_.write_positions(mesh_.rest_order(), first.residual, first.counterparts);
+  writer_.end_group(settings_.frame_hash_flag ? crc32_of_positions(positions) : 0);
+  std::vector<EncodedGof::Unit> units;
+  end_unit(0, units);
+  if (coded == nullptr) return units;
+  coded->layer_groups = 1;
+  coded->residual = CompactResiduals(first.residual.size());
+  coded->expected.assign(mesh_.num_vertices(), 0);
+  for (std::size_t i = 0; i < first.residual.size(); ++i) {
+    if (first.residual[i] != 0) coded->residual.set(i, first.residual[i]);
+  }
+  coded->residual.sort();
+  coded->counterparts = first.counterparts;
+  return units;
+}
+
 std::vector<EncodedGof::Unit> FrameCoding::code(std::span<const double> xyz,
                                                 std::span<std::int32_t> positions,
                                                 CodedFrame* coded, std::uint32_t distance) {

@@ -13,6 +13,7 @@
 #include "common/syntax/sequence_header.h"
 #include "encoder/frame_gof/patch_search.h"
 #include "encoder/gof/gof_coder.h"
+#include "encoder/rest/rest_coding.h"
 #include "encoder/write/write_frame_gof.h"
 
 namespace rlpc {
@@ -47,7 +48,11 @@ class FrameCoding {
   std::vector<EncodedGof::Unit> code(std::span<const double> xyz,
                                      std::span<std::int32_t> positions,
                                      CodedFrame* coded = nullptr, std::uint32_t distance = 0);
-  // In place of that, repeats such a frame.
+  // In place of that, the first frame in an order of its own, which the settings must have.
+  std::vector<EncodedGof::Unit> code_in_order(const CodedRest& first,
+                                              std::span<std::int32_t> positions,
+                                              CodedFrame* coded = nullptr);
+  // Or repeats such a frame.
   std::vector<EncodedGof::Unit> repeat(std::uint32_t distance,
                                        std::span<std::int32_t> positions,
                                        CodedFrame* coded = nullptr);

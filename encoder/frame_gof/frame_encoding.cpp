@@ -46,6 +46,11 @@ FrameSettings with_distance(FrameSettings settings, const std::vector<EarlierFra
   return settings;
 }
 
+FrameSettings with_first(FrameSettings settings, const CodedRest* first) {
+  if (first != nullptr) settings.rest = first->settings;
+  return settings;
+}
+
 }  // namespace
 
 DecodedSpan::DecodedSpan(std::uint32_t num_vertices, std::uint32_t num_frames)
@@ -60,12 +65,13 @@ DecodeFrame DecodedSpan::decoder() const {
 
 FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header,
                              const GofFrames& frames, const FrameSettings& settings,
-                             const UnitLimits& limits)
+                             const UnitLimits& limits, std::shared_ptr<const CodedRest> first)
     : mesh_(mesh),
       header_(header),
       frames_(frames),
       earlier_(earlier_of(header, frames, settings.pattern)),
-      settings_(with_distance(settings, earlier_)),
+      first_(std::move(first)),
+      settings_(with_first(with_distance(settings, earlier_), first_.get())),
       coding_(mesh, settings_, header, frames.num_frames, limits),
       decoded_(frames.num_vertices, frames.num_frames),
       bits_of_pattern_(settings.pattern.num_depths(), 0.0) {
@@ -88,7 +94,9 @@ void FrameEncoding::code_to(std::uint32_t count) {
     const auto xyz = frame_xyz(place.frame);
     const auto positions = decoded_.frame(place.frame);
     CodedFrame* const copy = coded_ ? &coded_->emplace_back() : nullptr;
-    if (earlier_[num_coded_].is_equal) {
+    if (num_coded_ == 0 && first_) {
+      add(coding_.code_in_order(*first_, positions, copy));
+    } else if (earlier_[num_coded_].is_equal) {
       add(coding_.repeat(earlier_[num_coded_].distance, positions, copy));
     } else {
       const std::uint32_t distance = reference_distance(place);

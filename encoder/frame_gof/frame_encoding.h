@@ -13,6 +13,7 @@
 #include "encoder/frame_gof/frame_coding.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_frames.h"
+#include "encoder/rest/rest_coding.h"
 
 namespace rlpc {
 
@@ -35,9 +36,11 @@ class FrameEncoding {
  public:
   // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
   // earlier ones on the grid are not coded again; those that are nearly equal to one are
-  // predicted from it if that is cheaper.
+  // predicted from it if that is cheaper. first: unless null, the first frame in an order of
+  // its own.
   FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
-                const FrameSettings& settings, const UnitLimits& limits);
+                const FrameSettings& settings, const UnitLimits& limits,
+                std::shared_ptr<const CodedRest> first = nullptr);
   FrameEncoding(const FrameEncoding&) = delete;
   FrameEncoding& operator=(const FrameEncoding&) = delete;
 
@@ -64,6 +67,7 @@ class FrameEncoding {
   const SequenceHeader& header_;
   const GofFrames& frames_;
   const std::vector<EarlierFrame> earlier_;  // by place in coding order
+  const std::shared_ptr<const CodedRest> first_;
   const FrameSettings settings_;
   FrameCoding coding_;
   DecodedSpan decoded_;

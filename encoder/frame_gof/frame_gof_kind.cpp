@@ -6,9 +6,11 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/mesh/coded_meshes.h"
+#include "encoder/frame_gof/first_frame.h"
 #include "encoder/frame_gof/frame_encoding.h"
 #include "encoder/frame_gof/frame_settings.h"
 #include "encoder/frame_gof/pattern_search.h"
@@ -48,10 +50,13 @@ class FrameGofCoder : public GofCoder {
   const GofFrames& frames_;
   void choose(const StartEncoding& start);
   const PatchOfVertex& patches(std::uint32_t count);
+  std::shared_ptr<const CodedRest> first_frame(const FrameSettings& chosen);
 
   std::vector<FrameChoice> choices_;                // that are still to be compared
   std::map<std::uint32_t, PatchOfVertex> patches_;  // by their number
   double chosen_at_ = 0.0;                          // the step that choices were made at
+  // By the step of depth 0, for one call of encode().
+  std::map<std::uint32_t, std::shared_ptr<const CodedRest>> first_frames_;
 };
 
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
@@ -60,8 +65,9 @@ EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
         choose_frame_settings(mesh_.header, settings_, layers_, choice.pattern, step);
     set_patches(chosen, patches(choice.num_patches));
     return std::make_unique<FrameEncoding>(layers_, mesh_.header, frames_, chosen,
-                                           unit_limits(settings_));
+                                           unit_limits(settings_), first_frame(chosen));
   };
+  first_frames_.clear();
   if (choices_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
     chosen_at_ = step;
     choose(start);
@@ -90,6 +96,14 @@ const PatchOfVertex& FrameGofCoder::patches(std::uint32_t count) {
     patches = divide_into_patches(mesh_.header, settings_, frames_, mesh_.triangles, count);
   }
   return patches;
+}
+
+std::shared_ptr<const CodedRest> FrameGofCoder::first_frame(const FrameSettings& chosen) {
+  const auto found = first_frames_.find(chosen.step[0]);
+  if (found != first_frames_.end()) return found->second;
+  const auto xyz = std::span(frames_.xyz).first(3 * std::size_t{frames_.num_vertices});
+  return first_frames_[chosen.step[0]] =
+             code_first_frame(layers_, chosen, mesh_.header, settings_, xyz);
 }
 
 class FrameGofKind : public GofEncoder {

@@ -49,10 +49,10 @@ double cost_of(std::span<const std::int32_t> wanted, std::span<const std::int32_
 
 // tuned: The weights that are tried: parallelograms alone, for regular and artificial meshes;
 // and between these and the ring, more or less smooth. Others are hardly ever better by 1 %.
-constexpr std::array<RestSettings, 4> kWeights{{{true, 16, 0, true, false},
-                                                {true, 10, 24, true, false},
-                                                {true, 10, 36, true, false},
-                                                {true, 12, 16, true, false}}};
+constexpr std::array<RestSettings, 4> kWeights{{{false, true, 16, 0, true, false},
+                                                {false, true, 10, 24, true, false},
+                                                {false, true, 10, 36, true, false},
+                                                {false, true, 12, 16, true, false}}};
 
 // The nearest residual of the vertex that `recon` is at.
 Vec3i nearest_residual(const RestRecon& recon, const std::int32_t* wanted, double step) {
@@ -168,11 +168,18 @@ CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t
     if (!best || coded.cost < best->cost) best = std::move(coded);
   };
   const std::size_t count = choices.few ? 2 : kWeights.size();
-  for (std::size_t i = 0; i < count; ++i) attempt(kWeights[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    RestSettings settings = kWeights[i];
+    settings.exact_flag = choices.exact;
+    settings.axes_flag = !choices.exact;
+    attempt(settings);
+  }
   if (choices.few) return std::move(*best);
-  RestSettings on_world = best->settings;
-  on_world.axes_flag = false;
-  attempt(on_world);
+  if (!choices.exact) {
+    RestSettings on_world = best->settings;
+    on_world.axes_flag = false;
+    attempt(on_world);
+  }
   if (choices.counterparts) {
     RestSettings with_counterparts = best->settings;
     with_counterparts.counterparts_flag = true;

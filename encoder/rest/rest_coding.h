@@ -23,6 +23,7 @@ struct CodedRest {
 struct RestChoices {
   bool few = false;  // only the usual settings
   bool counterparts = true;
+  bool exact = false;  // values on the grid are coded without loss
 };
 
 // wanted: [num_vertices][3], 1/16 grid units, in the range of rest positions.

@@ -8,6 +8,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/frame_gof/earlier_frames.h"
+#include "encoder/frame_gof/first_frame.h"
 #include "encoder/frame_gof/frame_settings.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/check_frames.h"
@@ -104,6 +105,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
                             settings_.frames.pattern.value_or(FramePattern{}), step_);
   gof_->settings.max_earlier_distance = 1;
   if (auto error = divide(xyz)) return error;
+  if (auto error = code_first(xyz, layers)) return error;
   gof_->announced = frames_of_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced, UnitLimits{},
                        settings_.target.kind == Target::kMaxError);
@@ -127,6 +129,19 @@ std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
   return std::nullopt;
 }
 
+std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz,
+                                                      const CodedMesh& layers) {
+  if (settings_.target.kind == Target::kMaxError) return std::nullopt;  // axes may add a little
+  SpanBuffer buffer(format_.num_vertices, 1);
+  buffer.add(xyz);
+  const auto frame = coding_->read_frames(buffer, {0, 1, 1});
+  if (!frame) return frame.error();
+  gof_->first =
+      code_first_frame(layers, gof_->settings, coding_->header(), settings_, frame->xyz);
+  if (gof_->first) gof_->settings.rest = gof_->first->settings;
+  return std::nullopt;
+}
+
 std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz) {
   SpanBuffer buffer(format_.num_vertices, 1);
   buffer.add(xyz);
@@ -136,6 +151,9 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   std::vector<EncodedGof::Unit> units;
   if (are_equal_on_grid(frame->xyz, gof_->before)) {
     units = gof_->coding->repeat(1, positions);
+  } else if (gof_->first) {
+    units = gof_->coding->code_in_order(*gof_->first, positions);
+    gof_->first.reset();
   } else {
     units = gof_->coding->code(frame->xyz, positions);
   }

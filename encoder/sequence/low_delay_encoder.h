@@ -10,6 +10,7 @@
 #include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_meshes.h"
 #include "encoder/frame_gof/frame_coding.h"
+#include "encoder/rest/rest_coding.h"
 #include "encoder/sequence/frame_coder.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
@@ -35,11 +36,14 @@ class LowDelayEncoder final : public FrameCoder {
     std::uint32_t announced = 0;        // frames
     std::uint32_t coded = 0;
     std::vector<double> before;  // the frame before, grid units
+    // The first frame until it is coded, if it has an order of its own.
+    std::shared_ptr<const CodedRest> first;
   };
 
   std::optional<InputError> begin_stream(std::span<const float> xyz);
   std::optional<InputError> begin_gof(std::span<const float> xyz);
   std::optional<InputError> divide(std::span<const float> xyz);
+  std::optional<InputError> code_first(std::span<const float> xyz, const CodedMesh& layers);
   std::optional<InputError> code_frame(std::span<const float> xyz);
   bool end_gof();
   double step_for(double rms_spread) const;

@@ -72,6 +72,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (s.usable_kinds() == KindChoice::kFrames) {
     s.frames.temporal_layers = std::exchange(s.main.temporal_layers, 1);
     s.frames.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
+    s.frames.rest = std::exchange(s.main.rest, std::nullopt);
   }
   const bool asked =
       !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;

@@ -8,6 +8,7 @@
 #include "encoder/write/write_gof_header.h"
 #include "encoder/write/write_layers.h"
 #include "encoder/write/write_residual.h"
+#include "encoder/write/write_rest.h"
 
 namespace rlpc {
 
@@ -53,6 +54,7 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
   w.ue(settings.max_earlier_distance);
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
+  if (settings.layer_group_size.size() == 1) write_rest_settings(w, settings.rest);
   w.ue(settings.num_patches);
   w.byte_alignment();
   std::vector<std::uint8_t> payload = w.take();
@@ -100,6 +102,19 @@ void FrameUnitWriter::start_group(std::uint32_t layer_group) {
   unit_frames_.push_back({.frame = frame_, .distance = reference_distance_});
   if (!section_) section_.emplace();
   if (layer_group == 0) write_patches();
+}
+
+// 6.14.2 positions_in_order( )
+void FrameUnitWriter::write_positions(const RestOrder& order,
+                                      std::span<const std::int32_t> residuals,
+                                      std::span<const Counterpart> counterparts) {
+  RestWriter writer(order);
+  for (const std::uint32_t v : order.order()) {
+    const std::int32_t* const residual = &residuals[kRestFactors * std::size_t{v}];
+    writer.start(v);
+    if (!counterparts.empty()) writer.counterpart(*section_, counterparts[v]);
+    writer.finish(*section_, {residual[0], residual[1], residual[2]});
+  }
 }
 
 void FrameUnitWriter::write(std::int32_t residual) {
@@ -150,6 +165,16 @@ std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames) {
   return w.take();
 }
 
+namespace {
+
+void write_first(FrameUnitWriter& writer, const CodedMesh& mesh, const CodedFrame& frame) {
+  std::vector<std::int32_t> residuals(frame.residual.size());
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] = frame.residual[i];
+  writer.write_positions(mesh.rest_order(), residuals, frame.counterparts);
+}
+
+}  // namespace
+
 FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
                                  std::uint32_t frames_per_unit) {
   FrameGofPayloads payloads;
@@ -181,6 +206,11 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
     std::uint32_t layer = 0;
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
       writer.start_group(j);
+      if (place == 0 && gof.rest.order_flag) {
+        write_first(writer, mesh, frame);
+        writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
+        continue;
+      }
       const std::uint32_t end = layer + gof.layer_group_size[j];
       for (const std::uint32_t v : mesh.vertices_of_layers(layer, end)) {
         if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;

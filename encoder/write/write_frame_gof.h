@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/bitstream/bit_writer.h"
@@ -11,6 +12,7 @@
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/patch_contexts.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/mesh/rest_order.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/write/section_writer.h"
 
@@ -42,6 +44,10 @@ class FrameUnitWriter {
   void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
   void set_patches(const FramePatches& patches) { patches_ = patches; }
   void start_group(std::uint32_t layer_group);
+  // In place of the vertices of a first frame with an order of its own: residuals,
+  // [num_vertices][3], and counterparts, [num_vertices] or empty.
+  void write_positions(const RestOrder& order, std::span<const std::int32_t> residuals,
+                       std::span<const Counterpart> counterparts);
   // In place of these: the frame repeats the one so many places before.
   void repeat(std::uint32_t frame, std::uint32_t distance);
   // For each vertex start(), then write() for each axis.

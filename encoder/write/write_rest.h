@@ -1,9 +1,10 @@
-// 6.12.4 Rest residuals of a vertex, writing side.
+// 6.12.4: positions in an order of their own, writing side.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include "common/bitstream/bit_writer.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/rest_order.h"
@@ -12,6 +13,16 @@
 #include "common/rest/rest_shape.h"
 
 namespace rlpc {
+
+// 6.11 rest_order( exact )
+inline void write_rest_settings(BitWriter& w, const RestSettings& rest) {
+  w.flag(rest.order_flag);
+  if (!rest.order_flag) return;
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.edge_weight));
+  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.ring_weight));
+  w.flag(rest.axes_flag);
+  w.flag(rest.counterparts_flag);
+}
 
 // Writes vertex by vertex, in the order: start(), counterpart() if there are counterparts,
 // finish(). Section: a SectionWriter, or a class that counts bits.

@@ -300,16 +300,6 @@ void write_levels_of_tracks(BitWriter& w, const TrackFrames& frames) {
   if (frames.levels > 0) w.u(3, static_cast<std::uint32_t>(frames.temporal_layers - 1));
 }
 
-// 6.11 rest_of_rig( )
-void write_rest_of_rig(BitWriter& w, const RestSettings& rest) {
-  w.flag(rest.order_flag);
-  if (!rest.order_flag) return;
-  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.edge_weight));
-  w.u(kRestWeightBits, static_cast<std::uint32_t>(rest.ring_weight));
-  w.flag(rest.axes_flag);
-  w.flag(rest.counterparts_flag);
-}
-
 // 6.11 rig_header( )
 void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t profile_idc) {
   w.ue(static_cast<std::uint32_t>(model.bones.size()) - 1);
@@ -326,7 +316,7 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
     write_layer_groups(w, model.layer_group_size);
     write_layer_steps(w, model.layer_step);
   }
-  if (profile_idc >= kProfileHigh) write_rest_of_rig(w, model.rest);
+  if (profile_idc >= kProfileHigh) write_rest_settings(w, model.rest);
 }
 
 }  // namespace

@@ -10,10 +10,11 @@ from bench import FLAT
 from paper import OURS, page, report
 
 FRAMES = ["--profile", "high", "--gof-kind", "frames"]
+PLAIN = ["--frame-weights", "plain", "--rest", "prediction"]
 BOTH_SIDES = ["--frame-pattern", "dyadic:2"]  # even frames from both sides, odd from the odd before
 METHODS = {  # options, colour and line
-    "SSLPC": (["--frame-weights", "plain"], "#0072b2", "solid"),
-    "STSLPC": (["--frame-weights", "plain", *BOTH_SIDES], "#d55e00", "solid"),
+    "SSLPC": (PLAIN, "#0072b2", "solid"),
+    "STSLPC": ([*PLAIN, *BOTH_SIDES], "#d55e00", "solid"),
     "SSLPC, learned": ([], "#0072b2", "dashed"),
     "STSLPC, learned": (BOTH_SIDES, "#d55e00", "dashed"),
 }

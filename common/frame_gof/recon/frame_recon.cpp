@@ -7,6 +7,7 @@
 
 #include "common/fixed_point.h"
 #include "common/int_math.h"
+#include "common/mesh_prediction/rest_recon.h"
 #include "common/parallel/for_each.h"
 
 namespace rlpc {
@@ -86,6 +87,10 @@ FrameRecon::FrameRecon(const CodedMesh& mesh, const FrameSettings& settings, int
 void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const CodedFrame& frame) {
   start_frame(frame.reference ? place.from(*frame.reference) : place, last_use);
+  if (number_ == 0 && settings_.rest.order_flag) {
+    decode_positions_in_order(frame);
+    return end_frame();
+  }
   if (patches_) move_patches(frame.patches);
   const std::vector<std::int32_t>* const repeated =
       frame.repeated ? &kept_.at(*frame.repeated).values : nullptr;
@@ -127,6 +132,19 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
     }
   }
   end_frame();
+}
+
+// 8.19.1 DecodePositionsInOrder( )
+void FrameRecon::decode_positions_in_order(const CodedFrame& frame) {
+  std::vector<std::int32_t> residuals(values_.size());
+  for (std::size_t i = 0; i < frame.residual.size(); ++i) residuals[i] = frame.residual[i];
+  const RestOrder& order = mesh_.rest_order();
+  const RestRecon recon(order, settings_.rest, settings_.step[0], position_bits_);
+  set_positions(recon_rest(recon, order, residuals, frame.counterparts));
+}
+
+void FrameRecon::set_positions(std::span<const std::int32_t> positions) {
+  values_.assign(positions.begin(), positions.end());
 }
 
 void FrameRecon::positions(std::span<std::int32_t> positions) const {
@@ -363,8 +381,7 @@ std::int32_t FrameRecon::start_of(std::uint32_t v, const VertexMotion& motion,
                                   std::size_t c) const {
   const std::int32_t start = follows_patch(v) ? patches_->moved(v, c) : motion.prediction[c];
   if (!settings_.exact_flag) return start;
-  return static_cast<std::int32_t>(round2(start, kPointFractionBits) *
-                                   (1 << kPointFractionBits));
+  return static_cast<std::int32_t>(to_grid(start));
 }
 
 // 8.19.3 DecodeVertex( f, v )

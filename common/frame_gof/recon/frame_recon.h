@@ -65,6 +65,8 @@ class FrameRecon {
   void set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position,
            bool is_there = true);
   void adapt(std::uint32_t v, VertexMotion& motion, bool is_there, std::uint32_t expected);
+  // In a first frame with an order of its own, all at once: 1/16 grid units, [num_vertices][3].
+  void set_positions(std::span<const std::int32_t> positions);
   void end_frame();
 
   // What residuals are relative to, with 4 fractional bits: the prediction, or where the patch
@@ -99,6 +101,7 @@ class FrameRecon {
   bool follows_patch(std::uint32_t v) const {
     return patches_ && patches_->mode(v) != PatchMode::kNeighbours;
   }
+  void decode_positions_in_order(const CodedFrame& frame);
   void start_motion();
   void start_learning();
   void prime(Learned& learned, std::uint32_t v, std::int64_t variance);
