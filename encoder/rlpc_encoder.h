@@ -72,8 +72,8 @@ struct BaselineTools {
   MotionMeasure motion = MotionMeasure::kAuto;  // of kSeeds
 };
 
-// How rest positions, and first frames of GOFs of frames, may be coded: as the other values, in an order of their own (8.18), or
-// that with counterparts. Each includes those before it.
+// How rest positions, and first frames of GOFs of frames, may be coded: as the other values, in
+// an order of their own (8.18), or that with counterparts. Each includes those before it.
 enum class RestTools : std::uint8_t { kPrediction, kOrder, kCounterparts };
 
 // Parameters of the Main and High profiles. Each tool can be disabled, for comparison.

@@ -429,7 +429,8 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
        {"prediction", RestTools::kPrediction},
        {"order", RestTools::kOrder},
        {"counterparts", RestTools::kCounterparts}},
-      "Coding of rest positions and first frames, High profile: auto (default, all of these), prediction (as "
+      "Coding of rest positions and first frames, High profile: auto (default, all of these), "
+      "prediction (as "
       "other values), order (also in an order of their own), counterparts (also from parts of "
       "the same shape)")
       ->group(tools);
