@@ -27,7 +27,7 @@ struct Size {
   std::uint32_t vertices = 0;
   std::uint32_t frames = 1;
   std::uint32_t components = 0;  // of the cluster, trajectories, or temporal layers of frames
-  std::uint32_t bones = 0;       // or clusters
+  std::uint32_t bones = 0;       // or clusters, or patches of frames
   std::uint32_t adaptive_factors = 0;
   std::uint32_t repeats = 0;  // max_earlier_distance of frames
 

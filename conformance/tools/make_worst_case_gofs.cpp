@@ -195,6 +195,11 @@ FrameSettings make_frames(const Size& size, const CodedMesh& mesh) {
   s.max_earlier_distance = size.repeats;
   s.layer_group_size = {mesh.num_layers()};
   s.layer_step.assign(mesh.num_layers(), 1);
+  s.rest = {false, true, 8, 8, true, true};
+  s.num_patches = size.bones;
+  for (std::uint32_t v = 0; s.num_patches > 0 && v < size.vertices; ++v) {
+    s.patch_of_vertex.push_back(static_cast<std::uint16_t>(v % s.num_patches));
+  }
   return s;
 }
 

@@ -51,6 +51,7 @@ Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temp
   Size size;
   size.frames = frames;
   size.components = temporal_layers;
+  size.bones = level.max_clusters;
   const std::uint64_t most = std::min<std::uint64_t>(
       level.max_learning_vertices / temporal_layers, level.max_gof_values / frames);
   size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);

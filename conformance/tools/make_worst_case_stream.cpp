@@ -93,6 +93,15 @@ class StreamMaker {
     FrameUnitWriter writer(mesh, settings);
     for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
       writer.start_frame(place, order[place]);
+      if (place == 0) {
+        writer.start_group(0);
+        writer.write_positions(mesh.rest_order(), noise_.residuals(3 * plan_.size.vertices),
+                               std::vector<Counterpart>(plan_.size.vertices));
+        writer.end_group();
+        unit(UnitType::kFrame, writer.finish_unit());
+        continue;
+      }
+      writer.set_patches(motions());
       writer.start_group(0);
       for (const std::uint32_t v : mesh.vertices_of_layers(0, mesh.num_layers())) {
         writer.start(v);
@@ -101,6 +110,17 @@ class StreamMaker {
       writer.end_group();
       unit(UnitType::kFrame, writer.finish_unit());
     }
+  }
+
+  // Each patch has a motion, to which the residuals of its vertices are added: more to do than
+  // with neighbours or without residuals.
+  FramePatches motions() {
+    FramePatches patches(plan_.size.bones);
+    for (PatchMotion& patch : patches) {
+      patch.mode = PatchMode::kMotion;
+      for (std::int32_t& residual : patch.residual) residual = noise_.residual();
+    }
+    return patches;
   }
 
   std::uint32_t next_frame() {
