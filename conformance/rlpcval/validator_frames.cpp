@@ -133,16 +133,14 @@ bool check_frame_header(ElementReader& r, const SliceCounts& counts) {
   const std::int64_t layers = r.ue("layer_group_idx");
   good &= r.require(layers < counts.layer_groups, "R-FRM-02",
                     "the GOF has " + std::to_string(counts.layer_groups) + " layer groups");
-  std::int64_t frames = 1;
   if (counts.layer_groups == 1) {
-    // Parsing checks the rest of R-FRM-09.
-    frames = r.ue("unit_frames_minus1") + 1;
+    const std::int64_t frames = r.ue("unit_frames_minus1") + 1;
     good &= r.require(frames <= counts.frames, "R-FRM-09", at_most(counts.frames - 1));
+    // Whether these frames can share the unit, and what follows, parsing checks.
+    if (frames > 1) return good && r.readable();
   }
-  if (counts.max_earlier == 0 || layers > 0) return good && r.readable();
-  // The first frame of a GOF, which is the first in coding order, has no flag.
-  for (std::int64_t i = frame > 0 ? 0 : 1; good && i < frames && r.readable(); ++i) {
-    if (r.u(1, "earlier_flag") == 0) continue;
+  const bool may_be_earlier = counts.max_earlier > 0 && layers == 0 && frame > 0;
+  if (may_be_earlier && r.u(1, "earlier_flag") != 0) {
     // Parsing checks the rest of R-FRM-08.
     good &= r.require(r.ue("earlier_distance_minus1") < std::int64_t{counts.max_earlier},
                       "R-FRM-08", at_most(counts.max_earlier - 1));
