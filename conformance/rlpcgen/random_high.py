@@ -238,6 +238,8 @@ class HighSequence(random_main.MainSequence):
     def _frames(self):
         """The frame units of a GOF; from some frame on, fewer layer groups, or none."""
         ns, source = self._writer.ns, self._writer.source
+        if ns["num_layer_groups_minus1"] == 0 and ns["open_end_flag"] == 0:
+            return self._shared_units()
         most = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
         place = -1
         while place + 1 < ns["NumGofFrames"]:
@@ -263,6 +265,29 @@ class HighSequence(random_main.MainSequence):
                 self._unit("FRAME")
                 source.ends_gof = False
                 break
+
+    def _shared_units(self):
+        """Units of the frames of one temporal layer or another, each after what it needs."""
+        ns, source = self._writer.ns, self._writer.source
+        left = [[] for _ in range(ns["temporal_layers_minus1"] + 1)]
+        for place, frame in enumerate(ns["FrameOrder"]):
+            left[ns["TemporalLayerOfFrame"](frame)].append(place)
+        while any(left):
+            ready = {}
+            for t, places in enumerate(left):
+                end = min((lower[0] for lower in left[:t] if lower), default=ns["NumGofFrames"])
+                ready[t] = [place for place in places if place < end]
+            t = self._n.pick([t for t, places in ready.items() if places])
+            if self._n.chance(self._plan.cut_percent):
+                first = left[t][0]
+                left[t] = []
+                left[t + 1:] = [[p for p in places if p < first] for places in left[t + 1:]]
+                continue
+            most = 1 if self._n.chance(50) else len(ready[t])
+            source.unit_frames = self._n.between(1, most)
+            source.slice = ns["FrameOrder"][left[t][0]], 0
+            self._unit("FRAME")
+            del left[t][:source.unit_frames]
 
     def _unit_frames(self, place):
         """How many frames share a unit that begins at a place."""

@@ -426,6 +426,8 @@ class StreamWriter:
         ns = self.ns
         for number, at in self._crcs:
             frame = ns["CodedFrames"][number]
+            if ns["PlaceOfFrame"][frame] < self._decoded_frames:
+                self._decoded_frames = 0  # it was absent when later ones were decoded
             while self._decoded_frames <= ns["PlaceOfFrame"][frame]:
                 ns["NextPlace"] = self._decoded_frames
                 ns["DecodeFrame"](ns["FrameOrder"][self._decoded_frames])

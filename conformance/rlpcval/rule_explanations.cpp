@@ -130,13 +130,12 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The distance was counted in output order, or across the start of the GOF.",
      "Count frames in coding order; repeat only frames that are still there if temporal layers "
      "are left out."},
-    {"R-FRM-09", "7.14.2", "Frames share a frame unit that must not.",
-     "Frames were counted beyond the end of the GOF, or in output order; or a unit goes on "
-     "where "
-     "the temporal layer changes.",
-     "Let a unit have frames that follow each other in coding order, up to the last of the "
-     "GOF, "
-     "and begin a new one where the temporal layer changes."},
+    {"R-FRM-09", "7.14.2", "A frame unit has more frames than its temporal layer has left.",
+     "Frames of other temporal layers were counted; or in an open-ended stream, a unit goes on "
+     "where the temporal layer changes.",
+     "Count the frames of one temporal layer, up to the last of the GOF; in an open-ended "
+     "stream, "
+     "begin a new unit where the temporal layer changes."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",

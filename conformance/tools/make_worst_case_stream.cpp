@@ -98,7 +98,7 @@ class StreamMaker {
         writer.write_positions(mesh.rest_order(), noise_.residuals(3 * plan_.size.vertices),
                                std::vector<Counterpart>(plan_.size.vertices));
         writer.end_group();
-        unit(UnitType::kFrame, writer.finish_unit());
+        unit(UnitType::kFrame, writer.finish_unit(0));
         continue;
       }
       writer.set_patches(motions());
@@ -108,7 +108,8 @@ class StreamMaker {
         for (int c = 0; c < 3; ++c) writer.write(noise_.residual());
       }
       writer.end_group();
-      unit(UnitType::kFrame, writer.finish_unit());
+      const std::uint32_t layer = settings.pattern.temporal_layer(order[place].depth);
+      unit(UnitType::kFrame, writer.finish_unit(layer));
     }
   }
 

@@ -71,7 +71,8 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
   order_.emplace(gof_.pattern, gof_.num_frames);
-  frames_before_.assign(gof_.pattern.temporal_layers, 0);
+  const std::vector<std::uint32_t> none(gof_.pattern.temporal_layers, 0);
+  layer_places_.assign(gof_.pattern.temporal_layers, {0, none});
   frames_of_group_.assign(gof_.pattern.temporal_layers,
                           std::vector<std::uint32_t>(gof_.layer_group_size.size()));
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
@@ -132,31 +133,43 @@ void FrameGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
   r.fail(Errc::kInvalid, "R-FRM-04", "frame_unit", unit_bit_pos);
 }
 
-// 8.19.1 FrameRun( more )
-bool FrameGofParser::is_run(const SliceEntry& unit) const {
-  const std::uint32_t first = order_->place_of(unit.frame_idx);
-  if (unit.num_frames > gof_.num_frames - first) return false;
-  for (std::uint32_t i = 1; i < unit.num_frames; ++i) {
-    const FramePlace& place = (*order_)[first + i];
-    if (gof_.pattern.temporal_layer(place.depth) != unit.temporal_layer_idx) return false;
+// 8.19.1 FindUnitFrames( more )
+std::vector<std::uint32_t> FrameGofParser::unit_places(const SliceEntry& unit) const {
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t place = order_->place_of(unit.frame_idx);
+       place < order_->num_frames() && places.size() < unit.num_frames; ++place) {
+    if (gof_.pattern.temporal_layer((*order_)[place].depth) == unit.temporal_layer_idx) {
+      places.push_back(place);
+    } else if (header_.open_end_flag) {
+      break;
+    }
   }
-  return true;
+  return places;
 }
 
 // 8.19.1 FrameMayFollow( )
-bool FrameGofParser::may_follow(const SliceEntry& unit) {
-  const std::uint32_t place = order_->place_of(unit.frame_idx);
+bool FrameGofParser::may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places) {
+  const std::uint32_t first = places.front();
+  const std::uint32_t last = places.back();
   const std::uint32_t group = unit.layer_group_idx;
+  const std::uint32_t layer = unit.temporal_layer_idx;
   const CodedFrame& frame = frames_[unit.frame_idx];
-  if (place + 1 < next_place_ || frame.layer_groups != group || frame.repeated) return false;
-  for (std::uint32_t p = next_place_ == 0 ? 0 : next_place_ - 1; p < place; ++p) {
-    ++frames_before_[gof_.pattern.temporal_layer((*order_)[p].depth)];
+  LayerPlace& own = layer_places_[layer];
+  const std::uint32_t next = header_.open_end_flag ? next_place_ : own.next;
+  if (first + 1 < next || frame.layer_groups != group || frame.repeated) return false;
+  const auto count_to = [&](std::uint32_t end) {
+    for (std::uint32_t p = own.next == 0 ? 0 : own.next - 1; p < end; ++p) {
+      ++own.before[gof_.pattern.temporal_layer((*order_)[p].depth)];
+    }
+    own.next = end + 1;
+  };
+  count_to(first);
+  if (frames_of_group_[layer][group] != own.before[layer]) return false;
+  count_to(last);
+  for (std::uint32_t t = 0; t < layer; ++t) {
+    if (frames_of_group_[t][group] < own.before[t]) return false;
   }
-  for (std::uint32_t t = 0; t <= unit.temporal_layer_idx; ++t) {
-    if (frames_of_group_[t][group] != frames_before_[t]) return false;
-  }
-  next_place_ = place + unit.num_frames;
-  frames_before_[unit.temporal_layer_idx] += unit.num_frames - 1;
+  next_place_ = std::max(next_place_, last + 1);
   return true;
 }
 
@@ -169,25 +182,28 @@ void FrameGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
   const std::uint32_t group = unit.layer_group_idx;
   const std::uint32_t first = order_->place_of(unit.frame_idx);
   unit.temporal_layer_idx = gof_.pattern.temporal_layer((*order_)[first].depth);
+  std::vector<std::uint32_t> places{first};
   if (num_groups == 1) {
     const std::uint64_t at = r.bit_pos();
-    const std::int64_t most = std::int64_t{gof_.num_frames} - first - 1;
+    const std::int64_t most = std::int64_t{gof_.num_frames} - 1;
     unit.num_frames = r.ue("unit_frames_minus1", {0, most}, "R-FRM-09") + 1;
-    if (!r.error() && !is_run(unit)) {
-      r.fail(Errc::kInvalid, "R-FRM-09", "unit_frames_minus1", at);
-    }
     if (r.error()) return;
+    places = unit_places(unit);
+    if (places.size() < unit.num_frames) {
+      r.fail(Errc::kInvalid, "R-FRM-09", "unit_frames_minus1", at);
+      return;
+    }
   }
   if (group >= end_layer_group_ || unit.temporal_layer_idx >= end_temporal_layer_) {
     is_cut_ = true;
     return;
   }
-  if (!may_follow(unit)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
-  std::vector<std::uint32_t> coded;  // places
-  for (std::uint32_t i = 0; i < unit.num_frames && !r.error(); ++i) {
-    if (frame_start(r, unit, first + i)) coded.push_back(first + i);
+  if (!may_follow(unit, places)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+  std::vector<std::uint32_t> coded;
+  for (const std::uint32_t place : places) {
+    if (frame_start(r, unit, place)) coded.push_back(place);
+    if (r.error()) return;
   }
-  if (r.error()) return;
   r.byte_alignment();
   if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
     for (const std::uint32_t place : coded) {

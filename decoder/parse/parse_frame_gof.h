@@ -65,8 +65,9 @@ class FrameGofParser {
   void patch_map(BitReader& r);
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
-  bool is_run(const SliceEntry& unit) const;
-  bool may_follow(const SliceEntry& unit);
+  // Places of the frames of a unit; fewer than it claims if there are no more.
+  std::vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
+  bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
   // False: the frame repeats another.
   bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
   void earlier_frame(BitReader& r, std::uint32_t place);
@@ -88,9 +89,13 @@ class FrameGofParser {
   std::optional<PatchContexts> patch_contexts_;  // if there are patches
   std::optional<FrameOrder> order_;
   std::uint32_t next_place_ = 0;  // LastPlace + 1
-  // Frames of each temporal layer: those before next_place_ - 1, and [temporal layer][layer
-  // group] those that have the layer group.
-  std::vector<std::uint32_t> frames_before_;
+  // Of each temporal layer: how far its frame units have got.
+  struct LayerPlace {
+    std::uint32_t next = 0;             // LastPlaceOfLayer + 1
+    std::vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
+  };
+  std::vector<LayerPlace> layer_places_;
+  // [temporal layer][layer group]: frames that have the layer group.
   std::vector<std::vector<std::uint32_t>> frames_of_group_;
   std::uint32_t end_layer_group_ = 0;     // of those that the cut keeps
   std::uint32_t end_temporal_layer_ = 0;  // likewise

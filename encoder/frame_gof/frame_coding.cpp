@@ -24,6 +24,7 @@ FrameCoding::FrameCoding(const CodedMesh& mesh, const FrameSettings& settings,
     : mesh_(mesh),
       settings_(settings),
       limits_(limits),
+      is_open_ended_(header.open_end_flag),
       to_nearest_(to_nearest),
       order_(settings.pattern, num_frames),
       recon_(mesh, settings, header.position_bits),
@@ -95,15 +96,29 @@ void FrameCoding::end_unit(std::uint32_t number, std::vector<EncodedGof::Unit>& 
   const auto temporal_layer = [&](std::uint32_t place) {
     return settings_.pattern.temporal_layer(order_[place].depth);
   };
+  const std::uint32_t layer = temporal_layer(number);
   const std::uint32_t next = number + 1;
-  const bool may_go_on = settings_.layer_group_size.size() == 1 && number > 0 &&
-                         next < order_.num_frames() &&
-                         temporal_layer(next) == temporal_layer(number);
-  if (may_go_on && writer_.unit_frames() < limits_.frames &&
-      writer_.unit_bytes() < limits_.bytes) {
+  const bool is_last = next == order_.num_frames();
+  const bool may_go_on = settings_.layer_group_size.size() == 1 && number > 0 && !is_last &&
+                         (!is_open_ended_ || temporal_layer(next) == layer);
+  if (may_go_on && writer_.unit_frames(layer) < limits_.frames &&
+      writer_.unit_bytes(layer) < limits_.bytes) {
     return;
   }
-  units.push_back({UnitType::kFrame, writer_.finish_unit(), temporal_layer(number)});
+  // Those of lower temporal layers, which its frames may need, end before it.
+  const std::uint32_t end = is_last ? settings_.pattern.temporal_layers : layer + 1;
+  for (std::uint32_t t = 0; t < end; ++t) {
+    if (writer_.unit_frames(t) == 0) continue;
+    units.push_back({UnitType::kFrame, writer_.finish_unit(t), t});
+  }
+}
+
+std::size_t FrameCoding::unit_bytes() const {
+  std::size_t bytes = 0;
+  for (std::uint32_t t = 0; t < settings_.pattern.temporal_layers; ++t) {
+    bytes += writer_.unit_bytes(t);
+  }
+  return bytes;
 }
 
 std::vector<EncodedGof::Unit> FrameCoding::repeat(std::uint32_t distance,
@@ -117,7 +132,7 @@ std::vector<EncodedGof::Unit> FrameCoding::repeat(std::uint32_t distance,
   recon_.decode(place, order_.last_use(place.frame), frame);
   recon_.positions(positions);
   if (coded != nullptr) *coded = frame;
-  writer_.repeat(place.frame, distance);
+  writer_.repeat(place, distance);
   std::vector<EncodedGof::Unit> units;
   end_unit(number, units);
   return units;

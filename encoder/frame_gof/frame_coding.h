@@ -18,8 +18,8 @@
 
 namespace rlpc {
 
-// A frame unit ends once it has so many frames, or so many bytes; and where frames cannot share
-// it: after the first frame of a GOF, and between temporal layers.
+// A frame unit ends once it has so many frames, or so many bytes; after the first frame of a
+// GOF; and in an open-ended stream, before a frame of another temporal layer.
 struct UnitLimits {
   std::uint32_t frames = 1;
   std::size_t bytes = 0;
@@ -56,8 +56,8 @@ class FrameCoding {
   std::vector<EncodedGof::Unit> repeat(std::uint32_t distance,
                                        std::span<std::int32_t> positions,
                                        CodedFrame* coded = nullptr);
-  // Of the frame unit that has not ended.
-  std::size_t unit_bytes() const { return writer_.unit_bytes(); }
+  // Of the frame units that have not ended.
+  std::size_t unit_bytes() const;
 
  private:
   // The vertices of a layer, with their predictions.
@@ -77,6 +77,7 @@ class FrameCoding {
   const CodedMesh& mesh_;
   const FrameSettings& settings_;
   UnitLimits limits_;
+  bool is_open_ended_;
   bool to_nearest_;
   FrameOrder order_;
   FrameRecon recon_;

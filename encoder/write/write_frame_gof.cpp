@@ -69,6 +69,7 @@ std::vector<std::uint8_t> write_frame_gof_unit(const GofHeader& gof,
 
 void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
   frame_ = frame.frame;
+  unit_ = &unit_of(frame);
   contexts_.start_frame(place, frame.depth);
   if (place > 0) patch_contexts_.start_frame(frame.depth);
   patches_.clear();
@@ -79,28 +80,30 @@ void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) 
 void FrameUnitWriter::write_patches() {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     patch_contexts_.start(p);
-    section_->truncated_unary(patch_contexts_.mode_models(),
-                              static_cast<int>(patches_[p].mode));
+    unit_->section->truncated_unary(patch_contexts_.mode_models(),
+                                    static_cast<int>(patches_[p].mode));
     patch_contexts_.set_mode(patches_[p].mode);
     if (patches_[p].mode == PatchMode::kNeighbours) continue;
     for (std::size_t i = 0; i < kMotionValues; ++i) {
       const std::int32_t residual = patches_[p].residual[i];
-      section_->residual(patch_contexts_.models(i), patch_contexts_.expected(i), residual);
+      unit_->section->residual(patch_contexts_.models(i), patch_contexts_.expected(i),
+                               residual);
       patch_contexts_.update(i, residual);
     }
   }
 }
 
-void FrameUnitWriter::repeat(std::uint32_t frame, std::uint32_t distance) {
-  layer_group_ = 0;
-  unit_frames_.push_back({.frame = frame, .distance = distance, .is_repeated = true});
+void FrameUnitWriter::repeat(const FramePlace& frame, std::uint32_t distance) {
+  Unit& unit = unit_of(frame);
+  unit.layer_group = 0;
+  unit.frames.push_back({.frame = frame.frame, .distance = distance, .is_repeated = true});
 }
 
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
-  layer_group_ = layer_group;
+  unit_->layer_group = layer_group;
   contexts_.start_group(layer_group);
-  unit_frames_.push_back({.frame = frame_, .distance = reference_distance_});
-  if (!section_) section_.emplace();
+  unit_->frames.push_back({.frame = frame_, .distance = reference_distance_});
+  if (!unit_->section) unit_->section.emplace();
   if (layer_group == 0) write_patches();
 }
 
@@ -112,48 +115,49 @@ void FrameUnitWriter::write_positions(const RestOrder& order,
   for (const std::uint32_t v : order.order()) {
     const std::int32_t* const residual = &residuals[kRestFactors * std::size_t{v}];
     writer.start(v);
-    if (!counterparts.empty()) writer.counterpart(*section_, counterparts[v]);
-    writer.finish(*section_, {residual[0], residual[1], residual[2]});
+    if (!counterparts.empty()) writer.counterpart(*unit_->section, counterparts[v]);
+    writer.finish(*unit_->section, {residual[0], residual[1], residual[2]});
   }
 }
 
 void FrameUnitWriter::write(std::int32_t residual) {
-  section_->residual(contexts_.models(), contexts_.expected(), residual);
+  unit_->section->residual(contexts_.models(), contexts_.expected(), residual);
   contexts_.update(residual);
 }
 
 void FrameUnitWriter::end_group(std::uint32_t frame_crc) {
-  unit_frames_.back().crc = frame_crc;
+  unit_->frames.back().crc = frame_crc;
 }
 
 // 6.14.2 frame_unit( )
-std::vector<std::uint8_t> FrameUnitWriter::finish_unit() {
+std::vector<std::uint8_t> FrameUnitWriter::finish_unit(std::uint32_t layer) {
+  Unit unit = std::exchange(units_[layer], {});
   const std::size_t num_groups = settings_.layer_group_size.size();
-  assert(unit_frames_.size() == 1 || num_groups == 1);
+  assert(unit.frames.size() == 1 || (num_groups == 1 && !unit.frames.empty()));
   BitWriter w;
-  w.ue(unit_frames_.front().frame);
+  w.ue(unit.frames.front().frame);
   if (is_open_ended_) w.flag(false);  // gof_end_flag
-  w.ue(layer_group_);
-  if (num_groups == 1) w.ue(static_cast<std::uint32_t>(unit_frames_.size() - 1));
-  for (const UnitFrame& frame : unit_frames_) {
-    if (settings_.max_earlier_distance == 0 || layer_group_ > 0 || frame.frame == 0) continue;
+  w.ue(unit.layer_group);
+  if (num_groups == 1) w.ue(static_cast<std::uint32_t>(unit.frames.size() - 1));
+  for (const UnitFrame& frame : unit.frames) {
+    if (settings_.max_earlier_distance == 0 || unit.layer_group > 0 || frame.frame == 0) {
+      continue;
+    }
     w.flag(frame.distance > 0);  // earlier_flag
     if (frame.distance == 0) continue;
     w.ue(frame.distance - 1);
     w.flag(frame.is_repeated);
   }
   w.byte_alignment();
-  if (settings_.frame_hash_flag && layer_group_ + 1 == num_groups) {
-    for (const UnitFrame& frame : unit_frames_) {
+  if (settings_.frame_hash_flag && unit.layer_group + 1 == num_groups) {
+    for (const UnitFrame& frame : unit.frames) {
       if (!frame.is_repeated) w.u(32, frame.crc);
     }
   }
-  unit_frames_.clear();
   std::vector<std::uint8_t> payload = w.take();
-  if (!section_) return payload;
-  const std::vector<std::uint8_t> section = section_->finish();
+  if (!unit.section) return payload;
+  const std::vector<std::uint8_t> section = unit.section->finish();
   payload.insert(payload.end(), section.begin(), section.end());
-  section_.reset();
   return payload;
 }
 
@@ -181,29 +185,26 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
   payloads.first = write_frame_gof_unit(gof, gof, mesh.topology());
   FrameUnitWriter writer(mesh, gof);
   const FrameOrder order(gof.pattern, gof.num_frames);
-  const auto layer_of = [&](std::uint32_t place) {
-    return gof.pattern.temporal_layer(order[place].depth);
+  // A unit ends after those of lower temporal layers, which its frames may need.
+  const auto finish_units = [&](std::uint32_t highest_layer) {
+    for (std::uint32_t t = 0; t <= highest_layer; ++t) {
+      if (writer.unit_frames(t) > 0) payloads.frames.push_back(writer.finish_unit(t));
+    }
   };
-  std::uint32_t first = 0;  // of the unit
-  const auto finish_unit = [&] { payloads.frames.push_back(writer.finish_unit()); };
   for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
     const CodedFrame& frame = (*gof.frames)[order[place].frame];
-    const bool is_absent = frame.layer_groups == 0 && !frame.repeated;
-    if (writer.has_unit() &&
-        (is_absent || place - first == frames_per_unit || layer_of(place) != layer_of(first))) {
-      finish_unit();
-    }
-    if (is_absent) continue;
-    if (!writer.has_unit()) first = place;
+    if (frame.layer_groups == 0 && !frame.repeated) continue;
+    const std::uint32_t layer = gof.pattern.temporal_layer(order[place].depth);
+    if (writer.unit_frames(layer) == frames_per_unit) finish_units(layer);
     if (frame.repeated) {
-      writer.repeat(order[place].frame, place - order.place_of(*frame.repeated));
-      if (gof.layer_group_size.size() > 1) finish_unit();
+      writer.repeat(order[place], place - order.place_of(*frame.repeated));
+      if (gof.layer_group_size.size() > 1) finish_units(layer);
       continue;
     }
     writer.start_frame(place, order[place]);
     if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
     writer.set_patches(frame.patches);
-    std::uint32_t layer = 0;
+    std::uint32_t first = 0;  // of the layers of the group
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
       writer.start_group(j);
       if (place == 0 && gof.rest.order_flag) {
@@ -211,19 +212,19 @@ FrameGofPayloads write_frame_gof(const FrameGof& gof, const CodedMesh& mesh,
         writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
         continue;
       }
-      const std::uint32_t end = layer + gof.layer_group_size[j];
-      for (const std::uint32_t v : mesh.vertices_of_layers(layer, end)) {
+      const std::uint32_t end = first + gof.layer_group_size[j];
+      for (const std::uint32_t v : mesh.vertices_of_layers(first, end)) {
         if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;
         writer.start(v);
         for (std::size_t c = 0; c < 3; ++c)
           writer.write(frame.residual[3 * std::size_t{v} + c]);
       }
-      layer = end;
+      first = end;
       writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
-      if (gof.layer_group_size.size() > 1) finish_unit();
+      if (gof.layer_group_size.size() > 1) finish_units(layer);
     }
   }
-  if (writer.has_unit()) finish_unit();
+  finish_units(gof.pattern.temporal_layers - 1);
   return payloads;
 }
 

@@ -32,13 +32,15 @@ class FrameUnitWriter {
       : settings_(settings),
         is_open_ended_(is_open_ended),
         contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
-        patch_contexts_(settings.num_patches, settings.pattern.num_depths()) {}
+        patch_contexts_(settings.num_patches, settings.pattern.num_depths()),
+        units_(settings.pattern.temporal_layers) {}
 
   // Each frame, in coding order: start_frame(), with its place, and for each of its layer
   // groups start_group(), the vertices of its layers in the order of the mesh but for those
   // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
   // second in each frame but the first. finish_unit() comes after each layer group; or, if
-  // there is only one, after one or more frames of a temporal layer.
+  // there is only one, after one or more frames of a temporal layer, but in an open-ended
+  // stream, before a frame of another.
   void start_frame(std::uint32_t place, const FramePlace& frame);
   // Then, if it is predicted from the frame so many places before, in place of its references.
   void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
@@ -49,7 +51,7 @@ class FrameUnitWriter {
   void write_positions(const RestOrder& order, std::span<const std::int32_t> residuals,
                        std::span<const Counterpart> counterparts);
   // In place of these: the frame repeats the one so many places before.
-  void repeat(std::uint32_t frame, std::uint32_t distance);
+  void repeat(const FramePlace& frame, std::uint32_t distance);
   // For each vertex start(), then write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
   FrameContexts& contexts() { return contexts_; }
@@ -57,12 +59,13 @@ class FrameUnitWriter {
   void write(std::int32_t residual);
   // frame_crc: used in the last layer group if the GOF has hashes of frames.
   void end_group(std::uint32_t frame_crc = 0);
-  // Of the unit: whether it has frames, their number, and the bytes of its section so far.
-  bool has_unit() const { return !unit_frames_.empty(); }
-  std::size_t unit_frames() const { return unit_frames_.size(); }
-  std::size_t unit_bytes() const { return section_ ? section_->size() : 0; }
-  // Its payload.
-  std::vector<std::uint8_t> finish_unit();
+  // Of the unit of a temporal layer: the frames in it, and the bytes of its section so far.
+  std::size_t unit_frames(std::uint32_t layer) const { return units_[layer].frames.size(); }
+  std::size_t unit_bytes(std::uint32_t layer) const {
+    return units_[layer].section ? units_[layer].section->size() : 0;
+  }
+  // Its payload; it must have frames.
+  std::vector<std::uint8_t> finish_unit(std::uint32_t layer);
 
  private:
   struct UnitFrame {
@@ -72,6 +75,15 @@ class FrameUnitWriter {
     std::uint32_t crc = 0;
   };
 
+  struct Unit {
+    std::uint32_t layer_group = 0;
+    std::vector<UnitFrame> frames;
+    std::optional<SectionWriter> section;
+  };
+
+  Unit& unit_of(const FramePlace& frame) {
+    return units_[settings_.pattern.temporal_layer(frame.depth)];
+  }
   void write_patches();
 
   const FrameSettings& settings_;
@@ -82,10 +94,8 @@ class FrameUnitWriter {
   std::uint32_t reference_distance_ =
       0;  // of the frame; 0: it has the references of its pattern
   std::uint32_t frame_ = 0;
-  // Of the unit:
-  std::uint32_t layer_group_ = 0;
-  std::vector<UnitFrame> unit_frames_;
-  std::optional<SectionWriter> section_;
+  std::vector<Unit> units_;  // [temporal layer]
+  Unit* unit_ = nullptr;     // of the frame
 };
 
 // 6.14.2 gof_end( ): the payload of a frame unit that ends a GOF of an open-ended stream.
