@@ -65,10 +65,12 @@ DecodeFrame DecodedSpan::decoder() const {
 
 FrameEncoding::FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header,
                              const GofFrames& frames, const FrameSettings& settings,
-                             const UnitLimits& limits, std::shared_ptr<const CodedRest> first)
+                             const UnitLimits& limits, const FrameChoice& choice,
+                             std::shared_ptr<const CodedRest> first)
     : mesh_(mesh),
       header_(header),
       frames_(frames),
+      choice_(choice),
       earlier_(earlier_of(header, frames, settings.pattern)),
       first_(std::move(first)),
       settings_(with_first(with_distance(settings, earlier_), first_.get())),
@@ -104,6 +106,7 @@ void FrameEncoding::code_to(std::uint32_t count) {
       add(coding_.code(xyz, positions, copy, distance));
       if (distance == 0) bits_of_pattern_[place.depth] = bits() - before;
     }
+    if (num_coded_ == 0) bits_of_start_ = bits();
     for (std::size_t i = 0; i < values; ++i) {
       const double d = positions[i] - xyz[i];
       squared_error_ += d * d;
@@ -128,12 +131,15 @@ std::uint32_t FrameEncoding::reference_distance(const FramePlace& place) const {
 }
 
 double FrameEncoding::cost() const {
-  return settings_.exact_flag ? bits() : bits_at_equal_error(bits(), squared_error_);
+  const double coded = num_coded_ - 1.0;
+  const double share = coded > 0.0 ? (frames_.num_frames - 1.0) / coded : 1.0;
+  const double expected = bits_of_start_ + share * (bits() - bits_of_start_);
+  return settings_.exact_flag ? expected : bits_at_equal_error(expected, squared_error_);
 }
 
 EncodedGof FrameEncoding::finish() {
   code_to(frames_.num_frames);
-  encoded_.choices = {choice()};
+  encoded_.choices = {choice_};
   encoded_.squared_error = squared_error_;
   encoded_.frame = decoded_.decoder();
   if (coded_) {

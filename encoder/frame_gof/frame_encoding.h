@@ -36,19 +36,22 @@ class FrameEncoding {
  public:
   // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
   // earlier ones on the grid are not coded again; those that are nearly equal to one are
-  // predicted from it if that is cheaper. first: unless null, the first frame in an order of
-  // its own.
+  // predicted from it if that is cheaper. choice: that the settings
+  // follow. first: unless null, the first frame in an order of its own.
   FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
                 const FrameSettings& settings, const UnitLimits& limits,
-                std::shared_ptr<const CodedRest> first = nullptr);
+                const FrameChoice& choice, std::shared_ptr<const CodedRest> first = nullptr);
   FrameEncoding(const FrameEncoding&) = delete;
   FrameEncoding& operator=(const FrameEncoding&) = delete;
 
-  FrameChoice choice() const { return {settings_.pattern, settings_.num_patches}; }
+  const FrameChoice& choice() const { return choice_; }
   // Codes frames until the first `count` in coding order are coded.
   void code_to(std::uint32_t count);
-  // Of the frames coded so far: bits at equal error, or bits if they are lossless.
+  // Expected of the GOF, from the frames coded so far, at least two unless it has but one: bits
+  // at equal error, or bits if they are lossless.
   double cost() const;
+  // Of the frames coded so far: over all values, squared grid units.
+  double squared_error() const { return squared_error_; }
   // Codes the remaining frames. Once.
   EncodedGof finish();
 
@@ -66,6 +69,7 @@ class FrameEncoding {
   const CodedMesh& mesh_;
   const SequenceHeader& header_;
   const GofFrames& frames_;
+  const FrameChoice choice_;
   const std::vector<EarlierFrame> earlier_;  // by place in coding order
   const std::shared_ptr<const CodedRest> first_;
   const FrameSettings settings_;
@@ -75,6 +79,7 @@ class FrameEncoding {
   std::shared_ptr<std::vector<CodedFrame>> coded_;  // null: there is one temporal layer
   std::uint32_t num_coded_ = 0;
   double bits_of_units_ = 0.0;
+  double bits_of_start_ = 0.0;  // of the GOF unit and the first frame
   // [depth]: bits of the last frame that was predicted as the pattern says; 0: there is none.
   std::vector<double> bits_of_pattern_;
   double squared_error_ = 0.0;

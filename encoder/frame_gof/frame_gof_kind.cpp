@@ -61,11 +61,11 @@ class FrameGofCoder : public GofCoder {
 
 EncodedGof FrameGofCoder::encode(double step, double /*analysis_step*/) {
   const StartEncoding start = [&](const FrameChoice& choice) {
-    FrameSettings chosen =
-        choose_frame_settings(mesh_.header, settings_, layers_, choice.pattern, step);
+    FrameSettings chosen = choose_frame_settings(mesh_.header, settings_, layers_,
+                                                 choice.pattern, step * choice.step_scale);
     set_patches(chosen, patches(choice.num_patches));
     return std::make_unique<FrameEncoding>(layers_, mesh_.header, frames_, chosen,
-                                           unit_limits(settings_), first_frame(chosen));
+                                           unit_limits(settings_), choice, first_frame(chosen));
   };
   first_frames_.clear();
   if (choices_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -29,6 +30,15 @@ std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uin
       std::min<std::size_t>(num_frames, 1 + std::max<std::size_t>(periods, 1) * period));
 }
 
+// What makes a squared error about another, as a factor of the steps; 1 if it is near enough.
+double scale_to(double wanted, double squared_error) {
+  // fixed: below this, the rest of the difference is worth less than a percent of the bits.
+  constexpr double kNear = 1.05;
+  if (wanted <= 0.0 || squared_error <= 0.0) return 1.0;
+  const double ratio = wanted / squared_error;
+  return ratio < kNear && ratio > 1.0 / kNear ? 1.0 : std::sqrt(ratio);
+}
+
 }  // namespace
 
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
@@ -42,13 +52,13 @@ std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_o
     patterns.push_back({});
     patterns.push_back({FramePattern::kFirst, 1, {}, 1});
   }
-  // A GOF that is not longer than the period has the order of a shorter one.
+  std::uint32_t shorter = 1;  // period; a GOF that has but one of it is the same with a longer
   for (const int log2 : kPeriodsLog2) {
     const FramePattern pattern = dyadic(log2);
-    const bool may_win =
-        num_frames > pattern.period() && settings.target.kind != Target::kLossless;
+    const bool may_win = num_frames > shorter + 1 && settings.target.kind != Target::kLossless;
     if (tools.temporal_layers > pattern.num_depths()) continue;
     if (patterns.empty() || may_win) patterns.push_back(pattern);
+    shorter = pattern.period();
   }
   if (is_open_ended || settings.preset == Preset::kFast) patterns.resize(1);
   return patterns;
@@ -84,12 +94,25 @@ std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
     left.push_back(start(choice));
     period = std::max(period, choice.pattern.period());
   }
-  for (std::size_t part = std::bit_ceil(left.size()); left.size() > 1; part /= 2) {
+  bool is_equal_error = false;
+  for (std::size_t part = std::bit_ceil(left.size()); part > 0 && left.size() > 1; part /= 2) {
     const std::uint32_t end = whole_periods(num_frames, part, period);
     for_each(left.size(), [&](std::size_t i) { left[i]->code_to(end); });
+    if (!std::exchange(is_equal_error, true)) {
+      const double wanted = left.front()->squared_error();
+      for (auto& encoding : left) {
+        FrameChoice choice = encoding->choice();
+        const double scale = scale_to(wanted, encoding->squared_error());
+        if (scale == 1.0) continue;
+        choice.step_scale *= scale;
+        encoding = start(choice);
+      }
+      for_each(left.size(), [&](std::size_t i) { left[i]->code_to(end); });
+    }
     std::stable_sort(left.begin(), left.end(),
                      [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
-    left.resize(end == num_frames ? 1 : (left.size() + 1) / 2);
+    const std::size_t half = std::max<std::size_t>((left.size() + 1) / 2, 2);
+    left.resize(end == num_frames ? 1 : half);
   }
   return std::move(left.front());
 }

@@ -32,9 +32,12 @@ std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& pat
 using StartEncoding = std::function<std::unique_ptr<FrameEncoding>(const FrameChoice&)>;
 
 // Encodes a GOF by each choice, side by side on several threads. Half of them end early, the
-// costlier ones, each time twice as many frames are coded; the last comparison is made at half
-// of the frames. What is coded in vain takes as long as one encoding, if there are four choices
-// that take equally long. Returns the one that is left, which may not have ended.
+// costlier ones, each time twice as many frames are coded, until two are left: what moves later
+// may move in other ways, so that these are coded to the end. They are compared at equal error:
+// after the first of these parts, the steps of all are scaled so that they have about the error
+// of the first choice, and the part is coded again. What is coded in vain takes as long as two
+// and a half encodings, if there are four choices that take equally long. Returns the one that
+// is left.
 std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
                                         std::uint32_t num_frames, const StartEncoding& start);
 

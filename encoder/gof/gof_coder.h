@@ -44,6 +44,7 @@ struct KeptModel;
 struct FrameChoice {
   FramePattern pattern;
   std::uint32_t num_patches = 0;
+  double step_scale = 1.0;  // of its steps, for the error that other choices have
 
   bool operator==(const FrameChoice&) const = default;
 };
