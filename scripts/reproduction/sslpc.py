@@ -6,16 +6,18 @@ import claims
 import rlpca_published
 import sslpc_findings
 import sslpc_published as published
+import temporal_cuts
 from bench import FLAT
 from paper import OURS, page, report
 
 FRAMES = ["--profile", "high", "--gof-kind", "frames"]
-PLAIN = ["--frame-weights", "plain", "--rest", "prediction"]
+PLAIN = ["--frame-weights", "plain", "--rest", "prediction", "--patches", 0]
+ONE_SIDE = ["--frame-pattern", "previous"]
 BOTH_SIDES = ["--frame-pattern", "dyadic:2"]  # even frames from both sides, odd from the odd before
 METHODS = {  # options, colour and line
-    "SSLPC": (PLAIN, "#0072b2", "solid"),
+    "SSLPC": ([*PLAIN, *ONE_SIDE], "#0072b2", "solid"),
     "STSLPC": ([*PLAIN, *BOTH_SIDES], "#d55e00", "solid"),
-    "SSLPC, learned": ([], "#0072b2", "dashed"),
+    "SSLPC, learned": (ONE_SIDE, "#0072b2", "dashed"),
     "STSLPC, learned": (BOTH_SIDES, "#d55e00", "dashed"),
 }
 TARGETS = (1, 0.7, 0.5, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05)
@@ -32,6 +34,7 @@ SCALABLE = {
         ("STSLPC", ["--temporal-layers", 2, "--layer-groups", NUM_LAYERS]),
 }
 SCALABLE_TARGETS = (1, 0.3, 0.1)
+CUT_TARGETS = (0.1, 0.3)
 
 NOTE = (
     "SSLPC: each frame is predicted from the one before; a vertex moves as the mean of its ring in "
@@ -167,9 +170,11 @@ class Reproduction(paper.Paper):
         self.run_curves()
         self.run_scalable()
         layers, ours = self.layers_table()
-        tables = [self.rates_table(), layers, self.scalability_table(), self.cuts()]
+        temporal = temporal_cuts.table(temporal_cuts.TemporalCuts(self.bench, FRAMES),
+                                       CUT_TARGETS[:3 - self.step])
+        tables = [self.rates_table(), layers, self.scalability_table(), self.cuts(), temporal]
         self.tables(tables, f"{NOTE} {FLAT_NOTE}")
-        for name, table in zip(("layers", "scalability", "cuts"), tables[1:]):
+        for name, table in zip(("layers", "scalability", "cuts", "temporal"), tables[1:]):
             self.report.csv(f"{name}.csv", table.head, table.rows)
         self.plot_curves()
         for table in tables:

@@ -6,6 +6,7 @@ import unittest
 from reproduction_testing import Reproduced, main, runs
 import sslpc_findings as findings
 import sslpc_published as published
+import temporal_cuts
 
 
 class Published(unittest.TestCase):
@@ -51,6 +52,17 @@ class Findings(unittest.TestCase):
             self.assertIn(words, findings.grows("x", better, worse))
 
 
+class TemporalLayers(unittest.TestCase):
+    def test_depths_are_those_of_the_specification(self):
+        self.assertEqual(temporal_cuts.depths(12, 8), [0, 3, 2, 3, 1, 3, 2, 3, 0, 1, 2, 0])
+
+    def test_frames_that_are_left(self):
+        few, half, every = temporal_cuts.frames_of(17, 3)
+        self.assertEqual(few, [0, 4, 8, 12, 16])
+        self.assertEqual(half, list(range(0, 17, 2)))
+        self.assertEqual(every, list(range(17)))
+
+
 class SmallRun(Reproduced):
     def test_an_animation_of_the_user(self):
         mesh, points, frames = self.short_arm(17)
@@ -68,6 +80,10 @@ class SmallRun(Reproduced):
         cuts = self.rows("cuts.csv")
         self.assertEqual(int(cuts[-1]["vertices"]), ours[-1])
         self.assertEqual(cuts[-1]["of all frame bytes"], "100.0 %")
+        temporal = self.rows("temporal.csv")
+        self.assertEqual([row["layers"] for row in temporal], ["all 3", "1", "2"])
+        self.assertEqual([row["frames"] for row in temporal], ["17", "5", "9"])
+        self.assertTrue(all(0.5 < float(row["ratio"]) < 2 for row in temporal))
         self.expect_pages(["curves"])
 
 
