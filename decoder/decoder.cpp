@@ -331,6 +331,7 @@ Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
 std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }
+const std::vector<Clip>& Decoder::clips() const { return impl_->stream().clips(); }
 Result<std::optional<std::uint32_t>> Decoder::skip_damage() { return impl_->skip_damage(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }
 std::uint32_t Decoder::position() const { return impl_->position(); }

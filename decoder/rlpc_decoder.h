@@ -30,6 +30,7 @@
 
 #include "common/bitstream/trace.h"
 #include "common/io/float_position.h"
+#include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
@@ -98,6 +99,8 @@ class Decoder {
   bool has_vertex_order() const;
   // JSON text of the last metadata unit so far; empty if there was none.
   const std::string& metadata() const;
+  // Those of the last clip table so far. Names may have any bytes.
+  const std::vector<Clip>& clips() const;
 
   // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
   // after the last frame, once the rest of the stream has been checked.

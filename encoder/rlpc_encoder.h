@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "common/frame_gof/frame_gof.h"
+#include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
@@ -182,6 +183,9 @@ struct EncoderSettings {
   bool keep_order = false;  // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
   std::string metadata;  // JSON text, not validated, up to 1 MiB; empty: no metadata unit
+  // Names of parts of the sequence, up to kMaxClips; empty: no clip table. Not checked against
+  // the number of frames if that is not known beforehand.
+  std::vector<Clip> clips;
   // Encodings that may need more memory fail before they start. The estimate is for animations
   // that compress badly, and includes the memory held by the source.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
@@ -208,7 +212,7 @@ struct PartBits {
   std::uint64_t vertex_order = 0;
   std::uint64_t gofs = 0;
   std::uint64_t hashes = 0;
-  std::uint64_t metadata = 0;
+  std::uint64_t metadata = 0;  // and clip table
 };
 
 // A stream without the slices of its higher temporal layers, as rlpcinfo --extract writes it.

@@ -32,6 +32,7 @@ enum class UnitType : std::uint8_t {
   kGofIndex = 0x81,
   kGofHash = 0x82,
   kMetadata = 0x83,
+  kClipTable = 0x8A,
 };
 
 // Units that belong to the GOF or skinned model unit before them.
@@ -45,6 +46,12 @@ constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
                                           UnitType::kFrame};
   return type >= UnitType::kSequenceHeader &&
          type <= kLast[version_minor < 2 ? version_minor : 2];
+}
+
+// Ancillary units that a decoder of this version may read.
+constexpr bool is_known_ancillary(UnitType type) {
+  return type == UnitType::kGofIndex || type == UnitType::kGofHash ||
+         type == UnitType::kMetadata || type == UnitType::kClipTable;
 }
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;

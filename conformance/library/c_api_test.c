@@ -79,6 +79,7 @@ static rlpc_frame_format strip_format(void) {
 }
 
 static rlpc_encode_options small_gofs(void) {
+  static const rlpc_clip clips[2] = {{"wave", 0, 8}, {"rest", 4, FRAMES - 4}};
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
   options.target = RLPC_TARGET_MAX_ERROR;
@@ -86,6 +87,8 @@ static rlpc_encode_options small_gofs(void) {
   options.gof_frames = 8;
   options.keep_order = 1;
   options.metadata = "{\"title\":\"strip\"}";
+  options.clips = clips;
+  options.num_clips = 2;
   return options;
 }
 
@@ -153,6 +156,15 @@ static void check_info(rlpc_decoder* decoder) {
   CHECK_TEXT(rlpc_decoder_error_text(decoder), "10 values, not 30");
   CHECK(rlpc_decoder_triangles(decoder, NULL, 3 * TRIANGLES) == RLPC_BAD_ARGUMENT);
   CHECK(strcmp(rlpc_decoder_metadata(decoder), "{\"title\":\"strip\"}") == 0);
+
+  CHECK(rlpc_decoder_num_clips(decoder) == 2);
+  rlpc_clip clip;
+  CHECK(rlpc_decoder_clip(decoder, 1, &clip) == RLPC_OK);
+  CHECK(strcmp(clip.name, "rest") == 0);
+  CHECK(clip.first_frame == 4 && clip.num_frames == FRAMES - 4);
+  CHECK(rlpc_decoder_clip(decoder, 2, &clip) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "expected a clip below 2, got 2");
+  CHECK(rlpc_decoder_clip(decoder, 0, NULL) == RLPC_BAD_ARGUMENT);
 }
 
 // Frames as floats in order, then as positions from the last to the first.

@@ -8,7 +8,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HEADERS = ("common/c_api/rlpc_status.h", "decoder/c_api/rlpc_decode.h", "encoder/c_api/rlpc_encode.h")
+HEADERS = ("common/c_api/rlpc_clip.h", "common/c_api/rlpc_status.h",
+           "decoder/c_api/rlpc_decode.h", "encoder/c_api/rlpc_encode.h")
 
 
 def declared():

@@ -26,12 +26,33 @@ class HighSource(random_main.MainSource):
     temporal_layer = 0  # of the slice
     ends_gof = False  # by the frame unit
     unit_frames = 1  # of the frame unit
+    clip_end = 0  # of the last clip of a table
 
     def _profile_idc(self, ns, indices, arguments):
         return 2
 
     def _num_adaptive_factors(self, ns, indices, arguments):
         return self.numbers.pick([0, 1, 2, 5, ns["MaxComponents"]])
+
+    def _num_clips_minus1(self, ns, indices, arguments):
+        self.clip_end = 0
+        return self.numbers.between(0, 3)
+
+    def _clip_gap(self, ns, indices, arguments):
+        gap = self.near(-self.clip_end, ns["NumFrames"] - 1 - self.clip_end)
+        self.clip_end += gap
+        return gap
+
+    def _clip_num_frames_minus1(self, ns, indices, arguments):
+        more = self.near(0, ns["NumFrames"] - 1 - self.clip_end)
+        self.clip_end += more + 1
+        return more
+
+    def _clip_name_size_minus1(self, ns, indices, arguments):
+        return self.numbers.between(0, 5)
+
+    def _clip_name_byte(self, ns, indices, arguments):
+        return self.numbers.between(0x20, 0x7E)
 
     def _rest_order_flag(self, ns, indices, arguments):
         return int(self.numbers.chance(60))
@@ -204,6 +225,11 @@ class HighSequence(random_main.MainSequence):
     """The units of a random stream of the High profile."""
 
     version_minor = 2
+
+    def _skippable(self):
+        super()._skippable()
+        if self._n.chance(10):
+            self._unit("CLIP_TABLE")
 
     def _gof(self):
         # R-IDX-05; where the end is open, the GOF that follows has a frame at least.

@@ -50,6 +50,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "GOF hash";
     case UnitType::kMetadata:
       return "metadata";
+    case UnitType::kClipTable:
+      return "clip table";
   }
   return "of unknown type";
 }

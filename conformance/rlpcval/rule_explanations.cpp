@@ -50,6 +50,17 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-BON-06", "7.11", "More adaptive trajectories are announced than a GOF can have.",
      "A large number was written to make all trajectories adaptive.",
      "Write at most MaxComponents of the level; the number of trajectories is enough."},
+    {"R-CLP-01", "7.15", "There are too many clips.",
+     "Each frame was made a clip; or the payload is damaged.",
+     "Write at most 4096 clips into the table."},
+    {"R-CLP-02", "7.15", "A clip has frames that the sequence does not have.",
+     "clip_gap was counted from the start of the clip before, not from its end; or frames were "
+     "left out of the stream, but the table was not changed.",
+     "Count clip_gap from the frame after the clip before, and give each clip frames of the "
+     "sequence."},
+    {"R-CLP-03", "7.15", "The name of a clip is not UTF-8 without control characters.",
+     "A name in another encoding, or with a terminating zero byte or a line break.",
+     "Write names in UTF-8, without a zero at the end."},
     {"R-CON-01", "7.4.1", "There are more degenerate triangles than triangles.",
      "num_triangles of the sequence header counts the regular triangles alone.",
      "num_triangles counts all triangles; the degenerate ones are its last."},
@@ -381,6 +392,8 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
      "Bones that lost their last vertex to others were kept; they cost bits to no effect.",
      "Remove bones that influence no vertex and have no descendant that does, before the GOF "
      "is written."},
+    {"W-CLP-01", "7.15", "Several clip tables: only the last one counts.",
+     "A tool added a table without removing the old one.", "Keep one clip table."},
     {"W-GOF-01", "7.5.3", "A cluster has no coded vertices.",
      "Clusters that became empty were kept; they cost bits to no effect.",
      "Remove empty clusters before the GOF is written."},

@@ -144,8 +144,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   const bool is_slice = is_slice_type(unit.type());
   if (!is_slice && unit.type() != UnitType::kGof) gof_.unit.reset();
   if (!is_slice && unit.type() != UnitType::kModel) model_.unit.reset();
-  const bool known_ancillary = unit.type_byte >= 0x81 && unit.type_byte <= 0x83;
-  if (unit.ancillary() && !known_ancillary) {
+  if (unit.ancillary() && !is_known_ancillary(unit.type())) {
     findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,
                       "unit_type is " + std::to_string(unit.type_byte & 0x7F));
   }

@@ -13,6 +13,7 @@
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_hash.h"
 #include "decoder/parse/sequence/json_text.h"
+#include "decoder/parse/sequence/parse_clip_table.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/parse/sequence/parse_vertex_order.h"
@@ -36,8 +37,7 @@ std::string hex(std::uint32_t value) {
 
 // 6.2 unit_payload( ). `sound`: the CRC of the unit holds.
 void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
-  const bool read = !unit.ancillary() || (unit.type_byte >= 0x81 && unit.type_byte <= 0x83);
-  if (!read) return;
+  if (unit.ancillary() && !is_known_ancillary(unit.type())) return;
   if (unit.type() == UnitType::kGof) begin_gof(unit);
   if (unit.type() == UnitType::kModel) begin_model(unit);
   const auto payload = units_.payload(unit);
@@ -66,6 +66,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
       return gof_hash(unit, *payload);
     case UnitType::kMetadata:
       return metadata(unit, *payload);
+    case UnitType::kClipTable:
+      return clip_table(unit, *payload);
   }
 }
 
@@ -379,6 +381,22 @@ void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
     findings_.unchecked("R-MET-03", "metadata_json", unit.payload_offset() * 8 + 32,
                         "byte " + std::to_string(*at) + " of " + std::to_string(json->size()) +
                             " inflated bytes is not JSON");
+  }
+}
+
+// 6.15 clip_table( )
+void StreamValidator::clip_table(const UnitHeader& unit, const Payload& payload) {
+  if (!can_read()) return;
+  BitReader r = bits_of(unit, payload);
+  const auto clips = parse_clip_table(r, lead_.header->header.num_frames);
+  if (!clips) return findings_.error(clips.error());
+  for (const Clip& clip : *clips) {
+    const std::size_t at = find_clip_name_error(clip.name);
+    if (at == clip.name.size()) continue;
+    findings_.unchecked("R-CLP-03", "clip_name_byte", unit.payload_offset() * 8,
+                        "byte " + std::to_string(at) + " of the name of the clip from frame " +
+                            std::to_string(clip.first_frame));
+    return;
   }
 }
 

@@ -66,6 +66,7 @@ class StreamValidator {
   void compare_hashes(const UnitHeader& unit, const GofHash& hash);
   void gof_index(const UnitHeader& unit, const Payload& payload);
   void metadata(const UnitHeader& unit, const Payload& payload);
+  void clip_table(const UnitHeader& unit, const Payload& payload);
   void end_of_sequence(const UnitHeader& unit, const Payload& payload);
   // Whether units that need the sequence header can be read; reports it if not.
   bool can_read();

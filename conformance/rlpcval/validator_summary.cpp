@@ -141,6 +141,10 @@ void StreamValidator::warn_of_stream() {
     findings_.warning("W-MET-01", "metadata", end,
                       std::to_string(seen(UnitType::kMetadata)) + " metadata units");
   }
+  if (seen(UnitType::kClipTable) > 1) {
+    findings_.warning("W-CLP-01", "clip_table", end,
+                      std::to_string(seen(UnitType::kClipTable)) + " clip tables");
+  }
 }
 
 }  // namespace rlpc

@@ -266,6 +266,27 @@ const char* rlpc_decoder_metadata(const rlpc_decoder* decoder) {
   return open ? decoder->decoder->metadata().c_str() : "";
 }
 
+uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder) {
+  const bool open = decoder != nullptr && decoder->decoder;
+  return open ? static_cast<std::uint32_t>(decoder->decoder->clips().size()) : 0;
+}
+
+rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip) {
+  return rlpc::guarded(decoder, [&] {
+    const auto& clips = decoder->decoder->clips();
+    if (clip == nullptr || index >= clips.size()) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT, clip == nullptr
+                                                       ? "clip is null"
+                                                       : "expected a clip below " +
+                                                             std::to_string(clips.size()) +
+                                                             ", got " + std::to_string(index));
+    }
+    const rlpc::Clip& found = clips[index];
+    *clip = {found.name.c_str(), found.first_frame, found.num_frames};
+    return RLPC_OK;
+  });
+}
+
 rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* positions,
                                         size_t num_values) {
   return rlpc::guarded(decoder, [&] {

@@ -31,6 +31,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "common/c_api/rlpc_clip.h"
 #include "common/c_api/rlpc_status.h"
 
 #ifdef __cplusplus
@@ -138,6 +139,11 @@ RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_
 // The latest metadata so far, JSON text; "" if there was none. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
+// The clips of the latest clip table so far: their number, and one of them. The name is valid
+// until the next call that decodes or seeks, and ends at a zero byte, if it has one. index:
+// below the number, otherwise RLPC_BAD_ARGUMENT.
+RLPC_API uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder);
+RLPC_API rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip);
 
 // Decodes the next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END
 // after the last frame, once the rest of the stream has been checked. Stream errors are sticky

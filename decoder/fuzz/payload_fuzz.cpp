@@ -9,6 +9,7 @@
 #include "common/syntax/sequence_header.h"
 #include "common/testing/fuzz_input.h"
 #include "decoder/parse/parse_gof_hash.h"
+#include "decoder/parse/sequence/parse_clip_table.h"
 #include "decoder/parse/sequence/parse_gof_index.h"
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/parse/sequence/parse_vertex_order.h"
@@ -55,10 +56,21 @@ void metadata(BitReader& r, std::uint32_t) {
   if (json) fuzz_check(json->size() <= rlpc::kMaxMetadataBytes);
 }
 
+void clip_table(BitReader& r, std::uint32_t num_frames) {
+  const auto clips = rlpc::parse_clip_table(r, num_frames);
+  if (!clips) return;
+  fuzz_check(!clips->empty() && clips->size() <= rlpc::kMaxClips);
+  for (const rlpc::Clip& clip : *clips) {
+    fuzz_check(clip.first_frame < num_frames);
+    fuzz_check(clip.num_frames >= 1 && clip.num_frames <= num_frames - clip.first_frame);
+    fuzz_check(!clip.name.empty() && clip.name.size() <= rlpc::kMaxClipNameBytes);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::array kParsers{vertex_order, gof_hash, gof_index, metadata};
+  constexpr std::array kParsers{vertex_order, gof_hash, gof_index, metadata, clip_table};
   rlpc::FuzzInput input(data, size);
   const std::uint32_t parser = input.number(1);
   const std::uint32_t count = input.number(2) + 1;

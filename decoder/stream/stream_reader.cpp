@@ -7,6 +7,7 @@
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_frame_gof.h"
 #include "decoder/parse/parse_gof_header.h"
+#include "decoder/parse/sequence/parse_clip_table.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_end_of_sequence.h"
 #include "decoder/parse/sequence/parse_metadata.h"
@@ -108,13 +109,20 @@ Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
   return true;
 }
 
-// Units that a decoder may skip: checks their CRC, and keeps metadata.
+// Units that a decoder may skip: checks their CRC, and keeps metadata and clips.
 Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
-  if (unit.type() != UnitType::kMetadata) return units_.skip(unit);
+  const bool is_clips = unit.type() == UnitType::kClipTable;
+  if (unit.type() != UnitType::kMetadata && !is_clips) return units_.skip(unit);
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
+  if (is_clips) {
+    auto clips = parse_clip_table(r, context_.header.num_frames);
+    if (!clips) return clips.error();
+    clips_ = std::move(*clips);
+    return true;
+  }
   auto json = parse_metadata(r);
   if (!json) return json.error();
   metadata_ = std::move(*json);

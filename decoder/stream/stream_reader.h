@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/mesh/clip.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
@@ -38,6 +39,7 @@ class StreamReader {
   // 8.6.1: output index of each decoded vertex; empty: the same.
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const std::string& metadata() const { return metadata_; }  // the last so far
+  const std::vector<Clip>& clips() const { return clips_; }  // likewise
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
   // sequence. Skinned models are parsed, or only those that a GOF to be read uses.
@@ -91,6 +93,7 @@ class StreamReader {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> vertex_order_;
   std::string metadata_;
+  std::vector<Clip> clips_;
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;

@@ -21,13 +21,13 @@
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "common/tools/command_line.h"
+#include "common/tools/frame_span.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/concealed_frames.h"
 #include "decoder/tools/conformance_verbs.h"
 #include "decoder/tools/exit_code.h"
-#include "decoder/tools/frame_span.h"
 #include "decoder/tools/stream_message.h"
 
 namespace {
@@ -41,6 +41,7 @@ constexpr const char* kExamples = R"(OUT is one of
 Examples
   rlpcdec walk.rlpc -o walk.pc2
   rlpcdec walk.rlpc -o frames/walk_%04d.obj --frames 40-59
+  rlpcdec hero.rlpc -o run.glb --clip Run
   rlpcdec walk.rlpc -o far.glb --coarse 4
   rlpcdec walk.rlpc --verify
   rlpcdec walk.rlpc --html walk.html)";
@@ -82,6 +83,7 @@ struct Options {
   std::string input;
   std::string output;
   std::string frames;
+  std::string clip;
   rlpc::SinkFormat format = rlpc::SinkFormat::kByName;
   bool ascii = false;
   bool verify_only = false;
@@ -92,6 +94,8 @@ struct Options {
   rlpc::HtmlRequest html;
   rlpc::DecoderOptions decoder;
   std::shared_ptr<rlpc::OutputLimit> limit;
+
+  bool is_part() const { return !frames.empty() || !clip.empty(); }
 };
 
 int complain(const std::string& message, int code) {
@@ -106,7 +110,7 @@ int complain(const Options& o, const rlpc::Error& error) {
 
 // Whether the frames are decoded as they arrive, their number being unknown.
 bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
-  if (!header.open_end_flag || !o.frames.empty()) return false;
+  if (!header.open_end_flag || o.is_part()) return false;
   const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
   const bool needs_count = format == rlpc::SinkFormat::kGlb ||
                            format == rlpc::SinkFormat::kMdd ||
@@ -147,8 +151,8 @@ std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
     return ", hashes of " + std::to_string(frames.compared) +
            " of them agree; the others have none";
   }
-  return o.frames.empty() ? ", which have no hashes"
-                          : ", not verified: no hash covers these frames alone";
+  return !o.is_part() ? ", which have no hashes"
+                      : ", not verified: no hash covers these frames alone";
 }
 
 bool is_coarse(const Options& o) { return o.decoder.coarse_layers != rlpc::SliceCut::kAll; }
@@ -229,11 +233,35 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
     if (!live) bar.show(static_cast<double>(frames.decoded + frames.lost) / count);
   }
   // What follows the last frame is checked, too.
-  if (o.frames.empty() && !live && frames.loss_code == rlpc::kExitDone) {
+  if (!o.is_part() && !live && frames.loss_code == rlpc::kExitDone) {
     if (const auto more = decoder.next_frame(positions); !more)
       return complain(o, more.error());
   }
   return std::nullopt;
+}
+
+// The frames that --frames or --clip names; none: it names none.
+std::optional<rlpc::FrameSpan> span_of(const Options& o, const rlpc::Decoder& decoder,
+                                       std::uint32_t num_frames) {
+  if (o.clip.empty()) return rlpc::parse_frame_span(o.frames, num_frames);
+  const auto& clips = decoder.clips();
+  const auto clip = std::find_if(clips.begin(), clips.end(),
+                                 [&](const rlpc::Clip& c) { return c.name == o.clip; });
+  if (clip == clips.end() || num_frames - clip->first_frame < clip->num_frames) {
+    return std::nullopt;
+  }
+  return rlpc::FrameSpan{clip->first_frame, clip->first_frame + clip->num_frames - 1};
+}
+
+std::string no_such_clip(const Options& o, const std::vector<rlpc::Clip>& clips) {
+  if (clips.empty()) return "--clip: the stream names no clips; --frames takes frames";
+  constexpr std::size_t kMost = 20;
+  std::string names;
+  for (std::size_t i = 0; i < clips.size() && i < kMost; ++i) {
+    names += (i > 0 ? ", `" : "`") + rlpc::printable(clips[i].name) + "`";
+  }
+  return "--clip: no clip `" + o.clip + "`; expected one of " + names +
+         (clips.size() > kMost ? ", ..." : "");
 }
 
 int decode(const Options& o) {
@@ -256,10 +284,12 @@ int decode(const Options& o) {
             "not known. Write .rlpd, OBJ or PLY files, and all frames",
         rlpc::kExitInvalid);
   }
-  const auto span = rlpc::parse_frame_span(o.frames, *num_frames);
+  const auto span = span_of(o, *decoder, *num_frames);
   if (!span) {
-    return complain("--frames: expected A-B within 0-" + std::to_string(*num_frames - 1) +
-                        ", got `" + o.frames + "`",
+    return complain(o.clip.empty()
+                        ? "--frames: expected A-B within 0-" + std::to_string(*num_frames - 1) +
+                              ", got `" + o.frames + "`"
+                        : no_such_clip(o, decoder->clips()),
                     rlpc::kExitUsage);
   }
   const std::uint32_t count = span->last - span->first + 1;
@@ -334,6 +364,11 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
       ->group(kOutput);
   app.add_option("--frames", o.frames, "Frames A to B only, counted from 0: A-B, A- or A")
       ->option_text("A-B")
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_option("--clip", o.clip, "This part only; rlpcinfo lists them")
+      ->option_text("NAME")
+      ->excludes("--frames")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--ascii", o.ascii, "PLY files as text")

@@ -184,7 +184,8 @@ int inform(const Options& o) {
   if (o.trace) return rlpc::kExitDone;
   rlpc::SequenceHeader header = stream.header();
   header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
-  rlpc::StreamInfo info{o.input, header, counter, bytes, *summary, stream.metadata()};
+  rlpc::StreamInfo info{o.input,           header,        counter, bytes, *summary,
+                        stream.metadata(), stream.clips()};
   std::optional<rlpc::CoarseMeshes> meshes;
   if (o.coarse || with_pictures) {
     meshes = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),

@@ -340,9 +340,37 @@ void print_json(const StreamInfo& s) {
   for (const auto& model : s.summary.models) json["models"].push_back(json_of(*model));
   for (const GofSummary& gof : s.summary.gofs) json["gofs"].push_back(json_of(gof));
   if (s.coarse != nullptr) json["coarse_meshes"] = json_of(*s.coarse);
+  for (const Clip& clip : s.clips) {
+    json["clips"].push_back({{"name", clip.name},
+                             {"first_frame", clip.first_frame},
+                             {"num_frames", clip.num_frames}});
+  }
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+}
+
+void print_clips(const std::vector<Clip>& clips) {
+  if (clips.empty()) return;
+  std::size_t width = 4;
+  for (const Clip& clip : clips) width = std::max(width, printable(clip.name).size());
+  std::printf("\n  %-*s %16s\n", static_cast<int>(width), "clip", "frames");
+  for (const Clip& clip : clips) {
+    const std::string frames = std::to_string(clip.first_frame) + "-" +
+                               std::to_string(clip.first_frame + clip.num_frames - 1);
+    std::printf("  %-*s %16s\n", static_cast<int>(width), printable(clip.name).c_str(),
+                frames.c_str());
+  }
+}
+
+std::string clips_text(const std::vector<Clip>& clips) {
+  std::string text;
+  for (const Clip& clip : clips) {
+    text += (text.empty() ? "" : ", ") + printable(clip.name) + " " +
+            std::to_string(clip.first_frame) + "-" +
+            std::to_string(clip.first_frame + clip.num_frames - 1);
+  }
+  return text;
 }
 
 void print_table(const StreamInfo& s, bool with_gofs) {
@@ -367,6 +395,7 @@ void print_table(const StreamInfo& s, bool with_gofs) {
                 bpvf(s, bits));
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
+  print_clips(s.clips);
   if (!s.metadata.empty())
     std::printf("\n  metadata: %s\n", printable_lines(s.metadata).c_str());
   if (s.coarse != nullptr) print_coarse_meshes(*s.coarse);
@@ -384,6 +413,7 @@ std::string page_text(const StreamInfo& s) {
                 grouped_text(h.num_frames) + " at " + frame_rate_text(h) + " per second");
   page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
                             std::to_string(h.position_bits) + " bits");
+  if (!s.clips.empty()) page.add_fact("clips", clips_text(s.clips));
   if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
   const StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter, &s.summary};
   const double total = 8.0 * static_cast<double>(s.bytes);

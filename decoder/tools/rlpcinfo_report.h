@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "common/mesh/clip.h"
 #include "common/mesh/coarse_mesh.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/report/bit_counter.h"
@@ -19,6 +21,7 @@ struct StreamInfo {
   std::uint64_t bytes = 0;
   const StreamSummary& summary;
   const std::string& metadata;
+  const std::vector<Clip>& clips;
   const CoarseMeshes* coarse = nullptr;     // to be listed; null: not asked for
   const PicturedFrame* pictured = nullptr;  // of a page
 };

@@ -50,6 +50,17 @@ rlpc_frame_format default_format() {
   return format;
 }
 
+// False: there are too many, or one has no name.
+bool add_clips(const rlpc_encode_options& options, std::vector<Clip>& clips) {
+  if (options.num_clips > RLPC_MAX_CLIPS) return false;
+  if (options.num_clips > 0 && options.clips == nullptr) return false;
+  for (const rlpc_clip& clip : std::span(options.clips, options.num_clips)) {
+    if (clip.name == nullptr) return false;
+    clips.push_back({clip.name, clip.first_frame, clip.num_frames});
+  }
+  return true;
+}
+
 // None if a value is outside its enumeration.
 std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   EncoderSettings settings;
@@ -116,6 +127,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   settings.components = options.components;
   settings.keep_order = options.keep_order != 0;
   if (options.metadata != nullptr) settings.metadata = options.metadata;
+  if (!add_clips(options, settings.clips)) return std::nullopt;
   settings.max_memory_bytes = options.max_memory_bytes;
   settings.threads = options.threads;
   settings.main.temporal_layers = options.temporal_layers;

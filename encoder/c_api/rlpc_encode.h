@@ -28,6 +28,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "common/c_api/rlpc_clip.h"
 #include "common/c_api/rlpc_status.h"
 
 #ifdef __cplusplus
@@ -116,6 +117,9 @@ typedef struct rlpc_encode_options {
   // High profile, 1: each frame is coded when it is added, in GOFs of frames; a KG error is
   // then met approximately. Default 0. Targets: all but RLPC_TARGET_BPVF.
   uint32_t low_delay;
+  // Named parts of the sequence, num_clips of them, up to RLPC_MAX_CLIPS; copied. Default none.
+  const rlpc_clip* clips;
+  size_t num_clips;
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/result.h"
 
@@ -34,6 +35,7 @@ class FrameSource {
     std::vector<Triangle> triangles;
     std::vector<std::string> notes{};
     std::vector<std::string> files{};
+    std::vector<Clip> clips{};
     std::uint64_t memory_bytes = 0;
   };
 
@@ -50,6 +52,8 @@ class FrameSource {
   const std::vector<std::string>& notes() const { return shape_.notes; }
   // All files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
+  // Parts that the input names.
+  const std::vector<Clip>& clips() const { return shape_.clips; }
 
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }

@@ -228,6 +228,26 @@ bool is_position_bits(double value) {
 
 }  // namespace
 
+std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames) {
+  if (clips.size() > kMaxClips) {
+    return InputError{"a stream has at most " + std::to_string(kMaxClips) + " clips, not " +
+                      std::to_string(clips.size())};
+  }
+  for (const Clip& clip : clips) {
+    if (clip.name.empty() || clip.name.size() > kMaxClipNameBytes ||
+        find_clip_name_error(clip.name) < clip.name.size()) {
+      return InputError{"the name of a clip has 1 to " + std::to_string(kMaxClipNameBytes) +
+                        " bytes of UTF-8 without control characters (--clip)"};
+    }
+    if (clip.num_frames == 0 || clip.first_frame >= num_frames ||
+        clip.num_frames > num_frames - clip.first_frame) {
+      return InputError{"clip `" + clip.name + "` has frames beyond the last, " +
+                        std::to_string(num_frames - 1) + " (--clip)"};
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<InputError> check_settings(const EncoderSettings& s) {
   const bool main = s.profile != Profile::kBaseline;
   if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
@@ -259,6 +279,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.metadata.size() > kMaxMetadataBytes) {
     return InputError{"metadata may have at most 1 MiB"};
   }
+  if (auto error = check_clips(s.clips, kMaxFrames)) return error;
   if (s.target.has_search() && !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
     return InputError{"a target must be a number above zero"};
   }

@@ -1,8 +1,11 @@
 // Validates EncoderSettings.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 
+#include "common/mesh/clip.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
@@ -10,5 +13,7 @@ namespace rlpc {
 // Why the settings cannot be used, naming the option of rlpcenc for the setting at fault; none
 // if they are valid.
 std::optional<InputError> check_settings(const EncoderSettings& settings);
+// Likewise of the clips of a sequence of so many frames; kMaxFrames if that is not known.
+std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames);
 
 }  // namespace rlpc

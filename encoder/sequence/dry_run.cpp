@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/sequence_coding.h"
 
 namespace rlpc {
@@ -23,6 +24,7 @@ class StretchSource final : public FrameSource {
                      source.triangles(),
                      {},
                      {},
+                     {},
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}
@@ -37,6 +39,15 @@ class StretchSource final : public FrameSource {
   FrameSource& source_;
   std::uint32_t stretch_;
 };
+
+// Settings for the sample: clips have their names, but not their frames.
+EncoderSettings settings_of_sample(EncoderSettings settings, std::uint32_t num_frames) {
+  for (std::size_t i = 0; i < settings.clips.size(); ++i) {
+    settings.clips[i].first_frame = static_cast<std::uint32_t>(i % num_frames);
+    settings.clips[i].num_frames = 1;
+  }
+  return settings;
+}
 
 // Frames per stretch: a multiple of the GOF length, so that the sample has GOFs of that length.
 std::uint64_t stretch_frames(std::uint64_t gof_frames) {
@@ -55,8 +66,10 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
     if (!report) return report.error();
     return Expectation{std::move(*report), source.num_frames()};
   }
+  if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
   StretchSource sample(source, static_cast<std::uint32_t>(stretch));
-  auto encoded = encode(sample, settings, discard, progress);
+  auto encoded =
+      encode(sample, settings_of_sample(settings, sample.num_frames()), discard, progress);
   if (!encoded) return encoded.error();
   EncodeReport& report = *encoded;
   const double scale = static_cast<double>(source.num_frames()) / sample.num_frames();

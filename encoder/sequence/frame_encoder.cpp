@@ -14,6 +14,9 @@ namespace {
 std::optional<InputError> check(const FrameFormat& format, const EncoderSettings& settings) {
   if (auto error = check_format(format)) return error;
   if (auto error = check_settings(settings)) return error;
+  if (format.num_frames > 0) {
+    if (auto error = check_clips(settings.clips, format.num_frames)) return error;
+  }
   if (format.num_frames == 0 && settings.profile != Profile::kHigh) {
     return InputError{
         "a stream needs a number of frames; only the High profile has streams without"};

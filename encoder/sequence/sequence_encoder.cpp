@@ -315,6 +315,7 @@ InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettin
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress) {
   if (auto error = check_settings(settings)) return *error;
+  if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
   InputResult<EncodeReport> report = [&]() -> InputResult<EncodeReport> {
     if (settings.preset == Preset::kSlow && settings.target.has_search()) {
       return encode_slowly(source, settings, sink, progress);

@@ -31,12 +31,16 @@ StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettin
   if (!settings.metadata.empty()) {
     metadata_ = write_unit(UnitType::kMetadata, write_metadata(settings.metadata));
   }
+  if (!settings.clips.empty()) {
+    clip_table_ = write_unit(UnitType::kClipTable, write_clip_table(settings.clips));
+  }
   if (settings.keep_order) {
     vertex_order_ =
         write_unit(UnitType::kVertexOrder, write_vertex_order(connectivity.input_vertex));
   }
   lead_bytes_ = write_stream_header(header.profile_idc).size() + header_unit(header).size() +
-                metadata_.size() + connectivity_.size() + vertex_order_.size();
+                metadata_.size() + clip_table_.size() + connectivity_.size() +
+                vertex_order_.size();
 }
 
 bool StreamAssembly::has_index(const GofIndexEntries& index) {
@@ -59,7 +63,8 @@ bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& si
 
 bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& sink) {
   return put(write_stream_header(header.profile_idc), sink) && put(header_unit(header), sink) &&
-         put(metadata_, sink) && put(connectivity_, sink) && put(vertex_order_, sink);
+         put(metadata_, sink) && put(clip_table_, sink) && put(connectivity_, sink) &&
+         put(vertex_order_, sink);
 }
 
 bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
@@ -137,7 +142,7 @@ void StreamAssembly::describe(const SequenceHeader& header,
   report.bpvf = bits_per_vertex_per_frame(written_, header.num_vertices, num_frames_);
   report.bits.connectivity = 8 * connectivity_.size();
   report.bits.vertex_order = 8 * vertex_order_.size();
-  report.bits.metadata = 8 * metadata_.size();
+  report.bits.metadata = 8 * (metadata_.size() + clip_table_.size());
   report.bits.gofs = 8 * gof_bytes_;
   report.bits.hashes = 8 * hash_bytes_;
   report.bits.headers = 8 * written_ - report.bits.gofs - report.bits.hashes -

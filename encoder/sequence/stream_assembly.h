@@ -66,6 +66,7 @@ class StreamAssembly {
   bool is_open_ended_;
   std::uint32_t num_frames_ = 0;
   Bytes metadata_;
+  Bytes clip_table_;
   Bytes connectivity_;
   Bytes vertex_order_;
   std::uint64_t lead_bytes_ = 0;

@@ -248,6 +248,13 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       ->check(CLI::ExistingFile)
       ->option_text("FILE")
       ->group(kMore);
+  app.add_option("--clip", line.clips,
+                 "Name a part of the animation, frames A to B counted from 0; may be repeated "
+                 "(default: those that --animation all joins)")
+      ->option_text("NAME:A-B")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(kMore);
   app.add_option("--max-memory", o.settings.max_memory_bytes,
                  "Refuse input that may need more, for example 500MB (default: 32GB)")
       ->transform(CLI::AsSizeValue(false))

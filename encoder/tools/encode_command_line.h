@@ -24,6 +24,7 @@ struct EncodeCommandLine {
   std::optional<PartitionMethod> partition;
   std::vector<float> box;
   std::string metadata_path;
+  std::vector<std::string> clips;  // NAME:A-B
   std::optional<double> kg;
   std::optional<double> bpvf;
   std::optional<double> max_error;

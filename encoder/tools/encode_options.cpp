@@ -12,6 +12,7 @@
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
 #include "common/tools/command_line.h"
+#include "common/tools/frame_span.h"
 #include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/input/input_format.h"
 #include "encoder/sequence/check_settings.h"
@@ -20,6 +21,24 @@
 
 namespace rlpc {
 namespace {
+
+// "NAME:A-B" or "NAME:A"; none if it is something else.
+std::optional<Clip> parse_clip(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const auto span = parse_frame_span(text.substr(colon + 1), kMaxFrames);
+  if (!span || text.back() == '-' || text.back() == ':') return std::nullopt;
+  return Clip{text.substr(0, colon), span->first, span->last - span->first + 1};
+}
+
+std::optional<std::string> read_clips(const EncodeCommandLine& line) {
+  for (const std::string& text : line.clips) {
+    auto clip = parse_clip(text);
+    if (!clip) return "--clip: expected NAME:A-B, such as Run:0-29, got `" + text + "`";
+    line.options.settings.clips.push_back(std::move(*clip));
+  }
+  return std::nullopt;
+}
 
 // Completes the settings that CLI11 cannot convert; returns the error, if any.
 std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
@@ -77,6 +96,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   const bool asked =
       !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;
   if (s.baseline.qu > 0 && !asked) s.target = {Target::kNone, 0.0};
+  if (const auto wrong = read_clips(line)) return wrong;
   if (const auto error = check_settings(s)) return error->message;
   return std::nullopt;
 }

@@ -335,7 +335,7 @@ std::optional<std::string> written_over(const EncodeOptions& o, const FrameSourc
   return std::nullopt;
 }
 
-int run(const EncodeOptions& o) {
+int run(EncodeOptions& o) {
   if (o.is_live()) return run_live(o);
   auto source = open_frame_source(o.input);
   if (!source) return complain(source.error().message);
@@ -349,6 +349,7 @@ int run(const EncodeOptions& o) {
   for (const std::string& note : notes) {
     if (!o.quiet) complain(name + ": " + note);
   }
+  if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (o.dry_run) return run_dry(o, **source);
   auto report = encode_to_files(o, **source);
   if (!report) return complain(report.error().message);

@@ -59,4 +59,20 @@ Bytes write_metadata(std::string_view json) {
   return payload;
 }
 
+// 6.15 clip_table( )
+Bytes write_clip_table(std::span<const Clip> clips) {
+  BitWriter w;
+  w.ue(static_cast<std::uint32_t>(clips.size()) - 1);
+  std::uint32_t end = 0;
+  for (const Clip& clip : clips) {
+    w.se(static_cast<std::int32_t>(clip.first_frame) - static_cast<std::int32_t>(end));
+    w.ue(clip.num_frames - 1);
+    w.u(8, static_cast<std::uint32_t>(clip.name.size()) - 1);
+    for (const char c : clip.name) w.u(8, static_cast<unsigned char>(c));
+    end = clip.first_frame + clip.num_frames;
+  }
+  w.byte_alignment();
+  return w.take();
+}
+
 }  // namespace rlpc

@@ -1,11 +1,12 @@
-// 6.3, 6.6 and 6.10, writing side. Together with common/syntax/write_units.h, these are all
-// units except GOFs, slices and connectivity.
+// 6.3, 6.6, 6.10 and 6.15, writing side. Together with common/syntax/write_units.h, these are
+// all units except GOFs, slices and connectivity.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "common/mesh/clip.h"
 #include "common/syntax/sequence_header.h"
 #include "common/syntax/write_units.h"
 
@@ -15,5 +16,7 @@ namespace rlpc {
 Bytes write_sequence_header(const SequenceHeader& header);
 Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex);
 Bytes write_metadata(std::string_view json);
+// At least one clip, and at most kMaxClips.
+Bytes write_clip_table(std::span<const Clip> clips);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ endforeach()
 
 if(TARGET rlpc)
   list(APPEND public_headers
-       common/c_api/rlpc_status.h decoder/c_api/rlpc_decode.h encoder/c_api/rlpc_encode.h)
+       common/c_api/rlpc_clip.h common/c_api/rlpc_status.h decoder/c_api/rlpc_decode.h encoder/c_api/rlpc_encode.h)
   add_library(rlpc::rlpc ALIAS rlpc)
   install(TARGETS rlpc EXPORT rlpcTargets
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}

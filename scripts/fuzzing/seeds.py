@@ -14,14 +14,14 @@ STREAM_HEADER_BYTES = 10
 UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
 SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE, MODEL = 1, 2, 3, 4, 6, 7
-GOF_INDEX, GOF_HASH, METADATA = 129, 130, 131
+GOF_INDEX, GOF_HASH, METADATA, CLIP_TABLE = 129, 130, 131, 138
 # In the order of decoder/fuzz/payload_fuzz.cpp.
-SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA]
+SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA, CLIP_TABLE]
 
 # Settings that give different streams of a small animation.
 BASELINE = ["--profile", "baseline"]
 SETTINGS = [
-    ["--kg", "1", "--keep-order", "--hash", "frame"],
+    ["--kg", "1", "--keep-order", "--hash", "frame", "--clip", "Run:0-1", "--clip", "B:0"],
     [*BASELINE, "--kg", "1", "--metadata", "METADATA", "--keep-order"],
     [*BASELINE, "--kg", "0.3", "--gof", "4", "--hash", "frame"],
     [*BASELINE, "--max-error", "0.01", "--frame", "world", "--gof", "3", "--hash", "none"],
@@ -268,7 +268,7 @@ def payload_seeds(found, counts):
             gof_frames = bits.ue() + 1
         elif code in SMALL_PAYLOADS:
             count = {VERTEX_ORDER: counts["vertices"], GOF_HASH: gof_frames,
-                     GOF_INDEX: counts["frames"]}.get(code, 1)
+                     GOF_INDEX: counts["frames"], CLIP_TABLE: counts["frames"]}.get(code, 1)
             yield struct.pack("<BH", SMALL_PAYLOADS.index(code), (count - 1) & 65535) + payload
 
 

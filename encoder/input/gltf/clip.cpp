@@ -47,6 +47,7 @@ class ClipReader {
 
   GltfClip read() {
     GltfClip clip;
+    clip.name = animation_.name;
     for (std::size_t i = 0; i < animation_.channels.size() && !errors_; ++i) {
       const GltfAnimation::Channel& channel = animation_.channels[i];
       check_target(channel);

@@ -18,6 +18,7 @@ struct GltfClip {
     GltfTrack track;
   };
 
+  std::string name;
   std::vector<Channel> channels;
   double start = 0.0;  // first time of all tracks, seconds
   double end = 0.0;    // last time of all tracks

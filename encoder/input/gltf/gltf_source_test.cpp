@@ -165,6 +165,23 @@ TEST_F(GltfSourceTest, ChoosesAnimations) {
   EXPECT_EQ(first_vertex, (std::vector<float>{0, 7, 0, 0, 2, 0, 0, 7}));
 }
 
+TEST_F(GltfSourceTest, NamesTheClipsThatItJoins) {
+  GltfBuilder builder = moving_triangle();
+  for (const char* const name : {"L\u00e4ufe\n2", ""}) {
+    builder.push("animations", {{"name", name}});
+    const std::size_t input = builder.add("SCALAR", std::vector<float>{5, 6});
+    const std::size_t output = builder.add("VEC3", std::vector<float>{0, 7, 0, 0, 7, 0});
+    builder.add_channel(0, "translation", input, output, "STEP");
+  }
+  const FrameRate one{1, 1};
+  for (const bool weld : {false, true}) {
+    EXPECT_EQ(
+        open(builder, "all", weld, one)->clips(),
+        (std::vector<Clip>{{"Move", 0, 3}, {"L\u00e4ufe 2", 3, 2}, {"animation 2", 5, 2}}));
+  }
+  EXPECT_TRUE(open(builder, "Move", false, one)->clips().empty());
+}
+
 TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
   GltfBuilder builder = one_triangle();
   builder.push("animations", Json::object());
@@ -200,7 +217,7 @@ TEST_F(GltfSourceTest, IgnoresAnimationByExtensionsWithANote) {
                         {"extensions", {{"KHR_animation_pointer", {{"pointer", "/x"}}}}}}}});
   const auto source = open(builder);
   EXPECT_EQ(source->num_frames(), 61U);
-  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped: names of animations",
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped: name of the animation",
                                                        "dropped 1 extension channel"}));
 }
 
@@ -213,10 +230,10 @@ TEST_F(GltfSourceTest, NotesOtherOmissions) {
   ASSERT_EQ(source->notes().size(), 3U);
   EXPECT_EQ(source->notes()[0],
             "EXT_mesh_gpu_instancing is ignored: the animation may show more or less");
-  EXPECT_EQ(source->notes()[1], "dropped: names of animations");
+  EXPECT_EQ(source->notes()[1], "dropped: name of the animation");
   EXPECT_TRUE(source->notes()[2].starts_with("reading the first of 2 animations ("));
   EXPECT_NE(source->notes()[2].find("\"Run\""), std::string::npos);
-  EXPECT_EQ(open(builder, "all")->notes().size(), 2U);
+  EXPECT_EQ(open(builder, "all")->notes().size(), 1U);
 }
 
 TEST_F(GltfSourceTest, ListsWhatItDrops) {

@@ -27,6 +27,12 @@ class ModelReader {
     for (const std::string& extension : document_.extensions_left_out) {
       model_.notes.push_back(extension + " is ignored: the animation may show more or less");
     }
+    const std::vector<std::uint32_t> chosen = choose_animations(document_, animation, errors_);
+    if (errors_) return {};
+    // Several are named in the clip table.
+    if (chosen.size() == 1 && !document_.animations[chosen[0]].name.empty()) {
+      document_.dropped.emplace_back("name of the animation");
+    }
     if (!document_.dropped.empty()) {
       std::string list;
       for (const std::string& what : document_.dropped)
@@ -38,10 +44,9 @@ class ModelReader {
                              " animations (" + gltf_animation_names(document_) +
                              "); --animation chooses another");
     }
-    for (const std::uint32_t chosen : choose_animations(document_, animation, errors_)) {
-      if (errors_) return {};
-      model_.clips.push_back(read_gltf_clip(document_, chosen, values_, errors_));
-      note(document_.animations[chosen].num_unknown, "extension channel");
+    for (const std::uint32_t number : chosen) {
+      model_.clips.push_back(read_gltf_clip(document_, number, values_, errors_));
+      note(document_.animations[number].num_unknown, "extension channel");
     }
     read_skins();
     if (errors_) return {};

@@ -56,6 +56,30 @@ std::vector<Triangle> triangles_of(const GltfModel& model, const GltfPose& pose)
   return triangles;
 }
 
+// What a clip table calls an animation.
+std::string clip_name(const std::string& name, std::size_t number) {
+  std::string text;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t good = find_clip_name_error(name.substr(at));
+    text += name.substr(at, good);
+    at += good;
+    if (at < name.size()) text += ' ', ++at;
+  }
+  if (text.size() > kMaxClipNameBytes) {
+    text.resize(kMaxClipNameBytes);
+    text.resize(find_clip_name_error(text));
+  }
+  return text.empty() ? "animation " + to_string(number) : text;
+}
+
+std::vector<Clip> clips_of(const GltfModel& model, const std::vector<std::uint32_t>& first) {
+  std::vector<Clip> clips;
+  for (std::size_t i = 0; i < model.clips.size(); ++i) {
+    clips.push_back({clip_name(model.clips[i].name, i), first[i], first[i + 1] - first[i]});
+  }
+  return clips;
+}
+
 class GltfSource : public FrameSource {
  public:
   GltfSource(Shape shape, std::string path, GltfModel model,
@@ -133,6 +157,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
       triangles_of(*model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
   shape.notes = model->notes;
   shape.files = model->files;
+  if (model->clips.size() > 1) shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(

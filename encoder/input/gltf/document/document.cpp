@@ -80,11 +80,7 @@ std::vector<std::string> dropped(const GltfValue& root) {
     if (root[name].size() > 0) found.emplace_back(what);
   }
   if (root["extensions"]["KHR_lights_punctual"].exists()) found.emplace_back("lights");
-  const bool nodes = any_named(root["nodes"]);
-  const bool animations = any_named(root["animations"]);
-  if (nodes)
-    found.emplace_back(animations ? "names of nodes and animations" : "names of nodes");
-  if (animations && !nodes) found.emplace_back("names of animations");
+  if (any_named(root["nodes"])) found.emplace_back("names of nodes");
   return found;
 }
 

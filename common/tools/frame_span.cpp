@@ -1,4 +1,4 @@
-#include "decoder/tools/frame_span.h"
+#include "common/tools/frame_span.h"
 
 #include <charconv>
 #include <system_error>

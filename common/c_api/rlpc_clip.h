@@ -1,0 +1,22 @@
+// RLPC in C: clips, named parts of a sequence, of rlpc_decode.h and rlpc_encode.h. C99 and C++.
+#pragma once
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RLPC_MAX_CLIPS 4096
+
+// NOLINTBEGIN(readability-identifier-naming): C naming.
+typedef struct rlpc_clip {
+  const char* name;  // UTF-8 without control characters, 1 to 256 bytes
+  uint32_t first_frame;
+  uint32_t num_frames;  // at least 1
+} rlpc_clip;
+// NOLINTEND(readability-identifier-naming)
+
+#ifdef __cplusplus
+}
+#endif
