@@ -36,8 +36,8 @@ class FrameEncoding {
  public:
   // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
   // earlier ones on the grid are not coded again; those that are nearly equal to one are
-  // predicted from it if that is cheaper. choice: that the settings
-  // follow. first: unless null, the first frame in an order of its own.
+  // predicted from it if that is cheaper. choice: what the settings were made for. first:
+  // unless null, the first frame in an order of its own.
   FrameEncoding(const CodedMesh& mesh, const SequenceHeader& header, const GofFrames& frames,
                 const FrameSettings& settings, const UnitLimits& limits,
                 const FrameChoice& choice, std::shared_ptr<const CodedRest> first = nullptr);
@@ -47,8 +47,8 @@ class FrameEncoding {
   const FrameChoice& choice() const { return choice_; }
   // Codes frames until the first `count` in coding order are coded.
   void code_to(std::uint32_t count);
-  // Expected of the GOF, from the frames coded so far, at least two unless it has but one: bits
-  // at equal error, or bits if they are lossless.
+  // Of the whole GOF, as the frames coded so far make it likely: bits at equal error, or bits
+  // if it is lossless. At least two frames must be coded, unless there is only one.
   double cost() const;
   // Of the frames coded so far: over all values, squared grid units.
   double squared_error() const { return squared_error_; }

@@ -30,13 +30,31 @@ std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uin
       std::min<std::size_t>(num_frames, 1 + std::max<std::size_t>(periods, 1) * period));
 }
 
-// What makes a squared error about another, as a factor of the steps; 1 if it is near enough.
+// The factor of the steps that about leads to the wanted squared error; 1 if it is near enough.
 double scale_to(double wanted, double squared_error) {
-  // fixed: below this, the rest of the difference is worth less than a percent of the bits.
+  // fixed: what is left of the difference is worth at most 1 % of the bits.
   constexpr double kNear = 1.05;
   if (wanted <= 0.0 || squared_error <= 0.0) return 1.0;
   const double ratio = wanted / squared_error;
   return ratio < kNear && ratio > 1.0 / kNear ? 1.0 : std::sqrt(ratio);
+}
+
+using Encodings = std::vector<std::unique_ptr<FrameEncoding>>;
+
+void code_all_to(Encodings& encodings, std::uint32_t count) {
+  for_each(encodings.size(), [&](std::size_t i) { encodings[i]->code_to(count); });
+}
+
+// Starts all anew but those that have about the error of the first.
+void restart_at_equal_error(Encodings& encodings, const StartEncoding& start) {
+  const double wanted = encodings.front()->squared_error();
+  for (auto& encoding : encodings) {
+    FrameChoice choice = encoding->choice();
+    const double scale = scale_to(wanted, encoding->squared_error());
+    if (scale == 1.0) continue;
+    choice.step_scale *= scale;
+    encoding = start(choice);
+  }
 }
 
 }  // namespace
@@ -52,7 +70,7 @@ std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_o
     patterns.push_back({});
     patterns.push_back({FramePattern::kFirst, 1, {}, 1});
   }
-  std::uint32_t shorter = 1;  // period; a GOF that has but one of it is the same with a longer
+  std::uint32_t shorter = 1;  // a GOF of one such period has the same order with any longer one
   for (const int log2 : kPeriodsLog2) {
     const FramePattern pattern = dyadic(log2);
     const bool may_win = num_frames > shorter + 1 && settings.target.kind != Target::kLossless;
@@ -88,27 +106,19 @@ std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& pat
 
 std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
                                         std::uint32_t num_frames, const StartEncoding& start) {
-  std::vector<std::unique_ptr<FrameEncoding>> left;
+  Encodings left;
   std::uint32_t period = 1;
   for (const FrameChoice& choice : choices) {
     left.push_back(start(choice));
     period = std::max(period, choice.pattern.period());
   }
-  bool is_equal_error = false;
-  for (std::size_t part = std::bit_ceil(left.size()); part > 0 && left.size() > 1; part /= 2) {
+  if (left.size() == 1) return std::move(left.front());
+  std::size_t part = std::bit_ceil(left.size());
+  code_all_to(left, whole_periods(num_frames, part, period));
+  restart_at_equal_error(left, start);
+  for (; left.size() > 1; part /= 2) {
     const std::uint32_t end = whole_periods(num_frames, part, period);
-    for_each(left.size(), [&](std::size_t i) { left[i]->code_to(end); });
-    if (!std::exchange(is_equal_error, true)) {
-      const double wanted = left.front()->squared_error();
-      for (auto& encoding : left) {
-        FrameChoice choice = encoding->choice();
-        const double scale = scale_to(wanted, encoding->squared_error());
-        if (scale == 1.0) continue;
-        choice.step_scale *= scale;
-        encoding = start(choice);
-      }
-      for_each(left.size(), [&](std::size_t i) { left[i]->code_to(end); });
-    }
+    code_all_to(left, end);
     std::stable_sort(left.begin(), left.end(),
                      [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
     const std::size_t half = std::max<std::size_t>((left.size() + 1) / 2, 2);

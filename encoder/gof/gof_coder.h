@@ -44,7 +44,7 @@ struct KeptModel;
 struct FrameChoice {
   FramePattern pattern;
   std::uint32_t num_patches = 0;
-  double step_scale = 1.0;  // of its steps, for the error that other choices have
+  double step_scale = 1.0;  // of the steps, so that all choices have about one error
 
   bool operator==(const FrameChoice&) const = default;
 };
