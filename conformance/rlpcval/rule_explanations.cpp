@@ -54,10 +54,11 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Each frame was made a clip; or the payload is damaged.",
      "Write at most 4096 clips into the table."},
     {"R-CLP-02", "7.15", "A clip has frames that the sequence does not have.",
-     "clip_gap was counted from the start of the clip before, not from its end; or frames were "
-     "left out of the stream, but the table was not changed.",
-     "Count clip_gap from the frame after the clip before, and give each clip frames of the "
-     "sequence."},
+     "clip_gap was counted from the start of the clip before, not from its end; or the stream "
+     "was cut, but its clip table was not changed.",
+     "Count clip_gap from the end of the clip before, and clip_num_frames_minus1 up to the "
+     "last "
+     "frame of the sequence."},
     {"R-CLP-03", "7.15", "The name of a clip is not UTF-8 without control characters.",
      "A name in another encoding, or with a terminating zero byte or a line break.",
      "Write names in UTF-8, without a zero at the end."},
@@ -145,8 +146,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Frames of other temporal layers were counted; or in an open-ended stream, a unit goes on "
      "where the temporal layer changes.",
      "Count the frames of one temporal layer, up to the last of the GOF; in an open-ended "
-     "stream, "
-     "begin a new unit where the temporal layer changes."},
+     "stream, begin a new unit where the temporal layer changes."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",
