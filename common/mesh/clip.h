@@ -12,10 +12,11 @@ struct Clip {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;  // at least 1
 
+  std::uint32_t last_frame() const { return first_frame + num_frames - 1; }
   bool operator==(const Clip&) const = default;
 };
 
-inline constexpr std::uint32_t kMaxClips = 4096;
+inline constexpr std::uint32_t kMaxClips = 4096;  // in a clip table (R-CLP-01)
 inline constexpr std::size_t kMaxClipNameBytes = 256;
 
 // Offset of the first byte that makes a name of a clip wrong: it is not well-formed UTF-8

@@ -200,35 +200,6 @@ class RoundTrip(ToolsTest):
         info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
         self.assertEqual(info["metadata"], {"title": "Walk", "take": 3})
 
-    def test_clips_are_named_and_found(self):
-        clips = ["--clip", "Run:0-19", "--clip", "L\u00e4ufe: 2:18-18"]
-        report = self.encode(self.path("a.rlpc"), "--kg", 1, *clips)
-        self.assertGreater(report["bits"]["metadata"], 0)
-        info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
-        self.assertEqual(info["clips"],
-                         [{"name": "Run", "first_frame": 0, "num_frames": 20},
-                          {"name": "L\u00e4ufe: 2", "first_frame": 18, "num_frames": 1}])
-        text = self.ok("rlpcinfo", self.path("a.rlpc")).out
-        self.assertRegex(text.decode(), r"\n  clip .* frames\n  Run .* 0-19\n")
-        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("run.rlpd"), "--clip", "Run")
-        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("part.rlpd"), "--frames", "0-19")
-        self.assertEqual(self.path("run.rlpd").read_bytes(), self.path("part.rlpd").read_bytes())
-
-    def test_wrong_clips_are_refused(self):
-        for wrong in ("Run", "Run:", "Run:3-", "Run:5-3", "Run:x", ":0-3"):
-            self.fails(64, ["clip"], "rlpcenc", INPUTS / "elephant.obj", "--points",
-                       INPUTS / "elephant.pc2", "-o", self.path("a.rlpc"), "--clip", wrong)
-        self.fails(1, ["clip `Run` has frames beyond the last, 59"], "rlpcenc",
-                   INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
-                   self.path("a.rlpc"), "--preset", "fast", "--clip", "Run:0-60")
-        self.assertEqual(self.files(), [])
-        self.encode(self.path("a.rlpc"), "--kg", 2)
-        self.fails(64, ["names no clips"], "rlpcdec", self.path("a.rlpc"), "-o",
-                   self.path("b.pc2"), "--clip", "Run")
-        self.encode(self.path("b.rlpc"), "--kg", 2, "--clip", "Walk:0-9")
-        self.fails(64, ["expected one of `Walk`"], "rlpcdec", self.path("b.rlpc"), "-o",
-                   self.path("b.pc2"), "--clip", "Run")
-
     def test_nothing_is_left_beside_the_output(self):
         self.encode(self.path("a.rlpc"), "--kg", 1, "--order-map", self.path("a.order"))
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.pc2"))

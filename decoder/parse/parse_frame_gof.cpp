@@ -198,7 +198,10 @@ void FrameGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
     is_cut_ = true;
     return;
   }
-  if (!may_follow(unit, places)) r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+  if (!may_follow(unit, places)) {
+    r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+    return;
+  }
   std::vector<std::uint32_t> coded;
   for (const std::uint32_t place : places) {
     if (frame_start(r, unit, place)) coded.push_back(place);

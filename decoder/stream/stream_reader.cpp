@@ -112,20 +112,28 @@ Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
 // Units that a decoder may skip: checks their CRC, and keeps metadata and clips.
 Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
-  const bool is_clips = unit.type() == UnitType::kClipTable;
-  if (unit.type() != UnitType::kMetadata && !is_clips) return units_.skip(unit);
+  if (unit.type() == UnitType::kMetadata) return read_metadata(unit);
+  if (unit.type() == UnitType::kClipTable) return read_clip_table(unit);
+  return units_.skip(unit);
+}
+
+Result<bool> StreamReader::read_metadata(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  if (is_clips) {
-    auto clips = parse_clip_table(r, context_.header.num_frames);
-    if (!clips) return clips.error();
-    clips_ = std::move(*clips);
-    return true;
-  }
   auto json = parse_metadata(r);
   if (!json) return json.error();
   metadata_ = std::move(*json);
+  return true;
+}
+
+Result<bool> StreamReader::read_clip_table(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto clips = parse_clip_table(r, context_.header.num_frames);
+  if (!clips) return clips.error();
+  clips_ = std::move(*clips);
   return true;
 }
 

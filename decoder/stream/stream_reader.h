@@ -78,6 +78,8 @@ class StreamReader {
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
   Result<bool> read_ancillary(const UnitHeader& unit);
+  Result<bool> read_metadata(const UnitHeader& unit);
+  Result<bool> read_clip_table(const UnitHeader& unit);
   Result<bool> check_limits();
   Result<bool> check_end(const UnitHeader& unit);
   Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);

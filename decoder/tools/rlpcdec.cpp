@@ -25,6 +25,7 @@
 #include "decoder/output/frame_sink.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/tools/chosen_frames.h"
 #include "decoder/tools/concealed_frames.h"
 #include "decoder/tools/conformance_verbs.h"
 #include "decoder/tools/exit_code.h"
@@ -151,8 +152,8 @@ std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
     return ", hashes of " + std::to_string(frames.compared) +
            " of them agree; the others have none";
   }
-  return !o.is_part() ? ", which have no hashes"
-                      : ", not verified: no hash covers these frames alone";
+  return o.is_part() ? ", not verified: no hash covers these frames alone"
+                     : ", which have no hashes";
 }
 
 bool is_coarse(const Options& o) { return o.decoder.coarse_layers != rlpc::SliceCut::kAll; }
@@ -240,30 +241,6 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
   return std::nullopt;
 }
 
-// The frames that --frames or --clip names; none: it names none.
-std::optional<rlpc::FrameSpan> span_of(const Options& o, const rlpc::Decoder& decoder,
-                                       std::uint32_t num_frames) {
-  if (o.clip.empty()) return rlpc::parse_frame_span(o.frames, num_frames);
-  const auto& clips = decoder.clips();
-  const auto clip = std::find_if(clips.begin(), clips.end(),
-                                 [&](const rlpc::Clip& c) { return c.name == o.clip; });
-  if (clip == clips.end() || num_frames - clip->first_frame < clip->num_frames) {
-    return std::nullopt;
-  }
-  return rlpc::FrameSpan{clip->first_frame, clip->first_frame + clip->num_frames - 1};
-}
-
-std::string no_such_clip(const Options& o, const std::vector<rlpc::Clip>& clips) {
-  if (clips.empty()) return "--clip: the stream names no clips; --frames takes frames";
-  constexpr std::size_t kMost = 20;
-  std::string names;
-  for (std::size_t i = 0; i < clips.size() && i < kMost; ++i) {
-    names += (i > 0 ? ", `" : "`") + rlpc::printable(clips[i].name) + "`";
-  }
-  return "--clip: no clip `" + o.clip + "`; expected one of " + names +
-         (clips.size() > kMost ? ", ..." : "");
-}
-
 int decode(const Options& o) {
   auto source = rlpc::file_or_standard_input(o.input, o.decoder.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
@@ -284,14 +261,8 @@ int decode(const Options& o) {
             "not known. Write .rlpd, OBJ or PLY files, and all frames",
         rlpc::kExitInvalid);
   }
-  const auto span = span_of(o, *decoder, *num_frames);
-  if (!span) {
-    return complain(o.clip.empty()
-                        ? "--frames: expected A-B within 0-" + std::to_string(*num_frames - 1) +
-                              ", got `" + o.frames + "`"
-                        : no_such_clip(o, decoder->clips()),
-                    rlpc::kExitUsage);
-  }
+  const auto span = rlpc::choose_frames(o.frames, o.clip, decoder->clips(), *num_frames);
+  if (!span) return complain(span.error(), rlpc::kExitUsage);
   const std::uint32_t count = span->last - span->first + 1;
   std::unique_ptr<rlpc::FrameSink> sink;
   if (!o.verify_only) {

@@ -350,25 +350,25 @@ void print_json(const StreamInfo& s) {
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
 }
 
+std::string frames_text(const Clip& clip) {
+  return std::to_string(clip.first_frame) + "-" + std::to_string(clip.last_frame());
+}
+
 void print_clips(const std::vector<Clip>& clips) {
   if (clips.empty()) return;
   std::size_t width = 4;
   for (const Clip& clip : clips) width = std::max(width, printable(clip.name).size());
   std::printf("\n  %-*s %16s\n", static_cast<int>(width), "clip", "frames");
   for (const Clip& clip : clips) {
-    const std::string frames = std::to_string(clip.first_frame) + "-" +
-                               std::to_string(clip.first_frame + clip.num_frames - 1);
     std::printf("  %-*s %16s\n", static_cast<int>(width), printable(clip.name).c_str(),
-                frames.c_str());
+                frames_text(clip).c_str());
   }
 }
 
 std::string clips_text(const std::vector<Clip>& clips) {
   std::string text;
   for (const Clip& clip : clips) {
-    text += (text.empty() ? "" : ", ") + printable(clip.name) + " " +
-            std::to_string(clip.first_frame) + "-" +
-            std::to_string(clip.first_frame + clip.num_frames - 1);
+    text += (text.empty() ? "" : ", ") + printable(clip.name) + " " + frames_text(clip);
   }
   return text;
 }

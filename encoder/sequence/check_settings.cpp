@@ -239,8 +239,8 @@ std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t
       return InputError{"the name of a clip has 1 to " + std::to_string(kMaxClipNameBytes) +
                         " bytes of UTF-8 without control characters (--clip)"};
     }
-    if (clip.num_frames == 0 || clip.first_frame >= num_frames ||
-        clip.num_frames > num_frames - clip.first_frame) {
+    if (clip.num_frames == 0) return InputError{"clip `" + clip.name + "` has no frames"};
+    if (clip.first_frame >= num_frames || clip.num_frames > num_frames - clip.first_frame) {
       return InputError{"clip `" + clip.name + "` has frames beyond the last, " +
                         std::to_string(num_frames - 1) + " (--clip)"};
     }
