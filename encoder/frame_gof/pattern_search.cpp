@@ -32,7 +32,7 @@ std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uin
 
 // The factor of the steps that about leads to the wanted squared error; 1 if it is near enough.
 double scale_to(double wanted, double squared_error) {
-  // fixed: what is left of the difference is worth at most 1 % of the bits.
+  // fixed: differences half and twice as large give the same streams of six animations.
   constexpr double kNear = 1.05;
   if (wanted <= 0.0 || squared_error <= 0.0) return 1.0;
   const double ratio = wanted / squared_error;
