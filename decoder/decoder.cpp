@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/attributes/recon/attribute_recon.h"
 #include "common/bitstream/crc32.h"
 #include "common/parallel/for_each.h"
+#include "decoder/parse/attributes/parse_attributes.h"
 #include "decoder/recon/coarse_output.h"
 #include "decoder/recon/frame_band.h"
 #include "decoder/recon/hash_check.h"
@@ -44,6 +46,7 @@ class Decoder::Impl {
   Result<bool> seek(std::uint32_t frame);
   Result<std::optional<std::uint32_t>> skip_damage();
   Result<std::uint32_t> parse_rest();
+  Result<std::vector<AttributeSet>> attributes();
 
   const StreamReader& stream() const { return stream_; }
   const std::optional<CoarseOutput>& coarse() const { return coarse_; }
@@ -67,6 +70,9 @@ class Decoder::Impl {
   Result<bool> load_gof();
   Result<PreparedGof> find_gof(const UnitHeader& unit);
   Result<bool> is_live(const UnitHeader& unit);
+  // Of the whole mesh, uncut, in decoded order; then goes on where it was.
+  Result<std::vector<std::int32_t>> first_frame();
+  Result<std::vector<std::int32_t>> decode_first_frame();
   // False after the last frame of the GOF.
   Result<bool> decode_live_frame(std::span<std::int32_t> positions);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
@@ -298,6 +304,82 @@ Result<std::uint32_t> Decoder::Impl::parse_rest() {
   return stream_.num_gofs();
 }
 
+Result<std::vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
+  if (auto ok = stream_.seek(0); !ok) return ok.error();
+  const auto unit = stream_.find_gof();
+  if (!unit) return unit.error();
+  std::vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
+  const auto live = is_live(**unit);
+  if (!live) return live.error();
+  if (*live) {
+    LiveGof gof(stream_, {});
+    if (auto ok = gof.begin(**unit); !ok) return ok.error();
+    if (auto ok = gof.next(); !ok) return ok.error();
+    positions.assign(gof.positions().begin(), gof.positions().end());
+    return positions;
+  }
+  auto access_unit = stream_.read(**unit);
+  if (!access_unit) return access_unit.error();
+  make_recon(*access_unit, stream_.context(), models_)->frame(0, positions);
+  return positions;
+}
+
+Result<std::vector<std::int32_t>> Decoder::Impl::first_frame() {
+  const ThreadPool::Use use(threads_);
+  const SliceCut cut = stream_.access_units().cut();
+  const std::uint32_t position = position_;
+  gof_.reset();
+  live_.reset();
+  if (prefetch_) prefetch_->clear();
+  stream_.access_units().set_cut({});
+  auto positions = decode_first_frame();
+  stream_.access_units().set_cut(cut);
+  // At the end, the last frame has been decoded.
+  const std::uint32_t last = num_frames().value_or(kMaxFrames) - 1;
+  if (auto ok = seek(std::min(position, last)); !ok && positions) return ok.error();
+  position_ = position;
+  return positions;
+}
+
+Result<std::vector<AttributeSet>> Decoder::Impl::attributes() {
+  const auto& unit = stream_.attribute_unit();
+  if (!unit || coarse_) return std::vector<AttributeSet>();
+  const auto payload = stream_.units().payload(*unit);
+  if (!payload) return payload.error();
+  BitReader r = stream_.units().bits(*unit, *payload);
+  // Triangles in decoded order.
+  std::vector<Triangle> triangles(stream_.triangles().begin(), stream_.triangles().end());
+  const auto order = stream_.vertex_order();
+  std::vector<std::uint32_t> decoded(order.size());
+  for (std::uint32_t v = 0; v < order.size(); ++v) decoded[order[v]] = v;
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) v = order.empty() ? v : decoded[v];
+  }
+  const std::uint32_t num_vertices = stream_.header().num_vertices;
+  const auto coded =
+      parse_attributes(r, num_vertices, triangles, stream_.access_units().memory_limit());
+  if (!coded) return coded.error();
+  std::vector<std::int32_t> positions;
+  if (coded->uses_positions()) {
+    auto first = first_frame();
+    if (!first) return first.error();
+    positions = std::move(*first);
+    if (crc32_of_positions(positions) != coded->first_frame_crc) {
+      return Error{Errc::kInvalid, "R-ATT-08", "first_frame_crc", unit->payload_offset() * 8};
+    }
+  }
+  auto sets = recon_attributes(*coded, num_vertices, triangles, positions);
+  for (AttributeSet& set : sets) {
+    if (set.header.domain != AttributeDomain::kVertex || order.empty()) continue;
+    const std::vector<std::uint32_t> values = set.values;
+    const std::size_t n = set.header.num_components;
+    for (std::size_t v = 0; v < order.size(); ++v) {
+      for (std::size_t c = 0; c < n; ++c) set.values[order[v] * n + c] = values[v * n + c];
+    }
+  }
+  return sets;
+}
+
 Result<Decoder> Decoder::open(std::unique_ptr<ByteSource> source,
                               const DecoderOptions& options) {
   assert(options.coarse_layers > 0);
@@ -325,6 +407,8 @@ std::span<const std::uint32_t> Decoder::coarse_vertices() const {
 }
 std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }
+bool Decoder::has_attributes() const { return impl_->stream().attribute_unit().has_value(); }
+Result<std::vector<AttributeSet>> Decoder::attributes() { return impl_->attributes(); }
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);
 }

@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/bitstream/trace.h"
 #include "common/io/float_position.h"
 #include "common/mesh/clip.h"
@@ -101,6 +102,14 @@ class Decoder {
   const std::string& metadata() const;
   // Those of the last clip table so far. Names may have any bytes.
   const std::vector<Clip>& clips() const;
+
+  // Whether the stream has attributes.
+  bool has_attributes() const;
+  // Decodes the attributes (Annex F), from the first frame, which is decoded for it even if
+  // the options cut it; position() stays. Vertices, triangles and corners are those of frames
+  // and triangles(); not for coarse meshes. Empty if the stream has none. Errors leave the
+  // frames decodable. With forward_only, to be called before the first frame.
+  Result<std::vector<AttributeSet>> attributes();
 
   // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
   // after the last frame, once the rest of the stream has been checked.

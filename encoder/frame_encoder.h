@@ -51,6 +51,7 @@ struct FrameFormat {
   std::uint32_t num_frames = 0;
   FrameRate frame_rate;
   std::vector<Triangle> triangles;  // indices below num_vertices; may be empty
+  SourceAttributes attributes{};    // of the triangles; their indices are not checked
   // Bounding box of all frames, in units, within 2^100. A box that is much too large makes the
   // grid coarser.
   std::array<float, 3> box_min{};

@@ -25,6 +25,8 @@
 #include "common/mesh/mesh.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
+#include "encoder/attributes/attribute_settings.h"
+#include "encoder/attributes/encode_attributes.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/metrics/metrics.h"
 
@@ -186,6 +188,8 @@ struct EncoderSettings {
   // Names of parts of the sequence, up to kMaxClips; empty: no clip table. Not checked against
   // the number of frames if that is not known beforehand.
   std::vector<Clip> clips;
+  // Of the attributes that the source has.
+  AttributeSettings attributes;
   // Encodings that may need more memory fail before they start. The estimate is for animations
   // that compress badly, and includes the memory held by the source.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
@@ -198,6 +202,10 @@ struct EncoderSettings {
   std::uint32_t temporal_layers() const {
     return usable_kinds() == KindChoice::kFrames ? frames.temporal_layers
                                                  : main.temporal_layers;
+  }
+  // Whether cut points were asked for at which a cut changes the first frame.
+  bool has_detail_layers() const {
+    return main.component_groups > 1 || main.layer_groups > 1 || frames.layer_groups > 1;
   }
   // The kinds of GOF that the target leaves.
   KindChoice usable_kinds() const {
@@ -213,6 +221,7 @@ struct PartBits {
   std::uint64_t gofs = 0;
   std::uint64_t hashes = 0;
   std::uint64_t metadata = 0;  // and clip table
+  std::uint64_t attributes = 0;
 };
 
 // A stream without the slices of its higher temporal layers, as rlpcinfo --extract writes it.
@@ -242,6 +251,7 @@ struct EncodeReport {
   std::uint32_t trials = 0;                 // encodings during the search for the target
   bool target_met = true;                   // the target is not exceeded
   std::vector<PatternCount> patterns;       // of GOFs of frames, in order of appearance
+  std::vector<AttributeReport> attributes;  // in the order of the stream
   std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };

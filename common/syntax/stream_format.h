@@ -32,6 +32,7 @@ enum class UnitType : std::uint8_t {
   kGofIndex = 0x81,
   kGofHash = 0x82,
   kMetadata = 0x83,
+  kAttributes = 0x88,
   kClipTable = 0x8A,
 };
 
@@ -51,7 +52,8 @@ constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
 // Ancillary units that a decoder of this version may read.
 constexpr bool is_known_ancillary(UnitType type) {
   return type == UnitType::kGofIndex || type == UnitType::kGofHash ||
-         type == UnitType::kMetadata || type == UnitType::kClipTable;
+         type == UnitType::kMetadata || type == UnitType::kClipTable ||
+         type == UnitType::kAttributes;
 }
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;

@@ -33,6 +33,7 @@ class _Recorder:
         self.ns = spec_program.run(code, {
             "StreamBytes": data, "require": self._require, "supported": self._require,
             "inflates_to": lambda first, end, size: 1, "output_bytes": lambda data: None,
+            "output_attributes": lambda data: None,
             "write_element": self._element})
         self.ns["DecodeGof"] = lambda: None
         self._instances = []

@@ -143,6 +143,7 @@ class StreamWriter:
         self.ns = spec_program.run(code, {
             "StreamBytes": self.data, "require": self._require, "supported": self._support,
             "inflates_to": lambda first, end, size: 1, "output_bytes": lambda data: None,
+            "output_attributes": lambda data: None,
             "write_element": self._element})
         self._read = {name: self.ns[name] for name in
                       ("ae", "bypass", "byte_alignment", "CheckOverrun", "EndSection")}

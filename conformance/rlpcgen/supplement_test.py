@@ -55,7 +55,8 @@ class Decoder(specdec.Decoder):
             name: (other.get(name, tree), clause) for name, (tree, clause) in functions.items()})
         self.variables = spec_program.run(code, {
             "StreamBytes": data, "require": self._unless, "supported": self._unless,
-            "inflates_to": self._inflates_to, "output_bytes": lambda output: None})
+            "inflates_to": self._inflates_to, "output_bytes": lambda output: None,
+            "output_attributes": lambda output: None})
 
     def _unless(self, condition, rule):
         if not condition and rule != self._rule:

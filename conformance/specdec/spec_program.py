@@ -6,7 +6,7 @@ import re
 
 _HEADING = re.compile(r"#{1,6}\s+(?:Annex\s+)?((?:\d+|[A-Z])(?:\.\d+)*)\b")
 _GIVEN_VARIABLES = ("StreamBytes",)
-_GIVEN_FUNCTIONS = ("require", "supported", "inflates_to", "output_bytes")
+_GIVEN_FUNCTIONS = ("require", "supported", "inflates_to", "output_bytes", "output_attributes")
 _PYTHON_FUNCTIONS = {"len": len, "range": range}
 _BIT_DESCRIPTORS = ("u", "ue", "se")
 _INLINED = "__"  # within the names of local variables of inlined functions

@@ -3,6 +3,7 @@
 
   specdec --rlpc-conformance                      capabilities, as JSON
   specdec decode IN.rlpc OUT.rlpd [--max-mem BYTES] [--trace] [--check-widths]
+  specdec decode IN.rlpc OUT.rlpa ...             its attributes (Annex F)
 
   --max-mem BYTES   give up when the process needs more memory
   --trace           print every syntax element: bit position, name, value
@@ -10,7 +11,8 @@
   --spec FOLDER     the specification (default: spec/ of the project)
   --cache FOLDER    before the verb: keep the translated pseudo-code there
 
-OUT.rlpd holds exactly the frames before an error. Exit code: 0 decoded; 1 not a
+OUT.rlpd holds exactly the frames before an error; OUT.rlpa is not written after
+one, or without attributes. Exit code: 0 decoded; 1 not a
 conforming stream; 2 not supported; 3 more memory needed than allowed; 4 a file
 could not be read or written; 64 wrong usage; 70 the specification has an error.
 On 1 to 3, the last line of standard error is
@@ -45,7 +47,7 @@ class Verdict(Exception):
 class Decoder:
     """One run of the specification over one stream."""
 
-    def __init__(self, program, data, write, trace=None, widths=False):
+    def __init__(self, program, data, write, trace=None, widths=False, write_attributes=None):
         """write(bytes) takes the output; trace(position, name, value) the syntax elements."""
         self._data = data
         self._trace = trace
@@ -53,6 +55,7 @@ class Decoder:
         self.variables = program.compile(
             {"StreamBytes": data, "require": self._require, "supported": self._supported,
              "inflates_to": self._inflates_to, "output_bytes": lambda b: write(bytes(b)),
+             "output_attributes": lambda b: write_attributes(bytes(b)),
              "trace_begin": self._trace_begin, "trace_element": self._trace_element,
              "checked_width": _checked_width},
             trace=trace is not None, widths=widths)
@@ -125,14 +128,14 @@ def describe(folder, cache=None):
     """The answer to --rlpc-conformance, all of it from the specification."""
     variables = program_of(folder, cache).compile(
         {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
-         "output_bytes": None})
+         "output_bytes": None, "output_attributes": None})
     text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
     version = re.search(r"\bspecifies RLPC version (\d+\.\d+)", text).group(1)
     profiles = re.findall(r"^\|\s*\d+\s*\|\s*(\w+)\s*\|\s*(\d+\.\d+)\s*\|", text, re.MULTILINE)
     return {"contract": 1, "name": "specdec", "version": version,
             "spec": [since for _, since in profiles],  # each minor version adds one
             "profiles": [name.lower() for name, _ in profiles],
-            "levels": list(range(1, len(variables["Levels"]) + 1)), "outputs": ["rlpd"]}
+            "levels": list(range(1, len(variables["Levels"]) + 1)), "outputs": ["rlpd", "rlpa"]}
 
 
 def print_element(position, name, value):
@@ -154,11 +157,13 @@ def decode(options):
     if options.max_mem is not None:
         limit_memory(options.max_mem)
     output = Output(options.output)
-    decoder = Decoder(program, data, output.write, print_element if options.trace else None,
-                      options.check_widths)
+    wants_attributes = pathlib.Path(options.output).suffix == ".rlpa"
+    write = (lambda _: None) if wants_attributes else output.write
+    decoder = Decoder(program, data, write, print_element if options.trace else None,
+                      options.check_widths, output.write)
     verdict = {}
     try:
-        decoder.call("stream")
+        decoder.call("stream_with_attributes" if wants_attributes else "stream")
         code = DONE
     except Verdict as error:
         code = error.code

@@ -109,7 +109,8 @@ class SectionReader {
     return static_cast<int>(value);
   }
   // 9.5.6 ae_tree( models, depth ): models of the inner nodes, root at index 1.
-  std::uint32_t tree(std::vector<BitModel>& models, const char* element) {
+  template <class Models>
+  std::uint32_t tree(Models& models, const char* element) {
     const std::uint64_t at = mark();
     std::size_t node = 1;
     while (node < models.size()) node = 2 * node + (rd_.bin(models[node]) ? 1 : 0);

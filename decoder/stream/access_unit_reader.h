@@ -49,6 +49,7 @@ class AccessUnitReader {
 
   const MemoryLimit& memory_limit() const { return memory_; }
   const SliceCut& cut() const { return cut_; }
+  void set_cut(const SliceCut& cut) { cut_ = cut; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
 

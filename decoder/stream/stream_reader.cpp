@@ -38,6 +38,9 @@ Result<bool> StreamReader::open() {
       if (auto ok = read_vertex_order(*unit); !ok) return ok;
     } else if (starts_gofs(*unit) && have_connectivity) {
       return true;
+    } else if (unit->type() == UnitType::kAttributes && have_connectivity && !attribute_unit_) {
+      if (auto ok = units_.skip(*unit); !ok) return ok;
+      attribute_unit_ = *unit;
     } else if (auto ok = read_ancillary(*unit); !ok) {
       return ok;
     }

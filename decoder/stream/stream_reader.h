@@ -40,6 +40,8 @@ class StreamReader {
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const std::string& metadata() const { return metadata_; }  // the last so far
   const std::vector<Clip>& clips() const { return clips_; }  // likewise
+  // The attribute unit, whose CRC has been checked; none: there is none.
+  const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
   // sequence. Skinned models are parsed, or only those that a GOF to be read uses.
@@ -96,6 +98,7 @@ class StreamReader {
   std::vector<std::uint32_t> vertex_order_;
   std::string metadata_;
   std::vector<Clip> clips_;
+  std::optional<UnitHeader> attribute_unit_;
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;

@@ -20,6 +20,7 @@
 #include "common/tools/command_line.h"
 #include "decoder/describe_error.h"
 #include "decoder/output/frame_sink.h"
+#include "decoder/output/rlpa_file.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/exit_code.h"
 
@@ -112,6 +113,37 @@ Outcome decode_frames(const Request& request) {
   return outcome;
 }
 
+// Decodes all frames, without output, and then writes the attributes. As in the specification,
+// their syntax is checked before the first frame, and what they were predicted from after the
+// last one.
+Outcome decode_attributes(const Request& request) {
+  Outcome outcome;
+  try {
+    auto source = file_source(request.input, request.decoder.limits.max_memory_bytes);
+    if (!source) return {source.error(), {}, 0};
+    auto decoder = Decoder::open(std::move(*source), request.decoder);
+    if (!decoder) return {decoder.error(), {}, 0};
+    const auto sets = decoder->attributes();
+    const bool is_late = !sets && std::string_view(sets.error().rule) == "R-ATT-08";
+    if (!sets && !is_late) return {sets.error(), {}, 0};
+    std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
+    for (;; ++outcome.frames) {
+      const auto more = decoder->next_frame(positions);
+      if (!more) return {more.error(), {}, outcome.frames};
+      if (!*more) break;
+    }
+    if (!sets) return {sets.error(), {}, outcome.frames};
+    if (decoder->has_attributes()) {
+      outcome.output_error =
+          write_rlpa(request.output, decoder->header().num_vertices,
+                     static_cast<std::uint32_t>(decoder->triangles().size()), *sets);
+    }
+  } catch (const std::bad_alloc&) {
+    outcome.error = Error{Errc::kLimitExceeded, "", "memory", 0};
+  }
+  return outcome;
+}
+
 void print_verdict(const Error& error, std::uint32_t frames) {
   Json verdict;
   if (error.rule[0] != '\0') verdict["rule"] = error.rule;
@@ -121,7 +153,9 @@ void print_verdict(const Error& error, std::uint32_t frames) {
 }
 
 int decode(const Request& request) {
-  const Outcome outcome = decode_frames(request);
+  const bool wants_attributes = std::string_view(request.output).ends_with(".rlpa");
+  const Outcome outcome =
+      wants_attributes ? decode_attributes(request) : decode_frames(request);
   if (outcome.output_error) {
     print_message("rlpcdec", outcome.output_error->message);
     return kExitIo;
@@ -146,7 +180,7 @@ int describe() {
                        {"spec", versions},
                        {"profiles", Json::array({"baseline", "main", "high"})},
                        {"levels", levels},
-                       {"outputs", Json::array({"rlpd", "f32"})}};
+                       {"outputs", Json::array({"rlpd", "f32", "rlpa"})}};
   std::cout << answer.dump() << "\n";
   return kExitDone;
 }
@@ -164,7 +198,9 @@ std::optional<int> run_conformance_verb(int argc, char** argv) {
   // Levels bound the memory of a stream; without --max-mem there is no other limit.
   request.decoder.limits.max_memory_bytes = std::numeric_limits<std::uint64_t>::max();
   app.add_option("input", request.input, "Stream to decode")->required();
-  app.add_option("output", request.output, "OUT.rlpd (Annex A), or OUT.f32 (7.3)")->required();
+  app.add_option("output", request.output,
+                 "OUT.rlpd (Annex A), OUT.f32 (7.3) or OUT.rlpa (F.9)")
+      ->required();
   app.add_option("--max-mem", request.decoder.limits.max_memory_bytes,
                  "Refuse streams that need more bytes of memory")
       ->option_text("BYTES");

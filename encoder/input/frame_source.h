@@ -13,6 +13,7 @@
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/result.h"
+#include "encoder/input/source_attribute.h"
 
 namespace rlpc {
 
@@ -36,6 +37,7 @@ class FrameSource {
     std::vector<std::string> notes{};
     std::vector<std::string> files{};
     std::vector<Clip> clips{};
+    SourceAttributes attributes{};
     std::uint64_t memory_bytes = 0;
   };
 
@@ -54,6 +56,9 @@ class FrameSource {
   const std::vector<std::string>& files() const { return shape_.files; }
   // Parts that the input names.
   const std::vector<Clip>& clips() const { return shape_.clips; }
+
+  // Texture coordinates, normals and the like, of triangles().
+  const SourceAttributes& attributes() const { return shape_.attributes; }
 
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }

@@ -1,5 +1,6 @@
 #include "encoder/input/weld.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -79,12 +80,33 @@ class WeldedSource : public FrameSource {
   std::vector<float> all_;
 };
 
+// Removes triangles, and what belongs to them.
+void keep_triangles(const std::vector<bool>& is_kept, FrameSource::Shape& shape) {
+  const auto keep = [&](auto& items, std::size_t per_triangle) {
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (is_kept[i / per_triangle]) items[end++] = items[i];
+    }
+    items.resize(end);
+  };
+  keep(shape.triangles, 1);
+  keep(shape.attributes.rest_of_corner, 3);
+  for (SourceAttribute& set : shape.attributes.sets) {
+    if (set.domain == AttributeDomain::kCorner) keep(set.value_of_corner, 3);
+    if (set.domain == AttributeDomain::kTriangle) keep(set.values, set.num_components);
+  }
+}
+
 }  // namespace
 
 void drop_degenerate(FrameSource::Shape& shape) {
-  const std::size_t dropped = std::erase_if(shape.triangles, [](const Triangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  });
+  std::vector<bool> is_kept;
+  for (const Triangle& t : shape.triangles) {
+    is_kept.push_back(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+  }
+  const auto dropped =
+      static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), false));
+  keep_triangles(is_kept, shape);
   if (dropped == 0) return;
   shape.notes.push_back("dropped " + std::to_string(dropped) + " degenerate triangle" +
                         (dropped == 1 ? "" : "s"));
@@ -115,6 +137,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   shape.notes = source->notes();
   shape.files = source->files();
   shape.clips = source->clips();
+  shape.attributes = source->attributes();
   shape.memory_bytes = source->memory_bytes();
   if (vertices.size() < welded.size()) {
     const std::size_t merged = welded.size() - vertices.size();

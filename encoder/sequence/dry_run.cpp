@@ -25,6 +25,7 @@ class StretchSource final : public FrameSource {
                      {},
                      {},
                      {},
+                     source.attributes(),
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}

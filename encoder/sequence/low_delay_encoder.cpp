@@ -43,6 +43,10 @@ std::optional<InputError> LowDelayEncoder::prepare() {
   num_threads_ = std::clamp(settings_.threads, 1U, kMaxEncoderThreads);
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
   coding_.emplace(header, settings_, format_.triangles);
+  // They are written before the first frame is coded.
+  settings_.attributes.from_positions = false;
+  attributes_.emplace(format_.attributes, format_.triangles, settings_,
+                      coding_->connectivity());
   meshes_.emplace(coding_->mesh().topology, coding_->mesh().triangles, true);
   format_.triangles = {};
   return std::nullopt;
@@ -58,6 +62,9 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
   set_grid_of_box(header, format_, target, finest_error(target, measured->rms_spread));
   coding_->set_header(header);
   stream_.emplace(header, settings_, coding_->connectivity());
+  const auto first_frame = coding_->nearest_first_frame(frame);
+  if (!first_frame) return first_frame.error();
+  attributes_->encode(*first_frame, *stream_);
   if (!stream_->write_lead(header, sink_)) return InputError{"the stream could not be written"};
   return std::nullopt;
 }
@@ -214,6 +221,7 @@ InputResult<EncodeReport> LowDelayEncoder::finish() {
   EncodeReport report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = metrics_.result();
+  report.attributes = attributes_->reports();
   report.step = step_ * exact_exp2(coding_->header().grid.log2_step);
   const Target& target = settings_.target;
   if (target.kind == Target::kKg) {

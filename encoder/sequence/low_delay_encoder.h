@@ -13,6 +13,7 @@
 #include "encoder/rest/rest_coding.h"
 #include "encoder/sequence/frame_coder.h"
 #include "encoder/sequence/sequence_coding.h"
+#include "encoder/sequence/attribute_stage.h"
 #include "encoder/sequence/stream_assembly.h"
 
 namespace rlpc {
@@ -60,6 +61,7 @@ class LowDelayEncoder final : public FrameCoder {
   std::optional<SequenceCoding> coding_;
   std::optional<CodedMeshes> meshes_;
   std::optional<StreamAssembly> stream_;  // from the first frame on
+  std::optional<AttributeStage> attributes_;
   std::unique_ptr<Gof> gof_;
   std::uint32_t num_added_ = 0;
   double step_ = 0.0;         // of the last GOF, grid steps

@@ -153,6 +153,18 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
   return frames;
 }
 
+InputResult<std::vector<std::int32_t>> SequenceCoding::nearest_first_frame(
+    FrameSource& source) const {
+  const auto frames = read_frames(source, {0, 1});
+  if (!frames) return frames.error();
+  std::vector<std::int32_t> positions;
+  for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
+    const Vec3i p = nearest_position(frames->at(0, v), header_.position_bits);
+    positions.insert(positions.end(), p.begin(), p.end());
+  }
+  return positions;
+}
+
 std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
                                                      bool is_last_resort) const {
   if (is_last_resort) return last_resort_->make_coder(frames);

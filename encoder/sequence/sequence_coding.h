@@ -67,6 +67,8 @@ class SequenceCoding {
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
 
+  // Frame 0 of the source, as positions on the grid in decoded order.
+  InputResult<std::vector<std::int32_t>> nearest_first_frame(FrameSource& source) const;
   // The frames of a span, in decoded vertex order and grid units; span: frames of the source.
   // Errors: those of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;

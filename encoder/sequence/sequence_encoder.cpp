@@ -9,6 +9,7 @@
 #include "common/parallel/for_each.h"
 #include "encoder/math/det_math.h"
 #include "encoder/rlpc_encoder.h"
+#include "encoder/sequence/attribute_stage.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/grid_choice.h"
@@ -73,6 +74,7 @@ class SequenceEncoder {
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;
+  std::optional<AttributeStage> attributes_;
   std::uint32_t trials_ = 0;  // trials of all searches so far
 };
 
@@ -96,6 +98,14 @@ std::optional<InputError> SequenceEncoder::prepare() {
   if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
+  attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
+                      coding_->connectivity());
+  if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
+    // Their size is part of the rate; it hardly depends on the error of the first frame.
+    const auto first_frame = coding_->nearest_first_frame(source_);
+    if (!first_frame) return first_frame.error();
+    attributes_->encode(*first_frame, *stream_);
+  }
   return std::nullopt;
 }
 
@@ -170,6 +180,7 @@ InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
   GofBatch batch(*coding_, source_, spans_,
                  {.keep_analyses = keeps_analyses_,
+                  .keep_first_frame = attributes_->has_sets(),
                   .together = spans_together(header, longest_gof_of(spans_), num_threads_)});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
@@ -214,6 +225,8 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
     report.components += gof.components;
     count_patterns(gof.choices, report.patterns);
   }
+  attributes_->encode(best.trial.gofs.front().first_positions, *stream_);
+  report.attributes = attributes_->reports();
   bool ok = stream_->write_lead(header, sink);
   for (const CodedGof& span : best.trial.gofs) {
     for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink);

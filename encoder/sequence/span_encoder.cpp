@@ -54,6 +54,8 @@ std::optional<InputError> SpanEncoder::prepare() {
   coded_.cuts.assign(settings_.temporal_layers() - 1,
                      MetricsAccumulator(header.num_vertices, MetricsAccumulator::kTotals));
   coding_.emplace(header, settings_, format_.triangles);
+  attributes_.emplace(format_.attributes, format_.triangles, settings_,
+                      coding_->connectivity());
   format_.triangles = {};
   return std::nullopt;
 }
@@ -113,6 +115,7 @@ InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_sp
   GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
                  {.first_frame = span.first,
                   .keep_decoded = true,
+                  .keep_first_frame = attributes_->has_sets(),
                   .model = model_,
                   .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
                   .metrics = MetricsAccumulator::kTotals});
@@ -131,6 +134,12 @@ InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_sp
 // error may require a finer grid and a second search.
 InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double rms_spread) {
   use_header(header_for(finest_error(settings_.target, rms_spread)));
+  if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
+    // Their size is part of the rate.
+    const auto first_frame = coding_->nearest_first_frame(*buffer_);
+    if (!first_frame) return first_frame.error();
+    attributes_->encode(*first_frame, *stream_);
+  }
   auto best = search(span, rms_spread);
   if (!best || settings_.target.kind != Target::kBpvf) return best;
   const double error = rms_spread * best->trial.metrics.kg_error_percent / 100.0;
@@ -192,6 +201,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
 }
 
 bool SpanEncoder::write(const CodedGof& span) {
+  if (coded_.spans == 0) attributes_->encode(span.first_positions, *stream_);
   bool ok = coded_.spans > 0 || stream_->write_lead(coding_->header(), sink_);
   for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink_);
   return ok;
@@ -209,6 +219,7 @@ InputResult<EncodeReport> SpanEncoder::finish() {
   EncodeReport& report = coded_.report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = coded_.metrics.result();
+  report.attributes = attributes_->reports();
   for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
     report.temporal_cuts.push_back({static_cast<std::uint32_t>(i) + 1,
                                     stream_->cut_bytes(i + 1),

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/sequence/attribute_stage.h"
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/level_choice.h"
 #include "encoder/sequence/frame_coder.h"
@@ -69,6 +70,7 @@ class SpanEncoder final : public FrameCoder {
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;  // from the first span on
+  std::optional<AttributeStage> attributes_;
   std::optional<SpanBuffer> buffer_;
   std::shared_ptr<const KeptModel> model_;  // in force after the last span; null: none
   std::uint32_t num_added_ = 0;

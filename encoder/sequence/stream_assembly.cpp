@@ -43,6 +43,15 @@ StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettin
                 vertex_order_.size();
 }
 
+void StreamAssembly::set_attributes(std::span<const std::uint8_t> payload) {
+  lead_bytes_ -= attributes_.size();
+  attributes_.clear();
+  if (!payload.empty()) {
+    attributes_ = write_unit(UnitType::kAttributes, Bytes(payload.begin(), payload.end()));
+  }
+  lead_bytes_ += attributes_.size();
+}
+
 bool StreamAssembly::has_index(const GofIndexEntries& index) {
   return index.gofs.size() >= kMinIndexedGofs && index.fits();
 }
@@ -64,7 +73,7 @@ bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& si
 bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& sink) {
   return put(write_stream_header(header.profile_idc), sink) && put(header_unit(header), sink) &&
          put(metadata_, sink) && put(clip_table_, sink) && put(connectivity_, sink) &&
-         put(vertex_order_, sink);
+         put(vertex_order_, sink) && put(attributes_, sink);
 }
 
 bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
@@ -143,11 +152,12 @@ void StreamAssembly::describe(const SequenceHeader& header,
   report.bits.connectivity = 8 * connectivity_.size();
   report.bits.vertex_order = 8 * vertex_order_.size();
   report.bits.metadata = 8 * (metadata_.size() + clip_table_.size());
+  report.bits.attributes = 8 * attributes_.size();
   report.bits.gofs = 8 * gof_bytes_;
   report.bits.hashes = 8 * hash_bytes_;
   report.bits.headers = 8 * written_ - report.bits.gofs - report.bits.hashes -
                         report.bits.connectivity - report.bits.vertex_order -
-                        report.bits.metadata;
+                        report.bits.metadata - report.bits.attributes;
   report.num_gofs = static_cast<std::uint32_t>(index_.gofs.size());
   report.input_vertex = connectivity.input_vertex;
 }

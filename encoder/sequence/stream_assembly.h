@@ -30,6 +30,9 @@ class StreamAssembly {
   StreamAssembly(const SequenceHeader& header, const EncoderSettings& settings,
                  const ConnectivityCode& connectivity);
 
+  // The payload of the attribute unit, until write_lead(). Empty: none.
+  void set_attributes(std::span<const std::uint8_t> payload);
+
   // Size of everything but GOFs, hashes and index.
   std::uint64_t overhead_bytes() const { return lead_bytes_ + end_bytes_; }
   // Size of the index of a stream with these GOFs and no skinned models; 0 if it would have no
@@ -69,6 +72,7 @@ class StreamAssembly {
   Bytes clip_table_;
   Bytes connectivity_;
   Bytes vertex_order_;
+  Bytes attributes_;
   std::uint64_t lead_bytes_ = 0;
   std::uint64_t end_bytes_ = 0;
   std::uint64_t gof_bytes_ = 0;

@@ -42,6 +42,16 @@ class SectionWriter {
       if (!more) break;
     }
   }
+  // 9.5.6 ae_tree( models, depth ): models of the inner nodes, root at index 1.
+  template <class Models>
+  void tree(Models& models, std::uint32_t leaf) {
+    std::size_t node = 1;
+    for (std::size_t half = models.size() / 2; half > 0; half /= 2) {
+      const bool bit = (leaf & half) != 0;
+      re_.bin(models[node], bit);
+      node = 2 * node + (bit ? 1 : 0);
+    }
+  }
   // Bytes so far.
   std::size_t size() const { return re_.size(); }
   // Ends the section and returns its bytes; the writer cannot be used afterwards.

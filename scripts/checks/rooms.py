@@ -32,6 +32,9 @@ ROOMS = {
     "common/bitstream": {"common"},
     "common/mesh": _BITS,
     "common/components": _BITS,
+    # Texture coordinates, normals and the like (Annex F).
+    "common/attributes": _MESH,
+    "common/attributes/recon": _MESH | {"common/attributes"},
     # Positions in an order of their own (8.18): rest positions, first frames.
     "common/rest": _MESH,
     "common/syntax": _GOFS,
@@ -50,17 +53,20 @@ ROOMS = {
     # Bits to structures; no reconstruction, no files.
     "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
     "decoder/parse/sequence": _GOFS | {"decoder/parse"},
+    "decoder/parse/attributes": _MESH | {"common/attributes", "decoder/parse"},
     # Structures to positions.
     # It parses, too, where frames are decoded before their GOF has been read.
     "decoder/recon": _GOFS | _RECON | {"decoder/parse", "decoder/stream"},
     "decoder/stream": _GOFS | _PARSE | _PUBLIC_DECODER,
-    "decoder": _GOFS | {"common/io", "common/parallel", "decoder/stream", "decoder/recon"},
+    "decoder": _GOFS | {"common/attributes", "common/attributes/recon", "common/io",
+                        "common/parallel", "decoder/parse/attributes", "decoder/stream",
+                        "decoder/recon"},
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
-    "decoder/output": {"common", "common/io", "common/mesh"},
+    "decoder/output": {"common", "common/attributes", "common/io", "common/mesh"},
     "decoder/player": {"common/bitstream", "common/io", "common/mesh", "decoder/output", "decoder/stream",
                        "decoder/tools", "decoder/recon/async.h"} | _PUBLIC_DECODER,
     "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",
@@ -69,11 +75,14 @@ ROOMS = {
     "decoder/fuzz": _GOFS | _RECON | _PARSE | {"common/testing", "decoder/stream"}
                     | _PUBLIC_DECODER,
     # Floating point, decisions, structures to bits.
-    "encoder": {"common/mesh", "common/frame_gof", "common/skinned_gof", "common/syntax", "encoder/input",
+    "encoder": {"common/mesh", "common/frame_gof", "encoder/attributes", "common/skinned_gof", "common/syntax", "encoder/input",
                 "encoder/metrics"},
     "encoder/math": {"common/parallel"},
     "encoder/metrics": {"common/mesh", "encoder/math"},
-    "encoder/write": _GOFS | {"encoder/math/det_math.h"},
+    "encoder/write": _GOFS | {"common/attributes", "encoder/math/det_math.h"},
+    "encoder/attributes": _MESH | {"common/attributes", "common/attributes/recon",
+                                   "encoder/input/source_attribute.h", "encoder/math",
+                                   "encoder/write"},
     "encoder/gof": _ENCODER,
     # Parts of a mesh, whatever they are for.
     "encoder/partition": {"common/mesh", "common/parallel", "encoder", "encoder/gof",
@@ -89,11 +98,12 @@ ROOMS = {
         "encoder/input", "encoder/input/formats"},
     "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
     "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
-        "encoder/sequence/choices", "encoder/sequence/target",
+        "encoder/sequence/choices", "encoder/sequence/target", "encoder/attributes",
         "common/io", "encoder/input", "encoder/input/formats", "encoder/metrics"},
     "encoder/c_api": {"common/c_api", "encoder"},
     # Readers of mesh files know nothing of coding.
-    "encoder/input": {"common", "common/io", "common/mesh", "common/syntax/stream_format.h",
+    "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/mesh",
+                      "common/syntax/stream_format.h",
                       "encoder/input/formats", "encoder/input/gltf"},
     "encoder/input/formats": {"common", "common/io", "common/mesh", "encoder/input"},
     "encoder/input/gltf/document": {"common", "common/io", "common/mesh", "encoder/input"},

@@ -55,6 +55,7 @@ class ModelReader {
     note(num_without_triangles_, "point or line primitive");
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
+    model_.num_materials = document_.num_materials;
     model_.files = buffers_.files();
     return std::move(model_);
   }
@@ -116,7 +117,8 @@ class ModelReader {
         return;
       }
       if (!takes_instance(primitive, count, geometry)) return;
-      model_.instances.push_back({node, skin, geometry, model_.num_vertices});
+      model_.instances.push_back(
+          {node, skin, geometry, model_.num_vertices, primitive.material});
       model_.num_vertices += count;
     }
   }

@@ -36,6 +36,7 @@ struct GltfModel {
     std::optional<std::uint32_t> skin;
     std::size_t geometry = 0;
     std::uint64_t first_vertex = 0;  // in the order of the scene
+    std::optional<std::uint32_t> material;
   };
 
   std::vector<GltfNode> nodes;
@@ -47,6 +48,7 @@ struct GltfModel {
   std::vector<GltfGeometry> geometries;
   std::vector<Instance> instances;
   std::uint64_t num_vertices = 0;
+  std::size_t num_materials = 0;
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
   std::vector<std::string> notes;       // see FrameSource
   std::vector<std::string> files;       // likewise

@@ -1,6 +1,7 @@
 #include "encoder/input/gltf/primitive.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -28,6 +29,9 @@ class GeometryReader {
     }
     if (num_joints > 0 && !errors_) read_influences(num_joints, geometry);
     if (!errors_) geometry.triangles = triangles(corners(geometry.num_vertices()));
+    for (const GltfAttribute& attribute : primitive_.attributes) {
+      if (!errors_ && has_count(attribute.accessor)) read_attribute(attribute, geometry);
+    }
     return geometry;
   }
 
@@ -47,6 +51,29 @@ class GeometryReader {
     const GltfAccessor& a = values_.accessor(accessor);
     const std::uint64_t count = a.base ? a.count : a.sparse ? a.sparse->count : 0;
     return values_.memory().take(primitive_.path, 3 * sizeof(GltfDelta) * count);
+  }
+
+  void read_attribute(const GltfAttribute& attribute, GltfGeometry& geometry) {
+    const GltfAccessor& accessor = values_.accessor(attribute.accessor);
+    if (!values_.memory().take(primitive_.path,
+                               3 * sizeof(float) * accessor.width * accessor.count)) {
+      return;
+    }
+    const bool is_colour = attribute.semantic.starts_with("COLOR_");
+    const char* const type = attribute.semantic == "NORMAL"             ? "VEC3"
+                             : attribute.semantic == "TANGENT"          ? "VEC4"
+                             : is_colour && accessor.type == "VEC3"     ? "VEC3"
+                             : attribute.semantic.starts_with("COLOR_") ? "VEC4"
+                                                                        : "VEC2";
+    GltfGeometry::Attribute read;
+    read.semantic = attribute.semantic;
+    read.width = accessor.width;
+    read.values = values_.floats(attribute.accessor, type, GltfValues::Integers::kToo);
+    if (is_colour && accessor.normalized) {
+      read.max_value = accessor.component == GltfComponent::kU8 ? 255 : 65535;
+      for (float& x : read.values) x = std::round(x * static_cast<float>(read.max_value));
+    }
+    geometry.attributes.push_back(std::move(read));
   }
 
   void read_influences(std::size_t num_joints, GltfGeometry& geometry) {

@@ -31,6 +31,13 @@ struct GltfGeometry {
   std::vector<GltfInfluence> influences;
   std::vector<std::uint64_t> first_influence;
   std::vector<Triangle> triangles;
+  struct Attribute {
+    std::string semantic;  // "TEXCOORD_0"
+    std::uint32_t width = 0;
+    std::uint32_t max_value = 0;  // of normalised integers, otherwise 0
+    std::vector<float> values;    // [vertex][width]; of normalised integers, these
+  };
+  std::vector<Attribute> attributes;
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "encoder/input/gltf/attributes.h"
 #include "encoder/input/gltf/pose.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/weld.h"
@@ -42,14 +43,22 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
 }
 
 // Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1).
-std::vector<Triangle> triangles_of(const GltfModel& model, const GltfPose& pose) {
-  std::vector<Triangle> triangles;
+std::vector<bool> mirrored_instances(const GltfModel& model, const GltfPose& pose) {
+  std::vector<bool> is_mirrored;
   for (const GltfModel::Instance& instance : model.instances) {
-    const bool mirrored = !instance.skin && determinant(pose.to_scene[instance.node]) < 0;
-    const auto first = static_cast<std::uint32_t>(instance.first_vertex);
-    for (Triangle t : model.geometries[instance.geometry].triangles) {
+    is_mirrored.push_back(!instance.skin && determinant(pose.to_scene[instance.node]) < 0);
+  }
+  return is_mirrored;
+}
+
+std::vector<Triangle> triangles_of(const GltfModel& model,
+                                   const std::vector<bool>& is_mirrored) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < model.instances.size(); ++i) {
+    const auto first = static_cast<std::uint32_t>(model.instances[i].first_vertex);
+    for (Triangle t : model.geometries[model.instances[i].geometry].triangles) {
       for (std::uint32_t& v : t) v += first;
-      if (mirrored) std::swap(t[1], t[2]);
+      if (is_mirrored[i]) std::swap(t[1], t[2]);
       triangles.push_back(t);
     }
   }
@@ -153,9 +162,11 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
   shape.num_frames = first_frame->back();
   const GltfClip* const clip = model->clips.empty() ? nullptr : &model->clips[0];
-  shape.triangles =
-      triangles_of(*model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
+  const std::vector<bool> is_mirrored = mirrored_instances(
+      *model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
+  shape.triangles = triangles_of(*model, is_mirrored);
   shape.notes = model->notes;
+  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, shape.notes);
   shape.files = model->files;
   if (model->clips.size() > 1) shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;

@@ -52,26 +52,7 @@ bool any_named(const GltfValue& values) {
 
 // Contents that a stream does not carry, in the words of users.
 std::vector<std::string> dropped(const GltfValue& root) {
-  struct Attribute {
-    const char* name = nullptr;
-    const char* what = nullptr;
-    bool found = false;
-  };
-  Attribute attributes[] = {{"TEXCOORD_0", "UVs"},
-                            {"NORMAL", "normals"},
-                            {"TANGENT", "tangents"},
-                            {"COLOR_0", "vertex colours"}};
-  const GltfValue meshes = root["meshes"];
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const GltfValue primitives = meshes[m]["primitives"];
-    for (std::size_t p = 0; p < primitives.size(); ++p) {
-      for (Attribute& a : attributes) a.found |= primitives[p]["attributes"][a.name].exists();
-    }
-  }
   std::vector<std::string> found;
-  for (const Attribute& a : attributes) {
-    if (a.found) found.emplace_back(a.what);
-  }
   const std::pair<const char*, const char*> arrays[] = {{"materials", "materials"},
                                                         {"textures", "textures"},
                                                         {"skins", "skeleton"},
@@ -94,10 +75,12 @@ void check_version(const GltfValue& asset) {
 struct Counts {
   explicit Counts(const GltfValue& root)
       : accessors(root["accessors"].size()),
+        materials(root["materials"].size()),
         meshes(root["meshes"].size()),
         nodes(root["nodes"].size()),
         skins(root["skins"].size()) {}
   std::size_t accessors;
+  std::size_t materials;
   std::size_t meshes;
   std::size_t nodes;
   std::size_t skins;
@@ -128,6 +111,19 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
     attributes.fail("as many sets of JOINTS_ (" + to_string(primitive.joints.size()) +
                     ") as of WEIGHTS_ (" + to_string(primitive.weights.size()) + ")");
   }
+  for (const char* const name : {"NORMAL", "TANGENT"}) {
+    const auto accessor = attributes[name].index_if_any(counts.accessors, "accessors");
+    if (accessor) primitive.attributes.push_back({name, *accessor});
+  }
+  for (const std::string name : {"TEXCOORD_", "COLOR_"}) {
+    for (const std::uint32_t accessor : numbered(attributes, name, counts)) {
+      const std::size_t number = static_cast<std::size_t>(std::count_if(
+          primitive.attributes.begin(), primitive.attributes.end(),
+          [&](const GltfAttribute& a) { return a.semantic.starts_with(name); }));
+      primitive.attributes.push_back({name + to_string(number), accessor});
+    }
+  }
+  primitive.material = value["material"].index_if_any(counts.materials, "materials");
   const GltfValue targets = value["targets"];
   for (std::size_t i = 0; i < targets.size(); ++i) {
     primitive.targets.push_back(
@@ -272,6 +268,7 @@ GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors) {
   document.extensions_left_out = left_out(root["extensionsUsed"]);
   document.dropped = dropped(root);
   const Counts counts(root);
+  document.num_materials = counts.materials;
   document.buffers = read_all(root["buffers"], [](const GltfValue& value) {
     GltfBuffer buffer;
     buffer.size = value["byteLength"].integer({1, GltfValue::kMaxInteger});

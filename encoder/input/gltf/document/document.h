@@ -24,6 +24,12 @@ enum class GltfMode : std::uint8_t {
   kTriangleFan
 };
 
+// An attribute that does not move vertices, such as TEXCOORD_0.
+struct GltfAttribute {
+  std::string semantic;
+  std::uint32_t accessor = 0;
+};
+
 struct GltfPrimitive {
   std::string path;  // "meshes[0].primitives[1]"
   GltfMode mode = GltfMode::kTriangles;
@@ -34,6 +40,8 @@ struct GltfPrimitive {
       targets;                        // none: the target does not move positions
   std::vector<std::uint32_t> joints;  // as many as weights
   std::vector<std::uint32_t> weights;
+  std::vector<GltfAttribute> attributes;  // texture coordinates, normals, tangents, colours
+  std::optional<std::uint32_t> material;
 
   bool has_triangles() const { return mode >= GltfMode::kTriangles; }
 };
@@ -88,11 +96,12 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
   std::vector<GltfAnimation> animations;
+  std::size_t num_materials = 0;
   std::optional<std::vector<std::uint32_t>>
       scene;  // its nodes; none: all nodes without a parent
   // Unsupported extensions that would change shapes or motions.
   std::vector<std::string> extensions_left_out;
-  // Contents other than positions and their motion: "UVs", "materials".
+  // Contents that are not read: "cameras".
   std::vector<std::string> dropped;
 };
 

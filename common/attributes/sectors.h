@@ -1,0 +1,42 @@
+// Sectors: the corners at a vertex that share a value (F.4), and the order in which their
+// values are coded (F.5).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.h"
+#include "common/mesh/topology.h"
+
+namespace rlpc {
+
+struct Sectors {
+  std::vector<std::uint32_t> of_corner;  // SectorOf
+  ListOfLists<std::uint32_t> corners;    // SectorCorners
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(corners.size()); }
+};
+
+// F.4 MakeSectors( ): of corners, from the edges that are seams; of vertices.
+Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
+                           const std::vector<bool>& seams);
+Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+
+inline constexpr std::size_t kMaxSectorTriangles = 8;
+inline constexpr std::size_t kMaxSectorRing = 8;
+inline constexpr std::uint32_t kNoSector = 0xFFFFFFFF;
+inline constexpr std::size_t kSectorClasses = 4;
+
+// F.5 MakeSectorOrder( )
+struct SectorOrder {
+  explicit SectorOrder(const Sectors& sectors);
+
+  std::vector<std::uint32_t> order;      // SectorOrder
+  ListOfLists<std::uint32_t> triangles;  // SectorTriangles: corners, of each sector
+  ListOfLists<std::uint32_t> ring;       // SectorRing
+  std::vector<std::uint32_t> neighbour;  // SectorNeighbour; kNoSector: none
+  std::vector<std::uint8_t> class_of;    // SectorClass
+};
+
+}  // namespace rlpc

@@ -1,0 +1,21 @@
+// F.2 Attributes, parsing side.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/attributes/attribute_set.h"
+#include "common/bitstream/bit_reader.h"
+#include "common/mesh/mesh.h"
+#include "common/result.h"
+#include "decoder/parse/memory_limit.h"
+
+namespace rlpc {
+
+// F.2.1 attributes( ). triangles: in decoded order. Names are not checked (R-ATT-09). Fails if
+// a set needs more memory than is allowed.
+Result<CodedAttributes> parse_attributes(BitReader& r, std::uint32_t num_vertices,
+                                         std::span<const Triangle> triangles,
+                                         const MemoryLimit& memory);
+
+}  // namespace rlpc

@@ -1,0 +1,25 @@
+// How attributes are coded.
+#pragma once
+
+#include <cstdint>
+
+namespace rlpc {
+
+// Smoothing has normals computed from the positions of each frame (F.8); exact ones are those
+// of the first frame. kAuto: smoothing if it comes near enough to the normals of the input.
+enum class NormalChoice : std::uint8_t { kAuto, kSmoothing, kExact };
+
+struct AttributeSettings {
+  bool dropped = false;  // no attribute unit
+  bool exact = false;    // numbers as 32-bit floats, whatever the bits below
+  // Bits of a texture coordinate after the point: 12 are 1/4096 of an image.
+  int uv_bits = 12;      // 1 to 16
+  int normal_bits = 10;  // of a coordinate of a unit vector, 2 to 16
+  int number_bits = 12;  // of other numbers, over their range, 1 to 16
+  NormalChoice normals = NormalChoice::kAuto;
+  // Whether values may be predicted from positions of the first frame. Streams that are to be
+  // cut must not.
+  bool from_positions = true;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,380 @@
+#include "encoder/attributes/encode_attributes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/attributes/corners.h"
+#include "common/attributes/recon/attribute_prediction.h"
+#include "common/attributes/sectors.h"
+#include "common/bitstream/crc32.h"
+#include "encoder/attributes/quantise_attribute.h"
+#include "encoder/attributes/smoothing_search.h"
+#include "encoder/math/det_math.h"
+#include "encoder/write/write_attributes.h"
+
+namespace rlpc {
+namespace {
+
+using Point = std::array<std::uint32_t, 2>;
+
+constexpr std::uint32_t kSmoothingBits =
+    10;  // fixed: of the points that smoothing is fitted to
+
+// Positions of the shape at rest, as integers, and triangles with their indices.
+struct RestShape {
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> positions;
+};
+
+class AttributeEncoder {
+ public:
+  AttributeEncoder(const AttributeInput& input, const AttributeSettings& settings)
+      : input_(input),
+        settings_(settings),
+        corner_map_(input.corner_map),
+        num_vertices_(static_cast<std::uint32_t>(input.connectivity.input_vertex.size())),
+        edge_mates_(find_edge_mates(num_vertices_, input.connectivity.triangles)),
+        geometry_(input.connectivity.triangles, input.first_frame) {}
+
+  EncodedAttributes encode();
+
+ private:
+  // A set of vertices or corners while it is coded.
+  struct Draft {
+    const SourceAttribute& source;
+    QuantisedAttribute quantised;
+    std::vector<std::uint32_t> value_of_corner;  // [decoded corner]
+    std::vector<bool> seams;
+    Sectors sectors;
+    std::vector<std::uint32_t> value_of_sector;  // index of the value, or kNoSector
+  };
+
+  CodedAttributeSet code(const SourceAttribute& source, AttributeReport& report);
+  CodedAttributeSet code_triangles(const SourceAttribute& source, AttributeReport& report);
+  Draft make_draft(const SourceAttribute& source) const;
+  bool are_equal(const Draft& draft, std::uint32_t c, std::uint32_t d) const;
+  void find_seams(Draft& draft) const;
+  void find_sectors(Draft& draft) const;
+  CodedAttributeSet code_normals(Draft draft, AttributeReport& report);
+  CodedAttributeSet code_values(Draft draft, AttributeReport& report);
+  CodedAttributeSet code_with(const Draft& draft, AttributePrediction prediction,
+                              const FaceView& faces) const;
+  std::uint64_t bits_of(const CodedAttributeSet& set) const;
+  std::optional<RestShape> rest_shape() const;
+  void set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const;
+
+  const AttributeInput& input_;
+  const AttributeSettings& settings_;
+  std::span<const std::uint32_t> corner_map_;
+  std::uint32_t num_vertices_;
+  std::vector<std::uint32_t> edge_mates_;
+  CornerGeometry geometry_;
+};
+
+double number_of(const AttributeHeader& header, std::uint32_t value, std::uint32_t c) {
+  switch (header.scale) {
+    case ValueScale::kNone:
+      break;
+    case ValueScale::kGrid:
+      return (static_cast<double>(value) + header.origin[c]) * exact_exp2(header.log2_step);
+    case ValueScale::kNormalised:
+      return static_cast<double>(value) / static_cast<double>(header.max_value());
+  }
+  return static_cast<double>(value);
+}
+
+double largest_error(const SourceAttribute& source, const QuantisedAttribute& quantised) {
+  if (quantised.header.kind != ValueKind::kIntegers) return 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < source.values.size(); ++i) {
+    const auto c = static_cast<std::uint32_t>(i % source.num_components);
+    double wanted = source.values[i];
+    if (source.max_value != 0) wanted /= source.max_value;
+    const double off = std::abs(number_of(quantised.header, quantised.values[i], c) - wanted);
+    largest = std::max(largest, off);
+  }
+  return largest;
+}
+
+CodedAttributeSet AttributeEncoder::code_triangles(const SourceAttribute& source,
+                                                   AttributeReport& report) {
+  QuantisedAttribute quantised = quantise_attribute(source, settings_);
+  CodedAttributeSet set{
+      .header = quantised.header, .seams = {}, .diagonal_flags = {}, .residuals = {}};
+  const std::uint32_t n = quantised.header.num_components;
+  for (std::size_t t = 0; t < geometry_.triangles().size(); ++t) {
+    const std::size_t first = std::size_t{corner_map_[3 * t] / 3} * n;
+    for (std::size_t c = 0; c < n; ++c) set.residuals.push_back(quantised.values[first + c]);
+  }
+  report.values = geometry_.triangles().size();
+  report.largest_error = largest_error(source, quantised);
+  return set;
+}
+
+AttributeEncoder::Draft AttributeEncoder::make_draft(const SourceAttribute& source) const {
+  Draft draft{.source = source,
+              .quantised = quantise_attribute(source, settings_),
+              .value_of_corner = {},
+              .seams = {},
+              .sectors = {},
+              .value_of_sector = {}};
+  draft.value_of_corner.resize(corner_map_.size());
+  const auto triangles = geometry_.triangles();
+  for (std::uint32_t c = 0; c < corner_map_.size(); ++c) {
+    draft.value_of_corner[c] =
+        source.domain == AttributeDomain::kCorner
+            ? source.value_of_corner[corner_map_[c]]
+            : input_.connectivity.input_vertex[vertex_of_corner(triangles, c)];
+  }
+  if (source.domain == AttributeDomain::kCorner) find_seams(draft);
+  find_sectors(draft);
+  return draft;
+}
+
+// Whether the values of two corners count as one.
+bool AttributeEncoder::are_equal(const Draft& draft, std::uint32_t c, std::uint32_t d) const {
+  const std::uint32_t a = draft.value_of_corner[c];
+  const std::uint32_t b = draft.value_of_corner[d];
+  if (a == b) return true;
+  const std::uint32_t n = draft.quantised.header.num_components;
+  const auto value = [&](std::uint32_t i) {
+    return std::span(draft.quantised.values).subspan(std::size_t{i} * n, n);
+  };
+  if (std::ranges::equal(value(a), value(b))) return true;
+  if (draft.source.kind != SourceAttribute::Kind::kNormals || settings_.exact) return false;
+  // Rounding may have separated normals that are nearly the same.
+  constexpr float kNear = 0.001F;  // fixed: some 0.06 degrees
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float x = draft.source.values[3 * std::size_t{a} + k];
+    const float y = draft.source.values[3 * std::size_t{b} + k];
+    if (x - y > kNear || y - x > kNear) return false;
+  }
+  return true;
+}
+
+void AttributeEncoder::find_seams(Draft& draft) const {
+  bool has_seams = false;
+  draft.seams.assign(edge_mates_.size(), false);
+  for (std::uint32_t c = 0; c < edge_mates_.size(); ++c) {
+    const std::uint32_t mate = edge_mates_[c];
+    if (mate >= c) continue;
+    if (are_equal(draft, c, next_in_triangle(mate)) &&
+        are_equal(draft, next_in_triangle(c), mate)) {
+      continue;
+    }
+    draft.seams[c] = draft.seams[mate] = true;
+    has_seams = true;
+  }
+  if (has_seams) return;
+  // Perhaps each vertex has one value.
+  std::vector<std::uint32_t> corner_of(num_vertices_, kNoCorner);
+  for (std::uint32_t c = 0; c < edge_mates_.size(); ++c) {
+    std::uint32_t& first = corner_of[vertex_of_corner(geometry_.triangles(), c)];
+    if (first == kNoCorner) first = c;
+    if (!are_equal(draft, first, c)) return;
+  }
+  draft.quantised.header.domain = AttributeDomain::kVertex;
+  draft.seams.clear();
+}
+
+void AttributeEncoder::find_sectors(Draft& draft) const {
+  const bool is_corner = draft.quantised.header.domain == AttributeDomain::kCorner;
+  draft.sectors = is_corner ? sectors_of_corners(edge_mates_, draft.seams)
+                            : sectors_of_vertices(num_vertices_, geometry_.triangles());
+  draft.value_of_sector.assign(draft.sectors.count(), kNoSector);
+  for (std::uint32_t x = 0; x < draft.sectors.count(); ++x) {
+    const auto corners = draft.sectors.corners[x];
+    if (!corners.empty()) {
+      draft.value_of_sector[x] = draft.value_of_corner[corners[0]];
+    } else if (draft.source.domain == AttributeDomain::kVertex) {
+      draft.value_of_sector[x] = input_.connectivity.input_vertex[x];
+    }
+  }
+}
+
+std::uint64_t AttributeEncoder::bits_of(const CodedAttributeSet& set) const {
+  return std::uint64_t{8} *
+         write_attributes({0, {set}}, num_vertices_, geometry_.triangles()).size();
+}
+
+CodedAttributeSet AttributeEncoder::code_with(const Draft& draft,
+                                              AttributePrediction prediction,
+                                              const FaceView& faces) const {
+  CodedAttributeSet set{.header = draft.quantised.header,
+                        .seams = draft.seams,
+                        .diagonal_flags = {},
+                        .residuals = {}};
+  set.header.prediction = prediction;
+  const SectorOrder order(draft.sectors);
+  AttributePredictor predictor(
+      {set.header, edge_mates_, set.seams, draft.sectors, order, &geometry_, &faces});
+  const std::uint32_t n = set.header.num_components;
+  set.residuals.assign(std::size_t{n} * draft.sectors.count(), 0);
+  for (const std::uint32_t x : order.order) {
+    const AttributeValue expected = predictor.predict(x);
+    AttributeValue value = expected;  // of a vertex without value
+    const std::uint32_t i = draft.value_of_sector[x];
+    for (std::size_t c = 0; c < n && i != kNoSector; ++c) {
+      value[c] = draft.quantised.values[std::size_t{i} * n + c];
+      set.residuals[std::size_t{x} * n + c] =
+          static_cast<std::uint32_t>(value[c] - expected[c]);
+    }
+    predictor.learn(x, value);
+  }
+  return set;
+}
+
+CodedAttributeSet AttributeEncoder::code_values(Draft draft, AttributeReport& report) {
+  report.values = draft.sectors.count();
+  report.largest_error = largest_error(draft.source, draft.quantised);
+  std::vector<AttributePrediction> predictions{AttributePrediction::kMean,
+                                               AttributePrediction::kParallelogram};
+  const AttributeHeader& header = draft.quantised.header;
+  if (settings_.from_positions && header.kind == ValueKind::kIntegers &&
+      header.num_components == 2) {
+    predictions.push_back(AttributePrediction::kPositions);
+  }
+  std::optional<CodedAttributeSet> best;
+  std::uint64_t best_bits = 0;
+  for (const AttributePrediction prediction : predictions) {
+    CodedAttributeSet set = code_with(draft, prediction, {});
+    const std::uint64_t bits = bits_of(set);
+    if (best && bits >= best_bits) continue;
+    best = std::move(set);
+    best_bits = bits;
+  }
+  return *best;
+}
+
+std::optional<RestShape> AttributeEncoder::rest_shape() const {
+  const SourceAttributes& source = input_.source;
+  if (source.rest_xyz.empty()) return std::nullopt;
+  double largest = 0.0;
+  for (const float x : source.rest_xyz) largest = std::max<double>(largest, std::abs(x));
+  const double scale = largest > 0.0 ? static_cast<double>(1 << 22) / largest : 0.0;
+  RestShape shape;
+  for (const float x : source.rest_xyz) {
+    shape.positions.push_back(static_cast<std::int32_t>(round_to_int(x * scale)));
+  }
+  for (std::size_t t = 0; t < geometry_.triangles().size(); ++t) {
+    Triangle& triangle = shape.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = source.rest_of_corner[corner_map_[3 * t + k]];
+    }
+  }
+  return shape;
+}
+
+// The diagonals of a smoothing, as flags: those that are not likely in the first frame, or all.
+void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const {
+  set.header.weight = smoothing.weight;
+  std::vector<bool> unlikely(edge_mates_.size(), false);
+  std::size_t num_diagonals = 0;
+  std::size_t num_unlikely = 0;
+  for (std::uint32_t c = 0; c < edge_mates_.size(); ++c) {
+    const std::uint32_t mate = edge_mates_[c];
+    if (mate >= c || (!set.seams.empty() && set.seams[c])) continue;
+    const bool is_diagonal = smoothing.is_diagonal[c];
+    unlikely[c] = unlikely[mate] = is_diagonal != geometry_.is_likely_diagonal(c, mate);
+    num_diagonals += is_diagonal ? 1 : 0;
+    num_unlikely += unlikely[c] ? 1 : 0;
+  }
+  if (num_diagonals == 0) return;
+  const bool is_likely = settings_.from_positions && num_unlikely < num_diagonals;
+  set.header.diagonals = is_likely ? Diagonals::kLikely : Diagonals::kFlagged;
+  set.diagonal_flags = is_likely ? std::move(unlikely) : smoothing.is_diagonal;
+}
+
+CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& report) {
+  report.values = draft.sectors.count();
+  std::vector<Point> wanted(draft.sectors.count());
+  const std::vector<float>& normals = draft.source.values;
+  const auto normal_of = [&](std::uint32_t x) -> std::array<float, 3> {
+    const std::uint32_t i = draft.value_of_sector[x];
+    if (i == kNoSector) return {0.0F, 0.0F, 1.0F};
+    return {normals[3 * std::size_t{i}], normals[3 * std::size_t{i} + 1],
+            normals[3 * std::size_t{i} + 2]};
+  };
+  for (std::uint32_t x = 0; x < wanted.size(); ++x) {
+    wanted[x] = octahedron_point(normal_of(x), kSmoothingBits);
+  }
+  const std::optional<RestShape> rest = rest_shape();
+  const CornerGeometry geometry =
+      rest ? CornerGeometry(rest->triangles, rest->positions) : geometry_;
+  const Smoothing smoothing = find_smoothing(
+      {geometry, edge_mates_, draft.seams, draft.sectors}, wanted, kSmoothingBits);
+  CodedAttributeSet set{.header = draft.quantised.header,
+                        .seams = draft.seams,
+                        .diagonal_flags = {},
+                        .residuals = {}};
+  set.header.kind = ValueKind::kSmoothing;
+  set.header.num_components = 0;
+  set.header.value_bits = 32;
+  set_diagonals(smoothing, set);
+  report.is_smoothing = true;
+  // How far the computed normals are from those of the input.
+  Faces faces(geometry, Diagonals::kFlagged, edge_mates_, draft.seams, smoothing.is_diagonal,
+              true);
+  double least_cosine = 1.0;
+  for (std::uint32_t x = 0; x < wanted.size(); ++x) {
+    if (draft.sectors.corners[x].empty()) continue;
+    const Vec3l sum =
+        sector_normal(geometry, faces.view(), smoothing.weight, draft.sectors.corners[x]);
+    const auto n = normal_of(x);
+    double product = 0.0;
+    double length = 0.0;
+    double length_of_n = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      product += static_cast<double>(sum[k]) * n[k];
+      length += static_cast<double>(sum[k]) * static_cast<double>(sum[k]);
+      length_of_n += double{n[k]} * n[k];
+    }
+    if (length > 0.0 && length_of_n > 0.0) {
+      least_cosine = std::min(least_cosine, product / std::sqrt(length * length_of_n));
+    }
+  }
+  report.largest_error = std::acos(std::max(-1.0, least_cosine)) * 57.295779513;
+  return set;
+}
+
+CodedAttributeSet AttributeEncoder::code(const SourceAttribute& source,
+                                         AttributeReport& report) {
+  if (source.domain == AttributeDomain::kTriangle) return code_triangles(source, report);
+  Draft draft = make_draft(source);
+  if (draft.quantised.header.kind == ValueKind::kUnitVectors) {
+    return code_normals(std::move(draft), report);
+  }
+  return code_values(std::move(draft), report);
+}
+
+EncodedAttributes AttributeEncoder::encode() {
+  EncodedAttributes encoded;
+  CodedAttributes coded;
+  std::vector<const SourceAttribute*> sources;
+  for (const SourceAttribute& source : input_.source.sets) sources.push_back(&source);
+  // Sets of triangles first: seams often lie where these change.
+  std::stable_partition(sources.begin(), sources.end(), [](const SourceAttribute* source) {
+    return source->domain == AttributeDomain::kTriangle;
+  });
+  for (const SourceAttribute* source : sources) {
+    AttributeReport& report = encoded.sets.emplace_back();
+    report.name = source->name;
+    coded.sets.push_back(code(*source, report));
+    report.bits = bits_of(coded.sets.back());
+  }
+  if (coded.uses_positions()) coded.first_frame_crc = crc32_of_positions(input_.first_frame);
+  encoded.payload = write_attributes(coded, num_vertices_, geometry_.triangles());
+  return encoded;
+}
+
+}  // namespace
+
+EncodedAttributes encode_attributes(const AttributeInput& input,
+                                    const AttributeSettings& settings) {
+  return AttributeEncoder(input, settings).encode();
+}
+
+}  // namespace rlpc

@@ -1,0 +1,16 @@
+// Attributes of the primitives of a scene as those of one mesh.
+#pragma once
+
+#include "encoder/input/gltf/model.h"
+#include "encoder/input/source_attribute.h"
+
+namespace rlpc {
+
+// triangles: of the scene, as in FrameSource::Shape before welding, in the order of instances,
+// those of mirrored instances turned. Sets that only some primitives have get usual values
+// elsewhere; normals and tangents are left out then, and notes are added about it.
+SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
+                                 const std::vector<bool>& is_mirrored,
+                                 std::vector<std::string>& notes);
+
+}  // namespace rlpc
