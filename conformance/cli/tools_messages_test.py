@@ -3,17 +3,9 @@
 
 import re
 import shutil
-import struct
 import subprocess
 
-from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_obj, write_pc2
-
-
-def write_mdd(path, frames):
-    points = len(frames[0]) // 3
-    data = struct.pack(f">ii{len(frames)}f", len(frames), points,
-                       *(f / 25 for f in range(len(frames))))
-    path.write_bytes(data + b"".join(struct.pack(f">{len(f)}f", *f) for f in frames))
+from tools_testing import INPUTS, Tools, ToolsTest, main, run
 
 
 class Messages(ToolsTest):
@@ -106,21 +98,6 @@ class Messages(ToolsTest):
             self.assertIsNotNone(found, said)
             self.assertEqual(found.group(1), options[0])
             self.ok("rlpcenc", *clip, *found.groups(), *options[2:])
-
-    def test_axes_of_mesh_and_points(self):
-        triangles, (frame, *_) = self.clip(2)
-        y_up = [c for v in range(0, len(frame), 3)
-                for c in (frame[v], frame[v + 2], -frame[v + 1])]
-        write_obj(self.path("turned.obj"), y_up, triangles)
-        write_mdd(self.path("clip.mdd"), [frame, frame])
-        write_pc2(self.path("turned.pc2"), [y_up, y_up])
-        for mesh, points, differ in (("clip.obj", "clip.mdd", False), ("clip.obj", "clip.pc2", False),
-                                     ("turned.obj", "clip.mdd", True), ("turned.obj", "clip.pc2", True),
-                                     ("clip.obj", "turned.pc2", True),
-                                     ("turned.obj", "turned.pc2", False)):
-            said = self.ok("rlpcenc", self.path(mesh), "--points", self.path(points), "--dry-run",
-                           "--kg", 1, "--preset", "fast").err
-            self.assertEqual("(one is Y-up, the other Z-up); the stream gets" in said, differ, (mesh, points, said))
 
     def test_choices_of_the_encoder_are_reported_on_request(self):
         self.clip(4)

@@ -62,6 +62,13 @@ def write_pc2(path, frames):
     path.write_bytes(header + b"".join(array.array("f", frame).tobytes() for frame in frames))
 
 
+def write_mdd(path, frames):
+    points = len(frames[0]) // 3
+    data = struct.pack(f">ii{len(frames)}f", len(frames), points,
+                       *(f / 25 for f in range(len(frames))))
+    path.write_bytes(data + b"".join(struct.pack(f">{len(f)}f", *f) for f in frames))
+
+
 def read_pc2(path):
     data = path.read_bytes()
     points, _, _, samples = struct.unpack_from("<iffi", data, 16)

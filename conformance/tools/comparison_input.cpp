@@ -91,6 +91,9 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
   const std::string extension = lower_extension(given.path);
   if (extension == ".rlpc") {
     if (auto error = check_gltf_options(given)) return *error;
+    if (given.axes) {
+      return InputError{given.path + ": a stream is compared as it is; leave out --axes"};
+    }
     if (given.points.empty()) return open_stream(given.path, given.max_memory_bytes);
     return InputError{given.path + ": a stream has its own positions; leave out " +
                       given.points};

@@ -23,6 +23,7 @@
 #include "conformance/tools/comparison_page.h"
 #include "conformance/tools/vertex_matching.h"
 #include "decoder/report/mesh_view.h"
+#include "encoder/input/axes.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/metrics/surface_metrics.h"
 #include "encoder/tools/report_json.h"
@@ -81,6 +82,7 @@ struct Options {
   rlpc::InputOptions a;
   rlpc::InputOptions b;
   std::string fps;
+  std::string axes;
   std::string stream;
   std::string order_map;
   std::string csv;
@@ -142,6 +144,9 @@ void add_options(CLI::App& app, Options& o) {
       ->group(more);
   app.add_option("--animation-b", o.b.animation, "The same for B")
       ->option_text("NAME")
+      ->group(more);
+  app.add_option("--axes-a,--axes", o.axes, "As rlpcenc --axes, for A")
+      ->option_text("X,Y,Z")
       ->group(more);
   app.add_option("--fps", o.fps, "Frame rate of glTF files (default: 30)")
       ->option_text("RATE")
@@ -306,6 +311,11 @@ std::optional<std::string> check_places(const Options& o) {
 
 int run(Options& o) {
   if (const auto wrong = check_places(o)) return complain(*wrong), kUsage;
+  if (!o.axes.empty()) {
+    const auto axes = rlpc::parse_axes(o.axes);
+    if (!axes) return complain("--axes: " + axes.error().message), kUsage;
+    o.a.axes = *axes;
+  }
   if (!o.fps.empty()) {
     const auto rate = rlpc::parse_frame_rate(o.fps);
     if (!rate) return complain("--fps: " + rate.error().message), kUsage;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/syntax/stream_format.h"
+#include "encoder/input/axes.h"
 #include "encoder/input/formats/mesh_sequence.h"
 #include "encoder/input/formats/point_cache.h"
 #include "encoder/input/input_file.h"
@@ -95,6 +96,28 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
   }
 }
 
+InputResult<std::unique_ptr<FrameSource>> open_with_its_axes(const InputOptions& options) {
+  const std::string& path = options.path;
+  std::error_code ec;
+  const bool exists = path == "-" || fs::exists(path, ec);
+  if (!options.points.empty()) {
+    const InputFormat* const format = format_of(options.points);
+    const bool known = format != nullptr && format->open_points != nullptr;
+    return (known ? format->open_points : open_point_cache)(
+        path, options.points, options.frame_rate, options.max_memory_bytes);
+  }
+  if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
+  // A file with exactly this name takes precedence over a pattern.
+  const std::string name = fs::path(path).filename().string();
+  if (!exists && name.find('%') != name.npos) {
+    return open_listed(list_mesh_pattern(path), options);
+  }
+  if (!exists && name.find_first_of("*?[") != name.npos) {
+    return open_listed(list_mesh_glob(path), options);
+  }
+  return open_file(options, exists);
+}
+
 }  // namespace
 
 bool has_clips(const InputOptions& options) {
@@ -112,26 +135,10 @@ std::optional<InputError> check_gltf_options(const InputOptions& options) {
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
-  const std::string& path = options.path;
-  std::error_code ec;
-  const bool exists = path == "-" || fs::exists(path, ec);
   if (auto error = check_gltf_options(options)) return *error;
-  if (!options.points.empty()) {
-    const InputFormat* const format = format_of(options.points);
-    const bool known = format != nullptr && format->open_points != nullptr;
-    return (known ? format->open_points : open_point_cache)(
-        path, options.points, options.frame_rate, options.max_memory_bytes);
-  }
-  if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
-  // A file with exactly this name takes precedence over a pattern.
-  const std::string name = fs::path(path).filename().string();
-  if (!exists && name.find('%') != name.npos) {
-    return open_listed(list_mesh_pattern(path), options);
-  }
-  if (!exists && name.find_first_of("*?[") != name.npos) {
-    return open_listed(list_mesh_glob(path), options);
-  }
-  return open_file(options, exists);
+  auto source = open_with_its_axes(options);
+  if (!source || !options.axes) return source;
+  return turn_source(std::move(*source), *options.axes);
 }
 
 InputResult<FrameRate> parse_frame_rate(std::string_view text) {

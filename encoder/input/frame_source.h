@@ -1,6 +1,7 @@
 // The interface through which the encoder reads animations: fixed triangles, moving vertices.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -26,6 +27,15 @@ struct InputError {
 template <class T>
 using InputResult = Result<T, InputError>;
 
+// Axes in terms of others: coordinate a of the new axes is coordinate from[a] of the old ones,
+// negated if negative[a]. from is a permutation of 0, 1, 2.
+struct Axes {
+  std::array<std::uint8_t, 3> from{0, 1, 2};
+  std::array<bool, 3> negative{};
+
+  bool operator==(const Axes&) const = default;
+};
+
 // Random access to the frames; most sources hold at most one frame in memory. Not thread-safe.
 class FrameSource {
  public:
@@ -39,6 +49,7 @@ class FrameSource {
     std::vector<Clip> clips{};
     SourceAttributes attributes{};
     std::uint64_t memory_bytes = 0;
+    std::optional<Axes> axes_of_mesh{};
   };
 
   FrameSource(const FrameSource&) = delete;
@@ -56,6 +67,9 @@ class FrameSource {
   const std::vector<std::string>& files() const { return shape_.files; }
   // Parts that the input names.
   const std::vector<Clip>& clips() const { return shape_.clips; }
+  // Triangles from a mesh whose axes are not those of the frames: the axes to turn frames to.
+  const std::optional<Axes>& axes_of_mesh() const { return shape_.axes_of_mesh; }
+  const Shape& shape() const { return shape_; }
 
   // Texture coordinates, normals and the like, of triangles().
   const SourceAttributes& attributes() const { return shape_.attributes; }
@@ -71,6 +85,7 @@ class FrameSource {
 
  protected:
   explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}
+  void set_axes_of_mesh(const std::optional<Axes>& axes) { shape_.axes_of_mesh = axes; }
 
  private:
   Shape shape_;
@@ -103,8 +118,9 @@ struct InputOptions {
   std::string path;
   std::string points;  // empty: none
   std::optional<FrameRate> frame_rate;
-  std::string animation{};  // glTF only: name, index from 0, or "all"; empty: the first
-  bool weld = true;         // glTF only: merge vertices that coincide in every frame
+  std::string animation{};     // glTF only: name, index from 0, or "all"; empty: the first
+  bool weld = true;            // glTF only: merge vertices that coincide in every frame
+  std::optional<Axes> axes{};  // to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
 };

@@ -82,6 +82,9 @@ dyadic:4 is 4<0,2<0+4@1,1<0+2@2,3<2+4@2. --temporal-layers N makes layers of the
 N - 1 greatest depths, --layer-groups N of vertex layers: frames and details
 that rlpcinfo --extract can remove.
 
+--up-axis and --metres-per-unit become upAxis and metersPerUnit of the metadata,
+as USD names them. They say what the positions of OUT are; --axes turns them.
+
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";
 
@@ -89,6 +92,7 @@ reached; 64 wrong usage.)";
 constexpr const char* kInput = "Input";
 constexpr const char* kQuality = "Quality (at most one; default: --quality good)";
 constexpr const char* kOutput = "Output";
+constexpr const char* kMoreInput = "More input";
 constexpr const char* kMore = "More output";
 
 std::vector<std::string> quality_words() {
@@ -157,6 +161,10 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
                  "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, otherwise 30)")
       ->option_text("RATE")
       ->group(kInput);
+  app.add_option("--axes", line.axes,
+                 "New x, y and z in axes of INPUT: x,z,-y turns Z-up to Y-up, x,-z,y back")
+      ->option_text("X,Y,Z")
+      ->group(kMoreInput);
   app.add_option("--animation", line.options.input.animation,
                  "glTF: name, index from 0, or `all` in sequence (default: first)")
       ->option_text("NAME")
@@ -247,6 +255,15 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
   app.add_option("--metadata", line.metadata_path, "JSON file to carry along")
       ->check(CLI::ExistingFile)
       ->option_text("FILE")
+      ->group(kMore);
+  app.add_option("--up-axis", line.up_axis, "Note in the metadata which axis is up: y or z")
+      ->check(CLI::IsMember({"y", "z"}).description(""))
+      ->option_text("WORD")
+      ->group(kMore);
+  app.add_option("--metres-per-unit", line.metres_per_unit,
+                 "Note in the metadata how long a unit is: 0.01 for centimetres")
+      ->check(kAboveZero)
+      ->option_text("METRES")
       ->group(kMore);
   app.add_option("--clip", line.clips,
                  "Name a part of the animation, frames A to B counted from 0; may be repeated "

@@ -19,12 +19,15 @@ struct EncodeCommandLine {
 
   EncodeOptions& options;
   std::string fps;
+  std::string axes;
   std::optional<std::string> gof;  // none: chosen by the profile
   std::string frame_pattern;
   std::optional<PartitionMethod> partition;
   std::vector<float> box;
   std::string metadata_path;
-  std::vector<std::string> clips;  // NAME:A-B
+  std::string up_axis;                    // of the metadata: y, z; empty: not noted
+  std::optional<double> metres_per_unit;  // likewise
+  std::vector<std::string> clips;         // NAME:A-B
   std::optional<double> kg;
   std::optional<double> bpvf;
   std::optional<double> max_error;

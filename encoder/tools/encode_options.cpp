@@ -14,6 +14,7 @@
 #include "common/tools/command_line.h"
 #include "common/tools/frame_span.h"
 #include "encoder/frame_gof/frame_pattern_text.h"
+#include "encoder/input/axes.h"
 #include "encoder/input/input_format.h"
 #include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/target/quality.h"
@@ -48,6 +49,11 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     const auto rate = parse_frame_rate(line.fps);
     if (!rate) return "--fps: " + rate.error().message;
     o.input.frame_rate = *rate;
+  }
+  if (!line.axes.empty()) {
+    const auto axes = parse_axes(line.axes);
+    if (!axes) return "--axes: " + axes.error().message;
+    o.input.axes = *axes;
   }
   o.input.max_memory_bytes = s.max_memory_bytes;
   if (line.gof == "all") {
@@ -146,6 +152,23 @@ std::optional<InputError> read_metadata(const EncodeCommandLine& line) {
   return std::nullopt;
 }
 
+// What is noted of axes and unit, with the names that USD has for them, in the metadata.
+std::optional<InputError> note_units(const EncodeCommandLine& line) {
+  if (line.up_axis.empty() && !line.metres_per_unit) return std::nullopt;
+  std::string& metadata = line.options.settings.metadata;
+  auto json = metadata.empty() ? nlohmann::ordered_json::object()
+                               : nlohmann::ordered_json::parse(metadata);
+  if (!json.is_object()) {
+    return InputError{
+        line.metadata_path +
+        ": expected a JSON object, for --up-axis and --metres-per-unit to add to"};
+  }
+  if (!line.up_axis.empty()) json["upAxis"] = line.up_axis == "y" ? "Y" : "Z";
+  if (line.metres_per_unit) json["metersPerUnit"] = *line.metres_per_unit;
+  metadata = json.dump();
+  return std::nullopt;
+}
+
 }  // namespace
 
 int complain(const std::string& message, EncodeExitCode code) {
@@ -161,6 +184,7 @@ std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& opt
   if (const auto wrong = check_places(line)) return complain(*wrong, kUsage);
   if (const auto wrong = finish_settings(line)) return complain(*wrong, kUsage);
   if (const auto error = read_metadata(line)) return complain(error->message);
+  if (const auto error = note_units(line)) return complain(error->message);
   return std::nullopt;
 }
 

@@ -23,6 +23,7 @@
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
 #include "encoder/frame_gof/frame_pattern_text.h"
+#include "encoder/input/axes.h"
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
@@ -250,6 +251,7 @@ int run_live(const EncodeOptions& o) {
   const std::string mesh = o.input.points.empty() ? std::string() : o.input.path;
   auto frames = open_frame_stream(stdin, mesh, o.input.frame_rate, o.input.max_memory_bytes);
   if (!frames) return complain(frames.error().message);
+  if (o.input.axes) *frames = turn_stream(std::move(*frames), *o.input.axes);
   auto stream = OutputFile::create(o.output);
   if (!stream) return complain(stream.error().message);
   std::optional<OutputError> failure;
@@ -317,6 +319,11 @@ std::vector<std::string> doubts(const InputOptions& input, const FrameSource& so
   std::vector<std::string> notes;
   if (source.triangles().empty())
     notes.emplace_back("has no triangles; encoded as a point cloud");
+  if (const auto& axes = source.axes_of_mesh()) {
+    notes.push_back(name_of_input(input.points) + " has other axes than this mesh" +
+                    (is_mirror(*axes) ? ", and is mirrored" : "") + "; --axes " +
+                    axes_text(*axes) + " gives the stream those of the mesh");
+  }
   if (source.num_frames() > 1 || input.path == "-") return notes;
   const std::string cache = sibling_of(input.path, InputFormat::Holds::kPoints);
   if (!cache.empty() && is_mesh_extension(input.path)) {

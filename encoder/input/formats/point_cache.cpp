@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/io/binary_numbers.h"
+#include "encoder/input/axes_fit.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
 #include "encoder/input/piped_frames.h"
@@ -182,36 +183,6 @@ float load_value(std::span<const char> bytes, std::size_t offset, const Layout& 
   return layout.big_endian ? load_f32_be(bytes, offset) : load_f32(bytes, offset);
 }
 
-// Whether the first frame differs from the mesh by a rotation from Y-up to Z-up or back.
-InputResult<bool> has_other_axes(InputFile& file, const Layout& layout,
-                                 const std::vector<float>& mesh) {
-  struct Axes {
-    std::array<std::size_t, 3> from{};
-    std::array<float, 3> sign{};
-    bool match = true;
-  };
-  Axes as_they_are{{0, 1, 2}, {1, 1, 1}};
-  Axes z_up{{0, 2, 1}, {1, -1, 1}};
-  Axes y_up{{0, 2, 1}, {1, 1, -1}};
-  float largest = 0;
-  for (const float x : mesh) largest = std::max(largest, std::abs(x));
-  constexpr float kNear = 1e-4F;
-  constexpr std::size_t kBlock = 12 * std::size_t{4096};
-  std::vector<char> bytes;
-  for (std::size_t at = 0; at < mesh.size(); at += kBlock / 4) {
-    bytes.resize(std::min(kBlock, 4 * (mesh.size() - at)));
-    if (auto error = file.read(layout.first_byte + 4 * at, bytes)) return *error;
-    for (Axes* axes : {&as_they_are, &z_up, &y_up}) {
-      for (std::size_t i = 0; i < bytes.size() / 4 && axes->match; ++i) {
-        const float expected = axes->sign[i % 3] * mesh[at + i - i % 3 + axes->from[i % 3]];
-        const float found = load_value(bytes, 4 * i, layout);
-        axes->match = std::abs(found - expected) <= kNear * largest;
-      }
-    }
-  }
-  return !as_they_are.match && (z_up.match || y_up.match);
-}
-
 class PointCache : public FrameSource {
  public:
   PointCache(Shape shape, InputFile file, const Layout& layout)
@@ -229,6 +200,17 @@ class PointCache : public FrameSource {
   }
 
   std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
+
+  // Of frames that cannot be read, reading them again says why.
+  void compare_axes(std::span<const float> mesh) {
+    AxesFit fit(mesh);
+    std::vector<float> xyz(mesh.size());
+    for (std::uint32_t f = 0; f < num_frames() && !fit.matches(); ++f) {
+      if (read_frame(f, xyz)) return;
+      fit.add_frame(xyz);
+    }
+    set_axes_of_mesh(fit.axes_of_mesh());
+  }
 
  private:
   InputFile file_;
@@ -271,20 +253,15 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
                       "(--fps sets another rate)");
     }
   }
-  const auto other_axes = has_other_axes(*file, *layout, mesh->xyz);
-  if (!other_axes) return other_axes.error();
-  if (*other_axes) {
-    notes.push_back(file->path() +
-                    " has other axes (one is Y-up, the other Z-up); the stream gets those of " +
-                    file->path());
-  }
+  const std::vector<float> mesh_xyz = mesh->xyz;
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
   shape.files = {mesh_path, points_path};
   shape.notes = std::move(notes);
   shape.memory_bytes += file->memory_bytes();
-  return std::unique_ptr<FrameSource>(
-      std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
+  auto source = std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout);
+  source->compare_axes(mesh_xyz);
+  return std::unique_ptr<FrameSource>(std::move(source));
 }
 
 namespace {

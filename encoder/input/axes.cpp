@@ -1,0 +1,124 @@
+#include "encoder/input/axes.h"
+
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+
+namespace {
+
+constexpr std::string_view kNames = "xyz";
+
+void turn_over(std::vector<Triangle>& triangles) {
+  for (Triangle& t : triangles) std::swap(t[1], t[2]);
+}
+
+class TurnedSource final : public FrameSource {
+ public:
+  TurnedSource(Shape shape, std::unique_ptr<FrameSource> source, const Axes& axes)
+      : FrameSource(std::move(shape)), source_(std::move(source)), axes_(axes) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    if (auto error = source_->read_frame(frame, xyz)) return error;
+    turn(axes_, xyz);
+    return std::nullopt;
+  }
+
+  std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  Axes axes_;
+};
+
+class TurnedStream final : public FrameStream {
+ public:
+  TurnedStream(Shape shape, std::unique_ptr<FrameStream> stream, const Axes& axes)
+      : FrameStream(std::move(shape)), stream_(std::move(stream)), axes_(axes) {}
+
+  InputResult<bool> next_frame(std::span<float> xyz) override {
+    auto read = stream_->next_frame(xyz);
+    if (read && *read) turn(axes_, xyz);
+    return read;
+  }
+
+ private:
+  std::unique_ptr<FrameStream> stream_;
+  Axes axes_;
+};
+
+}  // namespace
+
+void turn(const Axes& axes, std::span<float> xyz) {
+  assert(xyz.size() % 3 == 0);
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    const std::array<float, 3> old{xyz[i], xyz[i + 1], xyz[i + 2]};
+    for (std::size_t a = 0; a < 3; ++a) {
+      xyz[i + a] = axes.negative[a] ? -old[axes.from[a]] : old[axes.from[a]];
+    }
+  }
+}
+
+bool is_mirror(const Axes& axes) {
+  bool odd = false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes.negative[a]) odd = !odd;
+    for (std::size_t b = a + 1; b < 3; ++b) {
+      if (axes.from[a] > axes.from[b]) odd = !odd;
+    }
+  }
+  return odd;
+}
+
+InputResult<Axes> parse_axes(std::string_view text) {
+  const InputError error{
+      "\"" + std::string(text) +
+      "\": expected the new x, y and z as axes of the input, such as x,z,-y"};
+  Axes axes;
+  std::array<bool, 3> used{};
+  std::string_view rest = text;
+  for (std::size_t a = 0; a < 3; ++a) {
+    axes.negative[a] = rest.starts_with('-');
+    if (axes.negative[a]) rest.remove_prefix(1);
+    const std::size_t from = rest.empty() ? kNames.npos : kNames.find(rest.front());
+    if (from == kNames.npos || std::exchange(used[from], true)) return error;
+    axes.from[a] = static_cast<std::uint8_t>(from);
+    rest.remove_prefix(1);
+    if (a == 2) break;
+    if (!rest.starts_with(',')) return error;
+    rest.remove_prefix(1);
+  }
+  if (!rest.empty()) return error;
+  return axes;
+}
+
+std::string axes_text(const Axes& axes) {
+  std::string text;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (a > 0) text += ',';
+    if (axes.negative[a]) text += '-';
+    text += kNames[axes.from[a]];
+  }
+  return text;
+}
+
+std::unique_ptr<FrameSource> turn_source(std::unique_ptr<FrameSource> source,
+                                         const Axes& axes) {
+  FrameSource::Shape shape = source->shape();
+  const bool is_mesh_mirrored = shape.axes_of_mesh && is_mirror(*shape.axes_of_mesh);
+  if (is_mirror(axes) != is_mesh_mirrored) turn_over(shape.triangles);
+  if (shape.axes_of_mesh == axes) shape.axes_of_mesh.reset();
+  return std::make_unique<TurnedSource>(std::move(shape), std::move(source), axes);
+}
+
+std::unique_ptr<FrameStream> turn_stream(std::unique_ptr<FrameStream> stream,
+                                         const Axes& axes) {
+  FrameStream::Shape shape = stream->shape();
+  if (is_mirror(axes)) turn_over(shape.triangles);
+  return std::make_unique<TurnedStream>(std::move(shape), std::move(stream), axes);
+}
+
+}  // namespace rlpc
