@@ -9,6 +9,7 @@
 #include "common/bitstream/crc32.h"
 #include "common/parallel/for_each.h"
 #include "decoder/parse/attributes/parse_attributes.h"
+#include "decoder/parse/sequence/parse_asset.h"
 #include "decoder/recon/coarse_output.h"
 #include "decoder/recon/frame_band.h"
 #include "decoder/recon/hash_check.h"
@@ -46,6 +47,7 @@ class Decoder::Impl {
   Result<bool> seek(std::uint32_t frame);
   Result<std::optional<std::uint32_t>> skip_damage();
   Result<std::uint32_t> parse_rest();
+  Result<std::string> asset();
   Result<std::vector<AttributeSet>> attributes();
 
   const StreamReader& stream() const { return stream_; }
@@ -341,6 +343,15 @@ Result<std::vector<std::int32_t>> Decoder::Impl::first_frame() {
   return positions;
 }
 
+Result<std::string> Decoder::Impl::asset() {
+  const auto& unit = stream_.asset_unit();
+  if (!unit) return std::string();
+  const auto payload = stream_.units().payload(*unit);
+  if (!payload) return payload.error();
+  BitReader r = stream_.units().bits(*unit, *payload);
+  return parse_asset(r, stream_.access_units().memory_limit());
+}
+
 Result<std::vector<AttributeSet>> Decoder::Impl::attributes() {
   const auto& unit = stream_.attribute_unit();
   if (!unit || coarse_) return std::vector<AttributeSet>();
@@ -407,6 +418,7 @@ std::span<const std::uint32_t> Decoder::coarse_vertices() const {
 }
 std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }
+Result<std::string> Decoder::asset() { return impl_->asset(); }
 bool Decoder::has_attributes() const { return impl_->stream().attribute_unit().has_value(); }
 Result<std::vector<AttributeSet>> Decoder::attributes() { return impl_->attributes(); }
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {

@@ -103,6 +103,9 @@ class Decoder {
   // Those of the last clip table so far. Names may have any bytes.
   const std::vector<Clip>& clips() const;
 
+  // The asset of the stream (7.16), a GLB without geometry; empty: none. Not checked beyond its
+  // size. Errors leave the frames decodable.
+  Result<std::string> asset();
   // Whether the stream has attributes.
   bool has_attributes() const;
   // Decodes the attributes (Annex F), from the first frame, which is decoded for it even if

@@ -188,6 +188,8 @@ struct EncoderSettings {
   // Names of parts of the sequence, up to kMaxClips; empty: no clip table. Not checked against
   // the number of frames if that is not known beforehand.
   std::vector<Clip> clips;
+  // A GLB without geometry (7.16), not validated, below 2^31 bytes; empty: no asset unit.
+  std::string asset;
   // Of the attributes that the source has.
   AttributeSettings attributes;
   // Encodings that may need more memory fail before they start. The estimate is for animations
@@ -222,6 +224,7 @@ struct PartBits {
   std::uint64_t hashes = 0;
   std::uint64_t metadata = 0;  // and clip table
   std::uint64_t attributes = 0;
+  std::uint64_t asset = 0;
 };
 
 // A stream without the slices of its higher temporal layers, as rlpcinfo --extract writes it.

@@ -33,6 +33,7 @@ enum class UnitType : std::uint8_t {
   kGofHash = 0x82,
   kMetadata = 0x83,
   kAttributes = 0x88,
+  kAsset = 0x89,
   kClipTable = 0x8A,
 };
 
@@ -53,7 +54,7 @@ constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
 constexpr bool is_known_ancillary(UnitType type) {
   return type == UnitType::kGofIndex || type == UnitType::kGofHash ||
          type == UnitType::kMetadata || type == UnitType::kClipTable ||
-         type == UnitType::kAttributes;
+         type == UnitType::kAttributes || type == UnitType::kAsset;
 }
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;

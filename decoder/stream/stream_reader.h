@@ -40,6 +40,8 @@ class StreamReader {
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const std::string& metadata() const { return metadata_; }  // the last so far
   const std::vector<Clip>& clips() const { return clips_; }  // likewise
+  // The last asset unit so far, whose CRC has been checked; none: there is none.
+  const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
   // The attribute unit, whose CRC has been checked; none: there is none.
   const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
 
@@ -99,6 +101,7 @@ class StreamReader {
   std::string metadata_;
   std::vector<Clip> clips_;
   std::optional<UnitHeader> attribute_unit_;
+  std::optional<UnitHeader> asset_unit_;
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;

@@ -123,6 +123,7 @@ Outcome decode_attributes(const Request& request) {
     if (!source) return {source.error(), {}, 0};
     auto decoder = Decoder::open(std::move(*source), request.decoder);
     if (!decoder) return {decoder.error(), {}, 0};
+    if (const auto asset = decoder->asset(); !asset) return {asset.error(), {}, 0};
     const auto sets = decoder->attributes();
     const bool is_late = !sets && std::string_view(sets.error().rule) == "R-ATT-08";
     if (!sets && !is_late) return {sets.error(), {}, 0};

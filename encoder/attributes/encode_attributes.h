@@ -19,6 +19,8 @@ struct AttributeReport {
   std::uint64_t values = 0;
   std::uint64_t bits = 0;      // in the stream
   double largest_error = 0.0;  // of a component, in its units; of normals, degrees
+  double rms_error = 0.0;      // of normals, degrees
+  bool is_normal = false;
   bool is_smoothing = false;
 };
 

@@ -122,9 +122,9 @@ std::array<double, 3> octahedron_vector(const std::array<std::uint32_t, 2>& poin
   return v;
 }
 
-std::array<std::uint32_t, 2> octahedron_point(const std::array<float, 3>& normal,
+std::array<std::uint32_t, 2> octahedron_point(const std::array<double, 3>& normal,
                                               std::uint32_t value_bits) {
-  const std::array<double, 3> n{normal[0], normal[1], normal[2]};
+  const std::array<double, 3>& n = normal;
   const double length = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
   const double h = exact_exp2(static_cast<int>(value_bits) - 1) - 1.0;
   if (!(length > 0.0)) {

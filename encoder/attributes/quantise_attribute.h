@@ -20,7 +20,7 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
                                       const AttributeSettings& settings);
 
 // The point of the octahedron nearest in angle to a normal; value_bits: 2 to 16.
-std::array<std::uint32_t, 2> octahedron_point(const std::array<float, 3>& normal,
+std::array<std::uint32_t, 2> octahedron_point(const std::array<double, 3>& normal,
                                               std::uint32_t value_bits);
 // The unit vector of a point.
 std::array<double, 3> octahedron_vector(const std::array<std::uint32_t, 2>& point,

@@ -16,6 +16,22 @@ void turn_over(std::vector<Triangle>& triangles) {
   for (Triangle& t : triangles) std::swap(t[1], t[2]);
 }
 
+void turn_over(SourceAttributes& attributes) {
+  const auto swap_corners = [](std::vector<std::uint32_t>& corners) {
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+      std::swap(corners[i + 1], corners[i + 2]);
+  };
+  swap_corners(attributes.rest_of_corner);
+  for (SourceAttribute& set : attributes.sets) swap_corners(set.value_of_corner);
+}
+
+void turn_normals(const Axes& axes, SourceAttributes& attributes) {
+  turn(axes, attributes.rest_xyz);
+  for (SourceAttribute& set : attributes.sets) {
+    if (set.kind == SourceAttribute::Kind::kNormals) turn(axes, set.values);
+  }
+}
+
 class TurnedSource final : public FrameSource {
  public:
   TurnedSource(Shape shape, std::unique_ptr<FrameSource> source, const Axes& axes)
@@ -109,8 +125,16 @@ std::unique_ptr<FrameSource> turn_source(std::unique_ptr<FrameSource> source,
                                          const Axes& axes) {
   FrameSource::Shape shape = source->shape();
   const bool is_mesh_mirrored = shape.axes_of_mesh && is_mirror(*shape.axes_of_mesh);
-  if (is_mirror(axes) != is_mesh_mirrored) turn_over(shape.triangles);
-  if (shape.axes_of_mesh == axes) shape.axes_of_mesh.reset();
+  if (is_mirror(axes) != is_mesh_mirrored) {
+    turn_over(shape.triangles);
+    turn_over(shape.attributes);
+  }
+  // A mesh that has these axes already keeps its normals.
+  if (shape.axes_of_mesh == axes) {
+    shape.axes_of_mesh.reset();
+  } else {
+    turn_normals(axes, shape.attributes);
+  }
   return std::make_unique<TurnedSource>(std::move(shape), std::move(source), axes);
 }
 

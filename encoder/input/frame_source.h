@@ -48,6 +48,7 @@ class FrameSource {
     std::vector<std::string> files{};
     std::vector<Clip> clips{};
     SourceAttributes attributes{};
+    std::string asset{};
     std::uint64_t memory_bytes = 0;
     std::optional<Axes> axes_of_mesh{};
   };
@@ -73,6 +74,8 @@ class FrameSource {
 
   // Texture coordinates, normals and the like, of triangles().
   const SourceAttributes& attributes() const { return shape_.attributes; }
+  // Materials, textures and names of parts: a GLB without geometry; empty: none.
+  const std::string& asset() const { return shape_.asset; }
 
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
@@ -120,6 +123,7 @@ struct InputOptions {
   std::optional<FrameRate> frame_rate;
   std::string animation{};     // glTF only: name, index from 0, or "all"; empty: the first
   bool weld = true;            // glTF only: merge vertices that coincide in every frame
+  bool textures = true;  // glTF only: include images in the asset
   std::optional<Axes> axes{};  // to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;

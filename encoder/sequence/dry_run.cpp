@@ -26,6 +26,7 @@ class StretchSource final : public FrameSource {
                      {},
                      {},
                      source.attributes(),
+                     source.asset(),
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}

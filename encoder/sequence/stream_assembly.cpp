@@ -34,13 +34,16 @@ StreamAssembly::StreamAssembly(const SequenceHeader& header, const EncoderSettin
   if (!settings.clips.empty()) {
     clip_table_ = write_unit(UnitType::kClipTable, write_clip_table(settings.clips));
   }
+  if (!settings.asset.empty()) {
+    asset_ = write_unit(UnitType::kAsset, write_asset(settings.asset));
+  }
   if (settings.keep_order) {
     vertex_order_ =
         write_unit(UnitType::kVertexOrder, write_vertex_order(connectivity.input_vertex));
   }
   lead_bytes_ = write_stream_header(header.profile_idc).size() + header_unit(header).size() +
                 metadata_.size() + clip_table_.size() + connectivity_.size() +
-                vertex_order_.size();
+                vertex_order_.size() + asset_.size();
 }
 
 void StreamAssembly::set_attributes(std::span<const std::uint8_t> payload) {
@@ -73,7 +76,7 @@ bool StreamAssembly::put(std::span<const std::uint8_t> bytes, const ByteSink& si
 bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& sink) {
   return put(write_stream_header(header.profile_idc), sink) && put(header_unit(header), sink) &&
          put(metadata_, sink) && put(clip_table_, sink) && put(connectivity_, sink) &&
-         put(vertex_order_, sink) && put(attributes_, sink);
+         put(vertex_order_, sink) && put(attributes_, sink) && put(asset_, sink);
 }
 
 bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
@@ -153,11 +156,12 @@ void StreamAssembly::describe(const SequenceHeader& header,
   report.bits.vertex_order = 8 * vertex_order_.size();
   report.bits.metadata = 8 * (metadata_.size() + clip_table_.size());
   report.bits.attributes = 8 * attributes_.size();
+  report.bits.asset = 8 * asset_.size();
   report.bits.gofs = 8 * gof_bytes_;
   report.bits.hashes = 8 * hash_bytes_;
   report.bits.headers = 8 * written_ - report.bits.gofs - report.bits.hashes -
                         report.bits.connectivity - report.bits.vertex_order -
-                        report.bits.metadata - report.bits.attributes;
+                        report.bits.metadata - report.bits.attributes - report.bits.asset;
   report.num_gofs = static_cast<std::uint32_t>(index_.gofs.size());
   report.input_vertex = connectivity.input_vertex;
 }

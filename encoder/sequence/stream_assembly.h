@@ -73,6 +73,7 @@ class StreamAssembly {
   Bytes connectivity_;
   Bytes vertex_order_;
   Bytes attributes_;
+  Bytes asset_;
   std::uint64_t lead_bytes_ = 0;
   std::uint64_t end_bytes_ = 0;
   std::uint64_t gof_bytes_ = 0;

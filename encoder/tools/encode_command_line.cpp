@@ -286,6 +286,34 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(kMore);
 }
 
+void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string group = "Texture coordinates, normals, colours, materials";
+  AttributeSettings& a = line.options.settings.attributes;
+  app.add_flag("--no-attributes", a.dropped, "Positions and triangles alone")->group(group);
+  add_off_switch(app, "--no-textures", line.options.input.textures,
+                 "glTF: leave images out of the materials")
+      ->group(group);
+  app.add_option("--uv-bits", a.uv_bits,
+                 "Texture coordinates in steps of 1/2^N of an image (default: 12)")
+      ->check(CLI::Range(1, 16))
+      ->option_text("N")
+      ->group(group);
+  add_choice<NormalChoice>(app, "--normals", a.normals,
+                           {{"auto", NormalChoice::kAuto},
+                            {"smoothing", NormalChoice::kSmoothing},
+                            {"exact", NormalChoice::kExact}},
+                           "Normals: smoothing (which faces share them: computed for every "
+                           "frame), exact (those of the first frame), auto (smoothing if it "
+                           "comes near those of INPUT, default)")
+      ->group(group);
+  app.add_option("--normal-bits", a.normal_bits,
+                 "With exact normals: bits of each of their two coordinates (default: 10)")
+      ->check(CLI::Range(2, 16))
+      ->option_text("N")
+      ->group(group);
+  app.add_flag("--exact-attributes", a.exact, "32-bit floats, without loss")->group(group);
+}
+
 void add_method_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string method = "All profiles";
   add_choice<Profile>(
@@ -480,6 +508,7 @@ void add_encode_options(CLI::App& app, EncodeCommandLine& line) {
   add_input_options(app, line);
   add_quality_options(app, line);
   add_output_options(app, line);
+  add_attribute_options(app, line);
   add_method_options(app, line);
   add_main_options(app, line);
   add_frame_options(app, line);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/metrics/metrics.h"
@@ -61,7 +62,9 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
         {"vertex_order", r.bits.vertex_order},
         {"gofs", r.bits.gofs},
         {"hashes", r.bits.hashes},
-        {"metadata", r.bits.metadata}}},
+        {"metadata", r.bits.metadata},
+        {"attributes", r.bits.attributes},
+        {"asset", r.bits.asset}}},
       {"num_gofs", r.num_gofs},
       {"clusters", r.clusters},
       {"components", r.components},
@@ -72,6 +75,15 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
     json["frame_patterns"].push_back({{"frame_pattern", frame_pattern_text(count.pattern)},
                                       {"num_patches", count.patches},
                                       {"gofs", count.gofs}});
+  }
+  for (const AttributeReport& a : r.attributes) {
+    nlohmann::ordered_json set = {{"name", a.name}, {"values", a.values}, {"bits", a.bits}};
+    set[a.is_normal ? "largest_error_degrees" : "largest_error"] = a.largest_error;
+    if (a.is_normal) {
+      set["rms_error_degrees"] = a.rms_error;
+      set["smoothing"] = a.is_smoothing;
+    }
+    json["attributes"].push_back(std::move(set));
   }
   for (const TemporalCut& cut : r.temporal_cuts) {
     json["temporal_cuts"].push_back({{"temporal_layers", cut.layers},

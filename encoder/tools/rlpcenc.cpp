@@ -47,6 +47,24 @@ void print_lossless(const EncodeOptions& o, const EncodeReport& r) {
                           : "; vertices and triangles are in another order (--keep-order)");
 }
 
+void print_attributes(const EncodeReport& r) {
+  for (const AttributeReport& a : r.attributes) {
+    std::printf("  %s: %llu bytes", a.name.c_str(),
+                static_cast<unsigned long long>((a.bits + 7) / 8));
+    if (a.is_normal) {
+      std::printf(", %s, largest error %.3g degrees", a.is_smoothing ? "smoothing" : "exact",
+                  a.largest_error);
+    } else if (a.largest_error > 0.0) {
+      std::printf(", largest error %.3g", a.largest_error);
+    }
+    std::printf("\n");
+  }
+  if (r.bits.asset > 0) {
+    std::printf("  materials and textures: %llu bytes\n",
+                static_cast<unsigned long long>(r.bits.asset / 8));
+  }
+}
+
 void print_report(const EncodeOptions& o, const Expectation& e) {
   const EncodeReport& r = e.report;
   const Metrics& m = r.metrics;
@@ -64,6 +82,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
   if (o.settings.target.kind == Target::kLossless) print_lossless(o, r);
+  print_attributes(r);
   for (const TemporalCut& cut : r.temporal_cuts) {
     std::printf("  cut to %u temporal layer%s: %llu bytes, KG error %.4g %%\n", cut.layers,
                 s(cut.layers), static_cast<unsigned long long>(cut.bytes),
@@ -357,6 +376,7 @@ int run(EncodeOptions& o) {
     if (!o.quiet) complain(name + ": " + note);
   }
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
+  if (!o.settings.attributes.dropped) o.settings.asset = (*source)->asset();
   if (o.dry_run) return run_dry(o, **source);
   auto report = encode_to_files(o, **source);
   if (!report) return complain(report.error().message);

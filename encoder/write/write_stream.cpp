@@ -9,6 +9,20 @@
 #include "encoder/write/write_residual.h"
 
 namespace rlpc {
+namespace {
+
+void append_deflated(std::string_view bytes, Bytes& payload) {
+  uLongf length = compressBound(static_cast<uLong>(bytes.size()));
+  Bytes deflated(length);
+  [[maybe_unused]] const int status =
+      compress2(deflated.data(), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION);
+  assert(status == Z_OK);
+  payload.insert(payload.end(), deflated.begin(),
+                 deflated.begin() + static_cast<std::ptrdiff_t>(length));
+}
+
+}  // namespace
 
 // 6.3 sequence_header( )
 Bytes write_sequence_header(const SequenceHeader& h) {
@@ -48,14 +62,17 @@ Bytes write_metadata(std::string_view json) {
   BitWriter size;
   size.u(32, static_cast<std::uint32_t>(json.size()));
   Bytes payload = size.take();
-  uLongf length = compressBound(static_cast<uLong>(json.size()));
-  Bytes deflated(length);
-  [[maybe_unused]] const int status =
-      compress2(deflated.data(), &length, reinterpret_cast<const Bytef*>(json.data()),
-                static_cast<uLong>(json.size()), Z_BEST_COMPRESSION);
-  assert(status == Z_OK);
-  payload.insert(payload.end(), deflated.begin(),
-                 deflated.begin() + static_cast<std::ptrdiff_t>(length));
+  append_deflated(json, payload);
+  return payload;
+}
+
+// 6.16 asset( )
+Bytes write_asset(std::string_view glb) {
+  BitWriter w;
+  w.u(8, 0);  // asset_format
+  w.u(32, static_cast<std::uint32_t>(glb.size()));
+  Bytes payload = w.take();
+  append_deflated(glb, payload);
   return payload;
 }
 

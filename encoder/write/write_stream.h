@@ -17,6 +17,8 @@ Bytes write_sequence_header(const SequenceHeader& header);
 Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex);
 Bytes write_metadata(std::string_view json);
 // At least one clip, and at most kMaxClips.
+// 6.16 asset( ), of a GLB.
+Bytes write_asset(std::string_view glb);
 Bytes write_clip_table(std::span<const Clip> clips);
 
 }  // namespace rlpc

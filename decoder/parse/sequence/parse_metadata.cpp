@@ -1,8 +1,9 @@
 #include "decoder/parse/sequence/parse_metadata.h"
 
-#include <zlib.h>
+#include <utility>
 
 #include "common/syntax/sequence_header.h"
+#include "decoder/parse/sequence/inflate.h"
 
 namespace rlpc {
 
@@ -11,18 +12,12 @@ Result<std::string> parse_metadata(BitReader& r) {
   const std::uint32_t size =
       r.u(32, "metadata_size", {0, std::int64_t{kMaxMetadataBytes}}, "R-MET-01");
   if (r.error()) return *r.error();
-  const auto deflated = r.remaining_bytes();
-  std::string json(size + 1, '\0');  // one byte more, to detect excess
-  uLongf inflated = size + 1;
-  uLong used = static_cast<uLong>(deflated.size());
-  const int status =
-      uncompress2(reinterpret_cast<Bytef*>(json.data()), &inflated, deflated.data(), &used);
-  if (status != Z_OK || inflated != size || used != deflated.size()) {
+  auto json = inflate_exactly(r.remaining_bytes(), size);
+  if (!json) {
     r.fail(Errc::kInvalid, "R-MET-02", "metadata_json", r.bit_pos());
     return *r.error();
   }
-  json.resize(size);
-  return json;
+  return std::move(*json);
 }
 
 }  // namespace rlpc

@@ -14,7 +14,6 @@ using Attribute = GltfGeometry::Attribute;
 // Table F-1.
 std::string set_name(const std::string& semantic) {
   if (semantic == "NORMAL") return "normal";
-  if (semantic == "TANGENT") return "tangent";
   const std::string number = semantic.substr(semantic.rfind('_') + 1);
   return (semantic.starts_with("TEXCOORD_") ? "uv" : "colour") + number;
 }
@@ -52,10 +51,10 @@ class AttributeCollector {
   }
 
   std::optional<SourceAttribute> corners(const std::string& semantic) {
-    const bool is_direction = semantic == "NORMAL" || semantic == "TANGENT";
+    const bool is_normal = semantic == "NORMAL";
     SourceAttribute set;
     set.name = set_name(semantic);
-    if (semantic == "NORMAL") set.kind = SourceAttribute::Kind::kNormals;
+    if (is_normal) set.kind = SourceAttribute::Kind::kNormals;
     bool is_everywhere = true;
     set.max_value = 0xFFFFFFFF;
     for (const GltfModel::Instance& instance : model_.instances) {
@@ -66,8 +65,8 @@ class AttributeCollector {
       set.max_value =
           set.max_value == 0xFFFFFFFF || set.max_value == a->max_value ? a->max_value : 0;
     }
-    if (!is_everywhere && is_direction) {
-      notes_.push_back("dropped " + set.name + "s, which some primitives do not have");
+    if (!is_everywhere && is_normal) {
+      notes_.emplace_back("dropped normals, which some primitives do not have");
       return std::nullopt;
     }
     if (set.max_value != 0) set.kind = SourceAttribute::Kind::kIntegers;

@@ -8,7 +8,7 @@ namespace rlpc {
 
 // triangles: of the scene, as in FrameSource::Shape before welding, in the order of instances,
 // those of mirrored instances turned. Sets that only some primitives have get usual values
-// elsewhere; normals and tangents are left out then, and notes are added about it.
+// elsewhere; normals are left out then, and a note is added about it.
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
                                  const std::vector<bool>& is_mirrored,
                                  std::vector<std::string>& notes);

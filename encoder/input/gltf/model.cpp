@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "encoder/input/gltf/asset.h"
+
 namespace rlpc {
 
 namespace {
@@ -174,21 +176,23 @@ std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
 
 }  // namespace
 
-InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
-                                       const GltfLimits& limits,
-                                       std::uint64_t max_memory_bytes) {
-  auto file = open_gltf_file(path, max_memory_bytes);
+InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLimits& limits) {
+  auto file = open_gltf_file(options.path, options.max_memory_bytes);
   if (!file) return file.error();
   GltfErrors errors(file->file.path());
-  GltfMemory memory(max_memory_bytes - file->file.memory_bytes(), errors);
+  GltfMemory memory(options.max_memory_bytes - file->file.memory_bytes(), errors);
   memory.take("", file->document_bytes);
   GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
   if (errors) return errors.first();
   const auto frame_rate = frame_rate_of(*file->json);
-  file->json.reset();
   GltfModel model =
-      ModelReader(std::move(document), *file, limits, memory, errors).read(animation);
+      ModelReader(std::move(document), *file, limits, memory, errors).read(options.animation);
   if (errors) return errors.first();
+  GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);
+  if (errors) return errors.first();
+  model.asset = std::move(asset.glb);
+  model.notes.insert(model.notes.end(), asset.notes.begin(), asset.notes.end());
+  file->json.reset();
   memory.give_back(file->document_bytes);
   model.memory_bytes = memory.taken() + file->file.memory_bytes();
   model.frame_rate = frame_rate;

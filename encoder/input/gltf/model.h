@@ -52,12 +52,11 @@ struct GltfModel {
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
   std::vector<std::string> notes;       // see FrameSource
   std::vector<std::string> files;       // likewise
+  std::string asset;                    // likewise
   std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated
 };
 
-// `animation` as in InputOptions.
-InputResult<GltfModel> read_gltf_model(const std::string& path, const std::string& animation,
-                                       const GltfLimits& limits,
-                                       std::uint64_t max_memory_bytes);
+// animation, textures and max_memory_bytes of the options are used.
+InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLimits& limits);
 
 }  // namespace rlpc

@@ -60,11 +60,9 @@ class GeometryReader {
       return;
     }
     const bool is_colour = attribute.semantic.starts_with("COLOR_");
-    const char* const type = attribute.semantic == "NORMAL"             ? "VEC3"
-                             : attribute.semantic == "TANGENT"          ? "VEC4"
-                             : is_colour && accessor.type == "VEC3"     ? "VEC3"
-                             : attribute.semantic.starts_with("COLOR_") ? "VEC4"
-                                                                        : "VEC2";
+    const bool has_three =
+        attribute.semantic == "NORMAL" || (is_colour && accessor.type == "VEC3");
+    const char* const type = has_three ? "VEC3" : is_colour ? "VEC4" : "VEC2";
     GltfGeometry::Attribute read;
     read.semantic = attribute.semantic;
     read.width = accessor.width;

@@ -151,8 +151,7 @@ class GltfSource : public FrameSource {
 
 InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits) {
-  auto model =
-      read_gltf_model(options.path, options.animation, limits, options.max_memory_bytes);
+  auto model = read_gltf_model(options, limits);
   if (!model) return model.error();
   FrameSource::Shape shape;
   shape.frame_rate = options.frame_rate.value_or(model->frame_rate.value_or(FrameRate{}));
@@ -166,6 +165,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
       *model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
   shape.triangles = triangles_of(*model, is_mirrored);
   shape.notes = model->notes;
+  shape.asset = std::move(model->asset);
   shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, shape.notes);
   shape.files = model->files;
   if (model->clips.size() > 1) shape.clips = clips_of(*model, *first_frame);

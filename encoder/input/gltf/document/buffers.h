@@ -28,6 +28,8 @@ class GltfBuffers {
   std::uint64_t bytes_at_hand() const { return bytes_at_hand_; }
   // Whether a buffer is complete; to be checked before allocating memory for its contents.
   bool available(std::uint32_t buffer);
+  // Bytes that are there, of an available buffer.
+  std::uint64_t size(std::uint32_t buffer) const { return places_.at(buffer).size; }
   // The buffer must be available, and offset + bytes.size() at most its size.
   void read(std::uint32_t buffer, std::uint64_t offset, std::span<char> bytes);
   // The document and the files it refers to, as far as used.

@@ -43,25 +43,25 @@ std::vector<std::string> left_out(const GltfValue& used) {
   return found;
 }
 
-bool any_named(const GltfValue& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i]["name"].exists()) return true;
-  }
-  return false;
-}
-
 // Contents that a stream does not carry, in the words of users.
 std::vector<std::string> dropped(const GltfValue& root) {
   std::vector<std::string> found;
-  const std::pair<const char*, const char*> arrays[] = {{"materials", "materials"},
-                                                        {"textures", "textures"},
-                                                        {"skins", "skeleton"},
+  const GltfValue meshes = root["meshes"];
+  bool has_tangents = false;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const GltfValue primitives = meshes[m]["primitives"];
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      has_tangents |= primitives[p]["attributes"]["TANGENT"].exists();
+    }
+  }
+  // Viewers compute them from normals and texture coordinates; those of one pose are of no use.
+  if (has_tangents) found.emplace_back("tangents");
+  const std::pair<const char*, const char*> arrays[] = {{"skins", "skeleton"},
                                                         {"cameras", "cameras"}};
   for (const auto& [name, what] : arrays) {
     if (root[name].size() > 0) found.emplace_back(what);
   }
   if (root["extensions"]["KHR_lights_punctual"].exists()) found.emplace_back("lights");
-  if (any_named(root["nodes"])) found.emplace_back("names of nodes");
   return found;
 }
 
@@ -111,10 +111,8 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
     attributes.fail("as many sets of JOINTS_ (" + to_string(primitive.joints.size()) +
                     ") as of WEIGHTS_ (" + to_string(primitive.weights.size()) + ")");
   }
-  for (const char* const name : {"NORMAL", "TANGENT"}) {
-    const auto accessor = attributes[name].index_if_any(counts.accessors, "accessors");
-    if (accessor) primitive.attributes.push_back({name, *accessor});
-  }
+  const auto normals = attributes["NORMAL"].index_if_any(counts.accessors, "accessors");
+  if (normals) primitive.attributes.push_back({"NORMAL", *normals});
   for (const std::string name : {"TEXCOORD_", "COLOR_"}) {
     for (const std::uint32_t accessor : numbered(attributes, name, counts)) {
       const std::size_t number = static_cast<std::size_t>(std::count_if(
