@@ -122,7 +122,7 @@ class Decoder {
   std::uint32_t position() const;
   // Whether DecoderOptions::cut or coarse_layers has dropped slices of a GOF so far.
   bool was_cut() const;
-  // Number of frames that the last next_frame verified against hashes: 1 if each frame has its
+  // Number of frames that the last next_frame compared with hashes: 1 if each frame has its
   // own; the whole GOF on its last frame, if decoded in order; otherwise 0. A mismatch is an
   // error of next_frame (R-HSH-02).
   std::uint32_t compared_frames() const;
