@@ -69,6 +69,10 @@ struct DecoderOptions {
   // kAll, without degenerate triangles. Slices of layer groups that it does not need are
   // dropped as by a cut.
   std::uint32_t coarse_layers = SliceCut::kAll;
+  // Reads slices outside the cut, and checks their CRC. Otherwise reads their first bytes only,
+  // so that a source that loads what is asked for need not load the others. Prefetching reads
+  // them all.
+  bool read_dropped_slices = true;
   // There will be no seek(): a source that keeps what it has read can forget it.
   bool forward_only = false;
 };
