@@ -14,6 +14,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
 from in_scene import InScene  # noqa: E402
 from player_testing import STREAMS, float_frames, main  # noqa: E402
+from stream_server import StreamServer  # noqa: E402
 
 HEAD, TAIL = 16384, 4096  # what open() loads first
 
@@ -133,6 +134,27 @@ class Decoder(InScene):
             const opened = progress.loaded;
             return { hash: await sha256((await decoder.frame(20)).positions), progress };""")
         self.assertEqual(loaded["hash"], self.hash_of(20))
+
+    def test_a_server_of_another_origin(self):
+        decode = """
+            const decoder = await RlpcDecoder.open('ADDRESS/walk.rlpc');
+            return sha256((await decoder.frame(33)).positions);"""
+        with StreamServer(self.folder) as other:
+            decode = decode.replace("ADDRESS", other.address)
+            self.assertEqual(self.error_of(decode)["kind"], "network")
+            other.is_open = True
+            for other.ranges in (True, False):
+                other.requests.clear()
+                self.assertEqual(self.run_script(decode), self.hash_of(33))
+                # It hides Content-Range, so that the size has to be asked for.
+                self.assertEqual("HEAD" in [method for method, *_ in other.requests],
+                                 other.ranges)
+
+    def test_a_worker_that_cannot_be_loaded(self):
+        error = self.error_of("""
+            await RlpcDecoder.open('walk.rlpc', { worker: () => new Worker('nothing.js') });""")
+        self.assertEqual((error["isOurs"], error["kind"]), (True, "source"))
+        self.assertIn("worker", error["message"])
 
     def test_a_limit_on_what_is_loaded_whole(self):
         self.server.ranges = False

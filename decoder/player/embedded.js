@@ -22,6 +22,9 @@ export function embeddedStream() {
   };
 }
 
+// WebAssembly can address 4 GiB: enough for two decoders with this limit, and the data drawn.
+const kMaxMemory = 3 * 2 ** 29;
+
 /** Options of RlpcDecoder.open(): the page needs no other files. */
 export function embeddedDecoder() {
   const module = takeBlob("#wasm").arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
@@ -33,5 +36,5 @@ export function embeddedDecoder() {
     }
     return new Worker(address);
   };
-  return async () => ({ wasm: await module, worker });
+  return async () => ({ wasm: await module, worker, maxMemory: kMaxMemory });
 }

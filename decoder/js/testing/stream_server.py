@@ -18,6 +18,7 @@ class StreamServer:
         self.bytes_per_second = 0  # 0: as fast as it can
         self.cut_at = None  # ends each body of a stream after so many bytes
         self.changes = False  # whether streams have another version at each request
+        self.is_open = False  # whether pages of other origins may read it
         self.requests = []  # of streams: (method, first byte, bytes sent, status)
 
     def __enter__(self):
@@ -69,6 +70,8 @@ class StreamServer:
         handler.send_header("Content-Length", str(end - first))
         handler.send_header("ETag", f'"{len(self.requests) if self.changes else 0}"')
         handler.send_header("Cache-Control", "no-store")
+        if self.is_open:
+            handler.send_header("Access-Control-Allow-Origin", "*")
         if status == 206:
             handler.send_header("Content-Range", f"bytes {first}-{end - 1}/{len(data)}")
         handler.end_headers()
