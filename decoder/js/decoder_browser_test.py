@@ -127,13 +127,19 @@ class Decoder(InScene):
     def test_frames_come_while_a_server_without_ranges_still_sends(self):
         self.server.ranges = False
         self.server.bytes_per_second = 50_000
-        loaded = self.run_script("""
+        steps = self.run_script("""
             let progress;
             const decoder = await RlpcDecoder.open('walk.rlpc',
               { onProgress: (step) => (progress = step) });
-            const opened = progress.loaded;
-            return { hash: await sha256((await decoder.frame(20)).positions), progress };""")
-        self.assertEqual(loaded["hash"], self.hash_of(20))
+            const steps = [];
+            for await (const { positions } of decoder.frames({ last: 20, ahead: 0 })) {
+              steps.push([await sha256(positions), progress.loaded]);
+            }
+            return steps;""")
+        self.assertEqual([crc for crc, _ in steps], [self.hash_of(f) for f in range(21)])
+        size = self.stream.stat().st_size
+        self.assertLess(steps[0][1], 0.5 * size)
+        self.assertLess(steps[20][1], 0.8 * size)
 
     def test_a_server_of_another_origin(self):
         decode = """

@@ -49,15 +49,21 @@ class OpenStream {
     if (source.size === undefined) await source.open(signal);
     this.decoder = wasm.stream(source.ranges, source.size, this.options);
     await this.complete(() => this.decoder.open(), signal);
-    // What lies at the end is not asked for one by one.
-    await source.load(Math.max(0, source.size - kTailBytes), source.size, signal);
+    // A server that sends the stream from its start to its end sends the index last.
+    if (!source.whole) await this.findIndex(signal);
     this.header = await this.complete(() => this.decoder.describe(), signal);
-    // An index that is wrong is an error only of those who need it.
-    this.marks = await this.complete(() => this.decoder.landmarks(), signal).catch((error) => {
-      if (error.name === "AbortError" || error.kind === "network") throw error;
-      return this.marks;
-    });
     return this.describe();
+  }
+
+  async findIndex(signal) {
+    const { size } = this.source;
+    await this.source.load(Math.max(0, size - kTailBytes), size, signal); // at once
+    try {
+      this.marks = await this.complete(() => this.decoder.landmarks(), signal);
+    } catch (error) {
+      // One that is wrong is an error only of those who need it.
+      if (error.name === "AbortError" || error.kind === "network") throw error;
+    }
   }
 
   describe() {
@@ -107,6 +113,7 @@ class OpenStream {
   loadAhead() {
     const { lastRead } = this.decoder;
     const { marks, source } = this;
+    if (source.whole) return;
     const next = marks.length > 0
       ? marks.find((offset) => offset >= lastRead && offset < marks.at(-1))
       : source.ranges.gap(lastRead, Math.min(lastRead + this.block.bytes, source.size))?.[0];

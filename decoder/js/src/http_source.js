@@ -14,6 +14,7 @@ export class HttpSource {
     this.underWay = []; // { start, end, done }
     this.loaded = 0; // bytes from the server
     this.size = undefined;
+    this.whole = undefined; // the promise of a stream that is loaded from its start to its end
   }
 
   async open(signal) {
