@@ -156,11 +156,13 @@ class Decoder(InScene):
                 self.assertEqual("HEAD" in [method for method, *_ in other.requests],
                                  other.ranges)
 
-    def test_a_worker_that_cannot_be_loaded(self):
+    def test_a_worker_or_module_that_cannot_be_loaded(self):
         error = self.error_of("""
             await RlpcDecoder.open('walk.rlpc', { worker: () => new Worker('nothing.js') });""")
         self.assertEqual((error["isOurs"], error["kind"]), (True, "source"))
         self.assertIn("worker", error["message"])
+        error = self.error_of("await RlpcDecoder.open('walk.rlpc', { wasm: 'nothing.wasm' });")
+        self.assertEqual((error["isOurs"], error["kind"]), (True, "network"))
 
     def test_a_limit_on_what_is_loaded_whole(self):
         self.server.ranges = False
@@ -331,6 +333,11 @@ class Decoder(InScene):
             const decoder = await RlpcDecoder.open('walk.rlpc');
             decoder.close();
             await decoder.frame(0);""")
+        self.assertEqual(error["kind"], "closed")
+        error = self.error_of("""
+            const decoder = await RlpcDecoder.open('walk.rlpc');
+            decoder.close();
+            await RlpcDecoder.open(decoder);""")
         self.assertEqual(error["kind"], "closed")
 
     def test_frames_that_are_not_there(self):

@@ -1,5 +1,5 @@
 // RlpcDecoder: frames of a stream in any order, as typed arrays. index.d.ts describes it.
-import { aborted, RlpcError, unpacked } from "./error.js";
+import { aborted, closed, unpacked } from "./error.js";
 import { Link } from "./link.js";
 import { describeSource } from "./sources.js";
 import { compiledModule } from "./wasm_module.js";
@@ -36,6 +36,7 @@ export class RlpcDecoder {
       throw new RangeError("coarseLayers is a whole number, from 1 on");
     }
     const module = await compiledModule(wasm);
+    if (shared?.#isClosed) throw closed();
     const link = shared ? shared.#link : await Link.create(workerFrom(worker));
     const decoder = new RlpcDecoder();
     decoder.#link = link;
@@ -149,7 +150,7 @@ export class RlpcDecoder {
 
   #request(message, options) {
     if (this.#isClosed) {
-      return Promise.reject(new RlpcError("the decoder is closed", { kind: "closed" }));
+      return Promise.reject(closed());
     }
     return this.#link.request({ ...message, stream: this.#stream }, options);
   }

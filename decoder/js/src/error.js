@@ -22,6 +22,10 @@ export function aborted(reason = "the request was cancelled") {
   return new DOMException(reason, "AbortError");
 }
 
+export function closed() {
+  return new RlpcError("the decoder is closed", { kind: "closed" });
+}
+
 /** An error as a message, which would lose its class. */
 export function packed(error) {
   const { name, message, kind, rule, element, bitOffset } = error;

@@ -15,6 +15,7 @@ export interface Clip {
 export interface StreamInfo {
   readonly vertices: number;
   readonly triangles: number;
+  /** Of an open-ended stream that has been cut off, 1: nothing tells how many it has. */
   readonly frames: number;
   /** Frames per second. */
   readonly frameRate: number;

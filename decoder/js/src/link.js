@@ -1,5 +1,5 @@
 // The engine, as its users see it: each request has a promise.
-import { aborted, RlpcError, unpacked } from "./error.js";
+import { aborted, closed, RlpcError, unpacked } from "./error.js";
 
 export class Link {
   constructor() {
@@ -73,6 +73,6 @@ export class Link {
   release() {
     if (--this.numUsers > 0) return;
     this.end();
-    this.fail(new RlpcError("the decoder is closed", { kind: "closed" }));
+    this.fail(closed());
   }
 }

@@ -1,4 +1,5 @@
 // The compiled WebAssembly module, once for all decoders.
+import { RlpcError } from "./error.js";
 
 const modules = new Map(); // promises, by address
 
@@ -8,7 +9,9 @@ async function compile(url) {
     return WebAssembly.compile(await readFile(url));
   }
   const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: the server answers ${response.status}`);
+  if (!response.ok) {
+    throw new RlpcError(`${url}: the server answers ${response.status}`, { kind: "network" });
+  }
   const type = response.headers.get("content-type") ?? "";
   return type.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)

@@ -48,7 +48,7 @@ std::string describe(const Decoder& decoder) {
            {"level_idc", h.level_idc},
            {"num_vertices", decoder.num_vertices()},
            {"num_triangles", static_cast<std::int64_t>(decoder.triangles().size())},
-           {"num_frames", decoder.num_frames().value_or(0)},
+           {"num_frames", decoder.num_frames().value_or(1)},
            {"position_bits", h.position_bits},
            {"frame_rate_numerator", h.frame_rate.numerator},
            {"frame_rate_denominator", h.frame_rate.denominator},
