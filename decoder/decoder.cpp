@@ -150,10 +150,10 @@ Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions)
   was_cut_ = was_cut_ || live_->is_cut();
   compared_frames_ = 0;
   if (verify_hashes_ && !live_->is_cut() && live_->frame_crc()) {
+    compared_frames_ = 1;
     if (crc32_of_positions(live_->positions()) != live_->frame_crc()->crc) {
       return Error{Errc::kInvalid, "R-HSH-02", "frame_crc", live_->frame_crc()->bit_pos};
     }
-    compared_frames_ = 1;
   }
   to_output_order(live_->positions(), positions);
   ++position_;
@@ -246,12 +246,13 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
   const std::uint32_t f = position_ - gof_->header.first_frame;
   const std::size_t frame_size = 3 * std::size_t{stream_.header().num_vertices};
   const auto decoded = band_.frame(*gof_->recon, f, frame_size);
-  if (!hash_check_.add_frame(f, decoded)) {
+  const bool agrees = hash_check_.add_frame(f, decoded);
+  compared_frames_ = hash_check_.compared_frames();
+  if (!agrees) {
     const auto at = hash_check_.failed_at();
     return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
                  at.value_or(stream_.offset() * 8)};
   }
-  compared_frames_ = hash_check_.compared_frames();
   to_output_order(decoded, positions);
   ++position_;
   return true;

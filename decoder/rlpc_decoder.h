@@ -70,6 +70,10 @@ struct DecoderOptions {
   // kAll, without degenerate triangles. Slices of layer groups that it does not need are
   // dropped as by a cut.
   std::uint32_t coarse_layers = SliceCut::kAll;
+  // Reads slices outside the cut, and checks their CRC. Otherwise reads their first bytes only,
+  // so that a source that loads what is asked for need not load the others. Prefetching reads
+  // them all.
+  bool read_dropped_slices = true;
   // There will be no seek(): a source that keeps what it has read can forget it.
   bool forward_only = false;
 };
@@ -134,7 +138,7 @@ class Decoder {
   std::uint32_t position() const;
   // Whether DecoderOptions::cut or coarse_layers has dropped slices of a GOF so far.
   bool was_cut() const;
-  // Number of frames that the last next_frame verified against hashes: 1 if each frame has its
+  // Number of frames that the last next_frame compared with hashes: 1 if each frame has its
   // own; the whole GOF on its last frame, if decoded in order; otherwise 0. A mismatch is an
   // error of next_frame (R-HSH-02).
   std::uint32_t compared_frames() const;

@@ -79,7 +79,7 @@ void FrameOrder::add(const FramePlace& place) {
 
 bool FrameOrder::begins_as(const FrameOrder& other, std::uint32_t num_places) const {
   return num_places <= std::min(num_frames(), other.num_frames()) &&
-         std::equal(places_.begin(), places_.begin() + std::ptrdiff_t{num_places},
+         std::equal(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(num_places),
                     other.places_.begin());
 }
 

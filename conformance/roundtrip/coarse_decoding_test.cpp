@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,11 +27,35 @@ struct Coarse {
   std::vector<Frame> frames;
   bool was_cut = false;
   std::uint32_t compared = 0;
+  std::vector<bool> is_read;  // for each byte of the stream
+
+  auto num_read() const { return std::count(is_read.begin(), is_read.end(), true); }
+};
+
+// Notes which bytes are read.
+class NotingSource final : public ByteSource {
+ public:
+  NotingSource(const StreamBytes& stream, std::vector<bool>& is_read)
+      : stream_(stream), is_read_(is_read) {
+    is_read_.resize(stream.size());
+  }
+  std::uint64_t size() const override { return stream_.size(); }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    if (offset > size() || out.size() > size() - offset) return false;
+    const auto first = static_cast<std::ptrdiff_t>(offset);
+    std::fill_n(is_read_.begin() + first, out.size(), true);
+    std::copy_n(stream_.begin() + first, out.size(), out.begin());
+    return true;
+  }
+
+ private:
+  const StreamBytes& stream_;
+  std::vector<bool>& is_read_;
 };
 
 Coarse decode_coarse(const StreamBytes& stream, const DecoderOptions& options) {
   Coarse coarse;
-  auto decoder = Decoder::open(memory_source(stream), options);
+  auto decoder = Decoder::open(std::make_unique<NotingSource>(stream, coarse.is_read), options);
   EXPECT_TRUE(decoder);
   if (!decoder) return coarse;
   coarse.num_layers = decoder->num_layers();
@@ -124,7 +150,13 @@ std::uint32_t check(const StreamBytes& stream, const SliceCut& cut = {}) {
     DecoderOptions threaded = coarse_options(layers, cut);
     threaded.threads = 3;
     EXPECT_EQ(decode_coarse(stream, threaded).frames, coarse.frames);
+    DecoderOptions sparse = coarse_options(layers, cut);
+    sparse.read_dropped_slices = false;
+    const Coarse without = decode_coarse(stream, sparse);
+    EXPECT_EQ(without.frames, coarse.frames);
+    EXPECT_EQ(without.was_cut, coarse.was_cut);
     if (cut.cuts()) continue;
+    EXPECT_EQ(without.num_read() < coarse.num_read(), coarse.was_cut);
     EXPECT_EQ(coarse.was_cut, drops_slices(stream, layers));
     EXPECT_EQ(coarse.compared == coarse.frames.size(), !coarse.was_cut);
     num_cut += coarse.was_cut ? 1 : 0;

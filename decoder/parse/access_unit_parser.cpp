@@ -20,6 +20,7 @@ class GofParser {
   // A slice or frame unit: adds it, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              std::vector<SliceEntry>& slices);
+  virtual bool drops(BitReader& /*r*/) { return false; }
   virtual bool is_cut() const { return false; }
   virtual std::uint64_t memory_bytes() const { return 0; }  // 0: no slices follow
   virtual AnyGof finish() = 0;
@@ -68,6 +69,7 @@ class SkinnedParser final : public GofParser {
     if (parser_.last_slice()) slices.push_back(*parser_.last_slice());
     return true;
   }
+  bool drops(BitReader& r) override { return parser_.drops(r); }
   bool is_cut() const override { return parser_.is_cut(); }
   std::uint64_t memory_bytes() const override { return parser_.memory_bytes(); }
   AnyGof finish() override { return parser_.finish(); }
@@ -134,6 +136,8 @@ Result<bool> AccessUnitParser::gof(BitReader& r, std::uint32_t first_frame,
   parser_ = make_parser();
   return parser_->gof(r, header, models);
 }
+
+bool AccessUnitParser::drops(BitReader& r) { return parser_->drops(r); }
 
 Result<bool> AccessUnitParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
                                      std::uint64_t unit_bytes) {

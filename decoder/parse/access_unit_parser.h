@@ -37,6 +37,8 @@ class AccessUnitParser {
   // The type of the units that may follow; none: there are no such units.
   std::optional<UnitType> slice_type() const { return rlpc::slice_type(kind_); }
   bool has_slices() const { return rlpc::has_slices(kind_); }
+  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  bool drops(BitReader& r);
   // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: of the unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
   // 6.7 gof_hash( ), at most once.

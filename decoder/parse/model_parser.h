@@ -38,6 +38,7 @@ class ModelParser {
     parsed_.bytes = unit_bytes;
     return true;
   }
+  bool drops(BitReader& r) { return parser_.drops(r); }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes) {
     if (auto ok = parser_.slice(r, unit_bit_pos); !ok) return ok;
     if (!parser_.last_slice()) return true;

@@ -279,6 +279,13 @@ SliceEntry SkinnedGofParser::slice_header(BitReader& r) const {
   return slice;
 }
 
+bool SkinnedGofParser::drops(BitReader& r) {
+  const SliceEntry slice = slice_header(r);
+  if (r.error() || kept_.has(slice)) return false;
+  gof_.is_cut = true;
+  return true;
+}
+
 // 6.12 slice_unit( )
 Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
   SliceEntry slice = slice_header(r);

@@ -45,6 +45,8 @@ class SkinnedGofParser {
   // 6.13 model( )
   Result<bool> model(BitReader& r, const ModelSlots& models);
 
+  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  bool drops(BitReader& r);
   // 6.12 slice_unit( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
 

@@ -1,19 +1,20 @@
 // Puts the player into one page. Run by scripts/player, where the packages are installed:
 //
-//   node build.mjs SOURCE_FOLDER DECODER.wasm OUT.html
+//   node build.mjs SOURCE_FOLDER PACKAGE_FOLDER OUT.html
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { buildSync } from "esbuild";
 
-const [source, wasm, out] = process.argv.slice(2);
+const [source, packageFolder, out] = process.argv.slice(2);
 
 function bundle(module) {
   const { outputFiles } = buildSync({
-    entryPoints: [join(source, module)],
+    entryPoints: [module],
     bundle: true,
     minify: true,
     write: false,
     format: "iife",
+    define: { "import.meta.url": "location.href" }, // of files that the page does not need
     target: "es2022",
     legalComments: "inline",
     nodePaths: [join(import.meta.dirname ?? ".", "node_modules")],
@@ -24,9 +25,9 @@ function bundle(module) {
 
 const parts = {
   style: readFileSync(join(source, "page.css"), "utf8"),
-  wasm: readFileSync(wasm).toString("base64"),
-  worker: bundle("worker.js"),
-  page: bundle("page.js"),
+  wasm: readFileSync(join(packageFolder, "src", "rlpc.wasm")).toString("base64"),
+  worker: bundle(join(packageFolder, "src", "worker.js")),
+  page: bundle(join(source, "page.js")),
 };
 const template = readFileSync(join(source, "page.html"), "utf8");
 writeFileSync(out, template.replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]));

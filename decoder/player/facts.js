@@ -1,7 +1,6 @@
 // What the page says in words and numbers.
 import { State, kStateNames } from "./frame_states.js";
 
-const kProfiles = { 0: "Baseline", 1: "Main", 2: "High" };
 const kSizes = [[1, "B"], [1e3, "kB"], [1e6, "MB"], [1e9, "GB"], [1e12, "TB"]];
 
 export function grouped(number) {
@@ -19,25 +18,19 @@ export function ofSize(bytes) {
   return `${digits(rounded / step[0])} ${step[1]}`;
 }
 
-export function framesPerSecond(header) {
-  return header.frame_rate_numerator / header.frame_rate_denominator;
-}
-
 export function ofTime(ms) {
   return ms < 10 ? `${digits(ms, 2)} ms` : `${grouped(ms)} ms`;
 }
 
-/** [name, value] of a stream. */
-export function streamFacts(header, bytes) {
-  const { num_vertices: vertices, num_frames: frames } = header;
-  const fps = framesPerSecond(header);
+/** [name, value] of a stream: of the info of its decoder. */
+export function streamFacts({ vertices, triangles, frames, frameRate, duration, bytes, profile, level }) {
   const rate = (8 * bytes) / (vertices * frames);
   return [
-    ["Mesh", `${grouped(vertices)} vertices, ${grouped(header.num_triangles)} triangles`],
-    ["Frames", `${grouped(frames)} at ${+fps.toFixed(2)} per second, ${(frames / fps).toFixed(1)} s`],
+    ["Mesh", `${grouped(vertices)} vertices, ${grouped(triangles)} triangles`],
+    ["Frames", `${grouped(frames)} at ${+frameRate.toFixed(2)} per second, ${duration.toFixed(1)} s`],
     ["Size", `${ofSize(bytes)}, floats have ${ofSize(12 * vertices * frames)}`],
     ["Rate", `${digits(rate)} bits per vertex and frame`],
-    ["Profile", `${kProfiles[header.profile_idc] ?? header.profile_idc}, level ${header.level_idc}`],
+    ["Profile", `${profile}, level ${level}`],
     ["Decoding", ""],
   ];
 }
@@ -64,7 +57,7 @@ export function showState(element, states, frame, { error, checkError }) {
   const [title, detail, count] = element.children;
   const hasNone = state === State.decoded && states.isComplete;
   setText(title, hasNone ? "no hash to check" : kStateTexts[state]);
-  setText(detail, error?.text ?? (has ? `frame ${frame}, CRC ${crc}` : `frame ${frame}`));
+  setText(detail, error?.message ?? (has ? `frame ${frame}, CRC ${crc}` : `frame ${frame}`));
   const counts = [
     [State.differs, "do not fit their hash"],
     [State.error, "cannot be decoded"],

@@ -2,6 +2,7 @@
 
 export const State = { open: 0, decoded: 1, agrees: 2, differs: 3, error: 4 };
 export const kStateNames = ["open", "decoded", "agrees", "differs", "error"];
+const kHashRule = "R-HSH-02"; // broken by a frame that does not fit its hash
 const kColours = ["#0000", "#6d7a8a", "#55c58a", "#ef6a5b", "#ef6a5b"];
 
 export class FrameStates {
@@ -23,8 +24,10 @@ export class FrameStates {
     }
   }
 
-  receive({ frame, error, differs, compared, crc }) {
+  /** Of a frame that was decoded, perhaps with an error, or only its error. */
+  receive(frame, { error, comparedFrames: compared, crc }) {
     this.isDrawn = false;
+    const differs = error?.rule === kHashRule;
     if (crc === undefined) {
       this.set(frame, frame + 1, State.error);
       return;
@@ -35,11 +38,12 @@ export class FrameStates {
     } else if (this.states[frame] === State.open) {
       this.set(frame, frame + 1, State.decoded);
     }
-    if (error) this.set(frame, frame + 1, State.error); // behind the last frame
+    if (error && !differs) this.set(frame, frame + 1, State.error); // behind the last frame
   }
 
-  /** A strip as wide as the time line; of frames that share a pixel, the worst is shown. */
-  draw() {
+  /** A strip as wide as the time line, of `count` frames; of frames that share a
+   * pixel, the worst is shown. */
+  draw(from, count) {
     const width = Math.round(this.canvas.clientWidth * devicePixelRatio);
     if (this.isDrawn && this.canvas.width === width) return;
     this.isDrawn = true;
@@ -48,8 +52,8 @@ export class FrameStates {
     const context = this.canvas.getContext("2d");
     const { states } = this;
     for (let x = 0; x < width; ++x) {
-      const first = Math.floor((x * states.length) / width);
-      const last = Math.max(first + 1, Math.floor(((x + 1) * states.length) / width));
+      const first = from + Math.floor((x * count) / width);
+      const last = Math.max(first + 1, from + Math.floor(((x + 1) * count) / width));
       let least = State.error;
       let most = State.open;
       for (let f = first; f < last; ++f) {

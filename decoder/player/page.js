@@ -1,159 +1,172 @@
 // The page: a stream, a view of it, and the controls between them.
-import { DecodingThread } from "./decoding_thread.js";
-import { describedStream, takeBlob } from "./embedded.js";
-import {
-  digits, framesPerSecond, grouped, ofTime, roundedUp, showState, streamFacts,
-} from "./facts.js";
-import { FrameStates } from "./frame_states.js";
-import { Playback } from "./playback.js";
+import { Playback } from "../js/src/index.js";
 import { Viewer, kRampCss } from "../viewer/viewer.js";
+import { addControls, kWireModes, showClips, showToggles } from "./controls.js";
+import { DeviationCard } from "./deviation_card.js";
+import { embeddedDecoder, embeddedStream } from "./embedded.js";
+import { grouped, ofSize, ofTime, showState, streamFacts } from "./facts.js";
+import { FrameStates } from "./frame_states.js";
+import { StreamSession } from "./stream_session.js";
 
-const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
-const kWireModes = ["off", "over", "alone"];
 const kBytesAhead = 64e6;
 const kCheckedAtOnce = 1e8; // vertices of all frames
 
 const $ = (id) => document.getElementById(id);
-// What the address asks for, as in player.html#frame=20&wire=over
+// What the address asks for, as in player.html?src=walk.rlpc#frame=20&wire=over
 const wanted = new URLSearchParams(location.hash.slice(1));
+const source = new URLSearchParams(location.search).get("src");
 
 class Player {
   constructor() {
-    this.wasm = takeBlob("#wasm");
+    this.decoderOptions = embeddedDecoder();
     this.viewer = new Viewer($("view"));
     document.querySelector(".ramp").style.background = kRampCss;
     this.wire = 0;
     this.up = wanted.get("up") === "z" ? "z" : "y";
     this.flat = wanted.has("flat");
-    this.addControls();
+    addControls(this);
     this.resize();
   }
 
-  /** Streams: blobs. */
-  open(name, stream, referenceStream) {
+  /** stream, reference: blobs, or URLs. */
+  async open(name, stream, reference) {
     document.body.dataset.state = "loading";
     document.title = name;
     $("name").textContent = name;
     this.say("Decoding …");
-    this.thread?.close();
-    this.checker?.close();
-    Object.assign(this, { playback: null, edgesRequested: false, errors: new Map(), checker: null });
-    this.checkError = undefined;
-    this.stream = stream;
-    this.hasReference = referenceStream !== undefined;
-    this.thread = new DecodingThread({
-      opened: (reply) => this.opened(reply),
-      frame: (reply) => this.frameArrived(reply),
-      edges: ({ edges }) => this.edgesArrived(edges),
-      failed: ({ error }) => this.fail(error.text),
-    });
-    this.thread.open(this.wasm, stream, referenceStream);
+    this.showProgress();
+    this.playback?.cancel();
+    this.session?.close();
+    Object.assign(this, { playback: null, session: null, edges: null, errors: new Map(),
+      isChecking: false, checkError: undefined, shownFrame: undefined });
+    const opening = (this.opening = {}); // not this one any more, if another is opened meanwhile
+    try {
+      const options = { ...await this.decoderOptions(),
+        onProgress: (progress) => opening === this.opening && this.showProgress(progress) };
+      const session = await StreamSession.open(stream, reference, options);
+      if (opening !== this.opening) return session.close();
+      await this.opened(session);
+    } catch (error) {
+      if (opening === this.opening) this.fail(error.message);
+    }
+    return undefined;
   }
 
-  opened({ header, triangles }) {
-    this.header = header;
+  async opened(session) {
+    this.session = session;
+    this.info = session.decoder.info;
+    const { frames, vertices, frameRate } = this.info;
     this.ms = { sum: 0, frames: 0 };
-    this.largestDistance = 0;
-    this.referenceDiffers = undefined; // what is said of it, once it is known
-    this.paintsErrors = this.hasReference && wanted.get("errors") !== "off";
-    this.viewer.setMesh(header.num_vertices, triangles);
+    this.deviation = new DeviationCard(session.decoder);
+    this.deviation.isShown = session.hasReference && wanted.get("errors") !== "off";
+    this.states = new FrameStates(frames, $("strip"));
     this.viewer.setUp(this.up);
     this.viewer.set({ flat: this.flat });
-    this.states = new FrameStates(header.num_frames, $("strip"));
     this.showFacts();
-    $("slider").max = header.num_frames - 1;
-    $("slider").disabled = $("play").disabled = header.num_frames === 1;
-    $("errors").hidden = !this.hasReference;
+    showClips(session.decoder.clips);
+    $("errors").hidden = !session.hasReference;
+    const first = Number(wanted.get("frame") ?? 0);
+    await this.showCoarse(Number.isInteger(first) && first >= 0 && first < frames ? first : 0);
+    if (session !== this.session) return;
+    this.isCoarse = true;
     this.playback = new Playback({
-      numFrames: header.num_frames,
-      framesPerSecond: framesPerSecond(header),
-      framesAhead: Math.min(8, Math.max(1, Math.floor(kBytesAhead / (24 * header.num_vertices)))),
-      request: (frame, order) =>
-        this.thread.requestFrame({ frame, order, withNormals: !this.flat }),
-      discard: (reply) => this.thread.recycle(reply),
+      frames, frameRate,
+      ahead: Math.min(8, Math.max(1, Math.floor(kBytesAhead / (24 * vertices)))),
+      request: (index, signal) => this.request(index, signal),
+      discard: (frame) => session.recycle(frame),
+      failed: (error, index) => this.keepResult(index, { error }),
     });
-    this.playback.speed = Number($("speed").value);
+    this.playback.setSpeed(Number($("speed").value));
     document.body.dataset.state = "ready"; // what is said ends with the first frame
     this.setWire(Math.max(0, kWireModes.indexOf(wanted.get("wire"))));
+    this.chooseClip(wanted.get("clip") ?? "");
     this.showToggles();
-    if (header.num_vertices * header.num_frames <= kCheckedAtOnce) this.checkAll();
-    if (wanted.has("frame")) {
-      this.seek(Number(wanted.get("frame")));
-    } else {
-      this.setPlaying(true);
+    if (wanted.has("frame")) this.seek(first);
+    else this.setPlaying(true);
+    this.loadRest(session);
+  }
+
+  /** Until the frame of the whole mesh is there. */
+  async showCoarse(index) {
+    const coarse = await this.session.coarseFrame(index);
+    if (!coarse || !this.session) return;
+    this.viewer.setMesh(coarse.info.vertices, coarse.indices);
+    this.viewer.showFrame({ ...coarse.frame, box: Object.values(this.session.boxOf(coarse.frame)).flat() });
+    this.coarseVertices = coarse.info.vertices;
+    this.say("");
+  }
+
+  /** What is not needed for the first frames, and the check of all. */
+  async loadRest(session) {
+    try {
+      await session.download();
+    } catch (error) {
+      if (session === this.session) this.say(error.message);
+      return;
     }
+    const { vertices, frames } = this.info;
+    if (session === this.session && vertices * frames <= kCheckedAtOnce) this.checkAll();
   }
 
-  frameArrived(reply) {
-    this.keepResult(reply);
-    this.playback.receive(reply);
+  async request(index, signal) {
+    const frame = await this.session.frame(index, { normals: !this.flat, signal });
+    this.keepResult(index, frame);
+    return frame;
   }
 
-  keepResult(reply) {
-    this.states.receive(reply);
-    if (reply.error) this.errors.set(reply.frame, reply.error);
-    if (reply.ms === undefined) return;
-    this.ms.sum += reply.ms;
+  keepResult(index, result) {
+    this.states.receive(index, result);
+    if (result.error) this.errors.set(index, result.error);
+    if (result.milliseconds === undefined) return;
+    this.ms.sum += result.milliseconds;
     ++this.ms.frames;
   }
 
-  edgesArrived(edges) {
-    this.viewer.setEdges(edges);
-  }
-
-  /** The reply of the frame to be shown now. */
-  show(reply) {
-    if (reply.coordinates) {
-      this.viewer.showFrame(reply);
-      if (this.hasReference) this.showDeviation(reply);
-      this.thread.recycle(reply);
+  /** What Playback says is to be shown now. */
+  show({ index, frame }) {
+    if (frame) {
+      if (this.isCoarse) {
+        this.viewer.setMesh(this.info.vertices, this.session.decoder.indices);
+        if (this.edges) this.viewer.setEdges(this.edges);
+        this.isCoarse = false;
+      }
+      this.viewer.showFrame(frame);
+      if (this.session.hasReference) this.deviation.show(frame, this.viewer);
+      this.session.recycle(frame);
     }
-    this.say(reply.coordinates ? "" : `Frame ${reply.frame} cannot be decoded`);
-    $("view").toggleAttribute("data-stale", !reply.coordinates);
-    this.shownFrame = reply.frame;
-  }
-
-  /** Of a frame without distances, the surface has its own colour. */
-  showDeviation({ frame, distances, largest = 0, rms, referenceError }) {
-    if (distances && referenceError) {
-      this.referenceDiffers ??=
-        `Frame ${frame} of the reference does not fit its hash: ${referenceError.text}`;
-    }
-    $("deviation").hidden = !this.paintsErrors;
-    $("deviation").toggleAttribute("data-missing", !distances);
-    $("deviation-error").textContent = distances
-      ? this.referenceDiffers ?? ""
-      : `The reference cannot be decoded: ${referenceError.text}`;
-    this.largestDistance = Math.max(this.largestDistance, largest);
-    const { position_bits: bits, grid_log2_step: step } = this.header;
-    const unit = 2 ** (bits - 1 + step); // of the animation, in the cube where it is drawn
-    const most = roundedUp(this.largestDistance * unit);
-    this.viewer.set({ deviationScale: this.paintsErrors && distances ? most / unit : 0 });
-    if (!distances) return;
-    $("deviation-most").textContent = digits(most);
-    $("deviation-frame").textContent =
-      `largest ${digits(largest * unit)}, RMS ${digits(rms * unit)}`;
+    this.say(frame ? "" : `Frame ${index} cannot be decoded`);
+    $("view").toggleAttribute("data-stale", !frame);
+    this.shownFrame = index;
   }
 
   showFacts() {
-    $("fact-list").replaceChildren(...streamFacts(this.header, this.stream.size).flatMap(
+    $("fact-list").replaceChildren(...streamFacts(this.info).flatMap(
       ([name, value]) => [["dt", name], ["dd", value]].map(([tag, text]) =>
         Object.assign(document.createElement(tag), { textContent: text }))));
   }
 
+  /** Of a stream from a server. */
+  showProgress({ loaded = 0, total = loaded } = {}) {
+    const isWhole = loaded >= total;
+    $("progress").hidden = isWhole;
+    $("progress").style.width = `${(100 * loaded) / Math.max(total, 1)}%`;
+    if (!isWhole && document.body.dataset.state === "loading") {
+      this.say(`Loading … ${ofSize(loaded)} of ${ofSize(total)}`);
+    }
+  }
+
   /** What changes from frame to frame; for the time line, the frame that is asked for. */
   showNumbers() {
-    const { frame } = this.playback;
-    const last = this.header.num_frames - 1;
-    const seconds = frame / framesPerSecond(this.header);
+    const { frame, first, count, frameRate } = this.playback;
+    const seconds = (frame - first) / frameRate;
     $("slider").value = frame;
-    $("clock").innerHTML = `${grouped(frame)} <small>/ ${grouped(last)}</small> · ${seconds.toFixed(2)} s`;
-    this.states.draw();
+    $("clock").innerHTML = `${grouped(frame - first)} <small>/ ${grouped(count - 1)}</small> · ${seconds.toFixed(2)} s`;
+    this.states.draw(first, count);
     showState($("hash"), this.states, frame, {
       error: this.errors.get(frame), checkError: this.checkError,
     });
-    const ms = this.ms.sum / Math.max(this.ms.frames, 1);
-    $("fact-list").lastChild.textContent = `${ofTime(ms)} a frame`;
+    const { sum, frames } = this.ms;
+    $("fact-list").lastChild.textContent = frames > 0 ? `${ofTime(sum / frames)} a frame` : "";
   }
 
   say(text) {
@@ -179,23 +192,35 @@ class Player {
   }
 
   seek(frame) {
-    this.playback.seek(Number.isInteger(frame) ? frame : 0);
+    this.playback.seek(Number.isInteger(frame) ? frame : this.playback.first);
+  }
+
+  /** Plays a clip in a loop; all frames if there is none of the name. */
+  chooseClip(name) {
+    const clip = this.session.decoder.clips.find((one) => one.name === name);
+    const { firstFrame: first, frames: count } = clip ?? { firstFrame: 0, frames: this.info.frames };
+    $("clip").value = clip?.name ?? "";
+    this.playback.setRange(first, count);
+    Object.assign($("slider"), { min: first, max: first + count - 1 });
+    $("slider").disabled = $("play").disabled = count === 1;
+    this.states.isDrawn = false;
+    this.setPlaying(this.playback.playing);
   }
 
   step(frames) {
     this.setPlaying(false);
-    const { num_frames: numFrames } = this.header;
-    this.seek((this.playback.frame + frames + numFrames) % numFrames);
+    const { frame, first, count } = this.playback;
+    this.seek(first + ((((frame - first + frames) % count) + count) % count));
   }
 
-  setWire(mode) {
+  async setWire(mode) {
     this.wire = mode;
-    if (mode > 0 && !this.edgesRequested) {
-      this.edgesRequested = true;
-      this.thread.requestEdges();
-    }
     this.viewer.set({ wire: kWireModes[mode] });
     this.showToggles();
+    const { session } = this;
+    if (mode === 0 || this.edges) return;
+    this.edges = await session.decoder.edges();
+    if (session === this.session && !this.isCoarse) this.viewer.setEdges(this.edges);
   }
 
   setFlat(flat) {
@@ -212,93 +237,39 @@ class Player {
   }
 
   setPaintsErrors(paints) {
-    this.paintsErrors = paints && this.hasReference;
+    this.deviation.isShown = paints && this.session.hasReference;
     this.seek(this.playback.frame);
     this.showToggles();
   }
 
-  changeSpeed(by) {
-    const { options, selectedIndex } = $("speed");
-    $("speed").selectedIndex = Math.min(Math.max(selectedIndex + by, 0), options.length - 1);
-    this.playback.speed = Number($("speed").value);
+  setSpeed(speed) {
+    this.playback?.setSpeed(speed);
   }
 
-  /** Decodes all frames in order with a decoder of its own, so that playing goes on. */
-  checkAll() {
-    if (this.checker) return;
-    this.checker = new DecodingThread({
-      opened: () => this.checkFrom(0),
-      frame: (reply) => {
-        this.keepResult(reply);
-        this.checkFrom(reply.frame + 1);
-      },
-      failed: ({ error }) => this.endCheck(error.text),
-    });
+  /** What stops it need not stop playing. */
+  async checkAll() {
+    if (this.isChecking) return;
+    const { session } = this;
+    this.isChecking = true;
     this.checkError = undefined;
-    this.checker.open(this.wasm, this.stream);
     this.showToggles();
-  }
-
-  checkFrom(frame) {
-    if (frame < this.header.num_frames) {
-      this.checker.requestFrame({ frame, checkOnly: true });
-    } else {
-      this.states.isComplete = true;
-      this.endCheck();
+    let error;
+    try {
+      const isWhole = await session.checkAll((index, result) => {
+        if (session === this.session) this.keepResult(index, result);
+      });
+      if (session === this.session) this.states.isComplete ||= isWhole;
+    } catch (failure) {
+      error = failure.message;
     }
-  }
-
-  /** error: what has stopped it, which need not stop playing. */
-  endCheck(error) {
-    this.checker.close();
-    this.checker = null;
+    if (session !== this.session) return;
+    this.isChecking = false;
     this.checkError = error;
     this.showToggles();
   }
 
   showToggles() {
-    $("wire").setAttribute("aria-pressed", this.wire > 0);
-    $("flat").setAttribute("aria-pressed", this.flat);
-    $("errors").setAttribute("aria-pressed", Boolean(this.paintsErrors));
-    $("check").setAttribute("aria-pressed", Boolean(this.checker));
-    $("up").textContent = `${this.up.toUpperCase()} up`;
-  }
-
-  addControls() {
-    const actions = {
-      play: () => this.setPlaying(!this.playback.playing),
-      wire: () => this.setWire((this.wire + 1) % kWireModes.length),
-      flat: () => this.setFlat(!this.flat),
-      errors: () => this.setPaintsErrors(!this.paintsErrors),
-      up: () => this.setUp(this.up === "y" ? "z" : "y"),
-      home: () => this.viewer.lookAtAll(),
-      check: () => this.checkAll(),
-    };
-    for (const [id, action] of Object.entries(actions)) $(id).onclick = action;
-    $("speed").append(...kSpeeds.map((speed) => new Option(`${speed}×`, speed, speed === 1, speed === 1)));
-    $("speed").onchange = () => this.changeSpeed(0);
-    $("slider").oninput = () => this.seek(Number($("slider").value));
-    const keys = {
-      " ": actions.play, k: actions.play, w: actions.wire, n: actions.flat, e: actions.errors,
-      u: actions.up, h: actions.home, c: actions.check,
-      ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1),
-      ArrowDown: () => this.step(-10), ArrowUp: () => this.step(10),
-      Home: () => this.seek(0), End: () => this.seek(this.header.num_frames - 1),
-      "[": () => this.changeSpeed(-1), "]": () => this.changeSpeed(1),
-    };
-    onkeydown = (event) => {
-      const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-      if (!action || !this.playback || event.ctrlKey || event.metaKey || event.altKey) return;
-      event.preventDefault();
-      action();
-    };
-    onresize = () => this.resize();
-    ondragover = (event) => event.preventDefault();
-    ondrop = (event) => {
-      event.preventDefault();
-      const [file] = event.dataTransfer.files;
-      if (file) this.open(file.name, file);
-    };
+    showToggles(this);
   }
 
   resize() {
@@ -318,10 +289,12 @@ class Player {
 
 function start() {
   const player = new Player();
-  const description = describedStream();
-  if (description) {
-    const reference = document.querySelector(".reference") ? takeBlob(".reference") : undefined;
-    player.open(description.name, takeBlob(".stream"), reference);
+  const embedded = embeddedStream();
+  if (embedded) {
+    player.open(embedded.name, embedded.stream, embedded.reference);
+  } else if (source) {
+    const name = decodeURIComponent(new URL(source, location.href).pathname.split("/").at(-1));
+    player.open(name || source, source, wanted.get("reference") ?? undefined);
   } else {
     document.body.dataset.state = "empty";
     player.say("Drop an .rlpc stream here");

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""The player: pages that rlpcdec writes, the WebAssembly decoder in node, its JavaScript.
+"""The player: pages that rlpcdec writes, and the JavaScript of the page.
 
-  player_test.py --bin FOLDER [Writing|Node|Playing]...
+  player_test.py --bin FOLDER [Writing|Playing]...
 
 Exit code: 0 passed, 1 failed, 77 if all was skipped.
 """
 
 import base64
-import hashlib
 import json
 import os
 import re
@@ -15,8 +14,7 @@ import shutil
 import subprocess
 import unittest
 
-from player_testing import (HERE, STREAMS, WASM, Decoded, InFolder, Tools, main, need_node,
-                            need_player, run)
+from player_testing import HERE, STREAMS, InFolder, Tools, main, need_node, run
 
 PLACE = "<!-- rlpcdec: streams -->"
 
@@ -145,64 +143,6 @@ class Writing(InFolder):
         self.assertFalse(out.exists())
 
 
-class Node(InFolder):
-    """The WebAssembly decoder decodes what rlpcdec decodes, and refuses what it refuses."""
-
-    @classmethod
-    def setUpClass(cls):
-        need_player()
-        need_node()
-        super().setUpClass()
-
-    def compare(self, streams):
-        done = subprocess.run(["node", HERE / "decode_streams.mjs", WASM, *streams],
-                              capture_output=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr.decode())
-        results = [json.loads(line) for line in done.stdout.splitlines()]
-        self.assertEqual(len(results), len(streams))
-        for stream, result in zip(streams, results):
-            with self.subTest(stream=stream.name):
-                self.compare_one(Decoded(stream, self.folder), result)
-        return results
-
-    def compare_one(self, native, result):
-        error = result.get("error")
-        self.assertEqual(native.code, error["code"] if error else 0)
-        self.assertEqual(native.rule, error["rule"] if error else None)
-        self.assertEqual(result["frames"], len(native.crcs))
-        self.assertEqual(result["positions"], native.positions)
-        if native.triangles:
-            self.assertEqual(result["triangles"], hashlib.sha256(native.triangles).hexdigest())
-
-    def of_suite(self, version):
-        entries = json.loads((STREAMS / version / "SUITE.json").read_text())["streams"]
-        return {expect: [STREAMS / version / entry["path"] for entry in entries
-                         if entry["expect"] == expect and entry["tier"] != "stress"]
-                for expect in ("accept", "reject")}
-
-    def check_suite(self, version):
-        streams = self.of_suite(version)
-        self.assertGreater(min(map(len, streams.values())), 30)
-        for result in self.compare(streams["accept"]):
-            self.assertNotIn("error", result, result["path"])
-        for result in self.compare(streams["reject"]):
-            self.assertIn("error", result, result["path"])
-
-    def test_the_streams_of_version_1_0(self):
-        self.check_suite("v1.0")
-
-    def test_the_streams_of_version_1_1(self):
-        self.check_suite("v1.1")
-
-    def test_streams_of_the_encoder(self):
-        streams = [self.encode(f"{profile}-{order}.rlpc", "--profile", profile, "--gof", "20",
-                               *(["--keep-order"] if order == "kept" else []))
-                   for profile in ("main", "baseline") for order in ("own", "kept")]
-        for result in self.compare(streams):
-            self.assertEqual(result["frames"], 60)
-            self.assertEqual(result["compared"], 60)  # with the hashes of the stream
-
-
 class Playing(unittest.TestCase):
     """What the page does without a browser."""
 
@@ -212,8 +152,8 @@ class Playing(unittest.TestCase):
                               check=False)
         self.assertEqual(done.returncode, 0, done.stdout.decode())
 
-    def test_playback(self):
-        self.run_in_node("playback_test.mjs")
+    def test_distances(self):
+        self.run_in_node("distances_test.mjs")
 
     def test_camera(self):
         self.run_in_node(HERE.parent / "viewer" / "camera_test.mjs")

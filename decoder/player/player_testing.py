@@ -17,8 +17,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STREAMS = ROOT / "streams"
 PLAYER = ROOT / "build" / "player" / "player.html"
-WASM = ROOT / "build" / "player" / "wasm" / "bin" / "rlpc_player.wasm"
+PACKAGE = ROOT / "build" / "player" / "package"
+MODULES = ROOT / "build" / "player" / "page" / "node_modules"
 RLPD_HEADER = struct.Struct("<4sIIIIIIi3i")
+PC2_HEADER = struct.Struct("<12siiffi")
 ELEPHANT = STREAMS / "inputs" / "elephant"
 
 
@@ -32,7 +34,7 @@ def run(tool, *arguments, **options):
 
 
 def need_player():
-    if not PLAYER.exists() or not WASM.exists():
+    if not PLAYER.exists() or not (PACKAGE / "src" / "rlpc.wasm").exists():
         raise unittest.SkipTest("the player is not built: scripts/player")
 
 
@@ -42,15 +44,19 @@ def need_node():
 
 
 class Decoded:
-    """What rlpcdec makes of a stream: frames, CRCs and the rule that is broken, or None."""
+    """What rlpcdec makes of a stream: frames, CRCs, and its verdict, with our names."""
 
     def __init__(self, stream, folder):
+        self.stream = stream
         out = folder / "native.rlpd"
         out.unlink(missing_ok=True)
         done = run("rlpcdec", "decode", stream, out)
         verdict = re.search(r"^rlpc-verdict (.*)$", done.stderr.decode(), re.MULTILINE)
         self.code = done.returncode
-        self.rule = json.loads(verdict[1]).get("rule", "") if verdict else None
+        told = json.loads(verdict[1]) if verdict else {}
+        self.verdict = {ours: told[theirs] for ours, theirs in
+                        (("rule", "rule"), ("bitOffset", "bit"))
+                        if theirs in told}
         data = out.read_bytes() if out.exists() else b""
         self.triangles, positions, self.crcs = b"", b"", []
         if data:
@@ -61,6 +67,23 @@ class Decoded:
             self.crcs = [zlib.crc32(positions[at:at + size])
                          for at in range(0, len(positions), size)]
         self.positions = hashlib.sha256(positions).hexdigest()
+
+    def floats(self, folder):
+        """The hash of all positions as floats."""
+        return hashlib.sha256(b"".join(float_frames(self.stream, folder))).hexdigest()
+
+
+def float_frames(stream, folder):
+    """Positions of each frame, 32-bit floats."""
+    out = folder / "native.pc2"
+    done = run("rlpcdec", "-q", stream, "-o", out)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr.decode())
+    data = out.read_bytes()
+    _, _, vertices, _, _, frames = PC2_HEADER.unpack_from(data)
+    size = 12 * vertices
+    return [data[PC2_HEADER.size + size * f:PC2_HEADER.size + size * (f + 1)]
+            for f in range(frames)]
 
 
 class InFolder(unittest.TestCase):

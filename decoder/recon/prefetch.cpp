@@ -6,12 +6,6 @@
 
 namespace rlpc {
 
-PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, ModelRecons& models) {
-  auto recon = make_recon(access_unit, context, models);
-  return {access_unit.header(), std::move(access_unit.hash), access_unit.frame_crcs(),
-          access_unit.is_cut, std::move(recon)};
-}
-
 std::optional<Prefetch::Found> Prefetch::take(std::uint64_t offset, std::uint32_t first_frame) {
   std::optional<Found> found;
   if (!gofs_.empty()) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/parallel/for_each.h"
@@ -26,7 +27,12 @@ struct PreparedGof {
   bool is_cut = false;
   std::unique_ptr<GofRecon> recon;
 };
-PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, ModelRecons& models);
+inline PreparedGof prepare(AccessUnit access_unit, const StreamContext& context,
+                           ModelRecons& models) {
+  auto recon = make_recon(access_unit, context, models);
+  return {access_unit.header(), std::move(access_unit.hash), access_unit.frame_crcs(),
+          access_unit.is_cut, std::move(recon)};
+}
 
 class Prefetch {
  public:

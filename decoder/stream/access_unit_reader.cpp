@@ -8,15 +8,29 @@
 
 namespace rlpc {
 
+template <class Parser>
+Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser) {
+  constexpr std::uint32_t kEnough = 17;  // 3 bits, and two codes of at most 63
+  if (read_dropped_ || unit.type() != UnitType::kSlice) return false;
+  const auto bytes = units_.payload_start(unit, kEnough);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  return parser.drops(r);
+}
+
 Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                           const ModelSlots& models) {
   AccessUnitParser parser(context_, memory_, cut_);
   const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
-    const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
-    if (!bytes) return bytes.error();
-    if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, models); !ok) {
-      return ok.error();
+    const auto dropped = is_dropped(*unit, parser);
+    if (!dropped) return dropped.error();
+    if (!*dropped) {
+      const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+      if (!bytes) return bytes.error();
+      if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, models); !ok) {
+        return ok.error();
+      }
     }
     end_ = unit->end();
     const auto next = unit_after(*unit, parser.slice_type());
@@ -106,9 +120,13 @@ Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
   ModelParser parser(context_, memory_, cut_);
   const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = model_unit; unit;) {
-    const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
-    if (!bytes) return bytes.error();
-    if (auto ok = parse_unit(parser, *unit, *bytes, models); !ok) return ok.error();
+    const auto dropped = is_dropped(*unit, parser);
+    if (!dropped) return dropped.error();
+    if (!*dropped) {
+      const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+      if (!bytes) return bytes.error();
+      if (auto ok = parse_unit(parser, *unit, *bytes, models); !ok) return ok.error();
+    }
     end_ = unit->end();
     const auto next = slice_after(*unit);
     if (!next) return next.error();

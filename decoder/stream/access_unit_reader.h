@@ -34,15 +34,16 @@ struct CodedAccessUnit {
 
 class AccessUnitReader {
  public:
-  // units and context must outlive the reader. Uses limits, cut, coarse_layers and
-  // verify_hashes of the options. Without verify_hashes, hash units are not read, and the
-  // caller finds them as the next units.
+  // units and context must outlive the reader. Uses limits, cut, coarse_layers,
+  // read_dropped_slices and verify_hashes of the options. Without verify_hashes, hash units are
+  // not read, and the caller finds them as the next units.
   AccessUnitReader(UnitReader& units, const StreamContext& context,
                    const DecoderOptions& options)
       : units_(units),
         context_(context),
         memory_{options.limits.max_memory_bytes, 0},
         cut_(options.cut),
+        read_dropped_(options.read_dropped_slices),
         wants_hash_(options.verify_hashes) {
     cut_.needed_layers = std::min(cut_.needed_layers, options.coarse_layers);
   }
@@ -86,6 +87,9 @@ class AccessUnitReader {
   // skinned model has taken.
   static Result<bool> check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
                                  const MemoryLimit& memory);
+  // Whether a slice need not be read: the cut drops it.
+  template <class Parser>
+  Result<bool> is_dropped(const UnitHeader& unit, Parser& parser);
   // Such a payload.
   Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
   // The slice unit that follows `unit`; none if another unit follows.
@@ -97,6 +101,7 @@ class AccessUnitReader {
   const StreamContext& context_;
   MemoryLimit memory_;
   SliceCut cut_;
+  bool read_dropped_;
   bool wants_hash_;
   std::uint64_t end_ = 0;
 };

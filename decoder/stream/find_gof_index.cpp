@@ -12,6 +12,7 @@ Result<GofIndex> find_gof_index(UnitReader& units, std::uint64_t first_unit,
   const GofIndex none;
   if (units.size() < first_unit + end_bytes) return none;
   const auto end = units.header_at(units.size() - end_bytes);
+  if (!end && end.error().code == Errc::kIo) return end.error();
   if (!end || end->type() != UnitType::kEndOfSequence) return none;
   const auto end_payload = units.payload(*end);
   if (!end_payload) return end_payload.error();

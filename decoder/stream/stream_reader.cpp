@@ -301,10 +301,14 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
     auto index = find_gof_index(units_, offset_, context_.header);
-    if (!index) return index.error();
-    index_tried_ = true;
-    models_.add(index->models);
-    if (!index->gofs.empty()) gofs_ = std::move(index->gofs);
+    // The next GOF needs no index, and the end of the stream may not have arrived yet.
+    const bool can_wait = !index && index.error().code == Errc::kIo && frame == frames_parsed_;
+    if (!index && !can_wait) return index.error();
+    if (index) {
+      index_tried_ = true;
+      models_.add(index->models);
+      if (!index->gofs.empty()) gofs_ = std::move(index->gofs);
+    }
   }
   const auto after =
       std::upper_bound(gofs_.begin(), gofs_.end(), frame,

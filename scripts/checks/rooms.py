@@ -68,8 +68,11 @@ ROOMS = {
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/attributes", "common/io", "common/mesh"},
-    "decoder/player": {"common/bitstream", "common/io", "common/mesh", "decoder/output", "decoder/stream",
-                       "decoder/tools", "decoder/recon/async.h"} | _PUBLIC_DECODER,
+    # The decoder for JavaScript.
+    "decoder/js/wasm": {"common/bitstream", "common/io", "common/mesh", "decoder/stream",
+                        "decoder/recon/prefetch.h"} | _PUBLIC_DECODER,
+    "decoder/player": {"common/io", "decoder/output", "decoder/stream", "decoder/tools"}
+                      | _PUBLIC_DECODER,
     "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",
                               "decoder/player",
                               "decoder/report", "decoder/stream"} | _PUBLIC_DECODER,

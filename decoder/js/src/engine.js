@@ -1,0 +1,233 @@
+// Decodes streams, one request after the other: in a worker, or beside its caller.
+//
+//   request                                       result
+//   open    module, source or shared, options     stream  and its description
+//   frame   stream, frame, wants, spare,          arrays, extent, crc, compared, ms, error
+//           tolerant
+//   edges   stream                                edges
+//   load    stream                                bytes   of the whole stream
+//   close   stream
+//
+// Each has an id, which its reply has, too: { id, result } or { id, error }. { cancel: id } ends a
+// request early. Messages without an id say what has been loaded: { stream, loaded, size }.
+import { aborted, packed } from "./error.js";
+import { openSource } from "./sources.js";
+import { MissingBytes, WasmDecoder } from "./wasm_decoder.js";
+
+const kTailBytes = 4096; // usually holds the GOF index
+const kBlockBytes = 16384; // loaded at least, where nothing is known of the place
+const kMostBlockBytes = 1 << 20; // of blocks one after the other, each twice as large
+const kSparseBytes = 1024; // the same for a coarse mesh, which leaves most slices out
+const kStepBytes = 1 << 20; // of a stream that is loaded whole
+const kUnitHeaderBytes = 5; // of the next unit, which ends an access unit
+
+/** Resolves after the messages that wait have been received. */
+function messagesReceived() {
+  return new Promise((resolve) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => {
+      port1.close();
+      resolve();
+    };
+    port2.postMessage(null);
+  });
+}
+
+/** A decoder, and the source of its stream. */
+class OpenStream {
+  constructor(source, options) {
+    this.source = source;
+    this.options = options;
+    this.marks = new Float64Array(); // landmarks of the index
+    this.block = { start: 0, bytes: kBlockBytes }; // the last; it begins where it was asked for
+    this.lastFrame = -1;
+    this.endIsChecked = false;
+  }
+
+  async open(wasm, signal) {
+    const { source } = this;
+    if (source.size === undefined) await source.open(signal);
+    this.decoder = wasm.stream(source.ranges, source.size, this.options);
+    await this.complete(() => this.decoder.open(), signal);
+    // A server that sends the stream from its start to its end sends the index last.
+    if (!source.whole) await this.findIndex(signal);
+    this.header = await this.complete(() => this.decoder.describe(), signal);
+    return this.describe();
+  }
+
+  async findIndex(signal) {
+    const { size } = this.source;
+    await this.source.load(Math.max(0, size - kTailBytes), size, signal); // at once
+    try {
+      this.marks = await this.complete(() => this.decoder.landmarks(), signal);
+    } catch (error) {
+      // One that is wrong is an error only of those who need it.
+      if (error.name === "AbortError" || error.kind === "network") throw error;
+    }
+  }
+
+  describe() {
+    const { decoder, header, source } = this;
+    const isCoarse = this.options.coarseLayers > 0;
+    return {
+      header, size: source.size,
+      indices: decoder.triangles(header.num_triangles),
+      coarseVertices: isCoarse ? decoder.coarseVertices(header.num_vertices) : undefined,
+    };
+  }
+
+  /** The result of a call, which is made again whenever bytes have been loaded for it. */
+  async complete(call, signal) {
+    this.source.ranges.protect();
+    for (;;) {
+      try {
+        return call();
+      } catch (missing) {
+        if (!(missing instanceof MissingBytes)) throw missing;
+        const [start, end] = this.widened(missing);
+        await this.source.load(start, end, signal);
+      }
+    }
+  }
+
+  /** As few requests as possible, for few bytes that are not needed: the rest of a GOF at once. */
+  widened({ start, end }) {
+    if (this.options.coarseLayers > 0) {
+      return [start, Math.min(Math.max(end, start + kSparseBytes), this.source.size)];
+    }
+    const mark = this.marks.find((offset) => offset > start);
+    const wanted = mark >= end ? mark + kUnitHeaderBytes : this.blockEnd(start);
+    return [start, Math.min(Math.max(end, wanted), this.source.size)];
+  }
+
+  /** Of a stream without an index. Where it is read in order, requests become fewer. */
+  blockEnd(start) {
+    const { start: before, bytes } = this.block;
+    const follows = start >= before + bytes && start < before + 2 * bytes;
+    this.block = { start, bytes: follows ? Math.min(2 * bytes, kMostBlockBytes) : kBlockBytes };
+    return start + this.block.bytes;
+  }
+
+  /** Loads the next GOF while this one is played; without an index, what comes next. What goes
+   * wrong is found when it is needed. */
+  loadAhead() {
+    const { lastRead } = this.decoder;
+    const { marks, source } = this;
+    if (source.whole) return;
+    const next = marks.length > 0
+      ? marks.find((offset) => offset >= lastRead && offset < marks.at(-1))
+      : source.ranges.gap(lastRead, Math.min(lastRead + this.block.bytes, source.size))?.[0];
+    if (next === undefined || next === this.loadedAhead) return;
+    this.loadedAhead = next;
+    source.load(...this.widened({ start: next, end: next + 1 })).catch(() => {});
+  }
+
+  /** All bytes of the stream. */
+  async whole(signal) {
+    const { source } = this;
+    source.ranges.maxBytes = Infinity;
+    for (let start = 0; start < source.size; start += kStepBytes) {
+      await source.load(start, Math.min(start + kStepBytes, source.size), signal);
+    }
+    const bytes = new Uint8Array(source.size);
+    source.ranges.copy(0, bytes);
+    return bytes;
+  }
+
+  /** tolerant: also checks the rest of the stream after the last frame. */
+  async frame({ frame, wants, spare, tolerant }, signal) {
+    const { decoder, header: { num_vertices: numVertices, num_frames: numFrames } } = this;
+    const start = performance.now();
+    await this.complete(() => decoder.decode(frame), signal);
+    const result = { ms: performance.now() - start, error: decoder.hashError(),
+      compared: decoder.comparedFrames(), crc: decoder.crc(), extent: decoder.extent() };
+    for (const name of wants) result[name] = decoder[name](numVertices, spare[name]);
+    if (tolerant && frame + 1 === numFrames && !this.endIsChecked && !result.error) {
+      try {
+        await this.complete(() => decoder.finish(), signal);
+        this.endIsChecked = true;
+      } catch (error) {
+        result.error = error;
+      }
+    }
+    result.error &&= packed(result.error);
+    if (frame === this.lastFrame + 1) this.loadAhead();
+    this.lastFrame = frame;
+    return result;
+  }
+}
+
+export class Engine {
+  /** post(message, transfer) sends a message to the other side. */
+  constructor(post) {
+    this.post = post;
+    this.streams = new Map();
+    this.entries = new Map(); // of requests without a reply, by id
+    this.queue = [];
+    this.isRunning = false;
+  }
+
+  receive(message) {
+    if (message.cancel !== undefined) {
+      this.entries.get(message.cancel)?.controller.abort(aborted());
+      return;
+    }
+    const entry = { message, controller: new AbortController() };
+    this.entries.set(message.id, entry);
+    if (message.type === "load") {
+      this.answer(entry); // decoding goes on
+    } else {
+      this.queue.push(entry);
+      if (!this.isRunning) this.run();
+    }
+  }
+
+  async run() {
+    this.isRunning = true;
+    while (this.queue.length > 0) {
+      await messagesReceived(); // which may cancel a request
+      await this.answer(this.queue.shift());
+    }
+    this.isRunning = false;
+  }
+
+  async answer({ message, controller: { signal } }) {
+    const { id, type } = message;
+    try {
+      signal.throwIfAborted();
+      const result = await this[type](message, signal);
+      const arrays = Object.values(result ?? {}).filter((value) => ArrayBuffer.isView(value));
+      this.post({ id, result }, arrays.map((array) => array.buffer));
+    } catch (error) {
+      this.post({ id, error: packed(error) });
+    }
+    this.entries.delete(id);
+  }
+
+  async open({ module, source, shared, options, stream }, signal) {
+    const from = shared === undefined
+      ? openSource(source, (loaded, size) => this.post({ stream, loaded, size }))
+      : this.streams.get(shared).source;
+    const opened = new OpenStream(from, options);
+    // Of its own for each: one whose memory is exhausted is lost.
+    const result = await opened.open(await WasmDecoder.create(module), signal);
+    this.streams.set(stream, opened);
+    return result;
+  }
+
+  frame(message, signal) {
+    return this.streams.get(message.stream).frame(message, signal);
+  }
+
+  edges({ stream }) {
+    return { edges: this.streams.get(stream).decoder.edges() };
+  }
+
+  async load({ stream }, signal) {
+    return { bytes: await this.streams.get(stream).whole(signal) };
+  }
+
+  close({ stream }) {
+    this.streams.delete(stream);
+  }
+}

@@ -1,0 +1,183 @@
+// A stream on a server: in ranges (RFC 9110, 14), or whole where the server has none.
+import { ByteRanges } from "./byte_ranges.js";
+import { RlpcError } from "./error.js";
+
+const kFirstBytes = 16384;
+const kMostCachedBytes = 256e6;
+
+export class HttpSource {
+  /** headers: of each request, [name, value]; credentials: as of fetch(); maxBytes: of a stream
+   * that has to be loaded whole. progress(loaded, size). */
+  constructor({ url, headers, credentials, maxBytes }, progress) {
+    Object.assign(this, { url, headers, credentials, maxBytes, progress });
+    this.ranges = new ByteRanges(kMostCachedBytes);
+    this.underWay = []; // { start, end, done }
+    this.loaded = 0; // bytes from the server
+    this.size = undefined;
+    this.whole = undefined; // the promise of a stream that is loaded from its start to its end
+  }
+
+  async open(signal) {
+    const response = await this.request([0, kFirstBytes], signal);
+    this.version = versionOf(response);
+    if (response.status === 206) {
+      const total = /\/(\d+)$/.exec(response.headers.get("content-range") ?? "")?.[1];
+      this.size = total === undefined ? await this.askForSize(signal) : Number(total);
+      if (this.size !== undefined) return this.receive(response, 0, Math.min(kFirstBytes, this.size));
+      return this.openWhole(await this.request(undefined, signal));
+    }
+    if (response.status === 416) { // no byte is there
+      this.size = 0;
+      return undefined;
+    }
+    return this.openWhole(response);
+  }
+
+  /** Servers of other origins may hide Content-Range. */
+  async askForSize(signal) {
+    const response = await this.request(undefined, signal, "HEAD");
+    const length = response.headers.get("content-length");
+    return length === null || response.headers.has("content-encoding") ? undefined : Number(length);
+  }
+
+  async request(range, signal, method = "GET") {
+    const headers = new Headers(this.headers);
+    if (range) headers.set("Range", `bytes=${range[0]}-${range[1] - 1}`);
+    let response;
+    try {
+      response = await fetch(this.url, { method, headers, credentials: this.credentials, signal });
+    } catch (failure) {
+      if (failure.name === "AbortError") throw failure;
+      throw this.error(`cannot be reached (${failure.message})`);
+    }
+    if (!response.ok && response.status !== 416) {
+      throw this.error(`the server answers ${response.status} ${response.statusText}`.trim());
+    }
+    return response;
+  }
+
+  /** The body of a range. */
+  async receive(response, start, end) {
+    const bytes = await this.bodyOf(response);
+    if (bytes.length !== end - start) {
+      throw this.error(`the server sent ${bytes.length} bytes instead of ${end - start}`);
+    }
+    this.keep(start, bytes);
+  }
+
+  keep(start, bytes) {
+    this.ranges.add(start, bytes);
+    this.loaded += bytes.length;
+    this.progress(this.loaded, this.size);
+  }
+
+  async bodyOf(response) {
+    try {
+      return new Uint8Array(await response.arrayBuffer());
+    } catch (failure) {
+      if (failure.name === "AbortError") throw failure;
+      throw this.error(`the connection was lost (${failure.message})`);
+    }
+  }
+
+  /** Loads all of it from a response; returns once the size is known. */
+  async openWhole(response) {
+    this.ranges.maxBytes = Infinity;
+    this.whole = this.readWhole(response);
+    this.whole.catch(() => {}); // load() reports it
+    // A length is that of the bytes here only if nothing was compressed on the way, which
+    // servers of other origins do not tell.
+    const length = response.headers.get("content-length");
+    const isSure = response.type !== "cors" && !response.headers.has("content-encoding");
+    if (length !== null && isSure) this.size = Number(length);
+    else await this.whole;
+    this.checkSize(this.size);
+  }
+
+  async readWhole(response) {
+    const reader = response.body.getReader();
+    for (let start = 0; ; ) {
+      const { done, value } = await reader.read().catch((failure) => {
+        throw this.error(`the connection was lost (${failure.message})`);
+      });
+      if (done) {
+        if (this.size !== undefined && this.size !== start) {
+          throw this.error(`the server sent ${start} bytes instead of ${this.size}`);
+        }
+        this.size = start;
+        return;
+      }
+      if (start + value.length > this.maxBytes) await reader.cancel();
+      this.checkSize(start + value.length);
+      this.keep(start, value);
+      start += value.length;
+      this.arrived?.();
+    }
+  }
+
+  checkSize(size) {
+    if (size <= this.maxBytes) return;
+    throw new RlpcError(`${this.url}: the server has no ranges, and the whole stream has more ` +
+      `than maxMemory, ${this.maxBytes} bytes`, { kind: "limit" });
+  }
+
+  async load(start, end, signal) {
+    for (let gap; (gap = this.ranges.gap(start, end)); ) {
+      signal?.throwIfAborted();
+      const before = this.underWay.find((r) => r.start <= gap[0] && gap[0] < r.end);
+      if (this.whole) await this.more(signal);
+      else if (before) await until(before.done, signal);
+      else await this.loadRange(gap[0], Math.min(gap[1], ...this.startsAfter(gap[0])), signal);
+    }
+  }
+
+  /** Of requests under way. */
+  startsAfter(offset) {
+    return this.underWay.map((request) => request.start).filter((start) => start > offset);
+  }
+
+  /** More bytes of the whole stream. */
+  more(signal) {
+    const arrival = new Promise((resolve) => (this.arrived = resolve));
+    return until(Promise.race([this.whole, arrival]), signal);
+  }
+
+  async loadRange(start, end, signal) {
+    const done = this.requestRange(start, end, signal);
+    const entry = { start, end, done: done.catch(() => {}) }; // others try again
+    this.underWay.push(entry);
+    try {
+      await done;
+    } finally {
+      this.underWay.splice(this.underWay.indexOf(entry), 1);
+    }
+  }
+
+  async requestRange(start, end, signal) {
+    const response = await this.request([start, end], signal);
+    if (versionOf(response) !== this.version) throw this.error("it has changed on the server");
+    if (response.status === 206) return this.receive(response, start, end);
+    if (response.status === 416) throw this.error("it has become shorter on the server");
+    return this.receive(response, 0, this.size); // all of it, this time
+  }
+
+  error(text) {
+    return new RlpcError(`${this.url}: ${text}`, { kind: "network" });
+  }
+}
+
+/** Of the file on the server. */
+function versionOf({ headers }) {
+  return headers.get("etag") ?? headers.get("last-modified");
+}
+
+/** The promise, or an error as soon as the signal says so. */
+function until(promise, signal) {
+  if (!signal) return promise;
+  return new Promise((resolve, reject) => {
+    const stop = () => reject(signal.reason);
+    signal.throwIfAborted();
+    signal.addEventListener("abort", stop, { once: true });
+    promise.then(resolve, reject).finally(() => signal.removeEventListener("abort", stop));
+  });
+}

@@ -1,0 +1,212 @@
+/** Bounds of a frame, or of all frames: [x, y, z] of each corner. */
+export interface Bounds {
+  min: [number, number, number];
+  max: [number, number, number];
+}
+
+/** A named part of the sequence. */
+export interface Clip {
+  name: string;
+  firstFrame: number;
+  /** How many frames it has. */
+  frames: number;
+}
+
+export interface StreamInfo {
+  readonly vertices: number;
+  readonly triangles: number;
+  /** Of an open-ended stream that has been cut off, 1: nothing tells how many it has. */
+  readonly frames: number;
+  /** Frames per second. */
+  readonly frameRate: number;
+  /** Seconds. */
+  readonly duration: number;
+  readonly profile: "Baseline" | "Main" | "High";
+  readonly level: number;
+  /** Vertex layers, of which `coarseLayers` can decode the coarsest; 0 in the Baseline profile,
+   * unless it was opened with `coarseLayers`. */
+  readonly layers: number;
+  /** Of an integer position. */
+  readonly positionBits: number;
+  /** Size of the stream. */
+  readonly bytes: number;
+}
+
+export interface Progress {
+  /** Bytes that have come from the server. */
+  loaded: number;
+  /** Size of the stream, once it is known. */
+  total?: number;
+}
+
+/** What a stream can be read from. A URL is read in ranges, as far as frames need them; a server
+ * without ranges sends it whole. Another decoder shares its bytes and its worker. */
+export type Source = string | URL | ArrayBuffer | ArrayBufferView | Blob | RlpcDecoder;
+
+export interface OpenOptions {
+  /** Decodes a mesh of this many of the coarsest vertex layers, with fewer vertices and
+   * triangles. */
+  coarseLayers?: number;
+  /** Bytes that decoding may take, and that a stream may have which a server sends whole;
+   * usually 2^30. */
+  maxMemory?: number;
+  /** Whether frames are compared with the hashes of the stream; usually true. */
+  verifyHashes?: boolean;
+  /** Called whenever bytes have come from a server. */
+  onProgress?: (progress: Progress) => void;
+  /** Rejects open() with an AbortError. */
+  signal?: AbortSignal;
+  /** Of each request to a server. */
+  headers?: HeadersInit;
+  credentials?: RequestCredentials;
+  /** false: decodes on this thread, as node does. A function: makes the worker, from
+   * `rlpc/worker`, where a bundler does not find it. */
+  worker?: boolean | (() => Worker);
+  /** The WebAssembly module, `rlpc/rlpc.wasm`, where a bundler does not find it. */
+  wasm?: WebAssembly.Module | ArrayBuffer | ArrayBufferView | string | URL;
+}
+
+export interface FrameOptions {
+  /** Usually true. */
+  positions?: boolean;
+  integers?: boolean;
+  normals?: boolean;
+  coordinates?: boolean;
+  /** Cancels the request before that also had `replace`, if it still waits: for scrubbing. */
+  replace?: boolean;
+  /** A frame that does not fit its hash is given all the same, with `error`. With the last frame,
+   * `error` also tells what is wrong with the rest of the stream. */
+  tolerant?: boolean;
+  /** Rejects frame() with an AbortError. */
+  signal?: AbortSignal;
+  /** A frame whose arrays are not needed any more, to be filled again. They cannot be used
+   * afterwards. */
+  into?: Partial<Pick<Frame, "positions" | "integers" | "normals" | "coordinates">>;
+}
+
+export interface Frame {
+  index: number;
+  /** Seconds from the start of the sequence. */
+  time: number;
+  /** x, y, z of each vertex, in units. */
+  positions: Float32Array;
+  /** x, y, z of each vertex on the grid; plus gridOrigin, times gridStep: in units. */
+  integers?: Int32Array;
+  /** x, y, z of each vertex: the mean of the normals of its triangles, weighted by area. */
+  normals?: Float32Array;
+  /** x, y, z of each vertex from `centre`, in a cube from -1 to 1 that holds all positions: these
+   * keep their precision where the mesh is small and far from the origin. */
+  coordinates?: Float32Array;
+  centre?: [number, number, number];
+  /** The smallest box that holds the frame, in units. */
+  bounds: Bounds;
+  /** Its hash (clause 9.7.2 of the specification). */
+  crc: number;
+  /** How many frames have now been found equal to the hashes of the stream. */
+  comparedFrames: number;
+  /** What decoding took. */
+  milliseconds: number;
+  error?: RlpcError;
+}
+
+export interface FramesOptions extends FrameOptions {
+  first?: number;
+  /** The last frame; usually that of the sequence. */
+  last?: number;
+  /** How many frames are decoded before they are asked for; usually 4. */
+  ahead?: number;
+}
+
+export class RlpcDecoder {
+  private constructor();
+
+  /** Reads the header, the triangles and the index of a stream. */
+  static open(source: Source, options?: OpenOptions): Promise<RlpcDecoder>;
+
+  readonly info: StreamInfo;
+  /** Three vertices of each triangle, the same in all frames. */
+  readonly indices: Uint32Array;
+  /** With `coarseLayers`: the index of each vertex in the whole mesh. */
+  readonly coarseVertices?: Uint32Array;
+  readonly clips: readonly Clip[];
+  /** What the encoder noted, from JSON; null if it noted nothing. */
+  readonly metadata: unknown;
+  /** Other data of vertices and triangles, by name. Streams of version 1.2 have none. */
+  readonly attributes: ReadonlyMap<string, ArrayBufferView>;
+  /** A box that holds all frames, and may be larger. */
+  readonly bounds: Bounds;
+  /** Added to integer positions. */
+  readonly gridOrigin: [number, number, number];
+  /** The step of the grid, in units. */
+  readonly gridStep: number;
+
+  /** A frame, in any order. Rejects with an RlpcError if it cannot be decoded; others can. */
+  frame(index: number, options?: FrameOptions & { positions?: true }): Promise<Frame>;
+  frame(index: number, options: FrameOptions & { positions: false }):
+    Promise<Omit<Frame, "positions">>;
+  /** Frames in order, decoded ahead. */
+  frames(options?: FramesOptions): AsyncGenerator<Frame, void, undefined>;
+  /** Pairs of vertices: each edge of the triangles once, for a wireframe. */
+  edges(): Promise<Uint32Array>;
+  /** Loads the rest of the stream, while frames are decoded. */
+  download(options?: { signal?: AbortSignal }): Promise<Blob>;
+  /** Ends the worker, and rejects what waits. */
+  close(): void;
+}
+
+/** truncated: the stream ends too early; invalid: it does not conform to the specification;
+ * unsupported: of a later version; limit: beyond maxMemory; source: it cannot be read; network: the
+ * server does not send it; closed: the decoder was closed. */
+export type ErrorKind =
+  "truncated" | "invalid" | "unsupported" | "limit" | "source" | "network" | "closed";
+
+export class RlpcError extends Error {
+  constructor(message: string,
+    details: { kind: ErrorKind; rule?: string; element?: string; bitOffset?: number });
+  readonly kind: ErrorKind;
+  /** The rule of the specification that is broken, as "R-UNT-03", or "". */
+  readonly rule: string;
+  /** The syntax element, or "". */
+  readonly element: string;
+  /** Where the element begins, in bits from the start of the stream. */
+  readonly bitOffset: number;
+}
+
+export type PlaybackLoop = "repeat" | "once" | "pingpong";
+
+/** Which frame is shown when. Every frame is decoded and none is left out: if decoding is too
+ * slow, time passes more slowly. */
+export class Playback<F = Frame> {
+  constructor(options: {
+    frames: number;
+    frameRate: number;
+    /** Frames to hold; usually 4. */
+    ahead?: number;
+    request: (index: number, signal: AbortSignal) => Promise<F>;
+    /** Takes frames that are not wanted any more. */
+    discard?: (frame: F) => void;
+    failed?: (error: unknown, index: number) => void;
+  });
+  readonly playing: boolean;
+  readonly speed: number;
+  readonly loop: PlaybackLoop;
+  /** The frame that is shown, or will be as soon as it is decoded. */
+  readonly frame: number;
+  /** Seconds from the start of the range. */
+  readonly seconds: number;
+  /** Called at the end of a range that is played once. */
+  finished: () => void;
+  /** Plays these frames, from the first. */
+  setRange(first: number, count: number): void;
+  /** Below 0: backwards. */
+  setSpeed(speed: number): void;
+  setLoop(loop: PlaybackLoop): void;
+  play(): void;
+  pause(): void;
+  seek(frame: number): void;
+  /** Ends all requests. */
+  cancel(): void;
+  /** Lets time pass. Returns what is to be shown now, if that is new; without a frame if it
+   * cannot be decoded. */
+  tick(seconds: number): { index: number; frame?: F } | undefined;
+}

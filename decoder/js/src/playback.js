@@ -1,0 +1,171 @@
+// Which frame is shown when. Every frame is decoded and none is left out: if decoding is too
+// slow, time passes more slowly.
+//
+// Frames are counted in steps from the start of the range that is played, so that loops, and
+// playing backwards, need no cases of their own.
+import { aborted } from "./error.js";
+
+const kInFlight = 2; // one is decoded while another travels
+
+export const kLoops = ["repeat", "once", "pingpong"];
+
+export class Playback {
+  /** request(index, signal): a promise of a frame. discard(frame) takes those that are not wanted
+   * any more; failed(error, index) those that cannot be had, without which playing goes on. */
+  constructor({ frames, frameRate, ahead = 4, request, discard = () => {}, failed = () => {} }) {
+    Object.assign(this, { frames, frameRate, ahead, request, discard, failed });
+    this.speed = 1; // below 0: backwards
+    this.loop = "repeat";
+    this.playing = false;
+    this.finished = () => {}; // called at the end of a range that is played once
+    this.waiting = 0; // requests without a reply
+    this.ready = new Map(); // by step: { index, frame }
+    this.setRange(0, frames);
+  }
+
+  /** Plays these frames; shows the first, or the last if it plays backwards. */
+  setRange(first, count) {
+    this.first = first;
+    this.count = count;
+    this.seek(this.speed < 0 ? first + count - 1 : first);
+  }
+
+  setSpeed(speed) {
+    const turns = speed < 0 !== this.speed < 0;
+    const { frame } = this;
+    this.speed = speed;
+    if (turns) this.seek(frame);
+  }
+
+  setLoop(loop) {
+    if (!kLoops.includes(loop)) throw new RangeError(`loop is one of ${kLoops.join(", ")}`);
+    const { frame } = this;
+    this.loop = loop;
+    this.seek(frame);
+  }
+
+  /** The frame that is shown, or will be as soon as it is decoded. */
+  get frame() {
+    return this.indexAt(this.current);
+  }
+
+  /** Seconds from the start of the range. */
+  get seconds() {
+    return (this.frame - this.first) / this.frameRate;
+  }
+
+  /** The index of the frame of a step. */
+  indexAt(step) {
+    const { count, loop } = this;
+    let place = step;
+    if (loop === "repeat") place = step % count;
+    if (loop === "once") place = Math.min(step, count - 1);
+    if (loop === "pingpong" && count > 1) {
+      place = step % (2 * count - 2);
+      if (place >= count) place = 2 * count - 2 - place;
+    }
+    if (count === 1) place = 0;
+    return this.first + (this.speed < 0 ? count - 1 - place : place);
+  }
+
+  get isAtEnd() {
+    return this.loop === "once" && this.current >= this.count - 1;
+  }
+
+  /** A still mesh does not play. What has ended starts again. */
+  play() {
+    this.playing = this.count > 1;
+    if (this.playing && this.isAtEnd) this.setRange(this.first, this.count);
+    this.pump();
+  }
+
+  pause() {
+    this.playing = false;
+    this.time = this.current;
+  }
+
+  /** To a frame of the sequence, or the nearest in the range. */
+  seek(index) {
+    const place = Math.min(Math.max(index - this.first, 0), this.count - 1);
+    this.current = this.speed < 0 ? this.count - 1 - place : place;
+    this.time = this.current; // in steps
+    this.next = this.current; // to be asked for
+    this.isShown = false;
+    this.cancel();
+    this.pump();
+  }
+
+  /** Ends all requests. */
+  cancel() {
+    this.controller?.abort(aborted());
+    this.controller = new AbortController();
+    for (const { frame } of this.ready.values()) if (frame) this.discard(frame);
+    this.ready.clear();
+    this.waiting = 0;
+  }
+
+  /** How many frames to hold, with those to come. Of a short animation, each other frame once:
+   * then the one that is shown comes again. */
+  get wanted() {
+    if (!this.playing) return this.isShown || this.next !== this.current ? 0 : 1;
+    const ahead = Math.max(1, Math.min(this.ahead, this.count - 1));
+    return this.loop === "once" ? Math.min(ahead, this.count - this.next) : ahead;
+  }
+
+  pump() {
+    const { wanted } = this;
+    while (this.waiting < Math.min(kInFlight, wanted) &&
+           this.ready.size + this.waiting < wanted) {
+      this.ask(this.next++);
+    }
+  }
+
+  async ask(step) {
+    ++this.waiting;
+    const { controller } = this;
+    const index = this.indexAt(step);
+    let frame;
+    try {
+      frame = await this.request(index, controller.signal);
+    } catch (error) {
+      if (controller === this.controller) this.failed(error, index);
+    }
+    if (controller !== this.controller) { // out of date
+      if (frame) this.discard(frame);
+      return;
+    }
+    --this.waiting;
+    this.ready.set(step, { index, frame });
+    this.pump();
+  }
+
+  /** Lets time pass. Returns { index, frame } to show now, if that is new; without a frame if it
+   * cannot be decoded. */
+  tick(seconds) {
+    if (!this.isShown) return this.take(this.current);
+    if (!this.playing) return undefined;
+    let shown;
+    this.time += seconds * this.frameRate * Math.abs(this.speed);
+    while (Math.floor(this.time) > this.current && !this.isAtEnd) {
+      if (!this.ready.has(this.current + 1)) {
+        this.time = this.current + 0.999;
+        break;
+      }
+      if (shown?.frame) this.discard(shown.frame);
+      shown = this.take(++this.current);
+    }
+    if (this.isAtEnd && this.time >= this.count) {
+      this.pause();
+      this.finished();
+    }
+    this.pump();
+    return shown;
+  }
+
+  take(step) {
+    const reply = this.ready.get(step);
+    this.ready.delete(step);
+    this.isShown = reply !== undefined;
+    return reply;
+  }
+}

@@ -1,0 +1,57 @@
+// Where the bytes of a stream come from. Each source has its size after open(), and puts bytes
+// into `ranges` with load(start, end, signal), which waits until they are there.
+import { ByteRanges } from "./byte_ranges.js";
+import { HttpSource } from "./http_source.js";
+
+class BytesSource {
+  constructor(bytes) {
+    this.ranges = new ByteRanges();
+    this.ranges.add(0, bytes);
+    this.size = bytes.length;
+  }
+
+  async open() {}
+
+  async load() {}
+}
+
+const kMostCachedBytes = 256e6;
+
+class BlobSource {
+  constructor(blob) {
+    this.blob = blob;
+    this.size = blob.size;
+    this.ranges = new ByteRanges(kMostCachedBytes);
+  }
+
+  async open() {}
+
+  async load(start, end) {
+    const gap = this.ranges.gap(start, end);
+    if (!gap) return;
+    const bytes = await this.blob.slice(gap[0], end).arrayBuffer();
+    this.ranges.add(gap[0], new Uint8Array(bytes));
+  }
+}
+
+/** description: { bytes }, { blob } or { url, ... }; see HttpSource. progress(loaded, size). */
+export function openSource(description, progress) {
+  const { bytes, blob } = description;
+  if (bytes) return new BytesSource(bytes);
+  if (blob) return new BlobSource(blob);
+  return new HttpSource(description, progress);
+}
+
+/** What a caller gives to RlpcDecoder.open(), as a description, which can be sent to a worker. */
+export function describeSource(source, { headers, credentials, maxMemory }) {
+  if (source instanceof Blob) return { blob: source };
+  if (source instanceof ArrayBuffer) return { bytes: new Uint8Array(source) };
+  if (ArrayBuffer.isView(source)) {
+    return { bytes: new Uint8Array(source.buffer, source.byteOffset, source.byteLength) };
+  }
+  if (typeof source === "string" || source instanceof URL) {
+    const url = new URL(source, globalThis.document?.baseURI).href;
+    return { url, headers: [...new Headers(headers)], credentials, maxBytes: maxMemory };
+  }
+  throw new TypeError("a stream is a URL, an ArrayBuffer, a typed array or a Blob");
+}

@@ -1,0 +1,192 @@
+// The decoder of wasm/exports.cpp, as JavaScript sees it. Nothing here waits: a call that needs
+// bytes which are not loaded throws MissingBytes, and can be made again once they are.
+import { RlpcError, kKinds } from "./error.js";
+
+export class MissingBytes extends Error {
+  constructor(start, end) {
+    super(`bytes ${start} to ${end} of the stream are not loaded`);
+    this.start = start;
+    this.end = end;
+  }
+}
+
+/** An instance of the WebAssembly module, for one stream. */
+export class WasmDecoder {
+  /** module: a WebAssembly.Module, or its bytes. */
+  static async create(module) {
+    const decoder = new WasmDecoder();
+    const result = await WebAssembly.instantiate(module, {
+      rlpc: { read_stream: (offset, out, size) => decoder.read(offset, out, size) },
+      env: { emscripten_notify_memory_growth: () => {} },
+      wasi_snapshot_preview1: {
+        proc_exit: (code) => {
+          throw new Error(`the decoder ended with ${code}`);
+        },
+      },
+    });
+    decoder.exports = (result.instance ?? result).exports;
+    decoder.exports._initialize();
+    return decoder;
+  }
+
+  constructor() {
+    this.ranges = undefined;
+    this.missing = undefined;
+    this.lastRead = 0;
+  }
+
+  read(offset, out, size) {
+    const target = new Uint8Array(this.exports.memory.buffer, out >>> 0, size >>> 0);
+    this.lastRead = offset;
+    if (this.ranges.copy(offset, target)) return true;
+    this.missing = new MissingBytes(offset, offset + target.length);
+    return false;
+  }
+
+  /** The stream of `size` bytes, of which `ranges` has those that are loaded. */
+  stream(ranges, size, options) {
+    this.ranges = ranges;
+    return new WasmStream(this, size, options);
+  }
+}
+
+function outOfMemory() {
+  return new RlpcError("out of memory", { kind: "limit" });
+}
+
+/** Frames of one stream, in any order. Arrays that it returns are copies. */
+class WasmStream {
+  constructor(decoder, size, { maxMemory, coarseLayers, verifyHashes }) {
+    this.decoder = decoder;
+    this.exports = decoder.exports;
+    this.stream = this.exports.stream_new(size, maxMemory, coarseLayers, verifyHashes);
+  }
+
+  /** Offset of the last read. */
+  get lastRead() {
+    return this.decoder.lastRead;
+  }
+
+  open() {
+    this.check("stream_open");
+  }
+
+  /** The header, and what is known of the sequence. The number of frames of an open-ended stream
+   * is at its end. */
+  describe() {
+    this.decoder.missing = undefined;
+    const header = JSON.parse(this.text(this.exports.stream_describe(this.stream)));
+    if (this.decoder.missing) throw this.decoder.missing;
+    header.metadata = this.text(this.exports.stream_metadata(this.stream));
+    header.clips = Array.from({ length: header.num_clips }, (_, i) => ({
+      name: this.text(this.exports.stream_clip_name(this.stream, i)),
+      firstFrame: this.exports.stream_clip_first_frame(this.stream, i),
+      frames: this.exports.stream_clip_num_frames(this.stream, i),
+    }));
+    return header;
+  }
+
+  /** Offsets where GOFs and skinned models begin, and the end of the last. */
+  landmarks() {
+    this.check("stream_find_index");
+    const count = this.exports.stream_num_landmarks(this.stream);
+    return this.copy(Float64Array, "stream_landmarks", count);
+  }
+
+  triangles(numTriangles) {
+    return this.copy(Uint32Array, "stream_triangles", 3 * numTriangles);
+  }
+
+  /** Of a coarse mesh: the index of each vertex in the whole mesh. */
+  coarseVertices(numVertices) {
+    return this.copy(Uint32Array, "stream_coarse_vertices", numVertices);
+  }
+
+  edges() {
+    const count = this.exports.stream_num_edges(this.stream);
+    return this.copy(Uint32Array, "stream_edges", 2 * count);
+  }
+
+  decode(frame) {
+    this.check("stream_decode", frame);
+  }
+
+  /** After the last frame: checks the rest of the stream. */
+  finish() {
+    this.check("stream_finish");
+  }
+
+  // Of the frame that was decoded last; `into` may be an array to fill.
+
+  integers(numVertices, into) {
+    return this.copy(Int32Array, "stream_positions", 3 * numVertices, into);
+  }
+
+  positions(numVertices, into) {
+    return this.copy(Float32Array, "stream_floats", 3 * numVertices, into);
+  }
+
+  coordinates(numVertices, into) {
+    return this.copy(Float32Array, "stream_coordinates", 3 * numVertices, into);
+  }
+
+  normals(numVertices, into) {
+    return this.copy(Float32Array, "stream_normals", 3 * numVertices, into);
+  }
+
+  /** On the grid: least and most x, y, z. */
+  extent() {
+    return this.copy(Int32Array, "stream_extent", 6);
+  }
+
+  crc() {
+    return this.exports.stream_frame_crc(this.stream) >>> 0;
+  }
+
+  comparedFrames() {
+    return this.exports.stream_compared_frames(this.stream);
+  }
+
+  /** The error of a frame that was decoded but does not fit its hash. */
+  hashError() {
+    return this.exports.stream_hash_differs(this.stream) ? this.error() : undefined;
+  }
+
+  copy(Type, name, length, into) {
+    const address = this.exports[name](this.stream) >>> 0;
+    const array = into?.length === length && into instanceof Type ? into : new Type(length);
+    if (length > 0) array.set(new Type(this.exports.memory.buffer, address, length));
+    return array;
+  }
+
+  text(address) {
+    const bytes = new Uint8Array(this.exports.memory.buffer, address >>> 0);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+
+  /** Calls an exported function, which returns true, or knows an error. */
+  check(name, ...args) {
+    if (this.decoder.isBroken) throw outOfMemory();
+    this.decoder.missing = undefined;
+    let done = false;
+    try {
+      done = this.exports[name](this.stream, ...args);
+    } catch (failure) {
+      // The only thing that stops it on the way; its memory cannot be trusted any more.
+      if (!(failure instanceof WebAssembly.RuntimeError)) throw failure;
+      this.decoder.isBroken = true;
+      throw outOfMemory();
+    }
+    if (!done) throw this.decoder.missing ?? this.error();
+  }
+
+  error() {
+    const { exports, stream } = this;
+    return new RlpcError(this.text(exports.stream_error_text(stream)), {
+      kind: kKinds[exports.stream_error_code(stream)],
+      rule: this.text(exports.stream_error_rule(stream)),
+      element: this.text(exports.stream_error_element(stream)),
+      bitOffset: exports.stream_error_bit(stream),
+    });
+  }
+}

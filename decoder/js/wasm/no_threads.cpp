@@ -1,0 +1,17 @@
+// Replaces decoder/recon/prefetch.cpp and async.cpp: WebAssembly has a single thread here, on
+// which nothing is prefetched.
+#include "decoder/recon/prefetch.h"
+
+namespace rlpc {
+
+void Prefetch::fill(std::uint64_t /*offset*/, std::uint32_t /*first_frame*/,
+                    std::size_t /*count*/) {}
+
+void Prefetch::hand_over_models() {}
+
+std::optional<Prefetch::Found> Prefetch::take(std::uint64_t /*offset*/,
+                                              std::uint32_t /*first_frame*/) {
+  return std::nullopt;
+}
+
+}  // namespace rlpc

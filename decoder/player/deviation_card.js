@@ -1,0 +1,33 @@
+// The distances from a reference: as colours on the mesh, and in numbers.
+import { digits, roundedUp } from "./facts.js";
+
+const $ = (id) => document.getElementById(id);
+
+export class DeviationCard {
+  constructor({ info, gridStep }) {
+    this.unit = 2 ** (info.positionBits - 1) * gridStep; // of the cube where it is drawn
+    this.largest = 0;
+    this.difference = undefined; // what is said of a reference that does not fit its hash
+    this.isShown = false;
+  }
+
+  /** Of a frame without distances, the surface has its own colour. */
+  show({ index, distances, largest = 0, rms, referenceError }, viewer) {
+    if (distances && referenceError) {
+      this.difference ??=
+        `Frame ${index} of the reference does not fit its hash: ${referenceError.message}`;
+    }
+    $("deviation").hidden = !this.isShown;
+    $("deviation").toggleAttribute("data-missing", !distances);
+    $("deviation-error").textContent = distances
+      ? this.difference ?? ""
+      : `The reference cannot be decoded: ${referenceError.message}`;
+    this.largest = Math.max(this.largest, largest);
+    const most = roundedUp(this.largest * this.unit);
+    viewer.set({ deviationScale: this.isShown && distances ? most / this.unit : 0 });
+    if (!distances) return;
+    $("deviation-most").textContent = digits(most);
+    $("deviation-frame").textContent =
+      `largest ${digits(largest * this.unit)}, RMS ${digits(rms * this.unit)}`;
+  }
+}
