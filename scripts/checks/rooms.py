@@ -61,6 +61,7 @@ ROOMS = {
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/io", "common/mesh"},
+    "decoder/output/gltf": {"common", "common/io", "common/mesh", "decoder/output"},
     "decoder/player": {"common/bitstream", "common/io", "common/mesh", "decoder/output", "decoder/stream",
                        "decoder/tools", "decoder/recon/async.h"} | _PUBLIC_DECODER,
     "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",
@@ -136,6 +137,7 @@ LIBRARIES = {
     FILES: {"sys"},
     "common/tools": {"CLI"},
     "decoder": _TOOLS,
+    "decoder/output/gltf": {"Eigen", "nlohmann"},
     "encoder": _TOOLS | {"Eigen"},
     "conformance": _TOOLS | _PEERS | {"Eigen"},
 }

@@ -1,0 +1,105 @@
+// Principal components of the moves, in blocks: each is made from what the blocks before it
+// leave, and thus also of their rounding.
+#include "decoder/output/gltf/principal_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rlpc {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::MatrixXf;
+
+// Frames from which a block is made: all, or so many at equal distances, others each time.
+constexpr Index kMostFrames = 256;
+constexpr Index kTargetsOfBlock = 16;
+constexpr Index kRows = 4096;  // multiplied at a time
+
+MatrixXf some_columns(const MatrixXf& moves, Index number) {
+  if (moves.cols() <= kMostFrames) return moves;
+  MatrixXf some(moves.rows(), kMostFrames);
+  for (Index i = 0; i < kMostFrames; ++i) {
+    some.col(i) = moves.col((i * moves.cols() + number % kMostFrames) / kMostFrames);
+  }
+  return some;
+}
+
+// a^T b, summed in double.
+MatrixXd products_of(const MatrixXf& a, const MatrixXf& b) {
+  MatrixXd products = MatrixXd::Zero(a.cols(), b.cols());
+  for (Index first = 0; first < a.rows(); first += kRows) {
+    const Index rows = std::min(kRows, a.rows() - first);
+    products.noalias() += a.middleRows(first, rows).cast<double>().transpose() *
+                          b.middleRows(first, rows).cast<double>();
+  }
+  return products;
+}
+
+// Columns that together contain most of the moves.
+MatrixXf principal_columns(const MatrixXf& moves, Index number) {
+  const MatrixXf some = some_columns(moves, number);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(products_of(some, some));
+  const Index count = std::min(kTargetsOfBlock, some.cols());
+  return some * solver.eigenvectors().rightCols(count).rowwise().reverse().cast<float>();
+}
+
+// The unit of a target whose weights are at most 1 where it moves a vertex this far.
+float unit_of(float farthest) { return farthest <= 1 ? 1.0F / 127 : 1.0F; }
+
+// Rounds a column to bytes of a unit; the largest is 127. False if all are zero.
+bool round_to_bytes(Eigen::Ref<Eigen::VectorXf> column, float unit) {
+  const float largest = column.cwiseAbs().maxCoeff();
+  if (!(largest > 0)) return false;
+  column *= 127 / largest;
+  for (float& x : column) x = std::round(x) * unit;
+  return true;
+}
+
+}  // namespace
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
+  const double places =
+      static_cast<double>(moves.rows()) / 3 * static_cast<double>(moves.cols());
+  const double wanted = rms * rms * places;
+  PrincipalShapes shapes;
+  shapes.targets.resize(moves.rows(), 0);
+  shapes.weights.resize(0, moves.cols());
+  double left = moves.cast<double>().squaredNorm();
+  const auto most = static_cast<Index>(max_targets);
+  while (left > wanted && shapes.targets.cols() < most) {
+    MatrixXf block = principal_columns(moves, 61 * shapes.targets.cols());
+    const float unit = unit_of(moves.cwiseAbs().maxCoeff());
+    Index count = 0;
+    const Index room = std::min(block.cols(), most - shapes.targets.cols());
+    while (count < room && round_to_bytes(block.col(count), unit)) ++count;
+    if (count == 0) break;
+    // The fewest of the block that are enough.
+    block.conservativeResize(Eigen::NoChange, count);
+    const MatrixXd squares = products_of(block, block);
+    const MatrixXd products = products_of(block, moves);
+    MatrixXd weights;
+    for (Index k = 1; k <= count; ++k) {
+      weights = squares.topLeftCorner(k, k).ldlt().solve(products.topRows(k));
+      const double gain = weights.cwiseProduct(products.topRows(k)).sum();
+      if (k < count && left - gain > wanted) continue;
+      count = k;
+    }
+    block.conservativeResize(Eigen::NoChange, count);
+    const MatrixXf rounded = weights.cast<float>();
+    moves.noalias() -= block * rounded;
+    const double before = left;
+    left = moves.cast<double>().squaredNorm();
+    if (!(left < before)) break;
+    const Index first = shapes.targets.cols();
+    shapes.targets.conservativeResize(Eigen::NoChange, first + count);
+    shapes.targets.rightCols(count) = block;
+    shapes.weights.conservativeResize(first + count, Eigen::NoChange);
+    shapes.weights.bottomRows(count) = rounded;
+    shapes.units.insert(shapes.units.end(), static_cast<std::size_t>(count), unit);
+  }
+  return shapes;
+}
+
+}  // namespace rlpc
