@@ -53,7 +53,7 @@ class Decoder::Impl {
   }
   std::uint32_t num_layers() const;
   std::optional<std::uint32_t> num_frames();
-  std::optional<RigPose> pose();
+  std::optional<SkeletonPose> pose();
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
   std::uint32_t compared_frames() const { return compared_frames_; }
@@ -100,8 +100,8 @@ class Decoder::Impl {
   std::uint32_t position_ = 0;
   bool was_cut_ = false;
   std::uint32_t compared_frames_ = 0;
-  std::shared_ptr<const Rig> rig_;             // the last one
-  std::optional<std::uint32_t> gof_with_rig_;  // its first frame
+  std::shared_ptr<const Skeleton> skeleton_;        // the last one
+  std::optional<std::uint32_t> gof_with_skeleton_;  // its first frame
 };
 
 Result<bool> Decoder::Impl::open() {
@@ -252,12 +252,12 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
   return true;
 }
 
-std::optional<RigPose> Decoder::Impl::pose() {
+std::optional<SkeletonPose> Decoder::Impl::pose() {
   if (!gof_ || position_ == 0 || !has_frame(position_ - 1)) return std::nullopt;
   const std::uint32_t first = gof_->header.first_frame;
-  if (gof_with_rig_ != first) {
-    std::optional<Rig> rig = gof_->recon->rig();
-    if (!rig) return std::nullopt;
+  if (gof_with_skeleton_ != first) {
+    std::optional<Skeleton> skeleton = gof_->recon->skeleton();
+    if (!skeleton) return std::nullopt;
     // The place of each decoded vertex in the output.
     std::vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
     for (std::size_t i = 0; i < decoded.size(); ++i) {
@@ -265,16 +265,17 @@ std::optional<RigPose> Decoder::Impl::pose() {
     }
     std::vector<std::int32_t> in_output(3 * std::size_t{num_vertices()});
     to_output_order(decoded, in_output);
-    std::vector<std::vector<RigInfluence>> influences;
+    std::vector<std::vector<SkeletonInfluence>> influences;
     for (std::size_t v = 0; v < num_vertices(); ++v) {
-      influences.push_back(rig->influences[static_cast<std::size_t>(in_output[3 * v])]);
+      influences.push_back(skeleton->influences[static_cast<std::size_t>(in_output[3 * v])]);
     }
-    rig->influences = std::move(influences);
-    if (!rig_ || *rig_ != *rig) rig_ = std::make_shared<const Rig>(std::move(*rig));
-    gof_with_rig_ = first;
+    skeleton->influences = std::move(influences);
+    if (!skeleton_ || *skeleton_ != *skeleton)
+      skeleton_ = std::make_shared<const Skeleton>(std::move(*skeleton));
+    gof_with_skeleton_ = first;
   }
-  return RigPose{rig_, gof_->recon->places(position_ - 1 - first),
-                 gof_->recon->values_of_frame()};
+  return SkeletonPose{skeleton_, gof_->recon->places(position_ - 1 - first),
+                      gof_->recon->values_of_frame()};
 }
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
@@ -356,7 +357,7 @@ bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);
 }
-std::optional<RigPose> Decoder::pose() { return impl_->pose(); }
+std::optional<SkeletonPose> Decoder::pose() { return impl_->pose(); }
 std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }

@@ -32,7 +32,7 @@
 #include "common/io/float_position.h"
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/file_source.h"
@@ -109,8 +109,8 @@ class Decoder {
   // The bones that move the vertices in the frame that next_frame() has decoded last, with
   // their influences, for writers of skinned meshes; none if its GOF has no bones. The first
   // call in a GOF takes time and memory in proportion to the vertices; GOFs with the same bones
-  // and influences share the Rig.
-  std::optional<RigPose> pose();
+  // and influences share the Skeleton.
+  std::optional<SkeletonPose> pose();
   // The number of frames. Of an open-ended stream, it is at the end: reads a pipe to its end;
   // none if the stream has been cut off, so that it is not there.
   std::optional<std::uint32_t> num_frames() const;

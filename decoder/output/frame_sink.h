@@ -11,7 +11,7 @@
 #include "common/io/output_file.h"
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 
 namespace rlpc {
 
@@ -31,7 +31,7 @@ class FrameSink {
   // Whether it makes use of set_pose().
   virtual bool wants_poses() const { return false; }
   // The bones in the frame that follows; none: no bones move its vertices.
-  virtual void set_pose(std::optional<RigPose> /*pose*/) {}
+  virtual void set_pose(std::optional<SkeletonPose> /*pose*/) {}
   // After num_frames frames, or fewer if SinkOptions::keep_partial.
   virtual std::optional<OutputError> finish() = 0;
   // What the user should know of the file, after finish(); a line each.
@@ -68,6 +68,7 @@ struct SinkOptions {
   std::vector<Clip> clips{};
   GltfMotion motion = GltfMotion::kAuto;
   std::uint32_t max_targets = kUsualMaxTargets;  // beside bones
+  std::uint64_t max_skin_bytes = 1U << 30;       // memory for the frames of a skin, all at once
   // On all bytes written, temporary files included; null: none. If more is certain to be
   // needed, opening the sink fails.
   std::shared_ptr<OutputLimit> limit{};

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/recon/model_recons.h"
@@ -33,7 +33,7 @@ class GofRecon {
   }
   // The bones that move its vertices, in decoded order, and their places in a frame of the GOF;
   // none if no bones do.
-  virtual std::optional<Rig> rig() const { return std::nullopt; }
+  virtual std::optional<Skeleton> skeleton() const { return std::nullopt; }
   virtual std::vector<BonePlace> places(std::uint32_t /*f*/) const { return {}; }
   virtual std::size_t values_of_frame() const { return 0; }
 };

@@ -35,7 +35,7 @@ namespace {
 
 constexpr const char* kExamples = R"(OUT is one of
   clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
-  clip.glb                glTF: the first frame, the others as morph targets
+  clip.glb                glTF: bones, or a morph target for each frame (--as)
   out/frame_%04d.obj      one OBJ (or PLY) file per frame; out/: likewise
   clip.rlpd               exact integer positions, for conformance
 
@@ -59,6 +59,17 @@ a network. scripts/player builds the player that it needs.
 Fewer components or layers are faster to decode (not Baseline). The result is
 that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
 Cluster GOFs have no slices: they are decoded whole.
+
+In a .glb file, each clip is an animation. --as skin makes the bones of the
+stream, or its clusters, joints of a skin; what these leave becomes morph
+targets, as many as it takes to differ from the stream by about a quarter of its
+own error, which rlpcdec estimates from its quantiser steps. It reports the
+difference. A vertex keeps its four largest influences. Where groups of frames
+have bones of their own, those of most frames are fitted to the others. A stream
+whose frames are predicted from frames has no bones.
+--as auto falls back to a morph target for each frame where bones would leave
+twice that error, would take more bytes, or where there are none. The decoded
+frames are exact with --as morph only; all frames of a skin are held in memory.
 
 With --coarse, vertex layers are removed from the mesh, the finest first: each
 vertex leaves a hole, which larger triangles fill. The other vertices keep their
@@ -287,6 +298,7 @@ int decode(const Options& o) {
     options.clips = rlpc::clips_within(*span, decoder->clips());
     options.motion = o.motion;
     options.max_targets = o.max_targets;
+    options.max_skin_bytes = o.decoder.limits.max_memory_bytes / 2;
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {

@@ -183,26 +183,26 @@ void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
 // nearly.
 constexpr std::size_t kValuesOfVertex = 12;
 
-Rig ClusterRecon::rig() const {
-  Rig rig;
-  rig.step = seed_step_ << kLocalFractionBits;
-  rig.values_of_vertex = kValuesOfVertex;
-  for (const BonePlace& place : places(0)) rig.bones.push_back({-1, place});
+Skeleton ClusterRecon::skeleton() const {
+  Skeleton skeleton;
+  skeleton.step = seed_step_ << kLocalFractionBits;
+  skeleton.values_of_vertex = kValuesOfVertex;
+  for (const BonePlace& place : places(0)) skeleton.bones.push_back({-1, place});
   std::size_t num_vertices = track_vertex_.size();
   for (const ClusterState& cluster : clusters_) num_vertices += cluster.vertices.size();
-  rig.influences.resize(num_vertices);
+  skeleton.influences.resize(num_vertices);
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
-    const RigInfluence whole{static_cast<std::uint16_t>(i), 1};
-    for (const std::uint32_t v : clusters_[i].vertices) rig.influences[v] = {whole};
+    const SkeletonInfluence whole{static_cast<std::uint16_t>(i), 1};
+    for (const std::uint32_t v : clusters_[i].vertices) skeleton.influences[v] = {whole};
     if (!clusters_[i].lcf_flag) continue;
     for (const std::size_t t : clusters_[i].seed_track) {
-      rig.influences[track_vertex_[t]] = {whole};
+      skeleton.influences[track_vertex_[t]] = {whole};
     }
   }
-  for (auto& list : rig.influences) {
+  for (auto& list : skeleton.influences) {
     if (list.empty()) list = {{0, 1}};  // a seed of no cluster
   }
-  return rig;
+  return skeleton;
 }
 
 std::vector<BonePlace> ClusterRecon::places(std::uint32_t f) const {

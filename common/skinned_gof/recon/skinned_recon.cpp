@@ -62,7 +62,6 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
                            const Kernels& loops)
     : num_frames_(gof.num_frames),
       rest_step_(gof.model ? gof.model->rest_step : gof.rest_step),
-      num_trajectories_(gof.trajectories.size()),
       widths_{gof.weight_bits, gof.fraction_bits, model->position_bits()},
       loops_(loops),
       model_(std::move(model)),
@@ -70,7 +69,7 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
   for (const Bone& bone : gof.bones) {
     values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag});
   }
-  values_of_frame_ += 3 * num_trajectories_;
+  values_of_frame_ += 3 * gof.trajectories.size();
   std::vector<TemporalFactor> temporal;
   for (const Trajectory& t : gof.trajectories) {
     temporal.push_back(temporal_factor(t, gof.track_levels));
@@ -86,26 +85,25 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
   }
 }
 
-Rig SkinnedRecon::rig() const {
-  Rig rig;
-  rig.weight_bits = widths_.weight_bits;
-  rig.step = rest_step_;
-  rig.values_of_vertex = kRestFactors + num_trajectories_;
+Skeleton SkinnedRecon::skeleton() const {
+  Skeleton skeleton;
+  skeleton.step = rest_step_;
+  skeleton.values_of_vertex = kRestFactors + model_->factors()->num_components();
   for (const BoneMotion& bone : bones_) {
-    rig.bones.push_back({bone.parent, {axes_of(kNoRotation), bone.pivot}});
+    skeleton.bones.push_back({bone.parent, {axes_of(kNoRotation), bone.pivot}});
   }
-  rig.influences.resize(model_->num_vertices());
+  skeleton.influences.resize(model_->num_vertices());
   for (std::size_t tile = 0; tile < model_->num_tiles(); ++tile) {
     for (std::size_t i = 0; i < model_->num_runs(tile); ++i) {
       const ModelRecon::Run run = model_->run(tile, i);
       for (std::size_t k = 0; k < run.arms.size; ++k) {
-        rig.influences[tile * kTileValues + run.place[k]].push_back(
+        skeleton.influences[tile * kTileValues + run.place[k]].push_back(
             {static_cast<std::uint16_t>(run.bone),
              static_cast<std::uint16_t>(run.arms.weight[k])});
       }
     }
   }
-  return rig;
+  return skeleton;
 }
 
 std::vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {

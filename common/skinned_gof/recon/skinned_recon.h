@@ -11,7 +11,7 @@
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/recon/trajectory_prediction.h"
@@ -46,7 +46,7 @@ class SkinnedRecon {
   }
   std::uint32_t num_frames() const { return num_frames_; }
   // Its bones and influences, in decoded order, and the bones in a frame of the GOF.
-  Rig rig() const;
+  Skeleton skeleton() const;
   std::vector<BonePlace> places(std::uint32_t f) const;
   // The number of values that have been coded for each frame.
   std::size_t values_of_frame() const { return values_of_frame_; }
@@ -58,7 +58,6 @@ class SkinnedRecon {
 
   std::uint32_t num_frames_;
   std::uint32_t rest_step_;
-  std::size_t num_trajectories_;
   std::size_t values_of_frame_ = 0;
   PositionWidths widths_;
   Kernels loops_;

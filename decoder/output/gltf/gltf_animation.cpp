@@ -48,8 +48,7 @@ void GltfAnimation::add_channel(std::uint32_t node, const char* path,
                                 std::span<const std::uint32_t> keys, std::uint32_t output) {
   channels_.push_back(
       {{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
-  samplers_.push_back(
-      {{"input", times_of(keys)}, {"interpolation", "LINEAR"}, {"output", output}});
+  samplers_.push_back({{"input", times_of(keys)}, {"output", output}});  // LINEAR
 }
 
 bool GltfAnimation::spans_clip() const {

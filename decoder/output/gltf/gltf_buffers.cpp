@@ -76,6 +76,7 @@ std::uint32_t GltfBuffers::add_view(std::string_view bytes, int target) {
   if (target != 0) view["target"] = target;
   if (!failure_ && !chunk_.append(bytes)) failure_ = errno;
   views_.push_back(std::move(view));
+  packed_view_.reset();
   return static_cast<std::uint32_t>(views_.size() - 1);
 }
 
@@ -185,18 +186,39 @@ std::uint32_t GltfBuffers::add_joint_weights(std::span<const std::uint16_t> weig
   return add_accessor(std::move(accessor));
 }
 
+// The values of animations follow each other in one view.
+std::uint32_t GltfBuffers::add_packed(GltfJson accessor, std::span<const float> values) {
+  std::string bytes;
+  for (const float x : values) append_f32(bytes, x);
+  if (packed_view_) {
+    GltfJson& length = views_[*packed_view_]["byteLength"];
+    accessor["bufferView"] = *packed_view_;
+    accessor["byteOffset"] = length;
+    length = length.get<std::uint64_t>() + bytes.size();
+    if (!failure_ && !chunk_.append(bytes)) failure_ = errno;
+  } else {
+    const std::uint32_t view = add_view(bytes, 0);
+    accessor["bufferView"] = view;
+    packed_view_ = view;
+  }
+  return add_accessor(std::move(accessor));
+}
+
 std::uint32_t GltfBuffers::add_times(std::span<const float> times) {
   GltfJson accessor = accessor_of(kFloat, times.size(), "SCALAR");
-  accessor["bufferView"] = add_floats(times, 0);
   accessor["min"] = {times.front()};
   accessor["max"] = {times.back()};
-  return add_accessor(std::move(accessor));
+  return add_packed(std::move(accessor), times);
 }
 
 std::uint32_t GltfBuffers::add_values(std::span<const float> values, const char* type) {
   const std::string_view name = type;
-  const std::size_t width = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : name == "VEC4" ? 4 : 16;
-  GltfJson accessor = accessor_of(kFloat, values.size() / width, type);
+  const std::size_t width = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : 4;
+  return add_packed(accessor_of(kFloat, values.size() / width, type), values);
+}
+
+std::uint32_t GltfBuffers::add_matrices(std::span<const float> values) {
+  GltfJson accessor = accessor_of(kFloat, values.size() / 16, "MAT4");
   accessor["bufferView"] = add_floats(values, 0);
   return add_accessor(std::move(accessor));
 }

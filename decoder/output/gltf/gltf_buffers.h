@@ -58,7 +58,9 @@ class GltfBuffers {
   std::uint32_t add_joint_weights(std::span<const std::uint16_t> weights);
   // In seconds, ascending, the first 0.
   std::uint32_t add_times(std::span<const float> times);
-  // Values of no vertex: "SCALAR", "VEC3", "VEC4" or "MAT4".
+  // Sixteen numbers each.
+  std::uint32_t add_matrices(std::span<const float> values);
+  // Values of animations: "SCALAR", "VEC3" or "VEC4".
   std::uint32_t add_values(std::span<const float> values, const char* type);
   // `count` numbers: 1 at `places`, which ascend, otherwise 0; sparse if that is smaller.
   std::uint32_t add_ones(const std::vector<std::uint32_t>& places, std::uint64_t count);
@@ -72,6 +74,7 @@ class GltfBuffers {
 
  private:
   std::uint32_t add_view(std::string_view bytes, int target);
+  std::uint32_t add_packed(GltfJson accessor, std::span<const float> values);
   std::uint32_t add_floats(std::span<const float> values, int target);
   std::uint32_t add_accessor(GltfJson accessor);
   GltfJson sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
@@ -80,6 +83,7 @@ class GltfBuffers {
   BinaryChunk chunk_;
   GltfJson views_ = GltfJson::array();
   GltfJson accessors_ = GltfJson::array();
+  std::optional<std::uint32_t> packed_view_;  // the last view, if it is one of animations
   std::optional<int> failure_;
 };
 

@@ -23,8 +23,11 @@ using std::to_string;
 
 // Beyond about so many targets, three.js shows none: graphics cards have 2,048 layers.
 constexpr std::size_t kMostTargetsShown = 2000;
-// A skin is made from all frames at once, which it holds twice as floats.
-constexpr std::uint64_t kMostSkinValues = std::uint64_t{3} << 25;
+// A skin is made from all frames at once, which are there twice as floats.
+constexpr std::uint64_t kSkinBytesOfPosition = 24;
+
+// Places, keys and maps of a bone in a frame.
+constexpr std::uint64_t kSkinBytesOfBone = 512;
 
 // What sinks for glTF have in common.
 class GltfSink : public FrameSink {
@@ -108,16 +111,12 @@ class GltfSkinSink final : public GltfSink {
   using GltfSink::GltfSink;
 
   bool wants_poses() const override { return true; }
-  void set_pose(std::optional<RigPose> pose) override { pose_ = std::move(pose); }
+  void set_pose(std::optional<SkeletonPose> pose) override { pose_ = std::move(pose); }
 
   std::optional<OutputError> finish() override {
-    if (!choose_rig()) {
+    if (!choose_skeleton()) {
       if (is_required()) {
-        return OutputError{file_.path() +
-                               ": --as skin: the stream has no bones, only frames predicted "
-                               "from frames; write --as morph, or encode with rlpcenc "
-                               "--profile main",
-                           true};
+        return OutputError{file_.path() + ": --as skin: " + why_no_skin(), true};
       }
       return finish_as_morph("");
     }
@@ -153,8 +152,7 @@ class GltfSkinSink final : public GltfSink {
   std::optional<OutputError> add_frame(std::vector<float> xyz) override {
     if (!source_.frames.empty()) morph_bytes_ += target_bytes(xyz);
     source_.frames.push_back(std::move(xyz));
-    if (pose_) ++frames_of_rig_[pose_->rig];
-    poses_.push_back(pose_);
+    add_pose();
     return std::nullopt;
   }
 
@@ -168,21 +166,42 @@ class GltfSkinSink final : public GltfSink {
     return std::min<std::uint64_t>(14 * moving, 4 * xyz.size());
   }
 
-  // The bones of most frames become those of the skin; false if no frame has any.
-  bool choose_rig() {
-    for (const auto& [rig, frames] : frames_of_rig_) {
-      if (!source_.rig || frames > frames_of_rig_[source_.rig]) source_.rig = rig;
+  // Drops the places of bones where they would take too much memory.
+  void add_pose() {
+    if (pose_) pose_bytes_ += kSkinBytesOfBone * pose_->places.size();
+    if (pose_bytes_ > options_.max_skin_bytes) {
+      poses_.clear();
+      frames_of_skeleton_.clear();
+      return;
     }
-    for (std::size_t f = 0; f < poses_.size() && source_.rig; ++f) {
+    if (pose_) ++frames_of_skeleton_[pose_->skeleton];
+    poses_.push_back(pose_);
+  }
+
+  std::string why_no_skin() const {
+    if (pose_bytes_ > options_.max_skin_bytes) {
+      return "too many bones for the memory allowed (--max-memory)";
+    }
+    return "the stream has no bones, only frames predicted from frames; write --as morph, or "
+           "encode with rlpcenc --profile main";
+  }
+
+  // The bones of most frames become those of the skin; false if no frame has any.
+  bool choose_skeleton() {
+    for (const auto& [skeleton, frames] : frames_of_skeleton_) {
+      if (!source_.skeleton || frames > frames_of_skeleton_[source_.skeleton])
+        source_.skeleton = skeleton;
+    }
+    for (std::size_t f = 0; f < poses_.size() && source_.skeleton; ++f) {
       JointPlaces& places = source_.places.emplace_back();
-      if (!poses_[f] || poses_[f]->rig != source_.rig) continue;
+      if (!poses_[f] || poses_[f]->skeleton != source_.skeleton) continue;
       source_.num_values += poses_[f]->num_values;
       for (const BonePlace& place : poses_[f]->places) {
         places.push_back(joint_place(place, options_.grid));
       }
     }
     poses_.clear();
-    return source_.rig != nullptr;
+    return source_.skeleton != nullptr;
   }
 
   std::optional<OutputError> finish_as_morph(const std::string& why) {
@@ -197,10 +216,11 @@ class GltfSkinSink final : public GltfSink {
     return finish_morph(document, morph);
   }
 
-  std::optional<RigPose> pose_;  // of the next frame
+  std::optional<SkeletonPose> pose_;  // of the next frame
   SkinSource source_{{}, options_.grid, {}, {}, 0};
-  std::vector<std::optional<RigPose>> poses_;  // [frame]
-  std::map<std::shared_ptr<const Rig>, std::size_t> frames_of_rig_;
+  std::vector<std::optional<SkeletonPose>> poses_;  // [frame]
+  std::map<std::shared_ptr<const Skeleton>, std::size_t> frames_of_skeleton_;
+  std::uint64_t pose_bytes_ = 0;
   std::uint64_t morph_bytes_ = 0;
 };
 
@@ -211,7 +231,15 @@ OutputResult<std::unique_ptr<FrameSink>> open_gltf_sink(const std::string& path,
   auto file = OutputFile::create(path, options.limit);
   if (!file) return file.error();
   std::unique_ptr<FrameSink> sink;
-  if (options.motion == GltfMotion::kMorph) {
+  const std::uint64_t bytes =
+      kSkinBytesOfPosition * options.num_vertices * std::uint64_t{options.num_frames};
+  if (options.motion == GltfMotion::kSkin && bytes > options.max_skin_bytes) {
+    return OutputError{path + ": --as skin needs " + to_string(bytes >> 20) +
+                           " MiB of memory, for all frames at once; write fewer frames "
+                           "(--frames, --clip), allow more (--max-memory), or write --as morph",
+                       false, true};
+  }
+  if (options.motion == GltfMotion::kMorph || bytes > options.max_skin_bytes) {
     sink = std::make_unique<GltfMorphSink>(std::move(options), std::move(*file));
   } else {
     sink = std::make_unique<GltfSkinSink>(std::move(options), std::move(*file));

@@ -27,30 +27,31 @@ constexpr double kToleratedPart = 1.0 / 4;
 // all values contribute alike, a value of a vertex in all frames as much as one of a frame to
 // all vertices.
 double likely_rms(const SkinSource& source) {
-  const Rig& rig = *source.rig;
-  const auto num_vertices = static_cast<double>(rig.influences.size());
+  const Skeleton& skeleton = *source.skeleton;
+  const auto num_vertices = static_cast<double>(skeleton.influences.size());
   const double values_of_vertex =
-      static_cast<double>(std::max<std::size_t>(3, rig.values_of_vertex)) +
+      static_cast<double>(std::max<std::size_t>(3, skeleton.values_of_vertex)) +
       static_cast<double>(source.num_values) / num_vertices;
-  return std::ldexp(rig.step / 16.0, source.grid.log2_step) * std::sqrt(values_of_vertex / 12);
+  return std::ldexp(skeleton.step / 16.0, source.grid.log2_step) *
+         std::sqrt(values_of_vertex / 12);
 }
 
 // How far each joint moves vertices from its origin, its own and those of its children.
 std::vector<double> reach_of(const SkinSource& source) {
-  const Rig& rig = *source.rig;
+  const Skeleton& skeleton = *source.skeleton;
   const JointPlaces& places = source.places[0];
-  std::vector<double> reach(rig.bones.size());
-  for (std::size_t v = 0; v < rig.influences.size(); ++v) {
+  std::vector<double> reach(skeleton.bones.size());
+  for (std::size_t v = 0; v < skeleton.influences.size(); ++v) {
     const float* const xyz = &source.frames[0][3 * v];
     const Eigen::Vector3d p(xyz[0], xyz[1], xyz[2]);
-    for (const RigInfluence& influence : rig.influences[v]) {
+    for (const SkeletonInfluence& influence : skeleton.influences[v]) {
       double& farthest = reach[influence.bone];
       farthest = std::max(farthest, (p - places[influence.bone].origin).norm());
     }
   }
   for (std::size_t j = reach.size(); j-- > 0;) {
-    if (rig.bones[j].parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(rig.bones[j].parent);
+    if (skeleton.bones[j].parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(skeleton.bones[j].parent);
     const double apart = (places[j].origin - places[parent].origin).norm();
     reach[parent] = std::max(reach[parent], apart + reach[j]);
   }
@@ -96,7 +97,7 @@ GltfJson skin_of(const JointMotion& motion, GltfBuffers& buffers) {
     inverse_bind.insert(inverse_bind.end(), columns.begin(), columns.end());
     joints.push_back(j + kFirstJoint);
   }
-  return {{"inverseBindMatrices", buffers.add_values(inverse_bind, "MAT4")},
+  return {{"inverseBindMatrices", buffers.add_matrices(inverse_bind)},
           {"skeleton", kRootNode},
           {"joints", std::move(joints)}};
 }
@@ -189,15 +190,15 @@ GltfJson mesh_of(const GltfMesh& mesh, std::size_t num_joints, std::span<const f
 GltfSkin add_skin(GltfDocument& document, const GltfMesh& mesh, SkinSource& source,
                   std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets) {
   GltfBuffers& buffers = document.buffers;
-  const Rig& rig = *source.rig;
+  const Skeleton& skeleton = *source.skeleton;
   GltfSkin skin;
-  skin.num_joints = rig.bones.size();
+  skin.num_joints = skeleton.bones.size();
   skin.tolerated_rms = likely_rms(source) * kToleratedPart;
-  const SkinInfluences influences = written_influences(rig);
-  fit_places(rig, source.grid, influences, source.frames, source.places);
+  const SkinInfluences influences = written_influences(skeleton);
+  fit_places(skeleton, source.grid, influences, source.frames, source.places);
   const double key_tolerance = skin.tolerated_rms * kKeyTolerance;
-  const JointMotion motion =
-      joint_motion(rig, source.grid, source.places, reach_of(source), spans, key_tolerance);
+  const JointMotion motion = joint_motion(skeleton, source.grid, source.places,
+                                          reach_of(source), spans, key_tolerance);
   const std::vector<JointMaps> maps = maps_of_frames(motion, spans, source.frames.size());
   const std::vector<float> rest = best_rest(influences, maps, source.frames);
   const PrincipalShapes shapes = principal_shapes(

@@ -8,7 +8,7 @@
 
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "decoder/output/gltf/gltf_document.h"
 #include "decoder/output/gltf/gltf_mesh.h"
 #include "decoder/output/gltf/skin_joints.h"
@@ -25,7 +25,7 @@ struct GltfSkin {
 
 // What a skin is made of.
 struct SkinSource {
-  std::shared_ptr<const Rig> rig;
+  std::shared_ptr<const Skeleton> skeleton;
   Grid grid;
   std::vector<JointPlaces> places;         // [frame][bone]; empty: not known
   std::vector<std::vector<float>> frames;  // [frame], of the vertices of the stream

@@ -12,16 +12,33 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
 
-// Frames from which a block is made: all, or so many at equal distances, others each time.
+// Frames and vertices from which a block is made: all, or so many at equal distances, others
+// each time.
 constexpr Index kMostFrames = 256;
+constexpr Index kMostVertices = 2048;
 constexpr Index kTargetsOfBlock = 16;
 constexpr Index kRows = 4096;  // multiplied at a time
 
+// Index `i` of `count` out of `total`.
+Index chosen(Index i, Index count, Index total, Index number) {
+  return count == total ? i : (i * total + number % count) / count;
+}
+
 MatrixXf some_columns(const MatrixXf& moves, Index number) {
-  if (moves.cols() <= kMostFrames) return moves;
-  MatrixXf some(moves.rows(), kMostFrames);
-  for (Index i = 0; i < kMostFrames; ++i) {
-    some.col(i) = moves.col((i * moves.cols() + number % kMostFrames) / kMostFrames);
+  const Index count = std::min(kMostFrames, moves.cols());
+  MatrixXf some(moves.rows(), count);
+  for (Index i = 0; i < count; ++i) {
+    some.col(i) = moves.col(chosen(i, count, moves.cols(), number));
+  }
+  return some;
+}
+
+MatrixXf some_vertices(const MatrixXf& moves, Index number) {
+  const Index total = moves.rows() / 3;
+  const Index count = std::min(kMostVertices, total);
+  MatrixXf some(3 * count, moves.cols());
+  for (Index i = 0; i < count; ++i) {
+    some.middleRows<3>(3 * i) = moves.middleRows<3>(3 * chosen(i, count, total, number));
   }
   return some;
 }
@@ -40,7 +57,8 @@ MatrixXd products_of(const MatrixXf& a, const MatrixXf& b) {
 // Columns that together contain most of the moves.
 MatrixXf principal_columns(const MatrixXf& moves, Index number) {
   const MatrixXf some = some_columns(moves, number);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(products_of(some, some));
+  const MatrixXf fewer = some_vertices(some, number);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(products_of(fewer, fewer));
   const Index count = std::min(kTargetsOfBlock, some.cols());
   return some * solver.eigenvectors().rightCols(count).rowwise().reverse().cast<float>();
 }

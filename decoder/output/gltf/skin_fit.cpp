@@ -143,10 +143,10 @@ class PoseFit {
 
 }  // namespace
 
-void fit_places(const Rig& rig, const Grid& grid, const SkinInfluences& influences,
+void fit_places(const Skeleton& skeleton, const Grid& grid, const SkinInfluences& influences,
                 ShownFrames frames, std::vector<JointPlaces>& places) {
   JointPlaces bind;
-  for (const RigBone& bone : rig.bones) bind.push_back(joint_place(bone.bind, grid));
+  for (const SkeletonBone& bone : skeleton.bones) bind.push_back(joint_place(bone.bind, grid));
   std::vector<JointMaps> known;
   std::vector<std::vector<float>> known_frames;
   for (std::size_t f = 0; f < places.size(); ++f) {

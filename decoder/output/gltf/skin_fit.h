@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "decoder/output/gltf/skin_joints.h"
 #include "decoder/output/gltf/skin_shape.h"
 
@@ -13,7 +13,7 @@ namespace rlpc {
 
 // Sets the places that are empty to those that fit the frame best; places [frame][joint], of
 // which at least one is there.
-void fit_places(const Rig& rig, const Grid& grid, const SkinInfluences& influences,
+void fit_places(const Skeleton& skeleton, const Grid& grid, const SkinInfluences& influences,
                 ShownFrames frames, std::vector<JointPlaces>& places);
 
 }  // namespace rlpc

@@ -130,17 +130,17 @@ JointPlace joint_place(const BonePlace& place, const Grid& grid) {
   return joint;
 }
 
-JointMotion joint_motion(const Rig& rig, const Grid& grid, std::span<const JointPlaces> places,
-                         std::span<const double> reach, std::span<const Clip> spans,
-                         double tolerance) {
+JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
+                         std::span<const JointPlaces> places, std::span<const double> reach,
+                         std::span<const Clip> spans, double tolerance) {
   JointMotion motion;
-  const std::size_t num_joints = rig.bones.size();
+  const std::size_t num_joints = skeleton.bones.size();
   motion.nodes.resize(num_joints);
   motion.clips.assign(spans.size(), std::vector<JointMotion::OfClip>(num_joints));
   std::vector<Quaterniond> rotations(places.size());
   std::vector<Vector3d> origins(places.size());
   for (std::size_t j = 0; j < num_joints; ++j) {
-    const std::int32_t parent = rig.bones[j].parent;
+    const std::int32_t parent = skeleton.bones[j].parent;
     for (std::size_t f = 0; f < places.size(); ++f) {
       JointPlace place = places[f][j];
       if (parent >= 0) {
@@ -160,7 +160,8 @@ JointMotion joint_motion(const Rig& rig, const Grid& grid, std::span<const Joint
         origins, spans, tolerance,
         [&](std::size_t i) -> JointTrack& { return motion.clips[i][j].translation; });
     std::ranges::copy(shift, node.translation.begin());
-    motion.inverse_bind.push_back(columns_of(joint_place(rig.bones[j].bind, grid).inverse()));
+    motion.inverse_bind.push_back(
+        columns_of(joint_place(skeleton.bones[j].bind, grid).inverse()));
   }
   return motion;
 }

@@ -11,7 +11,7 @@
 
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 
 namespace rlpc {
 
@@ -78,9 +78,9 @@ std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& i
 
 // places [frame][joint]; reach [joint]: how far from its origin a joint moves vertices;
 // tolerance: of the motion at that distance, in units.
-JointMotion joint_motion(const Rig& rig, const Grid& grid, std::span<const JointPlaces> places,
-                         std::span<const double> reach, std::span<const Clip> spans,
-                         double tolerance);
+JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
+                         std::span<const JointPlaces> places, std::span<const double> reach,
+                         std::span<const Clip> spans, double tolerance);
 
 // The maps as viewers make them from the keys, in a frame of a clip.
 JointMaps joint_maps(const JointMotion& motion, std::size_t clip, std::uint32_t frame);

@@ -27,13 +27,13 @@ void set_vector(std::span<float> xyz, std::size_t v, const Vector3d& p) {
 
 }  // namespace
 
-SkinInfluences written_influences(const Rig& rig) {
+SkinInfluences written_influences(const Skeleton& skeleton) {
   SkinInfluences written;
-  for (std::vector<RigInfluence> list : rig.influences) {
-    std::ranges::stable_sort(list, std::greater<>(), &RigInfluence::weight);
+  for (std::vector<SkeletonInfluence> list : skeleton.influences) {
+    std::ranges::stable_sort(list, std::greater<>(), &SkeletonInfluence::weight);
     list.resize(std::min(list.size(), kJointsOfVertex));
     int total = 0;
-    for (const RigInfluence& influence : list) total += influence.weight;
+    for (const SkeletonInfluence& influence : list) total += influence.weight;
     int left = kWhole;
     std::array<int, kJointsOfVertex> weights{};
     for (std::size_t k = 0; k < list.size(); ++k) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/rig.h"
+#include "common/mesh/skeleton.h"
 #include "decoder/output/gltf/principal_shapes.h"
 #include "decoder/output/gltf/skin_joints.h"
 
@@ -23,7 +23,7 @@ struct SkinInfluences {
 };
 
 // Of more than kJointsOfVertex influences, the largest remain, in proportion.
-SkinInfluences written_influences(const Rig& rig);
+SkinInfluences written_influences(const Skeleton& skeleton);
 
 // How the joints map a vertex in a frame.
 JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const JointMaps& maps);

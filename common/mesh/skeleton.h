@@ -21,34 +21,33 @@ struct BonePlace {
   bool operator==(const BonePlace&) const = default;
 };
 
-struct RigBone {
+struct SkeletonBone {
   std::int32_t parent = -1;  // index of an earlier bone; -1: none
   BonePlace bind;            // where it is in the rest shape
-  bool operator==(const RigBone&) const = default;
+  bool operator==(const SkeletonBone&) const = default;
 };
 
-struct RigInfluence {
+struct SkeletonInfluence {
   std::uint16_t bone = 0;
-  std::uint16_t weight = 0;  // above 0; the weights of a vertex sum to 2^weight_bits
-  bool operator==(const RigInfluence&) const = default;
+  std::uint16_t weight = 0;  // above 0; in parts of their sum at the vertex
+  bool operator==(const SkeletonInfluence&) const = default;
 };
 
 // The rest shape is not part of it: it follows from the frames and the poses.
-struct Rig {
-  std::vector<RigBone> bones;  // at least one
-  int weight_bits = 0;
-  std::vector<std::vector<RigInfluence>> influences;  // [num_vertices], at least one each
+struct Skeleton {
+  std::vector<SkeletonBone> bones;                         // at least one
+  std::vector<std::vector<SkeletonInfluence>> influences;  // [num_vertices], at least one each
   // Measures of the error that the stream has: the step in which rest positions, or seed
   // tracks, have been coded, 1/16 grid units; and the number of values that have been coded for
   // each vertex, besides those of frames.
   std::uint32_t step = 1;
   std::size_t values_of_vertex = 0;
-  bool operator==(const Rig&) const = default;
+  bool operator==(const Skeleton&) const = default;
 };
 
 // The bones in one frame.
-struct RigPose {
-  std::shared_ptr<const Rig> rig;
+struct SkeletonPose {
+  std::shared_ptr<const Skeleton> skeleton;
   std::vector<BonePlace> places;  // [bone]
   std::size_t num_values = 0;     // that have been coded for the frame
 };
