@@ -148,6 +148,11 @@ def layer_of(folder):
     return folder.split("/")[0]
 
 
+def libraries_within(layer):
+    """Of all folders of the layer."""
+    return set().union(*(names for folder, names in LIBRARIES.items() if layer_of(folder) == layer))
+
+
 def allowed(folder, included, is_test):
     """Whether a file of the folder may include `included`, a path from the top.
 
