@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <utility>
 
 #include "common/io/binary_numbers.h"
@@ -14,6 +15,7 @@ constexpr std::uint32_t kMaxShortVertices = 65535;  // index 65535 is reserved i
 constexpr std::uint32_t kMaxByteJoints = 256;
 constexpr int kByte = 5120;
 constexpr int kUnsignedByte = 5121;
+constexpr int kShort = 5122;
 constexpr int kUnsignedShort = 5123;
 constexpr int kUnsignedInt = 5125;
 constexpr int kFloat = 5126;
@@ -215,6 +217,17 @@ std::uint32_t GltfBuffers::add_values(std::span<const float> values, const char*
   const std::string_view name = type;
   const std::size_t width = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : 4;
   return add_packed(accessor_of(kFloat, values.size() / width, type), values);
+}
+
+std::uint32_t GltfBuffers::add_short_values(std::span<const float> values, float unit) {
+  std::string bytes;
+  for (const float x : values) {
+    append_unsigned(bytes, static_cast<std::uint32_t>(std::lround(x / unit)), 2);
+  }
+  GltfJson accessor = accessor_of(kShort, values.size(), "SCALAR");
+  accessor["normalized"] = true;
+  accessor["bufferView"] = add_view(bytes, 0);
+  return add_accessor(std::move(accessor));
 }
 
 std::uint32_t GltfBuffers::add_matrices(std::span<const float> values) {

@@ -62,6 +62,8 @@ class GltfBuffers {
   std::uint32_t add_matrices(std::span<const float> values);
   // Values of animations: "SCALAR", "VEC3" or "VEC4".
   std::uint32_t add_values(std::span<const float> values, const char* type);
+  // Numbers from -1 to 1, multiples of 1/32767, which is `unit`.
+  std::uint32_t add_short_values(std::span<const float> values, float unit);
   // `count` numbers: 1 at `places`, which ascend, otherwise 0; sparse if that is smaller.
   std::uint32_t add_ones(const std::vector<std::uint32_t>& places, std::uint64_t count);
 

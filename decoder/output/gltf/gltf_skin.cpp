@@ -126,7 +126,10 @@ void add_weights(GltfAnimation& animation, const PrincipalShapes& shapes, double
     const Eigen::VectorXf weights = column(key);
     values.insert(values.end(), weights.begin(), weights.end());
   }
-  animation.add_channel(kMeshNode, "weights", keys, buffers.add_values(values, "SCALAR"));
+  const std::uint32_t output = shapes.has_short_weights
+                                   ? buffers.add_short_values(values, kWeightUnit)
+                                   : buffers.add_values(values, "SCALAR");
+  animation.add_channel(kMeshNode, "weights", keys, output);
 }
 
 GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
@@ -171,13 +174,12 @@ GltfJson mesh_of(const GltfMesh& mesh, std::size_t num_joints, std::span<const f
   GltfJson targets = GltfJson::array();
   GltfJson first_weights = GltfJson::array();
   for (Eigen::Index k = 0; k < shapes.targets.cols(); ++k) {
-    const float unit = shapes.units[static_cast<std::size_t>(k)];
     std::vector<std::int8_t> bytes;
     for (const float x : shapes.targets.col(k)) {
-      bytes.push_back(static_cast<std::int8_t>(std::lround(x / unit)));
+      bytes.push_back(static_cast<std::int8_t>(std::lround(x / shapes.unit)));
     }
     const auto expanded = of_output_vertices<std::int8_t>(mesh, bytes, 3);
-    targets.push_back({{"POSITION", buffers.add_byte_vectors(expanded, unit < 1)}});
+    targets.push_back({{"POSITION", buffers.add_byte_vectors(expanded, shapes.unit < 1)}});
     first_weights.push_back(shapes.weights(k, 0));
   }
   GltfJson json = {{"primitives", primitives_of(mesh, attributes, targets, buffers)}};

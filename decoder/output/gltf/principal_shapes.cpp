@@ -63,7 +63,7 @@ MatrixXf principal_columns(const MatrixXf& moves, Index number) {
   return some * solver.eigenvectors().rightCols(count).rowwise().reverse().cast<float>();
 }
 
-// The unit of a target whose weights are at most 1 where it moves a vertex this far.
+// The unit of targets whose weights are at most 1 where they move a vertex this far.
 float unit_of(float farthest) { return farthest <= 1 ? 1.0F / 127 : 1.0F; }
 
 // Rounds a column to bytes of a unit; the largest is 127. False if all are zero.
@@ -84,11 +84,14 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
   PrincipalShapes shapes;
   shapes.targets.resize(moves.rows(), 0);
   shapes.weights.resize(0, moves.cols());
+  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
+  shapes.unit = unit_of(farthest);
+  const float unit = shapes.unit;
+  shapes.has_short_weights = farthest < 127 * unit && rms > 2 * 127 * unit * kWeightUnit;
   double left = moves.cast<double>().squaredNorm();
   const auto most = static_cast<Index>(max_targets);
   while (left > wanted && shapes.targets.cols() < most) {
     MatrixXf block = principal_columns(moves, 61 * shapes.targets.cols());
-    const float unit = unit_of(moves.cwiseAbs().maxCoeff());
     Index count = 0;
     const Index room = std::min(block.cols(), most - shapes.targets.cols());
     while (count < room && round_to_bytes(block.col(count), unit)) ++count;
@@ -105,7 +108,10 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
       count = k;
     }
     block.conservativeResize(Eigen::NoChange, count);
-    const MatrixXf rounded = weights.cast<float>();
+    MatrixXf rounded = weights.cast<float>();
+    if (shapes.has_short_weights) {
+      rounded = (rounded / kWeightUnit).array().round().max(-32767).min(32767) * kWeightUnit;
+    }
     moves.noalias() -= block * rounded;
     const double before = left;
     left = moves.cast<double>().squaredNorm();
@@ -115,7 +121,6 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
     shapes.targets.rightCols(count) = block;
     shapes.weights.conservativeResize(first + count, Eigen::NoChange);
     shapes.weights.bottomRows(count) = rounded;
-    shapes.units.insert(shapes.units.end(), static_cast<std::size_t>(count), unit);
   }
   return shapes;
 }

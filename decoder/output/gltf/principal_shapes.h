@@ -3,15 +3,18 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
-#include <vector>
 
 namespace rlpc {
 
-// Their values are bytes: whole multiples of a unit, which is 1/127 or 1, from -127 to 127.
+inline constexpr float kWeightUnit = 1.0F / 32767;
+
 struct PrincipalShapes {
-  Eigen::MatrixXf targets;   // [3 * num_vertices][target]
-  Eigen::MatrixXf weights;   // [target][frame]
-  std::vector<float> units;  // [target]
+  // [3 * num_vertices][target]: bytes, whole multiples of `unit` from -127 to 127.
+  Eigen::MatrixXf targets;
+  float unit = 1;  // 1/127 or 1
+  // [target][frame]; multiples of kWeightUnit from -1 to 1 if has_short_weights.
+  Eigen::MatrixXf weights;
+  bool has_short_weights = false;
 };
 
 // About as few targets as possible with which the RMS of what remains of the moves of a vertex

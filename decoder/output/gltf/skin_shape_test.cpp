@@ -143,10 +143,13 @@ TEST(PrincipalShapes, HaveBytesAsValues) {
     Eigen::MatrixXf moves(90, 30);
     for (float& x : moves.reshaped()) x = size * normal(random);
     const PrincipalShapes shapes = principal_shapes(moves, 0.05 * size, 100);
-    ASSERT_EQ(shapes.units.size(), static_cast<std::size_t>(shapes.targets.cols()));
+    ASSERT_GT(shapes.targets.cols(), 0);
+    EXPECT_EQ(shapes.has_short_weights, size < 100);
+    const Eigen::MatrixXf steps = shapes.weights / kWeightUnit;
+    EXPECT_EQ((steps - steps.array().round().matrix()).cwiseAbs().maxCoeff() < 1e-2F,
+              shapes.has_short_weights);
     for (Eigen::Index k = 0; k < shapes.targets.cols(); ++k) {
-      const Eigen::VectorXf bytes =
-          shapes.targets.col(k) / shapes.units[static_cast<std::size_t>(k)];
+      const Eigen::VectorXf bytes = shapes.targets.col(k) / shapes.unit;
       EXPECT_NEAR(bytes.cwiseAbs().maxCoeff(), 127, 1e-3);
       EXPECT_LT((bytes - bytes.array().round().matrix()).cwiseAbs().maxCoeff(), 1e-3);
     }
