@@ -166,6 +166,13 @@ class SkinChoice(SkinTest):
                    self.path("a.glb"), "--as", "skin", *limit)
         self.assertFalse(self.targets(self.path("a.rlpc"), *limit)[0])
 
+    def test_only_glb_files_have_bones(self):
+        self.encode(self.path("a.rlpc"), "--kg", 1, name="robot_arm")
+        for options in (["--as", "morph"], ["--max-targets", 0]):
+            self.fails(64, [options[0], "is for .glb files"], "rlpcdec", self.path("a.rlpc"), "-o",
+                       self.path("a.pc2"), *options)
+        self.assertEqual(self.files(), ["a.rlpc"])
+
     def test_clips_as_morph_targets(self):
         self.encode_clips()
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.glb"), "--as", "morph")

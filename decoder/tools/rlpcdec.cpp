@@ -527,6 +527,15 @@ int main(int argc, char** argv) try {
     return complain("--ascii is for PLY files, which " + options.output + " is not",
                     rlpc::kExitUsage);
   }
+  for (const char* const option : {"--as", "--max-targets"}) {
+    if (app.get_option(option)->count() == 0 ||
+        rlpc::sink_format(options.output, options.format) == rlpc::SinkFormat::kGlb) {
+      continue;
+    }
+    return complain(
+        std::string(option) + " is for .glb files, which " + options.output + " is not",
+        rlpc::kExitUsage);
+  }
   options.decoder.verify_hashes = !options.no_hashes;
   options.decoder.forward_only = options.frames.empty() && options.html.output.empty();
   return rlpc::after_standard_output("rlpcdec", decode(options), rlpc::kExitIo);
