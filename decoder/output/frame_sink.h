@@ -31,7 +31,7 @@ class FrameSink {
   // Whether it makes use of set_pose().
   virtual bool wants_poses() const { return false; }
   // The bones in the frame that follows; none: no bones move its vertices.
-  virtual void set_pose(std::optional<SkeletonPose> /*pose*/) {}
+  virtual void set_pose(const std::optional<SkeletonPose>& /*pose*/) {}
   // After num_frames frames, or fewer if SinkOptions::keep_partial.
   virtual std::optional<OutputError> finish() = 0;
   // What the user should know of the file, after finish(); a line each.

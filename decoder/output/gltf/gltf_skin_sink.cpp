@@ -95,7 +95,7 @@ class GltfSkinSink final : public GltfSink {
   }
 
   bool wants_poses() const override { return true; }
-  void set_pose(std::optional<SkeletonPose> pose) override { pose_ = std::move(pose); }
+  void set_pose(const std::optional<SkeletonPose>& pose) override { pose_ = pose; }
 
   std::optional<OutputError> finish() override {
     const bool is_required = options().motion == GltfMotion::kSkin;
