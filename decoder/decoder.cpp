@@ -58,6 +58,7 @@ class Decoder::Impl {
   }
   std::uint32_t num_layers() const;
   std::optional<std::uint32_t> num_frames();
+  std::optional<SkeletonPose> pose();
   std::uint32_t position() const { return position_; }
   bool was_cut() const { return was_cut_; }
   std::uint32_t compared_frames() const { return compared_frames_; }
@@ -107,6 +108,8 @@ class Decoder::Impl {
   std::uint32_t position_ = 0;
   bool was_cut_ = false;
   std::uint32_t compared_frames_ = 0;
+  std::shared_ptr<const Skeleton> skeleton_;        // the last one
+  std::optional<std::uint32_t> gof_with_skeleton_;  // its first frame
 };
 
 Result<bool> Decoder::Impl::open() {
@@ -256,6 +259,32 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
   to_output_order(decoded, positions);
   ++position_;
   return true;
+}
+
+std::optional<SkeletonPose> Decoder::Impl::pose() {
+  if (!gof_ || position_ == 0 || !has_frame(position_ - 1)) return std::nullopt;
+  const std::uint32_t first = gof_->header.first_frame;
+  if (gof_with_skeleton_ != first) {
+    std::optional<Skeleton> skeleton = gof_->recon->skeleton();
+    if (!skeleton) return std::nullopt;
+    // The place of each decoded vertex in the output.
+    std::vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+      decoded[i] = static_cast<std::int32_t>(i / 3);
+    }
+    std::vector<std::int32_t> in_output(3 * std::size_t{num_vertices()});
+    to_output_order(decoded, in_output);
+    std::vector<std::vector<SkeletonInfluence>> influences;
+    for (std::size_t v = 0; v < num_vertices(); ++v) {
+      influences.push_back(skeleton->influences[static_cast<std::size_t>(in_output[3 * v])]);
+    }
+    skeleton->influences = std::move(influences);
+    if (!skeleton_ || *skeleton_ != *skeleton)
+      skeleton_ = std::make_shared<const Skeleton>(std::move(*skeleton));
+    gof_with_skeleton_ = first;
+  }
+  return SkeletonPose{skeleton_, gof_->recon->places(position_ - 1 - first),
+                      gof_->recon->values_of_frame()};
 }
 
 Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
@@ -425,6 +454,7 @@ Result<std::vector<AttributeSet>> Decoder::attributes() { return impl_->attribut
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);
 }
+std::optional<SkeletonPose> Decoder::pose() { return impl_->pose(); }
 std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }

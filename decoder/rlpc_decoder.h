@@ -33,6 +33,7 @@
 #include "common/io/float_position.h"
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
+#include "common/mesh/skeleton.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/file_source.h"
@@ -121,6 +122,11 @@ class Decoder {
   // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
   // after the last frame, once the rest of the stream has been checked.
   Result<bool> next_frame(std::span<std::int32_t> positions);
+  // The bones that move the vertices in the frame that next_frame() has decoded last, with
+  // their influences, for writers of skinned meshes; none if its GOF has no bones. The first
+  // call in a GOF takes time and memory in proportion to the vertices; GOFs with the same bones
+  // and influences share the Skeleton.
+  std::optional<SkeletonPose> pose();
   // The number of frames. Of an open-ended stream, it is at the end: reads a pipe to its end;
   // none if the stream has been cut off, so that it is not there.
   std::optional<std::uint32_t> num_frames() const;

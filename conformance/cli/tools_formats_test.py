@@ -242,7 +242,8 @@ class FormatsOut(ToolsTest):
         for name in OUTPUTS:
             out = self.path(name)
             self.ok("rlpcdec", self.path("a.rlpc"), "-o", out, *options,
-                    *(["--ascii"] if "text" in name else []))
+                    *(["--ascii"] if "text" in name else []),
+                    *(["--as", "morph"] if name == "a.glb" else []))
             source = [out, "--no-weld"] if name == "a.glb" else [out]
             if name in ("a.pc2", "a.mdd"):
                 source = [self.path("a.obj"), "--points", out]

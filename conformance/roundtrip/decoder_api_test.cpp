@@ -205,6 +205,25 @@ TEST(Decoder, GivesWhatTheEncoderWasGiven) {
   }
 }
 
+TEST(Decoder, HandsOverTheBonesOfAFrame) {
+  auto decoder = open(rich_stream());
+  ASSERT_TRUE(decoder);
+  EXPECT_FALSE(decoder->pose());
+  Frame frame = frame_buffer(*decoder);
+  const Skeleton* skeleton = nullptr;
+  std::size_t changes = 0;
+  while (*decoder->next_frame(frame)) {
+    const auto pose = decoder->pose();
+    ASSERT_TRUE(pose);
+    EXPECT_EQ(pose->skeleton->influences.size(), decoder->num_vertices());
+    EXPECT_EQ(pose->places.size(), pose->skeleton->bones.size());
+    changes += pose->skeleton.get() != skeleton;
+    skeleton = pose->skeleton.get();
+  }
+  EXPECT_GE(changes, 1U);
+  EXPECT_LT(changes, 6U);
+}
+
 TEST(Decoder, CanBeMoved) {
   auto opened = open(rich_stream());
   ASSERT_TRUE(opened);

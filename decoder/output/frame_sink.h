@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "common/io/output_file.h"
+#include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
+#include "common/mesh/skeleton.h"
 
 namespace rlpc {
 
@@ -26,12 +28,25 @@ class FrameSink {
   // positions[3 * vertex + axis], in grid units; 3 * num_vertices values. At most num_frames
   // calls.
   virtual std::optional<OutputError> write_frame(std::span<const std::int32_t> positions) = 0;
+  // Whether it makes use of set_pose().
+  virtual bool wants_poses() const { return false; }
+  // The bones in the frame that follows; none: no bones move its vertices.
+  virtual void set_pose(const std::optional<SkeletonPose>& /*pose*/) {}
   // After num_frames frames, or fewer if SinkOptions::keep_partial.
   virtual std::optional<OutputError> finish() = 0;
+  // What the user should know of the file, after finish(); a line each.
+  virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 // The format to write; kByName: from the name of the file.
 enum class SinkFormat : std::uint8_t { kByName, kRlpd, kPc2, kMdd, kGlb, kObj, kPly };
+
+// What moves the vertices in a .glb file. kSkin: bones, and morph targets for what they leave;
+// kMorph: a morph target for each frame; kAuto: bones where these move every vertex nearly as
+// the stream does, in fewer bytes.
+enum class GltfMotion : std::uint8_t { kAuto, kSkin, kMorph };
+
+inline constexpr std::uint32_t kUsualMaxTargets = 256;
 
 struct SinkOptions {
   std::uint32_t num_vertices = 0;
@@ -49,6 +64,11 @@ struct SinkOptions {
   std::uint32_t first_number = 0;
   SinkFormat format = SinkFormat::kByName;
   bool ascii = false;  // PLY as text
+  // .glb only: the clips within the frames, counted from the first of them.
+  std::vector<Clip> clips{};
+  GltfMotion motion = GltfMotion::kAuto;
+  std::uint32_t max_targets = kUsualMaxTargets;  // beside bones
+  std::uint64_t max_skin_bytes = 1U << 30;       // memory for the frames of a skin, all at once
   // On all bytes written, temporary files included; null: none. If more is certain to be
   // needed, opening the sink fails.
   std::shared_ptr<OutputLimit> limit{};
@@ -61,7 +81,7 @@ SinkFormat sink_format(const std::string& path, SinkFormat given);
 //   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
 //   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame
-//   x.glb               glTF: one mesh, moved by morph targets
+//   x.glb               glTF: one mesh, moved by bones and morph targets
 //   x.obj, x.ply        if there is only one frame
 //   anything else       a folder of OBJ files, frame_0000.obj, frame_0001.obj, ...
 // "-" is standard output, for single-file formats; it needs options.format. Refuses x.obj for

@@ -18,6 +18,9 @@ class ReconOfKind final : public GofRecon {
               std::span<std::int32_t> positions) const override {
     recon_.frames(first, count, positions);
   }
+  std::optional<Skeleton> skeleton() const override { return recon_.skeleton(); }
+  std::vector<BonePlace> places(std::uint32_t f) const override { return recon_.places(f); }
+  std::size_t values_of_frame() const override { return recon_.values_of_frame(); }
 
  private:
   Recon recon_;

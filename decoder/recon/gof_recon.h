@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "common/mesh/skeleton.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/recon/model_recons.h"
@@ -28,6 +31,11 @@ class GofRecon {
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const {
     frames(f, 1, positions);
   }
+  // The bones that move its vertices, in decoded order, and their places in a frame of the GOF;
+  // none if no bones do.
+  virtual std::optional<Skeleton> skeleton() const { return std::nullopt; }
+  virtual std::vector<BonePlace> places(std::uint32_t /*f*/) const { return {}; }
+  virtual std::size_t values_of_frame() const { return 0; }
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive

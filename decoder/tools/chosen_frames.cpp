@@ -40,4 +40,15 @@ Result<FrameSpan, std::string> choose_frames(const std::string& frames, const st
   return FrameSpan{found->first_frame, found->last_frame()};
 }
 
+std::vector<Clip> clips_within(const FrameSpan& span, std::span<const Clip> clips) {
+  std::vector<Clip> within;
+  for (const Clip& clip : clips) {
+    const std::uint32_t first = std::max(clip.first_frame, span.first);
+    const std::uint32_t last = std::min(clip.last_frame(), span.last);
+    if (first > last) continue;
+    within.push_back({clip.name, first - span.first, last - first + 1});
+  }
+  return within;
+}
+
 }  // namespace rlpc

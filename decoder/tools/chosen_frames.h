@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/mesh/clip.h"
 #include "common/result.h"
@@ -16,5 +17,8 @@ namespace rlpc {
 Result<FrameSpan, std::string> choose_frames(const std::string& frames, const std::string& clip,
                                              std::span<const Clip> clips,
                                              std::uint32_t num_frames);
+
+// The clips, or their parts, that are among the frames of a span, counted from its first frame.
+std::vector<Clip> clips_within(const FrameSpan& span, std::span<const Clip> clips);
 
 }  // namespace rlpc

@@ -35,7 +35,7 @@ namespace {
 
 constexpr const char* kExamples = R"(OUT is one of
   clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
-  clip.glb                glTF: the first frame, the others as morph targets
+  clip.glb                glTF: bones, or a morph target for each frame (--as)
   out/frame_%04d.obj      one OBJ (or PLY) file per frame; out/: likewise
   clip.rlpd               exact integer positions, for conformance
 
@@ -60,6 +60,17 @@ Fewer components or layers are faster to decode (not Baseline). The result is
 that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
 Cluster GOFs have no slices: they are decoded whole.
 
+In a .glb file, each clip is an animation. --as skin makes the bones of the
+stream, or its clusters, joints of a skin; what these leave becomes morph
+targets, as many as it takes to differ from the stream by about a quarter of its
+own error, which rlpcdec estimates from its quantiser steps. It reports the
+difference. A vertex keeps its four largest influences. Where groups of frames
+have bones of their own, those of most frames are fitted to the others. A stream
+whose frames are predicted from frames has no bones.
+--as auto falls back to a morph target for each frame where bones would leave
+twice that error, would take more bytes, or where there are none. The decoded
+frames are exact with --as morph only; all frames of a skin are held in memory.
+
 With --coarse, vertex layers are removed from the mesh, the finest first: each
 vertex leaves a hole, which larger triangles fill. The other vertices keep their
 positions. Slices that are not needed for these are not decoded (Main and High
@@ -74,6 +85,7 @@ limits; 4 input or output failed; 64 wrong usage.)";
 
 // Option groups of the help page.
 constexpr const char* kOutput = "Output (one of -o, --html, --verify)";
+constexpr const char* kGltf = "glTF (.glb)";
 constexpr const char* kPage = "Page";
 constexpr const char* kLess = "Less detail (Main and High profiles)";
 constexpr const char* kCoarse = "Coarse mesh";
@@ -87,6 +99,8 @@ struct Options {
   std::string clip;
   rlpc::SinkFormat format = rlpc::SinkFormat::kByName;
   bool ascii = false;
+  rlpc::GltfMotion motion = rlpc::GltfMotion::kAuto;
+  std::uint32_t max_targets = rlpc::kUsualMaxTargets;
   bool verify_only = false;
   bool no_hashes = false;
   bool conceals = false;
@@ -165,7 +179,10 @@ std::string coarse_text(const Options& o, const rlpc::Decoder& decoder) {
          " vertex layers)";
 }
 
-void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames) {
+// sink: null if nothing was written.
+void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames,
+            const rlpc::FrameSink* sink) {
+  const auto remarks = sink != nullptr ? sink->remarks() : std::vector<std::string>();
   const std::uint32_t num_vertices = decoder.num_vertices();
   const auto num_triangles = static_cast<std::uint32_t>(decoder.triangles().size());
   if (o.json) {
@@ -180,6 +197,7 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
                         {"of_vertices", decoder.header().num_vertices},
                         {"of_triangles", decoder.header().num_triangles}};
     }
+    if (!remarks.empty()) json["remarks"] = remarks;
     std::cout << json.dump(2) << "\n";
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
@@ -190,6 +208,7 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
                  plural(frames.decoded), num_vertices, num_vertices == 1 ? "ex" : "ices",
                  num_triangles, plural(num_triangles), coarse_text(o, decoder).c_str(),
                  hashes_text(o, decoder, frames).c_str(), lost.c_str());
+    for (const std::string& remark : remarks) rlpc::print_message("rlpcdec", remark);
   }
 }
 
@@ -221,6 +240,7 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
     if (!more) return complain(o, more.error());
     if (!*more) break;
     if (sink != nullptr) {
+      if (sink->wants_poses() && !shown.is_lost()) sink->set_pose(decoder.pose());
       if (auto error = sink->write_frame(positions)) {
         return complain(error->message, rlpc::exit_code(*error));
       }
@@ -275,6 +295,10 @@ int decode(const Options& o) {
     options.live = live;
     options.format = o.format;
     options.ascii = o.ascii;
+    options.clips = rlpc::clips_within(*span, decoder->clips());
+    options.motion = o.motion;
+    options.max_targets = o.max_targets;
+    options.max_skin_bytes = o.decoder.limits.max_memory_bytes / 2;
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {
@@ -293,7 +317,7 @@ int decode(const Options& o) {
       return complain(error->message, rlpc::exit_code(*error));
     }
   }
-  report(o, *decoder, frames);
+  report(o, *decoder, frames, sink.get());
   return frames.loss_code;
 }
 
@@ -370,6 +394,29 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
       ->group(kPage);
 }
 
+void add_gltf_options(CLI::App& app, Options& o, const Outputs& outputs) {
+  static const std::map<std::string, rlpc::GltfMotion> kMotions{
+      {"auto", rlpc::GltfMotion::kAuto},
+      {"skin", rlpc::GltfMotion::kSkin},
+      {"morph", rlpc::GltfMotion::kMorph}};
+  app.add_option_function<std::string>(
+         "--as", [&o](const std::string& word) { o.motion = kMotions.at(word); },
+         "skin: bones, and morph targets for what they leave; morph: each frame exactly, as a "
+         "morph target; auto (default): whichever is smaller, where bones are near enough")
+      ->check(CLI::IsMember(kMotions).description(""))
+      ->option_text("WORD")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kGltf);
+  app.add_option("--max-targets", o.max_targets,
+                 "Morph targets beside bones, at most (default: 256); 0 for bones alone")
+      ->check(CLI::Range(0U, 65535U))
+      ->option_text("N")
+      ->excludes(outputs.verify)
+      ->excludes(outputs.page)
+      ->group(kGltf);
+}
+
 void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
   app.add_option("--max-components", o.decoder.cut.max_components,
                  "Of each skinned GOF, only the leading component groups with at "
@@ -435,6 +482,7 @@ void add_limit_options(CLI::App& app, Options& o, const Outputs& outputs) {
 void add_options(CLI::App& app, Options& o) {
   const Outputs outputs = add_outputs(app, o);
   add_format_options(app, o, outputs);
+  add_gltf_options(app, o, outputs);
   add_limit_options(app, o, outputs);
   app.add_flag("--json", o.json, "Report as JSON on standard output")
       ->excludes(outputs.page)
@@ -478,6 +526,15 @@ int main(int argc, char** argv) try {
       rlpc::sink_format(options.output, options.format) != rlpc::SinkFormat::kPly) {
     return complain("--ascii is for PLY files, which " + options.output + " is not",
                     rlpc::kExitUsage);
+  }
+  for (const char* const option : {"--as", "--max-targets"}) {
+    if (app.get_option(option)->count() == 0 ||
+        rlpc::sink_format(options.output, options.format) == rlpc::SinkFormat::kGlb) {
+      continue;
+    }
+    return complain(
+        std::string(option) + " is for .glb files, which " + options.output + " is not",
+        rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
   options.decoder.forward_only = options.frames.empty() && options.html.output.empty();

@@ -68,6 +68,8 @@ ROOMS = {
     "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/attributes", "common/io", "common/mesh"},
+    "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/mesh",
+                            "decoder/output"},
     # The decoder for JavaScript.
     "decoder/js/wasm": {"common/bitstream", "common/io", "common/mesh", "decoder/stream",
                         "decoder/recon/prefetch.h"} | _PUBLIC_DECODER,
@@ -150,6 +152,7 @@ LIBRARIES = {
     FILES: {"sys"},
     "common/tools": {"CLI"},
     "decoder": _TOOLS,
+    "decoder/output/gltf": {"Eigen", "nlohmann"},
     "encoder": _TOOLS | {"Eigen"},
     "conformance": _TOOLS | _PEERS | {"Eigen"},
 }
@@ -158,6 +161,11 @@ TEST_LIBRARIES = {"gtest", "gmock", "benchmark"}
 
 def layer_of(folder):
     return folder.split("/")[0]
+
+
+def libraries_within(layer):
+    """Of all folders of the layer."""
+    return set().union(*(names for folder, names in LIBRARIES.items() if layer_of(folder) == layer))
 
 
 def allowed(folder, included, is_test):

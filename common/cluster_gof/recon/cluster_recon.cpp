@@ -101,6 +101,7 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
     : num_frames_(gof.num_frames),
       position_bits_(header.position_bits),
       fraction_bits_(gof.fraction_bits),
+      seed_step_(gof.seed_step),
       tracks_(recon_seed_tracks(gof, header.position_bits)) {
   std::vector<std::size_t> track_of_vertex(header.num_vertices, 0);
   for (const SeedTrack& track : gof.seed_tracks) {
@@ -176,6 +177,50 @@ void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
     std::int32_t* out = &positions[3 * std::size_t{cluster.vertices[i]}];
     for (std::size_t c = 0; c < 3; ++c) out[c] = clip_signed(position_bits_, world[c]);
   }
+}
+
+// Components are not counted: with so many values, the error is that of a step, which it is
+// nearly.
+constexpr std::size_t kValuesOfVertex = 12;
+
+Skeleton ClusterRecon::skeleton() const {
+  Skeleton skeleton;
+  skeleton.step = seed_step_ << kLocalFractionBits;
+  skeleton.values_of_vertex = kValuesOfVertex;
+  for (const BonePlace& place : places(0)) skeleton.bones.push_back({-1, place});
+  std::size_t num_vertices = track_vertex_.size();
+  for (const ClusterState& cluster : clusters_) num_vertices += cluster.vertices.size();
+  skeleton.influences.resize(num_vertices);
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    const SkeletonInfluence whole{static_cast<std::uint16_t>(i), 1};
+    for (const std::uint32_t v : clusters_[i].vertices) skeleton.influences[v] = {whole};
+    if (!clusters_[i].lcf_flag) continue;
+    for (const std::size_t t : clusters_[i].seed_track) {
+      skeleton.influences[track_vertex_[t]] = {whole};
+    }
+  }
+  for (auto& list : skeleton.influences) {
+    if (list.empty()) list = {{0, 1}};  // a seed of no cluster
+  }
+  return skeleton;
+}
+
+std::vector<BonePlace> ClusterRecon::places(std::uint32_t f) const {
+  std::vector<BonePlace> places;
+  for (const ClusterState& cluster : clusters_) {
+    constexpr std::int64_t kOne = std::int64_t{1} << kAxisFractionBits;
+    BonePlace place{{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}}, {}};
+    if (cluster.lcf_flag) {
+      const auto& s = cluster.seed_track;
+      const Lcf lcf = make_lcf(tracks_[s[0]][f], tracks_[s[1]][f], tracks_[s[2]][f]);
+      place.axes = lcf.axis;
+      for (std::size_t c = 0; c < 3; ++c) {
+        place.origin[c] = lcf.doubled_origin[c] * (std::int64_t{1} << (kLocalFractionBits - 1));
+      }
+    }
+    places.push_back(place);
+  }
+  return places;
 }
 
 void ClusterRecon::frames(std::uint32_t first, std::uint32_t count,

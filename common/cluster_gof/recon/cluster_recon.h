@@ -10,6 +10,7 @@
 #include "common/cluster_gof/recon/lcf.h"
 #include "common/cluster_gof/recon/seed_tracks.h"
 #include "common/kernels/component_sum.h"
+#include "common/mesh/skeleton.h"
 #include "common/mesh/topology.h"
 #include "common/syntax/sequence_header.h"
 
@@ -61,6 +62,11 @@ class ClusterRecon {
     frames(f, 1, positions);
   }
   std::uint32_t num_frames() const { return num_frames_; }
+  // The clusters as bones, in decoded order, and their local coordinate frames in a frame of
+  // the GOF. In the rest shape, they are where they are in the first frame.
+  Skeleton skeleton() const;
+  std::vector<BonePlace> places(std::uint32_t f) const;
+  static constexpr std::size_t values_of_frame() { return 0; }
 
  private:
   struct ClusterState {
@@ -79,6 +85,7 @@ class ClusterRecon {
   std::uint32_t num_frames_;
   int position_bits_;
   int fraction_bits_;
+  std::uint32_t seed_step_;
   std::vector<std::uint32_t> track_vertex_;
   std::vector<Track> tracks_;
   std::vector<ClusterState> clusters_;

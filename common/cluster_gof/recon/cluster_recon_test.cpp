@@ -207,6 +207,31 @@ TEST(ClusterRecon, LocalCoordinatesMoveWithTheSeeds) {
                                                        306, 100, 200, 300, 100, 204, 303}));
 }
 
+TEST(ClusterRecon, HandsOverItsClustersAsBones) {
+  ClusterGof gof = lcf_gof(2);
+  gof.clusters.resize(2);  // the second one is in world coordinates
+  gof.cluster_of_vertex[4] = 1;
+  gof.seed_step = 3;
+  gof.seed_tracks[0].residual = {{0, 0, 0}, {0, 0, 0}};
+  gof.seed_tracks[1].residual = {{10, 0, 0}, {0, 0, 10}};
+  gof.seed_tracks[2].residual = {{0, 10, 0}, {10, 0, 0}};
+  const ClusterRecon recon(header_of(5), make_topology(5, {}), gof);
+  const Skeleton skeleton = recon.skeleton();
+  const std::vector<SkeletonInfluence> first{{0, 1}};
+  const std::vector<SkeletonInfluence> second{{1, 1}};
+  EXPECT_EQ(skeleton.influences, (std::vector{first, first, first, first, second}));
+  EXPECT_EQ(skeleton.step, 48U);
+  constexpr std::int64_t kOne = std::int64_t{1} << 30;
+  const std::array<Vec3l, 3> world{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}};
+  ASSERT_EQ(skeleton.bones.size(), 2U);
+  EXPECT_EQ(skeleton.bones[0].bind, (BonePlace{world, {240, 0, 0}}));
+  EXPECT_EQ(skeleton.bones[1].bind, (BonePlace{world, {0, 0, 0}}));
+  // x to z, y to x, z to y
+  const std::array<Vec3l, 3> turned{{{0, 0, kOne}, {kOne, 0, 0}, {0, kOne, 0}}};
+  EXPECT_EQ(recon.places(1)[0], (BonePlace{turned, {0, 0, 240}}));
+  EXPECT_EQ(recon.places(1)[1], (BonePlace{world, {0, 0, 0}}));
+}
+
 TEST(ClusterRecon, VerticesAreAtTheOriginWithoutComponents) {
   EXPECT_EQ(frame_of(header_of(2), world_gof(2, 1), 0), Positions(6, 0));
   ClusterGof gof = lcf_gof(1);

@@ -116,6 +116,7 @@ Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f)
 BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
                      std::span<const Quaternion> relative, std::span<const Vec3l> offset) {
   BoneMotion motion;
+  motion.parent = bone.parent;
   motion.pivot = {bone.pivot[0], bone.pivot[1], bone.pivot[2]};
   motion.poses.resize(relative.size());
   for (std::uint32_t f = 0; f < relative.size(); ++f) {

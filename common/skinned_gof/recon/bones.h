@@ -44,6 +44,7 @@ struct BonePose {
 };
 
 struct BoneMotion {
+  std::int32_t parent = -1;  // index; -1: root
   Vec3l pivot{};
   std::vector<BonePose> poses;  // [num_gof_frames]
 };

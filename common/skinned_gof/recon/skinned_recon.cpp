@@ -61,10 +61,15 @@ SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int pos
 SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,
                            const Kernels& loops)
     : num_frames_(gof.num_frames),
+      rest_step_(gof.model ? gof.model->rest_step : gof.rest_step),
       widths_{gof.weight_bits, gof.fraction_bits, model->position_bits()},
       loops_(loops),
       model_(std::move(model)),
       bones_(recon_bones(gof.bones, gof.num_frames, gof.track_levels)) {
+  for (const Bone& bone : gof.bones) {
+    values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag});
+  }
+  values_of_frame_ += 3 * gof.trajectories.size();
   std::vector<TemporalFactor> temporal;
   for (const Trajectory& t : gof.trajectories) {
     temporal.push_back(temporal_factor(t, gof.track_levels));
@@ -78,6 +83,35 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
   if (gof.model && temporal.size() > shared) {
     add_sum(model_->local_factors(gof), std::span(temporal).subspan(shared));
   }
+}
+
+Skeleton SkinnedRecon::skeleton() const {
+  Skeleton skeleton;
+  skeleton.step = rest_step_;
+  skeleton.values_of_vertex = kRestFactors + model_->factors()->num_components();
+  for (const BoneMotion& bone : bones_) {
+    skeleton.bones.push_back({bone.parent, {axes_of(kNoRotation), bone.pivot}});
+  }
+  skeleton.influences.resize(model_->num_vertices());
+  for (std::size_t tile = 0; tile < model_->num_tiles(); ++tile) {
+    for (std::size_t i = 0; i < model_->num_runs(tile); ++i) {
+      const ModelRecon::Run run = model_->run(tile, i);
+      for (std::size_t k = 0; k < run.arms.size; ++k) {
+        skeleton.influences[tile * kTileValues + run.place[k]].push_back(
+            {static_cast<std::uint16_t>(run.bone),
+             static_cast<std::uint16_t>(run.arms.weight[k])});
+      }
+    }
+  }
+  return skeleton;
+}
+
+std::vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
+  std::vector<BonePlace> places;
+  for (const BoneMotion& bone : bones_) {
+    places.push_back({bone.poses[f].axes, bone.poses[f].origin});
+  }
+  return places;
 }
 
 // Adds the rest positions of a tile as moved by their bones, times the weights.

@@ -11,6 +11,7 @@
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/mesh/skeleton.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/recon/trajectory_prediction.h"
@@ -44,6 +45,11 @@ class SkinnedRecon {
     frames(f, 1, positions);
   }
   std::uint32_t num_frames() const { return num_frames_; }
+  // Its bones and influences, in decoded order, and the bones in a frame of the GOF.
+  Skeleton skeleton() const;
+  std::vector<BonePlace> places(std::uint32_t f) const;
+  // The number of values that have been coded for each frame.
+  std::size_t values_of_frame() const { return values_of_frame_; }
 
  private:
   using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
@@ -51,6 +57,8 @@ class SkinnedRecon {
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
 
   std::uint32_t num_frames_;
+  std::uint32_t rest_step_;
+  std::size_t values_of_frame_ = 0;
   PositionWidths widths_;
   Kernels loops_;
   std::shared_ptr<const ModelRecon> model_;

@@ -222,6 +222,35 @@ TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   EXPECT_GT(in_order, 100);
 }
 
+TEST(SkinnedRecon, HandsOverItsBones) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomSkinnedGof from(seed, {});
+    const CodedMesh mesh = from.coded_mesh();
+    const SkinnedRecon recon(mesh, from.gof, from.header.position_bits);
+    const Skeleton skeleton = recon.skeleton();
+    const std::vector<Influences> influences = complete_influences(mesh, from.gof);
+    ASSERT_EQ(skeleton.influences.size(), influences.size());
+    for (std::size_t v = 0; v < influences.size(); ++v) {
+      std::vector<SkeletonInfluence> expected;
+      for (const auto& [bone, weight] : influences[v]) expected.push_back({bone, weight});
+      std::ranges::sort(expected, {}, &SkeletonInfluence::bone);
+      ASSERT_EQ(skeleton.influences[v], expected) << v;
+    }
+    const auto bones = recon_bones(from.gof.bones, from.gof.num_frames, from.gof.track_levels);
+    const std::uint32_t last = from.gof.num_frames - 1;
+    const std::vector<BonePlace> places = recon.places(last);
+    ASSERT_EQ(places.size(), bones.size());
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      EXPECT_EQ(skeleton.bones[b].parent, from.gof.bones[b].parent);
+      EXPECT_EQ(skeleton.bones[b].bind.origin, bones[b].pivot);
+      EXPECT_EQ(places[b].origin, bones[b].poses[last].origin);
+      EXPECT_EQ(places[b].axes, bones[b].poses[last].axes);
+    }
+    EXPECT_EQ(skeleton.step, from.gof.rest_step);
+  }
+}
+
 // The vertices of a layer are shared between threads.
 TEST(SkinnedRecon, DoesNotDependOnThreads) {
   int shared = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,22 +15,9 @@
 
 namespace rlpc {
 
-// A growing JSON array.
-class JsonArray {
- public:
-  // Index of the value in the array.
-  std::uint32_t add(const std::string& value) {
-    if (size_ > 0) text_ += ',';
-    text_ += value;
-    return size_++;
-  }
-  std::uint32_t size() const { return size_; }
-  std::string text() const { return "[" + text_ + "]"; }
-
- private:
-  std::string text_;
-  std::uint32_t size_ = 0;
-};
+// Members stay in order, and numbers are 32-bit floats, as short as they can be.
+using GltfJson = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool,
+                                      std::int64_t, std::uint64_t, float>;
 
 // The binary chunk, in an unnamed temporary file: the JSON chunk precedes it, but is known only
 // at the end.
@@ -60,16 +48,27 @@ class GltfBuffers {
   std::uint32_t add_vectors(std::span<const float> xyz);
   // The same, sparse if that is smaller; none if all are zero.
   std::optional<std::uint32_t> add_moves(std::span<const float> moves);
+  // Bytes -127 to 127 of each vertex, in units or in 1/127 units (KHR_mesh_quantization).
+  std::uint32_t add_byte_vectors(std::span<const std::int8_t> xyz, bool in_parts_of_127);
   // Zeros, which take no bytes.
   std::uint32_t add_zero_vectors(std::uint32_t count);
   std::uint32_t add_indices(const std::vector<Triangle>& triangles, std::uint32_t num_vertices);
-  // In seconds, ascending.
+  // Four of each vertex: indices of joints below num_joints, and weights in 1/65535.
+  std::uint32_t add_joints(std::span<const std::uint16_t> joints, std::uint32_t num_joints);
+  std::uint32_t add_joint_weights(std::span<const std::uint16_t> weights);
+  // In seconds, ascending, the first 0.
   std::uint32_t add_times(std::span<const float> times);
+  // Sixteen numbers each.
+  std::uint32_t add_matrices(std::span<const float> values);
+  // Values of animations: "SCALAR", "VEC3" or "VEC4".
+  std::uint32_t add_values(std::span<const float> values, const char* type);
+  // Numbers from -1 to 1, multiples of 1/32767, which is `unit`.
+  std::uint32_t add_short_values(std::span<const float> values, float unit);
   // `count` numbers: 1 at `places`, which ascend, otherwise 0; sparse if that is smaller.
   std::uint32_t add_ones(const std::vector<std::uint32_t>& places, std::uint64_t count);
 
-  std::string accessors_text() const { return accessors_.text(); }
-  std::string views_text() const { return views_.text(); }
+  const GltfJson& accessors() const { return accessors_; }
+  const GltfJson& views() const { return views_; }
   BinaryChunk& chunk() { return chunk_; }
   const BinaryChunk& chunk() const { return chunk_; }
   // errno of the first failure to append to the chunk, which then stays as it is; none so far.
@@ -77,13 +76,16 @@ class GltfBuffers {
 
  private:
   std::uint32_t add_view(std::string_view bytes, int target);
+  std::uint32_t add_packed(GltfJson accessor, std::span<const float> values);
   std::uint32_t add_floats(std::span<const float> values, int target);
-  std::string sparse_text(const std::vector<std::uint32_t>& places, std::uint64_t count,
-                          std::span<const float> values);
+  std::uint32_t add_accessor(GltfJson accessor);
+  GltfJson sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
+                  std::span<const float> values);
 
   BinaryChunk chunk_;
-  JsonArray views_;
-  JsonArray accessors_;
+  GltfJson views_ = GltfJson::array();
+  GltfJson accessors_ = GltfJson::array();
+  std::optional<std::uint32_t> packed_view_;  // the last view, if it is one of animations
   std::optional<int> failure_;
 };
 

@@ -1,0 +1,34 @@
+// A .glb file in the making: its JSON chunk and its binary chunk.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "common/io/output_file.h"
+#include "decoder/output/frame_sink.h"
+#include "decoder/output/gltf/gltf_buffers.h"
+
+namespace rlpc {
+
+inline constexpr std::uint64_t kMaxGltfBytes = std::numeric_limits<std::uint32_t>::max();
+
+struct GltfDocument {
+  explicit GltfDocument(FrameRate frame_rate);
+
+  GltfJson root;  // without accessors, bufferViews and buffers
+  GltfBuffers buffers;
+};
+
+OutputError too_large_for_glb(const std::string& path);
+
+// Why the document cannot be written, as far as it has been made; none: nothing speaks against
+// it. limit: null for none.
+std::optional<OutputError> failure_of(const GltfDocument& document, const std::string& path,
+                                      const std::shared_ptr<OutputLimit>& limit);
+
+// Writes the document and completes the file.
+std::optional<OutputError> write_glb(GltfDocument& document, OutputFile& file);
+
+}  // namespace rlpc

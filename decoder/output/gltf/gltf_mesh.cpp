@@ -1,0 +1,44 @@
+#include "decoder/output/gltf/gltf_mesh.h"
+
+#include <numeric>
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+constexpr int kPoints = 0;
+constexpr int kTriangles = 4;
+
+}  // namespace
+
+GltfMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles) {
+  GltfMesh mesh;
+  mesh.vertex.resize(num_vertices);
+  std::iota(mesh.vertex.begin(), mesh.vertex.end(), 0U);
+  mesh.parts.push_back({std::move(triangles), 0});
+  return mesh;
+}
+
+GltfJson primitives_of(const GltfMesh& mesh, const GltfJson& attributes,
+                       const GltfJson& targets, GltfBuffers& buffers) {
+  GltfJson primitives = GltfJson::array();
+  for (const GltfMesh::Part& part : mesh.parts) {
+    GltfJson primitive = {{"attributes", attributes},
+                          {"mode", part.triangles.empty() ? kPoints : kTriangles}};
+    if (!part.triangles.empty()) {
+      primitive["indices"] =
+          buffers.add_indices(part.triangles, static_cast<std::uint32_t>(mesh.vertex.size()));
+    }
+    if (!targets.empty()) primitive["targets"] = targets;
+    primitive["material"] = part.material;
+    primitives.push_back(std::move(primitive));
+  }
+  return primitives;
+}
+
+GltfJson plain_materials() {
+  return GltfJson::array(
+      {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
+}
+
+}  // namespace rlpc

@@ -1,0 +1,40 @@
+// An animation as a skin: joints that move a rest shape, and morph targets for what they leave.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/mesh/clip.h"
+#include "common/mesh/mesh.h"
+#include "common/mesh/skeleton.h"
+#include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/skin_joints.h"
+#include "decoder/output/gltf/skin_shape.h"
+
+namespace rlpc {
+
+struct GltfSkin {
+  std::size_t num_joints = 0;
+  std::size_t num_targets = 0;
+  SkinError error;           // against the frames
+  double tolerated_rms = 0;  // the RMS that was aimed at
+};
+
+// What a skin is made of.
+struct SkinSource {
+  std::shared_ptr<const Skeleton> skeleton;
+  Grid grid;
+  std::vector<JointPlaces> places;         // [frame][bone]; empty: not known
+  std::vector<std::vector<float>> frames;  // [frame], of the vertices of the stream
+  std::size_t num_values = 0;              // coded for frames whose places are known
+};
+
+// Fills the document. source: places that are not known are fitted. spans: of
+// animation_spans().
+GltfSkin add_skin(GltfDocument& document, const GltfMesh& mesh, SkinSource& source,
+                  std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets);
+
+}  // namespace rlpc

@@ -1,0 +1,128 @@
+// Principal components of the moves, in blocks: each is made from what the blocks before it
+// leave, and thus also of their rounding.
+#include "decoder/output/gltf/principal_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rlpc {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::MatrixXf;
+
+// Frames and vertices from which a block is made: all, or so many at equal distances, others
+// each time.
+constexpr Index kMostFrames = 256;
+constexpr Index kMostVertices = 2048;
+constexpr Index kTargetsOfBlock = 16;
+constexpr Index kRows = 4096;  // multiplied at a time
+
+// Index `i` of `count` out of `total`.
+Index chosen(Index i, Index count, Index total, Index number) {
+  return count == total ? i : (i * total + number % count) / count;
+}
+
+MatrixXf some_columns(const MatrixXf& moves, Index number) {
+  const Index count = std::min(kMostFrames, moves.cols());
+  MatrixXf some(moves.rows(), count);
+  for (Index i = 0; i < count; ++i) {
+    some.col(i) = moves.col(chosen(i, count, moves.cols(), number));
+  }
+  return some;
+}
+
+MatrixXf some_vertices(const MatrixXf& moves, Index number) {
+  const Index total = moves.rows() / 3;
+  const Index count = std::min(kMostVertices, total);
+  MatrixXf some(3 * count, moves.cols());
+  for (Index i = 0; i < count; ++i) {
+    some.middleRows<3>(3 * i) = moves.middleRows<3>(3 * chosen(i, count, total, number));
+  }
+  return some;
+}
+
+// a^T b, summed in double.
+MatrixXd products_of(const MatrixXf& a, const MatrixXf& b) {
+  MatrixXd products = MatrixXd::Zero(a.cols(), b.cols());
+  for (Index first = 0; first < a.rows(); first += kRows) {
+    const Index rows = std::min(kRows, a.rows() - first);
+    products.noalias() += a.middleRows(first, rows).cast<double>().transpose() *
+                          b.middleRows(first, rows).cast<double>();
+  }
+  return products;
+}
+
+// Columns that together contain most of the moves.
+MatrixXf principal_columns(const MatrixXf& moves, Index number) {
+  const MatrixXf some = some_columns(moves, number);
+  const MatrixXf fewer = some_vertices(some, number);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(products_of(fewer, fewer));
+  const Index count = std::min(kTargetsOfBlock, some.cols());
+  return some * solver.eigenvectors().rightCols(count).rowwise().reverse().cast<float>();
+}
+
+// The unit of targets whose weights are at most 1 where they move a vertex this far.
+float unit_of(float farthest) { return farthest <= 1 ? 1.0F / 127 : 1.0F; }
+
+// Rounds a column to bytes of a unit; the largest is 127. False if all are zero.
+bool round_to_bytes(Eigen::Ref<Eigen::VectorXf> column, float unit) {
+  const float largest = column.cwiseAbs().maxCoeff();
+  if (!(largest > 0)) return false;
+  column *= 127 / largest;
+  for (float& x : column) x = std::round(x) * unit;
+  return true;
+}
+
+}  // namespace
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
+  const double places =
+      static_cast<double>(moves.rows()) / 3 * static_cast<double>(moves.cols());
+  const double wanted = rms * rms * places;
+  PrincipalShapes shapes;
+  shapes.targets.resize(moves.rows(), 0);
+  shapes.weights.resize(0, moves.cols());
+  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
+  shapes.unit = unit_of(farthest);
+  const float unit = shapes.unit;
+  shapes.has_short_weights = farthest < 127 * unit && rms > 2 * 127 * unit * kWeightUnit;
+  double left = moves.cast<double>().squaredNorm();
+  const auto most = static_cast<Index>(max_targets);
+  while (left > wanted && shapes.targets.cols() < most) {
+    MatrixXf block = principal_columns(moves, 61 * shapes.targets.cols());
+    Index count = 0;
+    const Index room = std::min(block.cols(), most - shapes.targets.cols());
+    while (count < room && round_to_bytes(block.col(count), unit)) ++count;
+    if (count == 0) break;
+    // The fewest of the block that are enough.
+    block.conservativeResize(Eigen::NoChange, count);
+    const MatrixXd squares = products_of(block, block);
+    const MatrixXd products = products_of(block, moves);
+    MatrixXd weights;
+    for (Index k = 1; k <= count; ++k) {
+      weights = squares.topLeftCorner(k, k).ldlt().solve(products.topRows(k));
+      const double gain = weights.cwiseProduct(products.topRows(k)).sum();
+      if (k < count && left - gain > wanted) continue;
+      count = k;
+    }
+    block.conservativeResize(Eigen::NoChange, count);
+    MatrixXf rounded = weights.cast<float>();
+    if (shapes.has_short_weights) {
+      rounded = (rounded / kWeightUnit).array().round().max(-32767).min(32767) * kWeightUnit;
+    }
+    moves.noalias() -= block * rounded;
+    const double before = left;
+    left = moves.cast<double>().squaredNorm();
+    if (!(left < before)) break;
+    const Index first = shapes.targets.cols();
+    shapes.targets.conservativeResize(Eigen::NoChange, first + count);
+    shapes.targets.rightCols(count) = block;
+    shapes.weights.conservativeResize(first + count, Eigen::NoChange);
+    shapes.weights.bottomRows(count) = rounded;
+  }
+  return shapes;
+}
+
+}  // namespace rlpc

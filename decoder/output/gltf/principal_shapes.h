@@ -1,0 +1,24 @@
+// Morph targets for the moves of vertices over time.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+
+namespace rlpc {
+
+inline constexpr float kWeightUnit = 1.0F / 32767;
+
+struct PrincipalShapes {
+  // [3 * num_vertices][target]: bytes, whole multiples of `unit` from -127 to 127.
+  Eigen::MatrixXf targets;
+  float unit = 1;  // 1/127 or 1
+  // [target][frame]; multiples of kWeightUnit from -1 to 1 if has_short_weights.
+  Eigen::MatrixXf weights;
+  bool has_short_weights = false;
+};
+
+// About as few targets as possible with which the RMS of what remains of the moves of a vertex
+// is at most `rms`; no more than max_targets. moves: [3 * num_vertices][frame].
+PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets);
+
+}  // namespace rlpc

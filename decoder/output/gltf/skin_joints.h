@@ -1,0 +1,88 @@
+// Joints of a skin: their places in each frame, relative to their parents, as keys of
+// animations.
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/StdVector>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/clip.h"
+#include "common/mesh/mesh.h"
+#include "common/mesh/skeleton.h"
+
+namespace rlpc {
+
+// Rotation and origin, in units.
+struct JointPlace {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d moved(const Eigen::Vector3d& p) const { return rotation * p + origin; }
+  JointPlace after(const JointPlace& first) const {
+    return {rotation * first.rotation, moved(first.origin)};
+  }
+  JointPlace inverse() const {
+    const Eigen::Quaterniond back = rotation.conjugate();
+    return {back, -(back * origin)};
+  }
+};
+
+using JointPlaces = std::vector<JointPlace>;  // [joint]
+// The map of a joint from the rest shape, rows of a matrix.
+using JointMap = Eigen::Matrix<double, 3, 4>;
+using JointMaps = std::vector<JointMap>;  // [joint]
+
+JointPlace joint_place(const BonePlace& place, const Grid& grid);
+
+// Keys of a track within a clip: frames of the clip, and `width` numbers for each. No keys: the
+// value of the node throughout.
+struct JointTrack {
+  std::vector<std::uint32_t> keys;
+  std::vector<float> values;
+};
+
+struct JointMotion {
+  struct Node {  // relative to the parent
+    std::int32_t parent = -1;
+    std::array<float, 4> rotation{};  // x, y, z, w
+    std::array<float, 3> translation{};
+  };
+  struct OfClip {
+    JointTrack rotation;
+    JointTrack translation;
+  };
+
+  std::vector<Node> nodes;                          // [joint], as in frame 0
+  std::vector<std::vector<OfClip>> clips;           // [clip][joint]
+  std::vector<std::array<float, 16>> inverse_bind;  // [joint], columns
+};
+
+// Frames of a track that have to be keys, so that values between keys deviate from what is
+// interpolated linearly by no more than is tolerated. is_near(a, b): for all frames between a
+// and b.
+template <class IsNear>
+std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& is_near) {
+  constexpr std::uint32_t kLongest = 256;
+  std::vector<std::uint32_t> keys{0};
+  for (std::uint32_t a = 0; a + 1 < num_frames;) {
+    std::uint32_t b = a + 1;
+    while (b + 1 < num_frames && b - a < kLongest && is_near(a, b + 1)) ++b;
+    keys.push_back(b);
+    a = b;
+  }
+  return keys;
+}
+
+// places [frame][joint]; reach [joint]: how far from its origin a joint moves vertices;
+// tolerance: of the motion at that distance, in units.
+JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
+                         std::span<const JointPlaces> places, std::span<const double> reach,
+                         std::span<const Clip> spans, double tolerance);
+
+// The maps as viewers make them from the keys, in a frame of a clip.
+JointMaps joint_maps(const JointMotion& motion, std::size_t clip, std::uint32_t frame);
+
+}  // namespace rlpc

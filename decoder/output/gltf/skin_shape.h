@@ -1,0 +1,52 @@
+// The rest shape of a skin, and the morph targets for what its joints leave.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/mesh/skeleton.h"
+#include "decoder/output/gltf/principal_shapes.h"
+#include "decoder/output/gltf/skin_joints.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kJointsOfVertex = 4;  // what all viewers support
+
+// Influences as written: weights in 1/65535, which sum to 65535.
+struct SkinInfluences {
+  std::vector<std::uint16_t> joints;   // [num_vertices][kJointsOfVertex]
+  std::vector<std::uint16_t> weights;  // likewise
+};
+
+// Of more than kJointsOfVertex influences, the largest remain, in proportion.
+SkinInfluences written_influences(const Skeleton& skeleton);
+
+// How the joints map a vertex in a frame.
+JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const JointMaps& maps);
+
+// Frames as floats, [frame][num_vertices][3], as they are to be shown.
+using ShownFrames = std::span<const std::vector<float>>;
+
+// The rest positions from which the joints get nearest to all frames; maps [frame].
+std::vector<float> best_rest(const SkinInfluences& influences, std::span<const JointMaps> maps,
+                             ShownFrames frames);
+
+// What has to be added to the rest positions in each frame, one column for each.
+Eigen::MatrixXf missing_moves(const SkinInfluences& influences, std::span<const JointMaps> maps,
+                              std::span<const float> rest, ShownFrames frames);
+
+// Distances of the written skin from the frames.
+struct SkinError {
+  double kg_percent = 0;
+  double rms = 0;
+  double largest = 0;
+};
+SkinError skin_error(const SkinInfluences& influences, std::span<const JointMaps> maps,
+                     std::span<const float> rest, const PrincipalShapes& shapes,
+                     ShownFrames frames);
+
+}  // namespace rlpc
