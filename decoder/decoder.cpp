@@ -1,4 +1,4 @@
-// Implements Decoder (decoder/rlpc_decoder.h): iterates over access units and their frames.
+// Implements Decoder (decoder/rlpc_decoder.h).
 #include <algorithm>
 #include <cassert>
 #include <string>
@@ -6,106 +6,36 @@
 #include <vector>
 
 #include "common/bitstream/crc32.h"
-#include "common/parallel/for_each.h"
-#include "decoder/recon/coarse_output.h"
-#include "decoder/recon/frame_band.h"
-#include "decoder/recon/hash_check.h"
-#include "decoder/recon/live_gof.h"
-#include "decoder/recon/prefetch.h"
-#include "decoder/rlpc_decoder.h"
-#include "decoder/stream/stream_reader.h"
+#include "decoder/decoder_impl.h"
 
 namespace rlpc {
-namespace {
 
 static_assert(kBandFrames == kFramesHeld);
 
-}  // namespace
-
-class Decoder::Impl {
- public:
-  Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
-      : stream_(std::move(source), options),
-        models_(stream_.context()),
-        verify_hashes_(options.verify_hashes),
-        coarse_layers_(options.coarse_layers),
-        num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
-        threads_(num_threads_),
-        band_(num_threads_) {
-    stream_.models().when_dropped([this] { models_.erase_unused(); });
-    // A trace follows the order of the stream.
-    wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
-    prefetch_bytes_ = options.limits.max_memory_bytes / num_threads_;
-    forward_only_ = options.forward_only;
-  }
-
-  Result<bool> open();
-  Result<bool> next_frame(std::span<std::int32_t> positions);
-  Result<bool> seek(std::uint32_t frame);
-  Result<std::optional<std::uint32_t>> skip_damage();
-  Result<std::uint32_t> parse_rest();
-
-  const StreamReader& stream() const { return stream_; }
-  const std::optional<CoarseOutput>& coarse() const { return coarse_; }
-  std::uint32_t num_vertices() const {
-    return coarse_ ? static_cast<std::uint32_t>(coarse_->vertices().size())
-                   : stream_.header().num_vertices;
-  }
-  std::uint32_t num_layers() const;
-  std::optional<std::uint32_t> num_frames();
-  std::uint32_t position() const { return position_; }
-  bool was_cut() const { return was_cut_; }
-  std::uint32_t compared_frames() const { return compared_frames_; }
-
- private:
-  bool has_frame(std::uint32_t frame) const {
-    if (live_) return live_->may_have(frame);
-    return gof_ && frame >= gof_->header.first_frame &&
-           frame - gof_->header.first_frame < gof_->header.num_frames;
-  }
-  // False at the end of the sequence.
-  Result<bool> load_gof();
-  Result<PreparedGof> find_gof(const UnitHeader& unit);
-  Result<bool> is_live(const UnitHeader& unit);
-  // False after the last frame of the GOF.
-  Result<bool> decode_live_frame(std::span<std::int32_t> positions);
-  Result<bool> decode_frame(std::span<std::int32_t> positions);
-  // The loaded GOF may no longer match the position.
-  void fail(const Error& error) {
-    failure_ = error;
-    gof_.reset();
-    live_.reset();
-    if (prefetch_) prefetch_->clear();
-  }
-  void to_output_order(std::span<const std::int32_t> decoded,
-                       std::span<std::int32_t> positions) const;
-
-  StreamReader stream_;
-  ModelRecons models_;
-  bool verify_hashes_;
-  std::uint32_t coarse_layers_;
-  std::optional<CoarseOutput> coarse_;
-  std::uint32_t num_threads_;
-  ThreadPool threads_;
-  std::optional<PreparedGof> gof_;
-  std::unique_ptr<LiveGof> live_;  // instead of gof_
-  HashCheck hash_check_;
-  FrameBand band_;
-  bool wants_prefetch_ = false;
-  std::uint64_t prefetch_bytes_ = 0;
-  bool forward_only_ = false;
-  std::optional<Prefetch> prefetch_;
-  std::optional<Error> failure_;  // sticky until a successful seek
-  std::uint32_t position_ = 0;
-  bool was_cut_ = false;
-  std::uint32_t compared_frames_ = 0;
-};
+Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
+    : stream_(std::move(source), options),
+      models_(stream_.context()),
+      verify_hashes_(options.verify_hashes),
+      coarse_layers_(options.coarse_layers),
+      num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
+      threads_(num_threads_),
+      max_cached_bytes_(options.max_cached_bytes),
+      cache_(options.max_cached_bytes),
+      band_(num_threads_),
+      forward_only_(options.forward_only) {
+  stream_.models().when_dropped([this] { models_.erase_unused(); });
+  // A trace follows the order of the stream.
+  wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
+  const std::uint32_t others = std::max(1U, num_threads_ - 1);
+  prefetch_bytes_ = options.limits.max_memory_bytes / (2 * others);
+}
 
 Result<bool> Decoder::Impl::open() {
   if (auto ok = stream_.open(); !ok) return ok;
   // Prefetching would wait for GOFs that are yet to come.
   if (wants_prefetch_ && !stream_.header().open_end_flag) {
-    prefetch_.emplace(stream_, models_, threads_, prefetch_bytes_);
+    prefetch_.emplace(stream_, models_, threads_, prefetch_bytes_, max_cached_bytes_ / 2,
+                      num_threads_ - 1);
   }
   if (coarse_layers_ != SliceCut::kAll) {
     coarse_.emplace(stream_.header().num_vertices, stream_.triangles(), stream_.vertex_order(),
@@ -126,14 +56,6 @@ std::optional<std::uint32_t> Decoder::Impl::num_frames() {
   return num_frames;
 }
 
-// Whether the GOF is decoded frame by frame.
-Result<bool> Decoder::Impl::is_live(const UnitHeader& unit) {
-  if (!stream_.header().open_end_flag) return false;
-  const auto header = stream_.gof_header(unit);
-  if (!header) return false;  // reading the GOF finds the error, or another before it
-  return rlpc::is_live(stream_.header(), header->kind);
-}
-
 Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions) {
   // After a seek into the GOF, those before it only pass.
   do {
@@ -150,49 +72,6 @@ Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions)
   to_output_order(live_->positions(), positions);
   ++position_;
   return true;
-}
-
-Result<bool> Decoder::Impl::load_gof() {
-  gof_.reset();
-  live_.reset();
-  band_.clear();
-  if (prefetch_) prefetch_->hand_over_models();
-  const auto unit = stream_.find_gof();
-  if (!unit) return unit.error();
-  if (!*unit) return false;
-  if (forward_only_) stream_.units().forget((*unit)->offset);
-  const auto live = is_live(**unit);
-  if (!live) return live;
-  if (*live) {
-    live_ = std::make_unique<LiveGof>(stream_, stream_.access_units().cut());
-    return live_->begin(**unit);
-  }
-  auto gof = find_gof(**unit);
-  if (!gof) return gof.error();
-  gof_ = std::move(*gof);
-  was_cut_ = was_cut_ || gof_->is_cut;
-  hash_check_ = {};
-  if (!gof_->is_cut) {
-    if (!verify_hashes_) gof_->frame_crcs.clear();
-    hash_check_ = {std::move(gof_->hash), std::move(gof_->frame_crcs), gof_->header.num_frames};
-  }
-  return true;
-}
-
-// The GOF that begins with a unit, prefetched or parsed now.
-Result<PreparedGof> Decoder::Impl::find_gof(const UnitHeader& unit) {
-  const std::uint32_t first_frame = stream_.next_first_frame();
-  if (prefetch_) {
-    prefetch_->fill(unit.offset, first_frame, num_threads_);
-    if (auto found = prefetch_->take(unit.offset, first_frame)) {
-      stream_.go_past(unit, found->gof.header.num_frames, found->end);
-      prefetch_->fill(stream_.offset(), stream_.next_first_frame(), num_threads_ - 1);
-      return std::move(found->gof);
-    }
-  }
-  auto access_unit = stream_.read(unit);
-  if (!access_unit) return access_unit.error();
-  return prepare(std::move(*access_unit), stream_.context(), models_);
 }
 
 // 8.6.1 Output order, or 8.9.8 Coarse meshes
@@ -218,9 +97,22 @@ Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
   assert(positions.size() == 3 * std::size_t{num_vertices()});
   if (failure_) return *failure_;
   const ThreadPool::Use use(threads_);
+  direction_ = direction_of(position_);
   const auto more = decode_frame(positions);
   if (!more) fail(more.error());
+  if (more && *more) {
+    last_frame_ = position_ - 1;
+    look_ahead();
+  }
   return more;
+}
+
+Result<bool> Decoder::Impl::frame(std::uint32_t frame, std::span<std::int32_t> positions) {
+  if (failure_ || frame != position_) {
+    is_random_ = true;
+    if (auto ok = seek(frame); !ok) return ok;
+  }
+  return next_frame(positions);
 }
 
 Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
@@ -235,35 +127,19 @@ Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
     if (auto more = load_gof(); !more || !*more) return more;
     if (live_) return decode_frame(positions);
   }
-  const std::uint32_t f = position_ - gof_->header.first_frame;
+  const std::uint32_t f = position_ - gof_->header().first_frame;
   const std::size_t frame_size = 3 * std::size_t{stream_.header().num_vertices};
-  const auto decoded = band_.frame(*gof_->recon, f, frame_size);
-  if (!hash_check_.add_frame(f, decoded)) {
-    const auto at = hash_check_.failed_at();
+  band_.turn(direction_);
+  const auto decoded = band_.frame(*gof_->gof.recon, f, frame_size);
+  HashCheck& check = gof_->hash_check;
+  if (!check.add_frame(f, decoded)) {
+    const auto at = check.failed_at();
     return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
-                 at.value_or(stream_.offset() * 8)};
+                 at.value_or(gof_->end * 8)};
   }
-  compared_frames_ = hash_check_.compared_frames();
+  compared_frames_ = check.compared_frames();
   to_output_order(decoded, positions);
   ++position_;
-  return true;
-}
-
-Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
-  assert(frame < num_frames().value_or(kMaxFrames));
-  const ThreadPool::Use use(threads_);
-  failure_.reset();
-  if (!has_frame(frame)) {
-    auto ok = stream_.seek(frame);
-    if (ok) ok = load_gof();
-    if (!ok) {
-      fail(ok.error());
-      return ok;
-    }
-  }
-  if (gof_ && frame == gof_->header.first_frame) hash_check_.restart();
-  position_ = frame;
-  band_.begin_small();
   return true;
 }
 
@@ -330,6 +206,13 @@ Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
 }
 std::optional<std::uint32_t> Decoder::num_frames() const { return impl_->num_frames(); }
 Result<bool> Decoder::seek(std::uint32_t frame) { return impl_->seek(frame); }
+Result<bool> Decoder::frame(std::uint32_t frame, std::span<std::int32_t> positions) {
+  return impl_->frame(frame, positions);
+}
+DecoderMemory Decoder::memory() const { return impl_->memory(); }
+Result<bool> Decoder::prefetch(std::uint32_t frame) { return impl_->prefetch(frame); }
+Result<GofRange> Decoder::gof_of(std::uint32_t frame) { return impl_->gof_of(frame); }
+Result<std::vector<GofRange>> Decoder::gofs() { return impl_->gofs(); }
 const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }
 const std::vector<Clip>& Decoder::clips() const { return impl_->stream().clips(); }
 Result<std::optional<std::uint32_t>> Decoder::skip_damage() { return impl_->skip_damage(); }

@@ -28,6 +28,12 @@ class GofRecon {
   void frame(std::uint32_t f, std::span<std::int32_t> positions) const {
     frames(f, 1, positions);
   }
+  // Of ordered ones: how many frames before the last one asked for are kept, so that the way
+  // back takes no decoding. To be called before the first frame.
+  virtual void keep_frames(std::uint32_t /*count*/) {}
+  // Decodes what frame f is predicted from, so that asking for it takes little time. Any thread
+  // may call it.
+  virtual void make_ready(std::uint32_t /*f*/) const {}
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive
