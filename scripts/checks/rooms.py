@@ -58,7 +58,8 @@ ROOMS = {
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
-    "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
+    "decoder/c_api": {"common/c_api", "common/io/float_position.h", "common/mesh"}
+                     | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/io", "common/mesh"},
     "decoder/player": {"common/bitstream", "common/io", "common/mesh", "decoder/output", "decoder/stream",
