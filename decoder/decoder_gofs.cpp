@@ -56,7 +56,8 @@ std::unique_ptr<LoadedGof> Decoder::Impl::loaded(std::uint64_t offset, std::uint
     if (!verify_hashes_) gof.frame_crcs.clear();
     check = {std::move(gof.hash), std::move(gof.frame_crcs), gof.header.num_frames};
   }
-  return std::make_unique<LoadedGof>(LoadedGof{offset, end, std::move(gof), std::move(check)});
+  return std::make_unique<LoadedGof>(
+      LoadedGof{{}, offset, end, std::move(gof), std::move(check)});
 }
 
 Result<bool> Decoder::Impl::load_gof() {

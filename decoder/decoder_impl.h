@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/owned.h"
 #include "common/parallel/for_each.h"
 #include "decoder/recon/coarse_output.h"
 #include "decoder/recon/frame_band.h"
@@ -20,7 +21,7 @@
 
 namespace rlpc {
 
-class Decoder::Impl {
+class Decoder::Impl : public Owned {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/c_api/c_handle.h"
+#include "common/owned.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -18,6 +19,8 @@ struct rlpc_decoder {
   std::vector<double> normal_sums;      // [num_vertices][3], of the last frame with normals
   rlpc::HandleError error;
   bool is_placed = false;
+  bool is_allocated = false;  // by the owner
+  rlpc::Owner owner;          // of all its memory; not set: operator new
 };
 
 namespace rlpc {

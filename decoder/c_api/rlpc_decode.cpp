@@ -45,6 +45,11 @@ class CallersSource final : public ByteSource {
   rlpc_source source_;
 };
 
+#ifdef RLPC_OWNED_MEMORY
+constexpr bool kHasNoOwners = false;
+#else
+constexpr bool kHasNoOwners = true;
+#endif
 constexpr std::uint64_t kUsualCachedBytes = std::uint64_t{64} << 20;
 
 rlpc_decode_options default_options() {
@@ -83,10 +88,20 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
                  const MakeSource& make_source) {
   rlpc_decode_options options = default_options();
   if (!take_struct(given, options)) return RLPC_BAD_ARGUMENT;
+  const rlpc_allocator& from = options.allocator;
+  if ((from.allocate == nullptr) != (from.release == nullptr)) return RLPC_BAD_ARGUMENT;
+  const bool allocates = from.allocate != nullptr && options.place == nullptr;
+  if (allocates) {
+    options.place_bytes = sizeof(rlpc_decoder);
+    options.place = from.allocate(from.user, sizeof(rlpc_decoder), alignof(std::max_align_t));
+    if (options.place == nullptr) return RLPC_OUT_OF_MEMORY;
+  }
   auto* handle = make_handle<rlpc_decoder>(options.place, options.place_bytes);
   if (handle == nullptr) {
     return options.place != nullptr ? RLPC_BAD_ARGUMENT : RLPC_OUT_OF_MEMORY;
   }
+  handle->is_allocated = allocates;
+  handle->owner = {from.user, from.allocate, from.release};
   *decoder = handle;
   return guarded(handle, [&] {
     if (options.threads < 1 || options.threads > kMaxThreads) {
@@ -97,6 +112,10 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
     if (options.coarse_layers < 1) {
       return handle->error.break_handle(
           RLPC_BAD_ARGUMENT, "coarse_layers: 0 is not in the range of 1 to RLPC_ALL");
+    }
+    if (kHasNoOwners && handle->owner.allocate != nullptr) {
+      return handle->error.break_handle(
+          RLPC_UNSUPPORTED, "allocator: librlpc has none; use librlpcdec, the decoder alone");
     }
     const DecoderOptions ours = decoder_options(options);
     Result<std::unique_ptr<ByteSource>> source = make_source(ours.limits);
@@ -166,7 +185,18 @@ rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
       });
 }
 
-void rlpc_decoder_close(rlpc_decoder* decoder) { rlpc::close_handle(decoder); }
+void rlpc_decoder_close(rlpc_decoder* decoder) {
+  if (decoder == nullptr) return;
+  const rlpc::Owner owner = decoder->owner;
+  const bool is_allocated = decoder->is_allocated;
+  {
+    const rlpc::OwnerScope scope(owner.allocate == nullptr ? nullptr : &owner);
+    rlpc::close_handle(decoder);
+  }
+  if (is_allocated) {
+    owner.release(owner.user, decoder, sizeof(rlpc_decoder), alignof(std::max_align_t));
+  }
+}
 
 const char* rlpc_decoder_error_text(const rlpc_decoder* decoder) {
   return decoder == nullptr ? "there is no decoder" : decoder->error.text();

@@ -21,12 +21,13 @@
 // different handles are independent.
 //
 // Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
-// it can live in the caller's memory as well (place). Internally the decoder allocates with C++
-// operator new, without a hook for other allocators: when it opens a stream, for each GOF and
-// skinned model, and for the first frame. Within a GOF, every fourth frame allocates one
-// temporary buffer, the others nothing; more with several threads, or after a seek. If memory
-// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
-// everything.
+// it can live in the caller's memory as well (place). The decoder allocates when it opens a
+// stream, for each GOF and skinned model, and for the first frame. Within a GOF, every fourth
+// frame allocates temporary buffers, the others nothing; more with several threads, or after a
+// seek. It comes from the callbacks of rlpc_decode_options.allocator, or from C++ operator new;
+// whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
+// starting threads, and for the text of an error. If memory runs out, calls return
+// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
 #pragma once
 
 #include <stddef.h>
@@ -44,6 +45,15 @@ extern "C" {
 typedef struct rlpc_decoder rlpc_decoder;
 
 #define RLPC_ALL UINT32_MAX
+
+// Where the memory of a decoder comes from. alignment: a power of two. allocate: null if there
+// is none. release: with the size and alignment that the block was allocated with. With several
+// threads, they are called by all of them at the same time.
+typedef struct rlpc_allocator {
+  void* user;
+  void* (*allocate)(void* user, size_t size, size_t alignment);
+  void (*release)(void* user, void* place, size_t size, size_t alignment);
+} rlpc_allocator;
 
 typedef struct rlpc_decode_options {
   size_t struct_size;     // rlpc_decode_options_init sets it
@@ -73,6 +83,9 @@ typedef struct rlpc_decode_options {
   // frames (High profile): going back to them takes no decoding. Estimated; part of
   // max_memory_bytes, and dropped where that is short. Default 64 MiB; 0: none.
   uint64_t max_cached_bytes;
+  // Of all memory of this decoder, its handle included, unless that has a place. Both functions
+  // null, the default: C++ operator new. In librlpcdec alone; librlpc: RLPC_UNSUPPORTED.
+  rlpc_allocator allocator;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {

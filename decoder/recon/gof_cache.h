@@ -5,13 +5,14 @@
 #include <list>
 #include <memory>
 
+#include "common/owned.h"
 #include "decoder/recon/hash_check.h"
 #include "decoder/recon/prepared_gof.h"
 
 namespace rlpc {
 
 // A GOF of the stream, and how far its hash has been verified.
-struct LoadedGof {
+struct LoadedGof : Owned {
   std::uint64_t offset = 0;  // of the GOF unit, bytes from the start of the stream
   std::uint64_t end = 0;     // of its units
   PreparedGof gof;

@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-class GofRecon {
+class GofRecon : public Owned {
  public:
   GofRecon() = default;
   GofRecon(const GofRecon&) = delete;

@@ -39,11 +39,13 @@ rlpc_c_library(rlpc_static rlpc STATIC ${c_of_common} ${c_of_decoder} ${c_of_enc
   $<TARGET_OBJECTS:rlpc_encoder>)
 target_link_libraries(rlpc_static PRIVATE ZLIB::ZLIB Threads::Threads)
 
-# Without the writers of mesh files.
+# Without the writers of mesh files. Memory can come from callbacks, so containers are others, and
+# so is the namespace: programs may link the libraries in C++ as well.
 get_target_property(of_decoder rlpc_decoder SOURCES)
 list(FILTER of_decoder EXCLUDE REGEX "/decoder/output/")
 get_target_property(of_common rlpc_common SOURCES)
 get_target_property(of_io rlpc_io SOURCES)
+list(FILTER of_io INCLUDE REGEX "/bounded_input\\.cpp$")
 set(of_library ${c_of_common} ${c_of_decoder} ${of_common} ${of_decoder} ${of_io})
 foreach(kind SHARED STATIC)
   set(name rlpc_dec)
@@ -52,6 +54,7 @@ foreach(kind SHARED STATIC)
   endif()
   rlpc_c_library(${name} rlpcdec ${kind} ${of_library})
   target_link_libraries(${name} PRIVATE ZLIB::ZLIB Threads::Threads)
+  target_compile_definitions(${name} PRIVATE RLPC_OWNED_MEMORY rlpc=rlpc_decoder_alone)
   # CONTRIBUTING.md says what each is worth.
   target_compile_options(${name} PRIVATE
     $<$<CONFIG:Release>:-Os> -ffunction-sections -fdata-sections)
