@@ -28,7 +28,7 @@ PROGRAMS = {
     **{f"decode_cpp11_{library}": ("decode_cpp11.cpp", library, "c++11") for library in LIBRARIES},
     "encode_c_rlpc": ("encode.c", "rlpc", "c99"),
     "encode_c_rlpc_static": ("encode.c", "rlpc_static", "c99"),
-    "play": ("play.c", "rlpcdec", "c11"), "vertices": ("vertices.c", "rlpcdec", "c99"),
+    "memory": ("memory.c", "rlpcdec", "c99"), "play": ("play.c", "rlpcdec", "c11"), "vertices": ("vertices.c", "rlpcdec", "c99"),
     "decode_cpp": ("decode.cpp", "rlpc-decoder", "c++20"),
     "encode_cpp": ("encode.cpp", "rlpc-encoder", "c++20")}
 
@@ -108,6 +108,8 @@ def try_examples(folder, clip, work):
     shown = run(folder / "play", clip.stream, stdout=subprocess.PIPE, text=True).stdout
     require([line.split(":")[0] for line in shown.splitlines()]
             == ["forward", "backward", "back and forth"], f"play prints {shown}")
+    shown = run(folder / "memory", clip.stream, stdout=subprocess.PIPE, text=True).stdout
+    require(shown.endswith("; 0 bytes left\n"), f"memory prints {shown}")
     out = work / "frame.bin"
     run(folder / "vertices", clip.stream, out, stdout=subprocess.DEVNULL)
     vertices = int(clip.shape[0])
