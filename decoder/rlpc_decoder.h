@@ -14,8 +14,9 @@
 //
 // Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory is
 // bounded by one GOF, the skinned models that it could use (at most eight, which count towards
-// the limits of a GOF) and one that is being replaced, plus four frames; every size in a stream
-// is checked against its level and DecodeLimits before anything is allocated. A Decoder is used
+// the limits of a GOF) and one that is being replaced, plus four frames and max_cached_bytes;
+// every size in a stream is checked against its level and DecodeLimits before anything is
+// allocated. A Decoder is used
 // by one thread at a time; different Decoders are independent. Errors are sticky until seek()
 // succeeds, for example to a frame past the damage.
 #pragma once
@@ -59,8 +60,8 @@ struct DecoderOptions {
   Trace* trace = nullptr;     // not owned; receives every syntax element
   // With more than one, GOFs are prefetched, and the vertices of a layer and several frames are
   // reconstructed in parallel; positions and errors are the same. Each further thread may take
-  // memory for a GOF and the skinned models before it, up to max_memory_bytes / threads, and
-  // for four frames. Clamped to 1 to kMaxThreads.
+  // memory for two GOFs and the skinned models before them, each up to max_memory_bytes /
+  // threads / 2, and for four frames. Clamped to 1 to kMaxThreads.
   std::uint32_t threads = 1;
   // Decodes as if slices outside the cut were absent, which saves their time: only their CRC
   // and indices are checked. The hashes of GOFs that lose slices no longer match, and are not
@@ -75,8 +76,27 @@ struct DecoderOptions {
   // so that a source that loads what is asked for need not load the others. Prefetching reads
   // them all.
   bool read_dropped_slices = true;
+  // GOFs that have been left are kept within this much memory (estimated), and so are, within
+  // half of it, decoded frames of a GOF of frames. It counts towards max_memory_bytes; where
+  // that is not enough, they are dropped. 0: nothing is kept.
+  std::uint64_t max_cached_bytes = 0;
   // There will be no seek(): a source that keeps what it has read can forget it.
   bool forward_only = false;
+};
+
+// The frames of a GOF.
+struct GofRange {
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;
+
+  bool operator==(const GofRange&) const = default;
+};
+
+// Estimated, upper bounds.
+struct DecoderMemory {
+  std::uint64_t stream_bytes = 0;  // connectivity, what follows from it, four frames
+  std::uint64_t gof_bytes = 0;     // of the GOF in use, without skinned models that it shares
+  std::uint64_t cached_bytes = 0;  // of those kept, with their skinned models
 };
 
 class Decoder {
@@ -132,6 +152,19 @@ class Decoder {
   std::optional<std::uint32_t> num_frames() const;
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
+  // Decodes a frame below num_frames, whatever came before; the one after it is then the next.
+  // Takes the time of one frame where its GOF is kept, or has been prefetched, and is not a GOF
+  // of frames, or keeps the frame; otherwise, that of parsing the GOF; in a GOF of frames that
+  // of decoding those it is predicted from as well. Always returns true, or an error.
+  Result<bool> frame(std::uint32_t frame, std::span<std::int32_t> positions);
+  // Prepares the GOF of a frame below num_frames: with several threads in the background, with
+  // one during the call, if it may be kept (max_cached_bytes). Only errors that prevent it from
+  // being found are reported, and do not last; others come with its frames.
+  Result<bool> prefetch(std::uint32_t frame);
+  // The GOF of a frame below num_frames; all GOFs. They read headers of units, from the GOF
+  // index on if there is one, and decode nothing.
+  Result<GofRange> gof_of(std::uint32_t frame);
+  Result<std::vector<GofRange>> gofs();
   // After an error of next_frame(): goes on with the next GOF that is not lost, and returns its
   // first frame, which is the next one; none: the rest of the stream is lost. The frames in
   // between, from position() on, are not decoded. Errors: as of next_frame(); there is no way
@@ -140,6 +173,8 @@ class Decoder {
   // Parses the rest of the stream without reconstructing frames, for programs that inspect its
   // syntax. Returns the number of GOFs in the stream; afterwards there is no next frame.
   Result<std::uint32_t> parse_rest();
+  // The memory that is needed now.
+  DecoderMemory memory() const;
   // Index of the frame that next_frame would decode.
   std::uint32_t position() const;
   // Whether DecoderOptions::cut or coarse_layers has dropped slices of a GOF so far.

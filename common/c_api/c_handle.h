@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "common/c_api/rlpc_status.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -37,12 +38,23 @@ class HandleError {
   rlpc_status broken_ = RLPC_OK;
 };
 
+// Of the memory that calls on the handle allocate: its member `owner`, if it has one that is
+// set.
+template <class Handle>
+const Owner* owner_of(const Handle& handle) {
+  if constexpr (requires { handle.owner; }) {
+    if (handle.owner.allocate != nullptr) return &handle.owner;
+  }
+  return nullptr;
+}
+
 // Calls `call`, which returns a status, and converts exceptions. Handle has a member
 // HandleError error.
 template <class Handle, class Call>
 rlpc_status guarded(Handle* handle, const Call& call) noexcept {
   if (handle == nullptr) return RLPC_BAD_ARGUMENT;
   if (handle->error.broken() != RLPC_OK) return handle->error.broken();
+  const OwnerScope scope(owner_of(*handle));
   try {
     return call();
   } catch (const std::bad_alloc&) {

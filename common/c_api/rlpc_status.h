@@ -1,7 +1,16 @@
 // RLPC in C: status codes of rlpc_decode.h and rlpc_encode.h. C99 and C++.
 #pragma once
 
-#if defined(__GNUC__)
+// RLPC_API is before each function. Programs that link a static library define RLPC_STATIC,
+// which only Windows needs; CMake's targets and `pkg-config --static` do so. RLPC_BUILDING is
+// defined while a shared library itself is built.
+#if defined(RLPC_STATIC)
+#define RLPC_API
+#elif defined(_WIN32) && defined(RLPC_BUILDING)
+#define RLPC_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define RLPC_API __declspec(dllimport)
+#elif defined(__GNUC__)
 #define RLPC_API __attribute__((visibility("default")))
 #else
 #define RLPC_API

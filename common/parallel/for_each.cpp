@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
-class ThreadPool::Impl {
+class ThreadPool::Impl : public Owned {
  public:
   explicit Impl(std::uint32_t count) {
     others_.reserve(count - 1);
@@ -33,7 +35,7 @@ class ThreadPool::Impl {
   static thread_local Impl* of_thread;  // the pool that it uses
   bool has_others() const { return !others_.empty(); }
 
-  void run(std::size_t count, const std::function<void(std::size_t)>& pass) {
+  void run(std::size_t count, const Pass& pass) {
     Loop loop{.pass = pass, .count = count, .depth = depth_of_thread + 1};
     std::unique_lock lock(mutex_);
     loops_.push_back(&loop);
@@ -55,12 +57,13 @@ class ThreadPool::Impl {
 
  private:
   struct Loop {
-    const std::function<void(std::size_t)>& pass;
+    const Pass& pass;
     std::size_t count = 0;
     std::size_t depth = 0;  // 1: not within a pass of another loop
     std::atomic<std::size_t> next = 0;
     std::size_t threads = 0;  // that are within it
     std::exception_ptr failure = {};
+    const Owner* owner = current_owner();  // of memory
 
     bool is_open() const { return next.load(std::memory_order_relaxed) < count; }
   };
@@ -82,6 +85,7 @@ class ThreadPool::Impl {
     lock.unlock();
     const std::size_t before = std::exchange(depth_of_thread, loop.depth);
     std::exception_ptr failure;
+    const OwnerScope scope(loop.owner);
     try {
       for (std::size_t i = loop.next++; i < loop.count; i = loop.next++) {
         loop.pass(i);
@@ -155,7 +159,7 @@ ThreadPool::Use::Use(ThreadPool& pool)
     : before_(std::exchange(Impl::of_thread, pool.impl_.get())) {}
 ThreadPool::Use::~Use() { Impl::of_thread = before_; }
 
-void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
+void for_each(std::size_t count, const Pass& pass) {
   ThreadPool::Impl* const pool = ThreadPool::Impl::of_thread;
   if (pool == nullptr || count < 2 || !pool->has_others()) {
     for (std::size_t i = 0; i < count; ++i) pass(i);

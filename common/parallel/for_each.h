@@ -6,10 +6,28 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 
+#include "common/owned.h"
+
 namespace rlpc {
+
+// A function that is called while the caller of for_each() waits: it is not copied.
+template <class... Args>
+class FunctionRef {
+ public:
+  template <class F>
+  FunctionRef(const F& f)  // NOLINT(google-explicit-constructor): any function will do
+      : function_(&f), call_([](const void* function, Args... args) {
+          (*static_cast<const F*>(function))(args...);
+        }) {}
+  void operator()(Args... args) const { call_(function_, args...); }
+
+ private:
+  const void* function_;
+  void (*call_)(const void* function, Args... args);
+};
+using Pass = FunctionRef<std::size_t>;
 
 // Threads that share the passes of loops.
 class ThreadPool {
@@ -38,7 +56,7 @@ class ThreadPool {
   };
 
  private:
-  friend void for_each(std::size_t count, const std::function<void(std::size_t)>& pass);
+  friend void for_each(std::size_t count, const Pass& pass);
 
   std::unique_ptr<Impl> impl_;
 };
@@ -56,11 +74,11 @@ class Threads {
 // Calls pass(i) for all i < count, in any order, and returns once all are done. A pass may
 // itself contain such loops; at any time, a thread is within at most one pass of each depth. If
 // a pass throws, no further ones begin, and the exception is rethrown here.
-void for_each(std::size_t count, const std::function<void(std::size_t)>& pass);
+void for_each(std::size_t count, const Pass& pass);
 
 // The same for ranges of `together` numbers below `count`: range(first, end).
 inline void for_ranges(std::size_t count, std::size_t together,
-                       const std::function<void(std::size_t first, std::size_t end)>& range) {
+                       const FunctionRef<std::size_t, std::size_t>& range) {
   for_each((count + together - 1) / together,
            [&](std::size_t i) { range(i * together, std::min((i + 1) * together, count)); });
 }

@@ -3,7 +3,7 @@
 
 namespace rlpc {
 
-class ThreadPool::Impl {};
+class ThreadPool::Impl : public Owned {};
 
 ThreadPool::ThreadPool(std::uint32_t /*count*/) {}
 ThreadPool::~ThreadPool() = default;
@@ -11,7 +11,7 @@ ThreadPool::~ThreadPool() = default;
 ThreadPool::Use::Use(ThreadPool& /*pool*/) : before_(nullptr) {}
 ThreadPool::Use::~Use() { static_cast<void>(before_); }
 
-void for_each(std::size_t count, const std::function<void(std::size_t)>& pass) {
+void for_each(std::size_t count, const Pass& pass) {
   for (std::size_t i = 0; i < count; ++i) pass(i);
 }
 

@@ -10,21 +10,38 @@
 
 namespace rlpc::bench {
 
+namespace {
+
+const std::filesystem::path kSource = RLPC_SOURCE_DIR;
+
+// If it is there.
+void add(std::vector<Animation>& to, const std::filesystem::path& folder, const char* name) {
+  const std::filesystem::path stem = folder / name;
+  const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
+  if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points)) to.push_back(a);
+}
+
+void add_bundled(std::vector<Animation>& to, const char* name) {
+  add(to, kSource / "streams" / "inputs", name);
+}
+
+void add_handed_out(std::vector<Animation>& to, const char* name) {
+  add(to, kSource.parent_path() / "shared" / "data" / "sequences", name);
+}
+
+}  // namespace
+
 std::vector<Animation> animations() {
-  const std::filesystem::path source = RLPC_SOURCE_DIR;
   std::vector<Animation> found;
-  const auto add = [&](const std::filesystem::path& folder, const char* name) {
-    const std::filesystem::path stem = folder / name;
-    const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
-    if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points))
-      found.push_back(a);
-  };
-  for (const char* name : {"elephant", "curtain", "robot_arm"}) {
-    add(source / "streams" / "inputs", name);
-  }
-  for (const char* name : {"cow", "samba"}) {
-    add(source.parent_path() / "shared" / "data" / "sequences", name);
-  }
+  for (const char* name : {"elephant", "curtain", "robot_arm"}) add_bundled(found, name);
+  for (const char* name : {"cow", "samba"}) add_handed_out(found, name);
+  return found;
+}
+
+std::vector<Animation> latency_animations() {
+  std::vector<Animation> found;
+  add_bundled(found, "curtain");
+  for (const char* name : {"cow", "samba", "knight"}) add_handed_out(found, name);
   return found;
 }
 

@@ -21,6 +21,9 @@ struct Animation {
 // The bundled ones and, if present beside the project, two from the literature.
 std::vector<Animation> animations();
 
+// Those with long GOFs to wait for: some of them, and if present one of a game character.
+std::vector<Animation> latency_animations();
+
 // Prints the message and ends the program.
 [[noreturn]] void stop(const std::string& message);
 

@@ -1,6 +1,6 @@
 // Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread;
 // of the High profile also with two threads and fewer adaptive factors, and how long single
-// frames take.
+// frames take, in several orders.
 //
 // It also reports multiply-adds per second: for decoding, and for the sums of 8.5.3 with each
 // loop that the machine can run, the plain loop first.
@@ -27,6 +27,7 @@
 #include "conformance/bench/bench_animation.h"
 #include "conformance/bench/frame_bench.h"
 #include "conformance/bench/high_bench.h"
+#include "conformance/bench/latency_bench.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/rlpc_encoder.h"
 
@@ -247,6 +248,9 @@ int main(int argc, char** argv) {
     register_all(animation);
     rlpc::bench::register_high(animation);
     rlpc::bench::register_frames(animation);
+  }
+  for (const Animation& animation : rlpc::bench::latency_animations()) {
+    rlpc::bench::register_latency(animation);
   }
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -9,16 +9,9 @@
 #include <vector>
 
 #include "common/c_api/c_handle.h"
+#include "decoder/c_api/decoder_handle.h"
 #include "decoder/describe_error.h"
 #include "decoder/rlpc_decoder.h"
-
-// NOLINTNEXTLINE(readability-identifier-naming): its name in C.
-struct rlpc_decoder {
-  std::optional<rlpc::Decoder> decoder;
-  std::vector<std::int32_t> positions;  // of a frame to be converted to floats
-  rlpc::HandleError error;
-  bool is_placed = false;
-};
 
 namespace rlpc {
 namespace {
@@ -52,24 +45,12 @@ class CallersSource final : public ByteSource {
   rlpc_source source_;
 };
 
-rlpc_status status_of(Errc code) {
-  switch (code) {
-    case Errc::kTruncated:
-    case Errc::kInvalid:
-      return RLPC_BAD_STREAM;
-    case Errc::kUnsupported:
-      return RLPC_UNSUPPORTED;
-    case Errc::kLimitExceeded:
-      return RLPC_LIMIT_EXCEEDED;
-    case Errc::kIo:
-      break;
-  }
-  return RLPC_IO_FAILED;
-}
-
-rlpc_status fail(rlpc_decoder& handle, const Error& error) {
-  return handle.error.set(status_of(error.code), describe_error(error));
-}
+#ifdef RLPC_OWNED_MEMORY
+constexpr bool kHasNoOwners = false;
+#else
+constexpr bool kHasNoOwners = true;
+#endif
+constexpr std::uint64_t kUsualCachedBytes = std::uint64_t{64} << 20;
 
 rlpc_decode_options default_options() {
   const DecoderOptions usual;
@@ -85,6 +66,7 @@ rlpc_decode_options default_options() {
   options.max_layers = SliceCut::kAll;
   options.max_temporal_layers = SliceCut::kAll;
   options.coarse_layers = SliceCut::kAll;
+  options.max_cached_bytes = kUsualCachedBytes;
   return options;
 }
 
@@ -96,6 +78,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   options.threads = given.threads;
   options.cut = {given.max_components, given.max_layers, given.max_temporal_layers};
   options.coarse_layers = given.coarse_layers;
+  options.max_cached_bytes = given.max_cached_bytes;
   return options;
 }
 
@@ -105,10 +88,20 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
                  const MakeSource& make_source) {
   rlpc_decode_options options = default_options();
   if (!take_struct(given, options)) return RLPC_BAD_ARGUMENT;
+  const rlpc_allocator& from = options.allocator;
+  if ((from.allocate == nullptr) != (from.release == nullptr)) return RLPC_BAD_ARGUMENT;
+  const bool allocates = from.allocate != nullptr && options.place == nullptr;
+  if (allocates) {
+    options.place_bytes = sizeof(rlpc_decoder);
+    options.place = from.allocate(from.user, sizeof(rlpc_decoder), alignof(std::max_align_t));
+    if (options.place == nullptr) return RLPC_OUT_OF_MEMORY;
+  }
   auto* handle = make_handle<rlpc_decoder>(options.place, options.place_bytes);
   if (handle == nullptr) {
     return options.place != nullptr ? RLPC_BAD_ARGUMENT : RLPC_OUT_OF_MEMORY;
   }
+  handle->is_allocated = allocates;
+  handle->owner = {from.user, from.allocate, from.release};
   *decoder = handle;
   return guarded(handle, [&] {
     if (options.threads < 1 || options.threads > kMaxThreads) {
@@ -119,6 +112,10 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
     if (options.coarse_layers < 1) {
       return handle->error.break_handle(
           RLPC_BAD_ARGUMENT, "coarse_layers: 0 is not in the range of 1 to RLPC_ALL");
+    }
+    if (kHasNoOwners && handle->owner.allocate != nullptr) {
+      return handle->error.break_handle(
+          RLPC_UNSUPPORTED, "allocator: librlpc has none; use librlpcdec, the decoder alone");
     }
     const DecoderOptions ours = decoder_options(options);
     Result<std::unique_ptr<ByteSource>> source = make_source(ours.limits);
@@ -134,18 +131,6 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
     handle->decoder = std::move(*opened);
     return RLPC_OK;
   });
-}
-
-// Whether a buffer has exactly the size needed.
-bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_values,
-                  std::size_t wanted) {
-  if (buffer != nullptr && num_values == wanted) return true;
-  if (buffer == nullptr && num_values == 0 && wanted == 0) return true;
-  handle.error.set(RLPC_BAD_ARGUMENT, buffer == nullptr
-                                          ? "the buffer is null"
-                                          : "the buffer has " + std::to_string(num_values) +
-                                                " values, not " + std::to_string(wanted));
-  return false;
 }
 
 rlpc_status next(rlpc_decoder& handle, std::span<std::int32_t> positions) {
@@ -200,7 +185,18 @@ rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
       });
 }
 
-void rlpc_decoder_close(rlpc_decoder* decoder) { rlpc::close_handle(decoder); }
+void rlpc_decoder_close(rlpc_decoder* decoder) {
+  if (decoder == nullptr) return;
+  const rlpc::Owner owner = decoder->owner;
+  const bool is_allocated = decoder->is_allocated;
+  {
+    const rlpc::OwnerScope scope(owner.allocate == nullptr ? nullptr : &owner);
+    rlpc::close_handle(decoder);
+  }
+  if (is_allocated) {
+    owner.release(owner.user, decoder, sizeof(rlpc_decoder), alignof(std::max_align_t));
+  }
+}
 
 const char* rlpc_decoder_error_text(const rlpc_decoder* decoder) {
   return decoder == nullptr ? "there is no decoder" : decoder->error.text();
@@ -226,6 +222,13 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
     ours.position_bits = static_cast<std::uint32_t>(h.position_bits);
     ours.has_vertex_order = decoder->decoder->has_vertex_order() ? 1 : 0;
     ours.num_layers = decoder->decoder->num_layers();
+    ours.duration_seconds = static_cast<double>(ours.num_frames) * h.frame_rate.denominator /
+                            h.frame_rate.numerator;
+    const std::int32_t farthest = std::int32_t{1} << (h.position_bits - 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+      ours.range_min[c] = rlpc::float_position(h.grid, c, -farthest);
+      ours.range_max[c] = rlpc::float_position(h.grid, c, farthest - 1);
+    }
     rlpc::give_struct(ours, info, struct_size);
     return RLPC_OK;
   });
@@ -302,8 +305,10 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
     const std::size_t wanted = 3 * std::size_t{decoder->decoder->num_vertices()};
     if (!rlpc::check_buffer(*decoder, xyz, num_values, wanted)) return RLPC_BAD_ARGUMENT;
     decoder->positions.resize(wanted);
+    decoder->has_frame = false;
     const rlpc_status status = rlpc::next(*decoder, decoder->positions);
     if (status != RLPC_OK) return status;
+    decoder->has_frame = true;
     for (std::size_t i = 0; i < wanted; ++i) {
       xyz[i] = rlpc::float_position(header.grid, i % 3, decoder->positions[i]);
     }
@@ -313,12 +318,7 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
 
 rlpc_status rlpc_decoder_seek(rlpc_decoder* decoder, uint32_t frame) {
   return rlpc::guarded(decoder, [&] {
-    const std::uint32_t num_frames = decoder->decoder->num_frames().value_or(0);
-    if (frame >= num_frames) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT,
-                                "there is no frame " + std::to_string(frame) + " of " +
-                                    std::to_string(num_frames) + " (from 0)");
-    }
+    if (rlpc::check_frame(*decoder, frame) != RLPC_OK) return RLPC_BAD_ARGUMENT;
     if (const auto ok = decoder->decoder->seek(frame); !ok) {
       return rlpc::fail(*decoder, ok.error());
     }

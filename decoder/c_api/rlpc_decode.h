@@ -14,18 +14,20 @@
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
 //   rlpc_decoder_close(decoder);
 //
-// Frames are decoded one by one. Memory is bounded by one group of frames (GOF), the skinned
-// models that it could use and one that is being replaced, plus four frames, whatever the
-// length of the stream, and by max_memory_bytes, whatever the stream claims. No function throws
-// or aborts. A handle may be used by one thread at a time; different handles are independent.
+// Frames are decoded one by one, in any order. Memory is bounded by one group of frames (GOF),
+// the skinned models that it could use and one that is being replaced, plus four frames and
+// max_cached_bytes, whatever the length of the stream, and by max_memory_bytes, whatever the
+// stream claims. No function throws or aborts. A handle may be used by one thread at a time;
+// different handles are independent.
 //
 // Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
-// it can live in the caller's memory as well (place). Internally the decoder allocates with C++
-// operator new, without a hook for other allocators: when it opens a stream, for each GOF and
-// skinned model, and for the first frame. Within a GOF, every fourth frame allocates one
-// temporary buffer, the others nothing; more with several threads, or after a seek. If memory
-// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
-// everything.
+// it can live in the caller's memory as well (place). The decoder allocates when it opens a
+// stream, for each GOF and skinned model, and for the first frame. Within a GOF, every fourth
+// frame allocates temporary buffers, the others nothing; more with several threads, or after a
+// seek. It comes from the callbacks of rlpc_decode_options.allocator, or from C++ operator new;
+// whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
+// starting threads, and for the text of an error. If memory runs out, calls return
+// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
 #pragma once
 
 #include <stddef.h>
@@ -33,6 +35,7 @@
 
 #include "common/c_api/rlpc_clip.h"
 #include "common/c_api/rlpc_status.h"
+#include "decoder/c_api/rlpc_frame_output.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -42,6 +45,15 @@ extern "C" {
 typedef struct rlpc_decoder rlpc_decoder;
 
 #define RLPC_ALL UINT32_MAX
+
+// Where the memory of a decoder comes from. alignment: a power of two. allocate: null if there
+// is none. release: with the size and alignment that the block was allocated with. With several
+// threads, they are called by all of them at the same time.
+typedef struct rlpc_allocator {
+  void* user;
+  void* (*allocate)(void* user, size_t size, size_t alignment);
+  void (*release)(void* user, void* place, size_t size, size_t alignment);
+} rlpc_allocator;
 
 typedef struct rlpc_decode_options {
   size_t struct_size;     // rlpc_decode_options_init sets it
@@ -67,6 +79,13 @@ typedef struct rlpc_decode_options {
   // rlpc_stream_info, triangles and frames are its own. RLPC_ALL: the whole mesh. Layer groups
   // that it does not need are dropped.
   uint32_t coarse_layers;
+  // Memory for GOFs that have been left, and, within half of it, for decoded frames of GOFs of
+  // frames (High profile): going back to them takes no decoding. Estimated; part of
+  // max_memory_bytes, and dropped where that is short. Default 64 MiB; 0: none.
+  uint64_t max_cached_bytes;
+  // Of all memory of this decoder, its handle included, unless that has a place. Both functions
+  // null, the default: C++ operator new. In librlpcdec alone; librlpc: RLPC_UNSUPPORTED.
+  rlpc_allocator allocator;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
@@ -88,7 +107,26 @@ typedef struct rlpc_stream_info {
   // Vertex layers of the whole mesh, of which coarse_layers can select fewer; 0 in the Baseline
   // profile unless coarse_layers is set.
   uint32_t num_layers;
+  double duration_seconds;  // num_frames times the time of one; 0 if num_frames is
+  // The coordinates that the grid has. Those of every frame are within; how much smaller the
+  // animation is, only its frames tell.
+  float range_min[3];
+  float range_max[3];
 } rlpc_stream_info;
+
+// The frames of a GOF, which are decoded together.
+typedef struct rlpc_gof {
+  uint32_t first_frame;
+  uint32_t num_frames;
+} rlpc_gof;
+
+// Estimated memory, as compared with max_memory_bytes; upper bounds of what is allocated.
+typedef struct rlpc_memory {
+  size_t struct_size;     // as passed to rlpc_decoder_memory
+  uint64_t stream_bytes;  // always: connectivity, what follows from it, four frames per thread
+  uint64_t gof_bytes;     // of the GOF in use, without skinned models that it shares
+  uint64_t cached_bytes;  // of those kept, with their skinned models
+} rlpc_memory;
 
 // Where a stream is read from. read: fills `out` with num_bytes bytes from `offset`, always
 // within `size`; returns 0 on success.
@@ -132,6 +170,11 @@ RLPC_API rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* 
 // Copies the vertex indices, three per triangle. num_values: 3 * num_triangles.
 RLPC_API rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* indices,
                                             size_t num_values);
+// The same as 16-bit or 32-bit integers: index_bytes is 2 or 4, num_bytes 3 * num_triangles *
+// index_bytes. RLPC_BAD_ARGUMENT if 16 bits cannot hold the indices of more than 65536
+// vertices.
+RLPC_API rlpc_status rlpc_decoder_indices(rlpc_decoder* decoder, void* indices,
+                                          size_t num_bytes, uint32_t index_bytes);
 // Of a coarse mesh: copies the index of each vertex in the whole mesh, ascending. num_values:
 // num_vertices. RLPC_BAD_ARGUMENT without coarse_layers.
 RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_t* indices,
@@ -144,6 +187,39 @@ RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
 // below the number, otherwise RLPC_BAD_ARGUMENT.
 RLPC_API uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder);
 RLPC_API rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip);
+
+// GOFs: the one of a frame below num_frames; all, into up to max_gofs places, and their number
+// (gofs may be null if max_gofs is 0). They read the headers of units, from the GOF index on if
+// the stream has one, and decode nothing.
+RLPC_API rlpc_status rlpc_decoder_gof_of(rlpc_decoder* decoder, uint32_t frame, rlpc_gof* gof);
+RLPC_API rlpc_status rlpc_decoder_gofs(rlpc_decoder* decoder, rlpc_gof* gofs, size_t max_gofs,
+                                       uint32_t* num_gofs);
+
+// Decodes a frame below num_frames, whatever came before, in the form that `output` describes
+// (rlpc_frame_output.h); the frame after it is then the next.
+//
+// Time: per vertex, what the profile takes, in bands of four frames per thread where calls
+// follow each other in either direction. The first frame of a GOF that is neither kept
+// (max_cached_bytes) nor prefetched takes parsing and preparing that GOF as well. In a GOF of
+// frames (High profile), a frame that is not kept takes decoding all that it is predicted from:
+// going on, one or a few frames; elsewhere, up to the whole GOF. Memory: one frame, a further
+// one with normals, once; that of GOFs when one is entered.
+RLPC_API rlpc_status rlpc_decoder_frame(rlpc_decoder* decoder, uint32_t frame,
+                                        const rlpc_frame_output* output);
+// The same for the next frame. RLPC_END after the last one, once the rest of the stream has
+// been checked.
+RLPC_API rlpc_status rlpc_decoder_next(rlpc_decoder* decoder, const rlpc_frame_output* output);
+// Prepares the GOF of a frame. With several threads, it reads the units of the GOF, and
+// returns; playing forward or backward prefetches by itself. With one thread, it takes the time
+// that the first frame would, and does nothing if the GOF may not be kept (max_cached_bytes).
+// An error of the GOF is reported when its frames are asked for.
+RLPC_API rlpc_status rlpc_decoder_prefetch(rlpc_decoder* decoder, uint32_t frame);
+// The box of the last frame that _frame, _next or _next_floats decoded, in the units of the
+// encoder's input. Reads all vertices; allocates nothing. RLPC_BAD_ARGUMENT if there is none.
+RLPC_API rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float most[3]);
+// The memory that is needed now. struct_size: sizeof *memory.
+RLPC_API rlpc_status rlpc_decoder_memory(rlpc_decoder* decoder, rlpc_memory* memory,
+                                         size_t struct_size);
 
 // Decodes the next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END
 // after the last frame, once the rest of the stream has been checked. Stream errors are sticky

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_cluster_gof.h"
 #include "decoder/parse/parse_frame_gof.h"
@@ -12,7 +13,7 @@
 
 namespace rlpc {
 
-class GofParser {
+class GofParser : public Owned {
  public:
   virtual ~GofParser() = default;
   // The GOF unit after its header.

@@ -118,8 +118,8 @@ class SkinnedGofParser {
     SliceModels models;
     Trajectory previous;  // header of the previous trajectory
     std::vector<std::uint32_t> trajectory_mean;
-    std::unique_ptr<VertexModels> vertex_models;
-    std::unique_ptr<VertexModels> models_of_group;
+    std::shared_ptr<VertexModels> vertex_models;
+    std::shared_ptr<VertexModels> models_of_group;
     std::optional<VertexContexts> contexts;  // of the current group
     std::uint32_t last_group = 0;
     std::uint32_t last_temporal_layer = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 #include "decoder/parse/bone_parser.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_component_header.h"
@@ -137,9 +138,9 @@ void SkinnedGofParser::SliceParser::temporal_slice() {
 void SkinnedGofParser::SliceParser::start() {
   if (layers_ > 0) return;
   if (group_ > state_.first_own_group) {
-    state_.vertex_models = std::make_unique<VertexModels>(*state_.models_of_group);
+    state_.vertex_models = make_shared_owned<VertexModels>(*state_.models_of_group);
   } else {
-    state_.vertex_models = std::make_unique<VertexModels>();
+    state_.vertex_models = make_shared_owned<VertexModels>();
   }
   if (group_ > 0) {
     gof_.group_end.push_back(kRestFactors + gof_.trajectories.size());
@@ -228,7 +229,7 @@ void SkinnedGofParser::SliceParser::parse() {
   if (failed()) return;
   // 9.8.1 EndSlice( )
   if (layers_ == 0) {
-    state_.models_of_group = std::make_unique<VertexModels>(*state_.vertex_models);
+    state_.models_of_group = make_shared_owned<VertexModels>(*state_.vertex_models);
   }
   gof_.slice_layers[group_] = layers_ + 1;
   state_.last_group = group_;

@@ -3,11 +3,14 @@
 
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 std::future<bool> run_async(std::function<void()> work) {
   try {
-    return std::async(std::launch::async, [work = std::move(work)] {
+    return std::async(std::launch::async, [work = std::move(work), owner = current_owner()] {
+      const OwnerScope scope(owner);
       try {
         work();
         return true;

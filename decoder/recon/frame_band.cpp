@@ -13,9 +13,16 @@ std::span<const std::int32_t> FrameBand::frame(const GofRecon& recon, std::uint3
       .subspan((f - first_) * frame_size, frame_size);
 }
 
-void FrameBand::fill(const GofRecon& recon, std::uint32_t first, std::size_t frame_size) {
+void FrameBand::turn(Direction direction) {
+  is_back_ = direction == Direction::kBack;
+  if (direction == Direction::kElsewhere) next_count_ = 1;
+}
+
+void FrameBand::fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_size) {
+  const std::uint32_t there = is_back_ ? f + 1 : recon.num_frames() - f;
+  count_ = recon.is_ordered() ? 1 : std::min(next_count_, there);
+  const std::uint32_t first = is_back_ ? f + 1 - count_ : f;
   first_ = first;
-  count_ = recon.is_ordered() ? 1 : std::min(next_count_, recon.num_frames() - first);
   next_count_ = std::min(2 * next_count_, most_);
   positions_.resize(count_ * frame_size);
   // Without a loop, which would allocate memory.

@@ -13,7 +13,11 @@ namespace rlpc {
 // Frames per thread and pass: factors are read from memory once for all of them.
 inline constexpr std::uint32_t kBandFrames = 4;
 
-// Reconstructs one band per thread; after a seek, starts with a single frame and doubles.
+// Where frames are taken next, seen from the last one.
+enum class Direction : std::uint8_t { kForward, kBack, kElsewhere };
+
+// Reconstructs one band per thread, of frames that come next in either direction; elsewhere,
+// starts with a single frame and doubles.
 class FrameBand {
  public:
   explicit FrameBand(std::uint32_t threads)
@@ -21,17 +25,18 @@ class FrameBand {
 
   // Drops the frames held, because another GOF follows.
   void clear() { count_ = 0; }
-  // To be called after a seek: the next frame may be the only one wanted.
-  void begin_small() { next_count_ = 1; }
+  // Of the next call of frame().
+  void turn(Direction direction);
   // Frame f of the GOF in decoded order, frame_size values; valid until the next call.
   std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,
                                       std::size_t frame_size);
 
  private:
-  void fill(const GofRecon& recon, std::uint32_t first, std::size_t frame_size);
+  void fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_size);
 
   std::uint32_t most_;
   std::uint32_t next_count_;
+  bool is_back_ = false;
   std::uint32_t first_ = 0;
   std::uint32_t count_ = 0;
   std::vector<std::int32_t> positions_;  // [count_][frame_size]

@@ -14,7 +14,7 @@
 
 namespace rlpc {
 
-class GofRecon {
+class GofRecon : public Owned {
  public:
   GofRecon() = default;
   GofRecon(const GofRecon&) = delete;
@@ -36,6 +36,12 @@ class GofRecon {
   virtual std::optional<Skeleton> skeleton() const { return std::nullopt; }
   virtual std::vector<BonePlace> places(std::uint32_t /*f*/) const { return {}; }
   virtual std::size_t values_of_frame() const { return 0; }
+  // Of ordered ones: how many frames before the last one asked for are kept, so that the way
+  // back takes no decoding. To be called before the first frame.
+  virtual void keep_frames(std::uint32_t /*count*/) {}
+  // Decodes what frame f is predicted from, so that asking for it takes little time. Any thread
+  // may call it.
+  virtual void make_ready(std::uint32_t /*f*/) const {}
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "common/frame_gof/recon/frame_recon.h"
+#include "common/owned.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/parse/parse_frame_gof.h"
 #include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
 
-class LiveGof {
+class LiveGof : public Owned {
  public:
   // Both must outlive it. Frame units outside the cut are dropped.
   LiveGof(StreamReader& stream, const SliceCut& cut);

@@ -15,8 +15,9 @@
 
 namespace rlpc {
 
-// Keeps the last frame, and those that have been decoded before their turn: the same and the
-// next one are there at once, an earlier one begins with the GOF again.
+// Keeps the last frame, as many before it as keep_frames() says, and those that have been
+// decoded before their turn. An earlier one begins with the GOF again, unless frames are
+// independent.
 class OrderedRecon final : public GofRecon {
  public:
   // The mesh must outlive it.
@@ -30,17 +31,22 @@ class OrderedRecon final : public GofRecon {
   bool is_ordered() const override { return true; }
   void frames(std::uint32_t first, std::uint32_t count,
               std::span<std::int32_t> positions) const override;
+  void keep_frames(std::uint32_t count) override { num_kept_ = count; }
+  void make_ready(std::uint32_t f) const override;
 
  private:
+  bool can_go_back_to(std::uint32_t place) const;
   void go_to(std::uint32_t frame) const;
 
   const CodedMesh& mesh_;
   FrameGof gof_;
   FrameOrder order_;
   int position_bits_;
+  std::uint32_t num_kept_ = 0;
   mutable std::mutex decoding_;
   mutable std::optional<FrameRecon> recon_;
-  // [frame]: positions of the last one asked for, and of later ones that have been decoded.
+  // [frame]: positions of the last one asked for, of those kept before it, and of later ones
+  // that have been decoded.
   mutable std::map<std::uint32_t, std::vector<std::int32_t>> decoded_;
 };
 

@@ -1,28 +1,71 @@
 #include "decoder/recon/prefetch.h"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "decoder/recon/async.h"
 
 namespace rlpc {
 
-std::optional<Prefetch::Found> Prefetch::take(std::uint64_t offset, std::uint32_t first_frame) {
+namespace {
+
+bool is_done(const std::future<bool>& done) {
+  return done.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace
+
+// The destructor of a future waits.
+void Prefetch::drop(List& from, List::iterator which) {
+  dropped_.splice(dropped_.end(), from, which);
+  dropped_.remove_if([](const Ahead& ahead) { return is_done(ahead.done); });
+  while (dropped_.size() > most_asked_) dropped_.pop_front();
+}
+
+void Prefetch::clear() {
+  while (!gofs_.empty()) drop(gofs_, gofs_.begin());
+}
+
+std::optional<Prefetch::Found> Prefetch::take(List& from, List::iterator which) {
   std::optional<Found> found;
-  if (!gofs_.empty()) {
-    Ahead& ahead = gofs_.front();
-    if (ahead.coded.units.front().header.offset == offset &&
-        ahead.coded.gof.first_frame == first_frame && ahead.done.get() && ahead.gof) {
-      found = Found{std::move(*ahead.gof), ahead.coded.end()};
-      gofs_.pop_front();
+  if (which->done.get() && which->gof) {
+    found = Found{std::move(*which->gof), which->coded.end()};
+    for (const auto& model : which->new_models) {
+      if (const ParsedModel* const parsed = parse(*model)) {
+        stream_.models().add(model->offset, model->end, *parsed);
+      }
     }
   }
-  if (!found) gofs_.clear();
+  from.erase(which);
   return found;
 }
 
+std::optional<Prefetch::Found> Prefetch::take(std::uint64_t offset, std::uint32_t first_frame) {
+  const auto is_it = [&](const Ahead& ahead) { return ahead.is_at(offset, first_frame); };
+  std::optional<Found> found;
+  if (!gofs_.empty() && is_it(gofs_.front())) found = take(gofs_, gofs_.begin());
+  const auto asked = std::find_if(asked_.begin(), asked_.end(), is_it);
+  if (asked != asked_.end()) {
+    if (!found) found = take(asked_, asked);
+    return found;
+  }
+  if (!found) clear();
+  return found;
+}
+
+void Prefetch::start(Ahead& ahead) {
+  ahead.done = run_async([this, &ahead] {
+    const ThreadPool::Use use(threads_);
+    ahead.gof = parse(ahead);
+    if (ahead.gof) ahead.gof->recon->make_ready(ahead.first_wanted);
+  });
+}
+
 void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count) {
-  while (!gofs_.empty() && gofs_.front().coded.gof.first_frame != first_frame)
-    gofs_.pop_front();
+  while (!gofs_.empty() && gofs_.front().coded.gof.first_frame != first_frame) {
+    drop(gofs_, gofs_.begin());
+  }
   if (gofs_.empty()) {
     if (!start_slots(offset)) return;
   } else {
@@ -36,12 +79,55 @@ void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t
     first_frame = next->coded.end_frame();
     slots_ = next->models;
     gofs_.push_back(std::move(*next));
-    Ahead& ahead = gofs_.back();
-    ahead.done = run_async([this, &ahead] {
-      const ThreadPool::Use use(threads_);
-      ahead.gof = parse(ahead);
-    });
+    start(gofs_.back());
   }
+}
+
+bool Prefetch::has_asked(std::uint32_t frame) const {
+  const auto has_it = [&](const Ahead& ahead) {
+    return frame >= ahead.coded.gof.first_frame && frame < ahead.coded.end_frame();
+  };
+  return std::any_of(asked_.begin(), asked_.end(), has_it) ||
+         std::any_of(gofs_.begin(), gofs_.end(), has_it);
+}
+
+void Prefetch::ask(const GofPlace& place, std::uint32_t frame) {
+  if (has_asked(frame)) return;
+  while (asked_.size() >= most_asked_) drop(asked_, asked_.begin());
+  auto ahead = collect_at(place);
+  if (!ahead) return;
+  ahead->first_wanted = frame - place.first_frame;
+  asked_.push_back(std::move(*ahead));
+  start(asked_.back());
+}
+
+// The units of a GOF, and of the skinned models that have to be parsed before it.
+std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
+  std::uint64_t bytes_left = max_memory_bytes_;
+  Ahead ahead;
+  for (const StreamModels::Alive& alive : stream_.models().find_alive(place.offset)) {
+    auto& slot = ahead.models[alive.model_idx];
+    if (alive.model) {
+      slot = std::make_shared<ModelAhead>();
+      slot->is_tried = true;
+      slot->parsed = ParsedModel{alive.model_idx, alive.model, {}, 0};
+      continue;
+    }
+    const auto unit = stream_.units().header_at(alive.offset);
+    if (!unit || unit->type() != UnitType::kModel) return std::nullopt;
+    auto model = collect_model(*unit, bytes_left);
+    if (!model) return std::nullopt;
+    for (const CodedUnit& part : model->coded) bytes_left -= part.payload.size();
+    model->before = ahead.models;
+    slot = model;
+    ahead.new_models.push_back(std::move(model));
+  }
+  const auto unit = stream_.units().header_at(place.offset);
+  if (!unit || unit->type() != UnitType::kGof) return std::nullopt;
+  auto coded = stream_.access_units().collect(*unit, place.first_frame, bytes_left);
+  if (!coded) return std::nullopt;
+  ahead.coded = std::move(*coded);
+  return ahead;
 }
 
 void Prefetch::hand_over_models() {
@@ -134,7 +220,7 @@ std::optional<ModelSlots> Prefetch::parse(const Slots& slots) const {
   for (std::size_t m = 0; m < slots.size(); ++m) {
     if (!slots[m]) continue;
     const ParsedModel* parsed = parse(*slots[m]);
-    if (parsed == nullptr) return std::nullopt;
+    if (parsed == nullptr || parsed->model_idx != m) return std::nullopt;
     models.of_idx[m] = parsed->model;
   }
   return models;
@@ -145,7 +231,7 @@ std::optional<PreparedGof> Prefetch::parse(const Ahead& ahead) const {
   if (!models) return std::nullopt;
   auto access_unit = stream_.access_units().parse(ahead.coded, *models, max_memory_bytes_);
   if (!access_unit) return std::nullopt;
-  return prepare(std::move(*access_unit), stream_.context(), models_);
+  return prepare(std::move(*access_unit), stream_.context(), models_, max_frame_bytes_);
 }
 
 }  // namespace rlpc

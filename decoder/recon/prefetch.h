@@ -1,38 +1,23 @@
-// GOFs parsed and prepared on other threads before they are needed. This affects nothing but
-// speed: a GOF with an error yields nothing, and the decoder parses it again to find the error.
+// GOFs parsed and prepared on other threads before they are needed: those that follow in the
+// stream, and those asked for. This affects nothing but speed: a GOF with an error yields
+// nothing, and the decoder parses it again to find the error.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <future>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "common/parallel/for_each.h"
-#include "decoder/recon/gof_recon.h"
 #include "decoder/recon/model_recons.h"
+#include "decoder/recon/prepared_gof.h"
 #include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
-
-// An access unit and its reconstruction.
-struct PreparedGof {
-  GofHeader header;
-  std::optional<GofHash> hash;
-  FrameCrcs frame_crcs;
-  bool is_cut = false;
-  std::unique_ptr<GofRecon> recon;
-};
-inline PreparedGof prepare(AccessUnit access_unit, const StreamContext& context,
-                           ModelRecons& models) {
-  auto recon = make_recon(access_unit, context, models);
-  return {access_unit.header(), std::move(access_unit.hash), access_unit.frame_crcs(),
-          access_unit.is_cut, std::move(recon)};
-}
 
 class Prefetch {
  public:
@@ -42,23 +27,32 @@ class Prefetch {
   };
 
   // Stream, models and threads must outlive it. threads: for loops within a GOF.
-  // max_memory_bytes: of each GOF.
+  // max_memory_bytes: of each GOF; max_frame_bytes: as of prepare(). At most `most_asked` GOFs
+  // that were asked for are kept.
   Prefetch(StreamReader& stream, ModelRecons& models, ThreadPool& threads,
-           std::uint64_t max_memory_bytes)
+           std::uint64_t max_memory_bytes, std::uint64_t max_frame_bytes,
+           std::size_t most_asked)
       : stream_(stream),
         models_(models),
         threads_(threads),
-        max_memory_bytes_(max_memory_bytes) {}
+        max_memory_bytes_(max_memory_bytes),
+        max_frame_bytes_(max_frame_bytes),
+        most_asked_(most_asked) {}
 
   // Keeps up to `count` GOFs ready or in progress, from a byte offset on; the first of them
   // begins with first_frame. Drops earlier ones.
   void fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t count);
+  // Prepares a GOF anywhere in the stream, for a frame of it, unless that has been done or is
+  // being done. Drops the one asked for before all others if there are too many.
+  void ask(const GofPlace& place, std::uint32_t frame);
+  bool has_asked(std::uint32_t frame) const;
   // Hands the skinned models between the position of the stream and the next GOF over to it.
   void hand_over_models();
-  // The GOF whose unit is at the offset, if it was prepared without an error; otherwise drops
-  // all.
+  // The GOF whose unit is at the offset, if it was prepared without an error; waits for it.
+  // Otherwise drops those that follow in the stream.
   std::optional<Found> take(std::uint64_t offset, std::uint32_t first_frame);
-  void clear() { gofs_.clear(); }
+  // Drops all that follow in the stream.
+  void clear();
 
  private:
   // A skinned model that is parsed by the first thread that needs it.
@@ -77,11 +71,23 @@ class Prefetch {
     CodedAccessUnit coded;
     // Since the GOF before; at most kMaxModels, or the GOF is not prepared.
     std::vector<std::shared_ptr<ModelAhead>> new_models;
-    Slots models;  // those alive
+    Slots models;                    // those alive
+    std::uint32_t first_wanted = 0;  // frame of the GOF
     std::optional<PreparedGof> gof;
     std::future<bool> done;
-  };
 
+    bool is_at(std::uint64_t offset, std::uint32_t first_frame) const {
+      return coded.units.front().header.offset == offset &&
+             coded.gof.first_frame == first_frame;
+    }
+  };
+  using List = std::list<Ahead>;  // threads refer to its elements
+
+  void start(Ahead& ahead);
+  // Drops one without waiting for its thread.
+  void drop(List& from, List::iterator which);
+  std::optional<Found> take(List& from, List::iterator which);
+  std::optional<Ahead> collect_at(const GofPlace& place);
   bool start_slots(std::uint64_t offset);
   std::optional<Ahead> collect(std::uint64_t offset, std::uint32_t first_frame);
   std::shared_ptr<ModelAhead> collect_model(const UnitHeader& unit, std::uint64_t max_bytes);
@@ -94,8 +100,12 @@ class Prefetch {
   ModelRecons& models_;
   ThreadPool& threads_;
   std::uint64_t max_memory_bytes_;
-  Slots slots_;  // those alive after the last of the GOFs
-  std::deque<Ahead> gofs_;
+  std::uint64_t max_frame_bytes_;
+  std::size_t most_asked_;
+  Slots slots_;  // those alive after the last of the GOFs that follow
+  List gofs_;    // that follow
+  List asked_;
+  List dropped_;  // their threads may still run
 };
 
 }  // namespace rlpc

@@ -20,7 +20,7 @@ Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser
 
 Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                           const ModelSlots& models) {
-  AccessUnitParser parser(context_, memory_, cut_);
+  AccessUnitParser parser(context_, memory_limit(), cut_);
   const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
     const auto dropped = is_dropped(*unit, parser);
@@ -80,8 +80,8 @@ Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
 
 // Where read() has too little memory, so has parse().
 MemoryLimit AccessUnitReader::limit_ahead(std::uint64_t max_memory_bytes) const {
-  const std::uint64_t left =
-      memory_.max_bytes - std::min(memory_.max_bytes, memory_.bytes_in_use);
+  const MemoryLimit limit = memory_limit();
+  const std::uint64_t left = limit.max_bytes - std::min(limit.max_bytes, limit.bytes_in_use);
   return {std::min(max_memory_bytes, left), 0};
 }
 
@@ -94,7 +94,7 @@ Result<bool> AccessUnitReader::check_fits(const UnitHeader& unit, std::uint64_t 
 
 Result<std::vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
                                                             std::uint64_t taken_bytes) {
-  if (auto ok = check_fits(unit, taken_bytes, memory_); !ok) return ok.error();
+  if (auto ok = check_fits(unit, taken_bytes, memory_limit()); !ok) return ok.error();
   return units_.payload(unit);
 }
 
@@ -117,7 +117,7 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
 
 Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
                                                  const ModelSlots& models) {
-  ModelParser parser(context_, memory_, cut_);
+  ModelParser parser(context_, memory_limit(), cut_);
   const std::uint64_t of_models = memory_of_models(models);
   for (std::optional<UnitHeader> unit = model_unit; unit;) {
     const auto dropped = is_dropped(*unit, parser);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -48,11 +49,15 @@ class AccessUnitReader {
     cut_.needed_layers = std::min(cut_.needed_layers, options.coarse_layers);
   }
 
-  const MemoryLimit& memory_limit() const { return memory_; }
+  MemoryLimit memory_limit() const {
+    return {memory_.max_bytes, memory_.bytes_in_use + cached_bytes_};
+  }
   const SliceCut& cut() const { return cut_; }
   void set_cut(const SliceCut& cut) { cut_ = cut; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
+  // Beyond that, for GOFs that are kept. Others may be parsing at the same time.
+  void set_cached_bytes(std::uint64_t bytes) { cached_bytes_ = bytes; }
 
   // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
   // the GOF must have; models: those alive.
@@ -100,6 +105,7 @@ class AccessUnitReader {
   UnitReader& units_;
   const StreamContext& context_;
   MemoryLimit memory_;
+  std::atomic<std::uint64_t> cached_bytes_ = 0;
   SliceCut cut_;
   bool read_dropped_;
   bool wants_hash_;

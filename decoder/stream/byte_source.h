@@ -6,9 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
-class ByteSource {
+class ByteSource : public Owned {
  public:
   ByteSource() = default;
   ByteSource(const ByteSource&) = delete;

@@ -27,12 +27,12 @@ void StreamModels::put(std::uint64_t offset, Entry entry) {
 
 void StreamModels::add(const std::vector<ModelLocation>& locations) {
   for (const ModelLocation& l : locations) {
-    if (!entries_.contains(l.offset)) put(l.offset, {l.model_idx, 0, nullptr});
+    if (!entries_.contains(l.offset)) put(l.offset, {l.model_idx, 0, nullptr, {}});
   }
 }
 
 void StreamModels::add(std::uint64_t offset, std::uint64_t end, const ParsedModel& parsed) {
-  put(offset, {parsed.model_idx, end, parsed.model});
+  put(offset, {parsed.model_idx, end, parsed.model, {}});
 }
 
 std::vector<std::uint64_t> StreamModels::alive_at(std::uint64_t offset) const {
@@ -60,18 +60,26 @@ Result<bool> StreamModels::parse(std::uint64_t offset, Entry& entry, const Model
   return true;
 }
 
+bool StreamModels::take_back(std::uint64_t offset, Entry& entry) {
+  if (!entry.model && (entry.model = entry.dropped.lock())) kept_.insert(offset);
+  return entry.model != nullptr;
+}
+
 Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
   const std::vector<std::uint64_t> alive = alive_at(gof_offset);
   const auto num_dropped = std::erase_if(kept_, [&](std::uint64_t offset) {
     const bool drop = !std::binary_search(alive.begin(), alive.end(), offset);
-    if (drop) entries_[offset].model.reset();
+    if (drop) {
+      Entry& entry = entries_[offset];
+      entry.dropped = std::exchange(entry.model, nullptr);
+    }
     return drop;
   });
   if (num_dropped > 0 && dropped_) dropped_();
   ModelSlots models;
   for (const std::uint64_t offset : alive) {
     Entry& entry = entries_[offset];
-    if (!entry.model) {
+    if (!take_back(offset, entry)) {
       if (const auto ok = parse(offset, entry, models); !ok) return ok.error();
     }
     models.of_idx[entry.model_idx] = entry.model;
@@ -79,9 +87,19 @@ Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
   return models;
 }
 
+std::vector<StreamModels::Alive> StreamModels::find_alive(std::uint64_t gof_offset) const {
+  std::vector<Alive> alive;
+  for (const std::uint64_t offset : alive_at(gof_offset)) {
+    const Entry& entry = entries_.at(offset);
+    alive.push_back(
+        {offset, entry.model_idx, entry.model ? entry.model : entry.dropped.lock()});
+  }
+  return alive;
+}
+
 Result<std::uint64_t> StreamModels::read(const UnitHeader& unit) {
   const auto known = entries_.find(unit.offset);
-  if (known == entries_.end() || !known->second.model) {
+  if (known == entries_.end() || !take_back(unit.offset, known->second)) {
     const auto models = at(unit.offset);
     if (!models) return models.error();
     const auto parsed = access_units_.read_model(unit, *models);
@@ -98,7 +116,7 @@ Result<std::uint64_t> StreamModels::skip(const UnitHeader& unit) {
   const auto bytes = units_.payload_start(unit, 1);
   if (!bytes) return bytes.error();
   BitReader r = units_.bits(unit, *bytes);
-  Entry entry{parse_model_idx(r), unit.end(), nullptr};
+  Entry entry{parse_model_idx(r), unit.end(), nullptr, {}};
   if (r.error()) return *r.error();
   while (entry.end < units_.size()) {
     const auto next = units_.header_at(entry.end);

@@ -42,6 +42,13 @@ class StreamModels {
   // Those alive at a GOF unit, by its offset; parses those that are not kept, and drops all
   // others.
   Result<ModelSlots> at(std::uint64_t gof_offset);
+  // The same models, in the order of the stream, without parsing or dropping any.
+  struct Alive {
+    std::uint64_t offset = 0;
+    std::uint32_t model_idx = 0;
+    std::shared_ptr<const SkinnedModel> model;  // null: has to be parsed
+  };
+  std::vector<Alive> find_alive(std::uint64_t gof_offset) const;
 
   // Calls `see` with each skinned model that read() parses.
   using See = std::function<void(const ParsedModel& model)>;
@@ -54,10 +61,13 @@ class StreamModels {
     std::uint32_t model_idx = 0;
     std::uint64_t end = 0;                      // 0: not known
     std::shared_ptr<const SkinnedModel> model;  // null: not parsed, or dropped
+    std::weak_ptr<const SkinnedModel> dropped;  // while a GOF that is kept uses it
   };
   // In the order of the stream.
   std::vector<std::uint64_t> alive_at(std::uint64_t offset) const;
   void put(std::uint64_t offset, Entry entry);
+  // Whether the model is there, possibly because somebody else has kept it.
+  bool take_back(std::uint64_t offset, Entry& entry);
   Result<bool> parse(std::uint64_t offset, Entry& entry, const ModelSlots& models);
 
   UnitReader& units_;

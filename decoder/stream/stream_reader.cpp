@@ -85,6 +85,7 @@ Result<bool> StreamReader::check_limits() {
   const std::uint64_t bytes =
       memory_of_stream(header, kFramesHeld) + (is_coarse_ ? memory_of_coarse_mesh(header) : 0);
   if (bytes > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", bytes);
+  bytes_in_use_ = bytes;
   units_.set_bytes_in_use(bytes);
   access_units_.set_bytes_in_use(bytes);
   return true;
@@ -297,6 +298,30 @@ void StreamReader::remember_gof(const UnitHeader& unit) {
 }
 
 Result<bool> StreamReader::seek(std::uint32_t frame) {
+  const auto gof = pass_gofs_to(frame);
+  if (!gof) return gof.error();
+  go_to(gof->offset, gof->first_frame);
+  return true;
+}
+
+Result<GofPlace> StreamReader::locate(std::uint32_t frame) {
+  const std::uint64_t offset = offset_;
+  const std::uint32_t first_frame = frames_parsed_;
+  const bool ended = ended_;
+  const auto gof = pass_gofs_to(frame);
+  go_to(offset, first_frame);
+  ended_ = ended;
+  return gof;
+}
+
+void StreamReader::go_to(std::uint64_t offset, std::uint32_t first_frame) {
+  ended_ = false;
+  offset_ = offset;
+  frames_parsed_ = first_frame;
+}
+
+// Goes past the GOF with the frame, and returns where it is.
+Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
@@ -328,13 +353,10 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
     const std::uint32_t first_frame = frames_parsed_;
     go_past(**unit, gof->num_frames, (*unit)->end());
     if (const auto type = slice_type(gof->kind)) {
-      if (auto ok = skip_slices(*type, first_frame); !ok) return ok;
+      if (auto ok = skip_slices(*type, first_frame); !ok) return ok.error();
     }
-    if (frame < frames_parsed_) {
-      offset_ = start;
-      frames_parsed_ = first_frame;
-      return true;
-    }
+    if (frame < frames_parsed_)
+      return GofPlace{start, first_frame, frames_parsed_ - first_frame};
   }
 }
 

@@ -24,6 +24,13 @@ namespace rlpc {
 // max_memory_bytes.
 inline constexpr std::uint32_t kFramesHeld = 4;
 
+// The frames of a GOF, and where its unit is.
+struct GofPlace {
+  std::uint64_t offset = 0;  // bytes from the start of the stream
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;
+};
+
 class StreamReader {
  public:
   StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options);
@@ -66,12 +73,23 @@ class StreamReader {
   Result<std::optional<std::uint32_t>> skip_damage();
   // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);
+  // Finds that GOF, and leaves the stream where it is.
+  Result<GofPlace> locate(std::uint32_t frame);
+  // Goes to a place between units, after frames of which first_frame is the next.
+  void go_to(std::uint64_t offset, std::uint32_t first_frame);
 
   // First frame of the GOF that find_gof() finds.
   std::uint32_t next_first_frame() const { return frames_parsed_; }
   bool ended() const { return ended_; }
   std::uint64_t offset() const { return offset_; }  // of the next unit
   std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
+  // The memory that kept GOFs take from now on.
+  void set_cached_bytes(std::uint64_t bytes) {
+    units_.set_bytes_in_use(bytes_in_use_ + bytes);
+    access_units_.set_cached_bytes(bytes);
+  }
+  // Estimated, without GOFs.
+  std::uint64_t bytes_in_use() const { return bytes_in_use_; }
   UnitReader& units() { return units_; }
   AccessUnitReader& access_units() { return access_units_; }
   StreamModels& models() { return models_; }
@@ -86,12 +104,14 @@ class StreamReader {
   Result<bool> read_clip_table(const UnitHeader& unit);
   Result<bool> check_limits();
   Result<bool> check_end(const UnitHeader& unit);
+  Result<GofPlace> pass_gofs_to(std::uint32_t frame);
   Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);
   Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
   void remember_gof(const UnitHeader& unit);
 
   DecodeLimits limits_;
   bool is_coarse_;
+  std::uint64_t bytes_in_use_ = 0;  // without kept GOFs
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;

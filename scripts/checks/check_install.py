@@ -20,10 +20,17 @@ PC2_HEADER_BYTES = 32
 QUICKSTART = CONSUMER.parents[1] / "quickstart"
 TARGET = "installed_files"
 PAGES = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
-# Program: its source, and the module of pkg-config.
+# The libraries in C.
+LIBRARIES = ("rlpc", "rlpc_static", "rlpcdec", "rlpcdec_static")
+# Program: its source, the module of pkg-config, the standard.
 PROGRAMS = {
-    "decode_c": ("decode.c", "rlpc"), "encode_c": ("encode.c", "rlpc"),
-    "decode_cpp": ("decode.cpp", "rlpc-decoder"), "encode_cpp": ("encode.cpp", "rlpc-encoder")}
+    **{f"decode_c_{library}": ("decode.c", library, "c99") for library in LIBRARIES},
+    **{f"decode_cpp11_{library}": ("decode_cpp11.cpp", library, "c++11") for library in LIBRARIES},
+    "encode_c_rlpc": ("encode.c", "rlpc", "c99"),
+    "encode_c_rlpc_static": ("encode.c", "rlpc_static", "c99"),
+    "memory": ("memory.c", "rlpcdec", "c99"), "play": ("play.c", "rlpcdec", "c11"), "vertices": ("vertices.c", "rlpcdec", "c99"),
+    "decode_cpp": ("decode.cpp", "rlpc-decoder", "c++20"),
+    "encode_cpp": ("encode.cpp", "rlpc-encoder", "c++20")}
 
 
 class Wrong(Exception):
@@ -92,22 +99,37 @@ def try_decoder(program, clip, work):
 
 
 def try_decoders(folder, clip, work):
-    for name in ("decode_c", "decode_cpp"):
-        try_decoder(folder / name, clip, work)
+    for name in PROGRAMS:
+        if name.startswith("decode_"):
+            try_decoder(folder / name, clip, work)
+
+
+def try_examples(folder, clip, work):
+    shown = run(folder / "play", clip.stream, stdout=subprocess.PIPE, text=True).stdout
+    require([line.split(":")[0] for line in shown.splitlines()]
+            == ["forward", "backward", "back and forth"], f"play prints {shown}")
+    shown = run(folder / "memory", clip.stream, stdout=subprocess.PIPE, text=True).stdout
+    require(shown.endswith("; 0 bytes left\n"), f"memory prints {shown}")
+    out = work / "frame.bin"
+    run(folder / "vertices", clip.stream, out, stdout=subprocess.DEVNULL)
+    vertices = int(clip.shape[0])
+    triangles = len(clip.triangles.read_bytes()) // 12
+    require(out.stat().st_size == 6 * triangles + 10 * vertices, "vertices: the wrong size")
 
 
 def try_encoders(folder, clip, work):
     out = work / "encoded.rlpc"
     run(folder / "encode_cpp", CLIP, CLIP.with_suffix(".pc2"), out)
     require(out.read_bytes() == clip.stream.read_bytes(), "encode_cpp and rlpcenc differ")
-    run(folder / "encode_c", *clip.shape, clip.triangles, clip.frames, out)
-    run(clip.tools / "rlpcval", out)
-    print("+", folder / "encode_c", "too few frames", flush=True)
     cut = work / "cut.f32"
     cut.write_bytes(clip.frames.read_bytes()[:-1])
-    code = subprocess.run([folder / "encode_c", *clip.shape, clip.triangles, cut, out],
-                          check=False).returncode
-    require(code == 1, f"encode_c: exit code {code} for too few frames")
+    for program in (folder / "encode_c_rlpc", folder / "encode_c_rlpc_static"):
+        run(program, *clip.shape, clip.triangles, clip.frames, out)
+        run(clip.tools / "rlpcval", out)
+        print("+", program, "too few frames", flush=True)
+        code = subprocess.run([program, *clip.shape, clip.triangles, cut, out],
+                              check=False).returncode
+        require(code == 1, f"{program.name}: exit code {code} for too few frames")
 
 
 def with_cmake(args, prefix, work):
@@ -126,16 +148,20 @@ def with_pkg_config(args, prefix, work):
     folders = {str(path.parent) for path in prefix.rglob("rlpc*.pc")}
     environment = {**os.environ, "PKG_CONFIG_PATH": os.pathsep.join(folders)}
     flags = shlex.split(args.flags)
-    for name, (source, module) in PROGRAMS.items():
-        found = run("pkg-config", "--cflags", "--libs", module, stdout=subprocess.PIPE, text=True,
-                    env=environment).stdout.split()
-        compiler = [args.cc, "-std=c99"] if source.endswith(".c") else [args.cxx, "-std=c++20"]
-        run(*compiler, *flags, "-c", CONSUMER / source, "-o", work / f"{name}.o",
-            *[word for word in found if word.startswith("-I")])
-        linker = args.cc if source.endswith(".c") and not flags else args.cxx
+    for name, (source, module, standard) in PROGRAMS.items():
+        module, _, static = module.partition("_")
+        found = run("pkg-config", *(["--static"] if static else []), "--cflags", "--libs", module,
+                    stdout=subprocess.PIPE, text=True, env=environment).stdout.split()
         folder = next(word[2:] for word in found if word.startswith("-L"))
+        if static:  # as the shared library is there as well
+            found = [f"{folder}/lib{module}.a" if word == f"-l{module}" else word
+                     for word in found]
+        compiler = args.cc if source.endswith(".c") else args.cxx
+        run(compiler, f"-std={standard}", *flags, "-c", CONSUMER / source, "-o",
+            work / f"{name}.o", *[word for word in found if word.startswith(("-I", "-D"))])
+        linker = args.cc if source.endswith(".c") and not flags else args.cxx
         run(linker, *flags, work / f"{name}.o", "-o", work / name, f"-Wl,-rpath,{folder}",
-            *[word for word in found if not word.startswith("-I")])
+            *[word for word in found if not word.startswith(("-I", "-D"))])
     return work
 
 
@@ -160,6 +186,7 @@ def main():
             programs = with_cmake(args, prefix, work / "cmake")
             try_decoders(programs, clip, work)
             try_encoders(programs, clip, work)
+            try_examples(programs, clip, work)
             if shutil.which("pkg-config"):
                 try_decoders(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
             else:

@@ -40,7 +40,7 @@ ROOMS = {
     "common/syntax": _GOFS,
     **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components", "common/rest"}),
     "common/kernels": {"common", "common/components"},
-    "common/parallel": set(),
+    "common/parallel": {"common/owned.h"},
     "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels",
                                "common/parallel", "common/rest"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
@@ -65,7 +65,8 @@ ROOMS = {
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
-    "decoder/c_api": {"common/c_api"} | _PUBLIC_DECODER,
+    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/float_position.h", "common/mesh"}
+                     | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/attributes", "common/io", "common/mesh"},
     "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/mesh",

@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 # Builds all that is installed, and no more; used by scripts/quickstart.
 add_custom_target(installed_files)
-foreach(target rlpc rlpc_common rlpc_decoder rlpc_encoder rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval
+foreach(target rlpc rlpc_static rlpc_dec rlpc_dec_static rlpc_common rlpc_decoder rlpc_encoder rlpcenc rlpcdec rlpcinfo rlpccmp rlpcval
                man_pages)
   if(TARGET ${target})
     add_dependencies(installed_files ${target})
@@ -22,12 +22,23 @@ endforeach()
 
 if(TARGET rlpc)
   list(APPEND public_headers
-       common/c_api/rlpc_clip.h common/c_api/rlpc_status.h decoder/c_api/rlpc_decode.h encoder/c_api/rlpc_encode.h)
-  add_library(rlpc::rlpc ALIAS rlpc)
-  install(TARGETS rlpc EXPORT rlpcTargets
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(FILES ${PROJECT_BINARY_DIR}/rlpc.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+       common/c_api/rlpc_clip.h common/c_api/rlpc_status.h decoder/c_api/rlpc_decode.h
+       decoder/c_api/rlpc_frame_output.h encoder/c_api/rlpc_encode.h)
+  foreach(library rlpc rlpc_static rlpc_dec rlpc_dec_static)
+    get_target_property(export_name ${library} EXPORT_NAME)
+    add_library(rlpc::${export_name} ALIAS ${library})
+    if(library MATCHES "_static$")
+      # Programs in C link the library of C++ as well.
+      set_target_properties(${library} PROPERTIES
+        INTERFACE_LINK_LIBRARIES "ZLIB::ZLIB;Threads::Threads;$<$<PLATFORM_ID:Linux>:stdc++>;$<$<PLATFORM_ID:Linux>:m>")
+    endif()
+    install(TARGETS ${library} EXPORT rlpcTargets
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  endforeach()
+  install(FILES ${PROJECT_BINARY_DIR}/rlpc.h ${PROJECT_BINARY_DIR}/rlpcdec.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 
 foreach(part common io decoder encoder)
@@ -78,17 +89,19 @@ install(FILES ${PROJECT_BINARY_DIR}/rlpcConfig.cmake ${PROJECT_BINARY_DIR}/rlpcC
 
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH RLPC_PC_TO_INCLUDE ${pc_dir} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
-# rlpc_pkg_config(NAME WHAT REQUIRES LIBS)
-function(rlpc_pkg_config RLPC_PC_NAME RLPC_PC_WHAT RLPC_PC_REQUIRES RLPC_PC_LIBS)
+# rlpc_pkg_config(NAME WHAT REQUIRES LIBS STATIC_LIBS): the last with --static only
+function(rlpc_pkg_config RLPC_PC_NAME RLPC_PC_WHAT RLPC_PC_REQUIRES RLPC_PC_LIBS RLPC_PC_STATIC)
   set(file ${PROJECT_BINARY_DIR}/${RLPC_PC_NAME}.pc)
   configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/rlpc.pc.in ${file} @ONLY)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 foreach(side decoder encoder)
   if(TARGET rlpc_${side})
-    rlpc_pkg_config(rlpc-${side} "${side} in C++" zlib "-lrlpc_${side} -lrlpc_io -lrlpc_common -pthread")
+    rlpc_pkg_config(rlpc-${side} "${side} in C++" zlib "-lrlpc_${side} -lrlpc_io -lrlpc_common -pthread" "")
   endif()
 endforeach()
 if(TARGET rlpc)
-  rlpc_pkg_config(rlpc "in C" "" -lrlpc)
+  set(of_static "-lz -lstdc++ -lm -pthread")
+  rlpc_pkg_config(rlpc "in C" "" -lrlpc "${of_static}")
+  rlpc_pkg_config(rlpcdec "decoder in C" "" -lrlpcdec "${of_static}")
 endif()

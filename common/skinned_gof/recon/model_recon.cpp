@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "common/int_math.h"
@@ -160,8 +161,8 @@ void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::
     for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices()); ++v) {
       for (const Influence& influence : influences[v]) of_tile.push_back({influence, v});
     }
-    std::stable_sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
-      return a.influence.bone < b.influence.bone;
+    std::sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.influence.bone, a.vertex) < std::tie(b.influence.bone, b.vertex);
     });
     first_run_.push_back(runs_.size());
     for (const auto& [influence, v] : of_tile) {

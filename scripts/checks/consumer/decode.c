@@ -1,6 +1,6 @@
 // Decodes a stream, frame by frame:  decode walk.rlpc frames.f32
 // To frames.f32 go x, y and z of each vertex as floats, one frame after another.
-#include <rlpc.h>
+#include <rlpcdec.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,0 +1,10 @@
+// How long a player waits for single frames.
+#pragma once
+
+#include "conformance/bench/bench_animation.h"
+
+namespace rlpc::bench {
+
+void register_latency(const Animation& animation);
+
+}  // namespace rlpc::bench

@@ -1,0 +1,271 @@
+// Frames in every form that the library in C gives them. C99.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "decoder/c_api/rlpc_decode.h"
+#include "encoder/c_api/rlpc_encode.h"
+
+// Two triangles, a quarter turn apart, of different sizes; they share an edge.
+#define VERTICES 4
+#define TRIANGLES 2
+#define FRAMES 6
+#define STRIDE 29
+
+static int failures = 0;
+
+#define CHECK(condition)                                                      \
+  do {                                                                        \
+    if (!(condition)) {                                                       \
+      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
+      ++failures;                                                             \
+    }                                                                         \
+  } while (0)
+
+static unsigned char stream[1 << 14];
+static size_t stream_size;
+
+static int append(void* user, const void* bytes, size_t num_bytes) {
+  (void)user;
+  if (num_bytes > sizeof stream - stream_size) return 1;
+  memcpy(stream + stream_size, bytes, num_bytes);
+  stream_size += num_bytes;
+  return 0;
+}
+
+static void encode(void) {
+  static const uint32_t indices[3 * TRIANGLES] = {0, 1, 2, 0, 3, 1};
+  rlpc_frame_format format;
+  rlpc_frame_format_init(&format, sizeof format);
+  format.num_vertices = VERTICES;
+  format.num_triangles = TRIANGLES;
+  format.indices = indices;
+  format.num_frames = FRAMES;
+  for (int c = 0; c < 3; ++c) {
+    format.box_min[c] = -1;
+    format.box_max[c] = 10;
+  }
+  rlpc_encode_options options;
+  rlpc_encode_options_init(&options, sizeof options);
+  options.keep_order = 1;
+  options.gof_frames = 2;
+  options.target = RLPC_TARGET_MAX_ERROR;
+  options.target_value = 1e-4;
+  rlpc_encoder* encoder;
+  CHECK(rlpc_encoder_create(&format, &options, append, NULL, &encoder) == RLPC_OK);
+  for (int f = 0; f < FRAMES; ++f) {
+    // x along the edge; the small triangle goes up y, the large one up z.
+    const float xyz[3 * VERTICES] = {(float)f, 0, 0, 2.0F + (float)f, 0, 0,
+                                     (float)f, 1, 0, (float)f,        0, 4};
+    CHECK(rlpc_encoder_add_frame(encoder, xyz, 3 * VERTICES) == RLPC_OK);
+  }
+  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_OK);
+  rlpc_encoder_close(encoder);
+}
+
+static rlpc_decoder* decoder;
+static rlpc_frame_output output;
+static unsigned char buffer[VERTICES * STRIDE];
+
+static rlpc_status give(rlpc_channel* channel, uint32_t format, size_t stride) {
+  rlpc_frame_output_init(&output, sizeof output);
+  memset(buffer, 0xAB, sizeof buffer);
+  channel->data = buffer;
+  channel->num_bytes = sizeof buffer;
+  channel->stride = stride;
+  channel->format = format;
+  return rlpc_decoder_frame(decoder, 3, &output);
+}
+
+static double half(uint16_t bits) {
+  const int exponent = (bits >> 10) & 31;
+  const int fraction = bits & 1023;
+  const double size =
+      exponent == 0 ? ldexp(fraction, -24) : ldexp(1024 + fraction, exponent - 25);
+  return bits >> 15 ? -size : size;
+}
+
+// Value c of vertex v in the buffer, of a format.
+static double value(uint32_t format, size_t stride, int v, int c) {
+  const size_t bytes = format == RLPC_INT8                           ? 1
+                       : format == RLPC_INT16 || format == RLPC_HALF ? 2
+                                                                     : 4;
+  const unsigned char* at =
+      buffer + (size_t)v * (stride == 0 ? 3 * bytes : stride) + (size_t)c * bytes;
+  int32_t wide;
+  int16_t narrow;
+  float real;
+  switch (format) {
+    case RLPC_INT32:
+      memcpy(&wide, at, sizeof wide);
+      return wide;
+    case RLPC_FLOAT:
+      memcpy(&real, at, sizeof real);
+      return (double)real;
+    case RLPC_HALF:
+      memcpy(&narrow, at, sizeof narrow);
+      return half((uint16_t)narrow);
+    case RLPC_INT16:
+      memcpy(&narrow, at, sizeof narrow);
+      return narrow;
+    default:
+      return (signed char)*at;
+  }
+}
+
+static void test_positions(void) {
+  static const double expected[VERTICES][3] = {{3, 0, 0}, {5, 0, 0}, {3, 1, 0}, {3, 0, 4}};
+  rlpc_stream_info info;
+  CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+  double scale[3], offset[3];
+  CHECK(rlpc_decoder_int16_scale(decoder, scale, offset) == RLPC_OK);
+  static const uint32_t formats[] = {RLPC_INT32, RLPC_FLOAT, RLPC_HALF, RLPC_INT16};
+  for (int i = 0; i < 8; ++i) {
+    const uint32_t format = formats[i / 2];
+    const size_t stride = i % 2 == 0 ? 0 : STRIDE;
+    CHECK(give(&output.positions, format, stride) == RLPC_OK);
+    for (int v = 0; v < VERTICES; ++v) {
+      for (int c = 0; c < 3; ++c) {
+        double x = value(format, stride, v, c);
+        double most = 1.1e-4;
+        if (format == RLPC_INT32) x = ldexp(x + info.grid_origin[c], info.grid_log2_step);
+        if (format == RLPC_INT16) x = x * scale[c] + offset[c];
+        if (format == RLPC_INT16) most += scale[c] / 2;
+        if (format == RLPC_HALF) most += 5.0 / 2048;
+        CHECK(fabs(x - expected[v][c]) <= most);
+      }
+    }
+    // What is between vertices is left alone.
+    if (stride != 0) CHECK(buffer[12] == 0xAB && buffer[STRIDE - 1] == 0xAB);
+  }
+  // Scales of the caller's; beyond them, the outermost values.
+  rlpc_frame_output_init(&output, sizeof output);
+  int16_t small[3 * VERTICES];
+  output.positions.data = small;
+  output.positions.num_bytes = sizeof small;
+  output.positions.format = RLPC_INT16;
+  for (int c = 0; c < 3; ++c) output.int16_scale[c] = 0.5;
+  output.int16_offset[0] = 1;
+  output.int16_scale[2] = 1e-9;
+  CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_OK);
+  CHECK(small[0] == 4 && small[3] == 8 && small[7] == 2 && small[11] == 32767);
+}
+
+static void test_normals(void) {
+  // At vertex 2 the normal of the small triangle, at 3 of the large one; at 0 their sum, by
+  // area (2 to 8) or by angle (equal there); at 1 by angles of atan(1/2) and atan(2).
+  static const uint32_t formats[] = {RLPC_FLOAT, RLPC_HALF, RLPC_INT16, RLPC_INT8};
+  static const double units[] = {1, 1, 32767, 127};
+  for (int i = 0; i < 8; ++i) {
+    const uint32_t format = formats[i / 2];
+    const int by_angle = i % 2;
+    rlpc_frame_output_init(&output, sizeof output);
+    memset(buffer, 0xAB, sizeof buffer);
+    output.normals.data = buffer;
+    output.normals.num_bytes = sizeof buffer;
+    output.normals.stride = STRIDE;
+    output.normals.format = format;
+    output.normal_weight = by_angle ? RLPC_BY_ANGLE : RLPC_BY_AREA;
+    CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_OK);
+    const double small_weights[VERTICES] = {by_angle ? 1 : 2, by_angle ? atan(0.5) : 2, 1, 0};
+    const double large_weights[VERTICES] = {by_angle ? 1 : 8, by_angle ? atan(2) : 8, 0, 1};
+    for (int v = 0; v < VERTICES; ++v) {
+      const double length = hypot(small_weights[v], large_weights[v]);
+      const double normal[3] = {0, large_weights[v] / length, small_weights[v] / length};
+      for (int c = 0; c < 3; ++c) {
+        const double x = value(format, STRIDE, v, c) / units[i / 2];
+        CHECK(fabs(x - normal[c]) <= 0.002 + 0.5 / units[i / 2] * (format >= RLPC_INT16));
+      }
+    }
+  }
+}
+
+static void test_refusals(void) {
+  CHECK(give(&output.positions, RLPC_INT8, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(strstr(rlpc_decoder_error_text(decoder), "positions: they have no format 5") != NULL);
+  CHECK(give(&output.normals, RLPC_INT32, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, 0, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, RLPC_FLOAT, 11) == RLPC_BAD_ARGUMENT);
+  CHECK(strstr(rlpc_decoder_error_text(decoder), "a stride of 11 bytes") != NULL);
+  CHECK(give(&output.positions, RLPC_FLOAT, STRIDE + 1) == RLPC_OK);
+  CHECK(give(&output.positions, RLPC_FLOAT, STRIDE + 6) == RLPC_BAD_ARGUMENT);
+  CHECK(strstr(rlpc_decoder_error_text(decoder), "has 116 bytes, not 117") != NULL);
+  CHECK(give(&output.positions, RLPC_FLOAT, SIZE_MAX / 2) == RLPC_BAD_ARGUMENT);
+  output.struct_size = 0;
+  CHECK(rlpc_decoder_frame(decoder, 0, &output) == RLPC_BAD_ARGUMENT);
+  rlpc_frame_output_init(&output, sizeof output);
+  output.normal_weight = 2;
+  CHECK(rlpc_decoder_frame(decoder, 0, &output) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_frame(decoder, 0, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_next(decoder, NULL) == RLPC_BAD_ARGUMENT);
+  rlpc_frame_output_init(&output, sizeof output);
+  CHECK(rlpc_decoder_frame(decoder, FRAMES, &output) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_prefetch(decoder, FRAMES) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_frame(NULL, 0, &output) == RLPC_BAD_ARGUMENT);
+}
+
+static void test_indices(void) {
+  uint32_t wide[3 * TRIANGLES];
+  uint16_t narrow[3 * TRIANGLES];
+  CHECK(rlpc_decoder_indices(decoder, wide, sizeof wide, 4) == RLPC_OK);
+  CHECK(rlpc_decoder_indices(decoder, narrow, sizeof narrow, 2) == RLPC_OK);
+  uint32_t same[3 * TRIANGLES];
+  CHECK(rlpc_decoder_triangles(decoder, same, 3 * TRIANGLES) == RLPC_OK);
+  for (int i = 0; i < 3 * TRIANGLES; ++i) CHECK(wide[i] == narrow[i] && wide[i] == same[i]);
+  CHECK(rlpc_decoder_indices(decoder, narrow, sizeof narrow, 4) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_indices(decoder, narrow, sizeof narrow, 3) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_indices(decoder, NULL, sizeof narrow, 2) == RLPC_BAD_ARGUMENT);
+}
+
+static void test_descriptions(void) {
+  rlpc_stream_info info;
+  CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
+  CHECK(fabs(info.duration_seconds - FRAMES / 30.0) < 1e-9);
+  for (int c = 0; c < 3; ++c) CHECK(info.range_min[c] <= -1 && info.range_max[c] >= 10);
+
+  float least[3], most[3];
+  rlpc_frame_output_init(&output, sizeof output);
+  CHECK(rlpc_decoder_frame(decoder, 5, &output) == RLPC_OK);
+  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_OK);
+  const float expected[6] = {5, 0, 0, 7, 1, 4};
+  for (int c = 0; c < 3; ++c) {
+    CHECK(fabsf(least[c] - expected[c]) < 2e-4F && fabsf(most[c] - expected[3 + c]) < 2e-4F);
+  }
+  CHECK(rlpc_decoder_next(decoder, &output) == RLPC_END);
+  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_BAD_ARGUMENT);
+
+  rlpc_gof gofs[FRAMES];
+  uint32_t num_gofs = 0;
+  CHECK(rlpc_decoder_gofs(decoder, NULL, 0, &num_gofs) == RLPC_OK && num_gofs == 3);
+  CHECK(rlpc_decoder_gofs(decoder, gofs, FRAMES, &num_gofs) == RLPC_OK);
+  for (uint32_t i = 0; i < 3; ++i)
+    CHECK(gofs[i].first_frame == 2 * i && gofs[i].num_frames == 2);
+  CHECK(rlpc_decoder_gof_of(decoder, 3, gofs) == RLPC_OK && gofs[0].first_frame == 2);
+  CHECK(rlpc_decoder_gofs(decoder, NULL, 1, &num_gofs) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_gofs(decoder, gofs, 1, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_gof_of(decoder, FRAMES, gofs) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_gof_of(decoder, 0, NULL) == RLPC_BAD_ARGUMENT);
+
+  rlpc_memory memory;
+  CHECK(rlpc_decoder_frame(decoder, 0, &output) == RLPC_OK);
+  CHECK(rlpc_decoder_memory(decoder, &memory, sizeof memory) == RLPC_OK);
+  CHECK(memory.stream_bytes > 0 && memory.gof_bytes > 0 && memory.cached_bytes > 0);
+  CHECK(rlpc_decoder_memory(decoder, NULL, sizeof memory) == RLPC_BAD_ARGUMENT);
+}
+
+int main(void) {
+  encode();
+  CHECK(rlpc_decoder_open_memory(stream, stream_size, NULL, &decoder) == RLPC_OK);
+  float least[3], most[3];
+  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_BAD_ARGUMENT);
+  test_positions();
+  test_normals();
+  test_refusals();
+  test_indices();
+  CHECK(rlpc_decoder_prefetch(decoder, 0) == RLPC_OK);
+  test_descriptions();
+  rlpc_decoder_close(decoder);
+  if (failures == 0) puts("frames have the forms that are asked for");
+  return failures == 0 ? 0 : 1;
+}

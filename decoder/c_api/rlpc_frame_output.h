@@ -1,0 +1,69 @@
+// RLPC decoder in C: the form in which rlpc_decoder_frame and rlpc_decoder_next give a frame.
+// C99 and C++.
+//
+//   rlpc_frame_output output;
+//   rlpc_frame_output_init(&output, sizeof output);
+//   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex), RLPC_FLOAT};
+//   output.normals = (rlpc_channel){&vertices->normal, vertices_bytes - offsetof(vertex,
+//   normal),
+//                                   sizeof(vertex), RLPC_INT8};
+//   rlpc_decoder_frame(decoder, 17, &output);
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "common/c_api/rlpc_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// NOLINTBEGIN(readability-identifier-naming): C naming.
+typedef enum rlpc_format {
+  RLPC_INT32 = 1,  // positions: grid units, exact
+  RLPC_FLOAT = 2,  // 32 bits, in the units of the encoder's input
+  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest, to infinity beyond 65504
+  RLPC_INT16 = 4,  // positions: see int16_scale; normals: 32767 times the vector
+  RLPC_INT8 = 5,   // normals: 127 times the vector
+} rlpc_format;
+
+typedef enum rlpc_normal_weight {
+  RLPC_BY_AREA = 0,   // of the triangles around a vertex
+  RLPC_BY_ANGLE = 1,  // that they have there: does not depend on how faces are split
+} rlpc_normal_weight;
+
+// Three values per vertex, one vertex every stride bytes; bytes in between are left alone.
+typedef struct rlpc_channel {
+  void* data;        // null: not wanted. Values need no alignment
+  size_t num_bytes;  // of the buffer from data on, at least up to the last value
+  size_t stride;     // bytes; 0: without gaps
+  uint32_t format;   // rlpc_format
+} rlpc_channel;
+
+typedef struct rlpc_frame_output {
+  size_t struct_size;      // rlpc_frame_output_init sets it
+  rlpc_channel positions;  // RLPC_INT32, _FLOAT, _HALF or _INT16
+  // Unit vectors from the geometry of the frame, RLPC_FLOAT, _HALF, _INT16 or _INT8; 0, 0, 1
+  // where the triangles around a vertex have no area. They take some sums over all triangles.
+  rlpc_channel normals;
+  uint32_t normal_weight;  // rlpc_normal_weight
+  // RLPC_INT16 positions: coordinate = value * scale + offset for each axis, rounded to the
+  // nearest value, and to the outermost one beyond. 0 and 0, the default: those that cover
+  // range_min to range_max of rlpc_stream_info; rlpc_decoder_int16_scale tells them.
+  double int16_scale[3];
+  double int16_offset[3];
+} rlpc_frame_output;
+// NOLINTEND(readability-identifier-naming)
+
+// Sets all members to their defaults: nothing is wanted. struct_size: sizeof *output.
+RLPC_API void rlpc_frame_output_init(rlpc_frame_output* output, size_t struct_size);
+
+struct rlpc_decoder;
+// The scales and offsets with which 16 bits hold every position that the grid has.
+RLPC_API rlpc_status rlpc_decoder_int16_scale(struct rlpc_decoder* decoder, double scale[3],
+                                              double offset[3]);
+
+#ifdef __cplusplus
+}
+#endif
