@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/mesh/skeleton.h"
+#include "common/owned.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/recon/model_recons.h"

@@ -9,8 +9,8 @@
 
 namespace rlpc {
 
-// The bytes of an asset of asset_format 0, inflated; empty for other formats. Fails if they need
-// more memory than is allowed.
+// The bytes of an asset of asset_format 0, inflated; empty for other formats. Fails if they
+// need more memory than is allowed.
 Result<std::string> parse_asset(BitReader& r, const MemoryLimit& memory);
 
 }  // namespace rlpc

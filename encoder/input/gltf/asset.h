@@ -1,4 +1,5 @@
-// What a viewer needs of a glTF document besides its meshes: materials, textures, names of parts.
+// What a viewer needs of a glTF document besides its meshes: materials, textures, names of
+// parts.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@
 namespace rlpc {
 
 struct GltfAsset {
-  // A GLB without geometry, whose nodes have the names of the parts of the mesh; empty: there is
-  // nothing to keep.
+  // A GLB without geometry, whose nodes have the names of the parts of the mesh; empty: there
+  // is nothing to keep.
   std::string glb;
   std::vector<std::string> notes;  // about what could not be read
 };
