@@ -38,6 +38,7 @@ class FrameSource {
     std::vector<std::string> files{};
     std::vector<Clip> clips{};
     SourceAttributes attributes{};
+    SourceMaterials materials{};
     std::uint64_t memory_bytes = 0;
   };
 
@@ -50,7 +51,8 @@ class FrameSource {
   FrameRate frame_rate() const { return shape_.frame_rate; }
   // Every index is below num_vertices(). May be empty: a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
-  // Notes for the user, one line each, about dropped or merged data.
+  // Notes for the user, one line each, about dropped or merged data. Reading frames may add
+  // some.
   const std::vector<std::string>& notes() const { return shape_.notes; }
   // All files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
@@ -59,6 +61,7 @@ class FrameSource {
 
   // Texture coordinates, normals and the like, of triangles().
   const SourceAttributes& attributes() const { return shape_.attributes; }
+  const SourceMaterials& materials() const { return shape_.materials; }
 
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
@@ -71,6 +74,7 @@ class FrameSource {
 
  protected:
   explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}
+  void add_note(std::string note) { shape_.notes.push_back(std::move(note)); }
 
  private:
   Shape shape_;

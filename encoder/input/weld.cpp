@@ -138,6 +138,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   shape.files = source->files();
   shape.clips = source->clips();
   shape.attributes = source->attributes();
+  shape.materials = source->materials();
   shape.memory_bytes = source->memory_bytes();
   if (vertices.size() < welded.size()) {
     const std::size_t merged = welded.size() - vertices.size();

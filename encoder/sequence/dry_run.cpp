@@ -26,6 +26,7 @@ class StretchSource final : public FrameSource {
                      {},
                      {},
                      source.attributes(),
+                     source.materials(),
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/io/binary_numbers.h"
+#include "encoder/input/formats/material_files.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
 #include "encoder/input/piped_frames.h"
@@ -244,7 +245,7 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   if (mesh_path == "-" && points_path == "-") {
     return InputError{"standard input: cannot be both the mesh and its point cache"};
   }
-  auto mesh = read_mesh(mesh_path, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   if (points_path == "-" && !may_begin_cache(beginning_of("-"), num_vertices)) {
@@ -280,8 +281,8 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   }
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
-  shape.files = {mesh_path, points_path};
-  shape.notes = std::move(notes);
+  shape.files.insert(shape.files.begin(), {mesh_path, points_path});
+  shape.notes.insert(shape.notes.end(), notes.begin(), notes.end());
   shape.memory_bytes += file->memory_bytes();
   return std::unique_ptr<FrameSource>(
       std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout));
@@ -325,7 +326,7 @@ class Pc2Stream final : public FrameStream {
 InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
     std::FILE* file, const std::string& name, const std::string& mesh_path,
     const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) {
-  auto mesh = read_mesh(mesh_path, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   std::array<char, kPc2HeaderBytes> header{};
@@ -337,7 +338,8 @@ InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
   if (auto error = check_points(name, *layout, mesh_path, num_vertices)) return *error;
   FrameSource::Shape shape = shape_of(std::move(*mesh), 1, frame_rate);
   return std::unique_ptr<FrameStream>(std::make_unique<Pc2Stream>(
-      FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles)},
+      FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles),
+                         std::move(shape.attributes)},
       file));
 }
 
