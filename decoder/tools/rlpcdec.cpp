@@ -53,6 +53,12 @@ is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
 stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
 with --format pc2 -o -, without a mesh and with a frame count of 0.
 
+OBJ files hold the texture coordinates, normals, materials and parts of a stream,
+and colours of vertices; numbered materials are in a .mtl file beside them. PLY
+files hold texture coordinates, normals and colours of vertices only: vertices at
+which these differ are split, into as many as there are combinations. Normals are
+those of each frame. There are none of these with --coarse.
+
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
 
@@ -87,6 +93,7 @@ struct Options {
   std::string clip;
   rlpc::SinkFormat format = rlpc::SinkFormat::kByName;
   bool ascii = false;
+  bool no_attributes = false;
   bool verify_only = false;
   bool no_hashes = false;
   bool conceals = false;
@@ -241,6 +248,26 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
   return std::nullopt;
 }
 
+// Those that the output holds. Returns the exit code of an error; frames are written all the
+// same.
+int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
+                    std::vector<rlpc::AttributeSet>& attributes) {
+  const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
+  const bool has_mesh = !(live && format == rlpc::SinkFormat::kPc2);
+  if (o.no_attributes || is_coarse(o) || !has_mesh || !rlpc::holds_attributes(format) ||
+      !decoder.has_attributes()) {
+    return rlpc::kExitDone;
+  }
+  auto sets = decoder.attributes();
+  if (!sets) {
+    return complain(rlpc::stream_message(o.input, sets.error(), o.decoder.limits) +
+                        "; frames are written without attributes",
+                    rlpc::exit_code(sets.error().code));
+  }
+  attributes = std::move(*sets);
+  return rlpc::kExitDone;
+}
+
 int decode(const Options& o) {
   auto source = rlpc::file_or_standard_input(o.input, o.decoder.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
@@ -265,6 +292,7 @@ int decode(const Options& o) {
   if (!span) return complain(span.error(), rlpc::kExitUsage);
   const std::uint32_t count = span->last - span->first + 1;
   std::unique_ptr<rlpc::FrameSink> sink;
+  int attributes_code = rlpc::kExitDone;
   if (!o.verify_only) {
     rlpc::SinkOptions options{decoder->num_vertices(),
                               count,
@@ -275,6 +303,7 @@ int decode(const Options& o) {
     options.live = live;
     options.format = o.format;
     options.ascii = o.ascii;
+    attributes_code = read_attributes(o, *decoder, live, options.attributes);
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {
@@ -294,7 +323,7 @@ int decode(const Options& o) {
     }
   }
   report(o, *decoder, frames);
-  return frames.loss_code;
+  return frames.loss_code != rlpc::kExitDone ? frames.loss_code : attributes_code;
 }
 
 struct Outputs {
@@ -340,6 +369,12 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
   app.add_option("--clip", o.clip, "This part only; rlpcinfo lists them")
       ->option_text("NAME")
       ->excludes("--frames")
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_flag("--no-attributes", o.no_attributes,
+               "Positions and triangles only, without texture coordinates, normals, colours, "
+               "materials")
+      ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--ascii", o.ascii, "PLY files as text")
