@@ -156,9 +156,9 @@ std::optional<std::string> PlyAttributes::end_face(std::size_t num_triangles,
     if (has_room) list.push_back(value);
   };
   if (has_corner_uv_) {
-    if (!face_uv_.empty() && face_uv_.size() != 2 * corners) {
-      return "a list texcoord of " + std::to_string(face_uv_.size()) + " values; a face of " +
-             std::to_string(corners) + " corners needs " + std::to_string(2 * corners);
+    if (face_uv_.size() != 2 * corners) {
+      has_bad_uv_ = has_bad_uv_ || !face_uv_.empty();
+      face_uv_.clear();
     }
     const auto first = static_cast<std::uint32_t>(uv_.size() / 2);
     for (const float value : face_uv_) push(uv_, value);
@@ -198,6 +198,9 @@ bool PlyAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   }
   if (!normals_.empty()) {
     sets.push_back(normal_attribute(std::move(normals_), {}, mesh.xyz, mesh.triangles));
+  }
+  if (has_bad_uv_) {
+    mesh.notes.emplace_back("dropped: lists texcoord without two values for each corner");
   }
   if (!uv_.empty()) sets.push_back(uv_attribute(std::move(uv_), std::move(uv_of_)));
   if (are_materials_bad_) {

@@ -75,6 +75,7 @@ class PlyAttributes {
   std::vector<std::uint32_t> colour_of_;  // likewise
   std::vector<std::uint32_t> materials_;  // [triangle]; empty: none
   bool has_corner_uv_ = false;
+  bool has_bad_uv_ = false;  // lists of another length
   bool has_materials_ = false;
   bool are_materials_bad_ = false;
   // Of the current face.
