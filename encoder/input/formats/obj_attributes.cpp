@@ -137,12 +137,13 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
           "dropped: numbers after vertices that are no colours from 0 to 1");
     }
   }
-  if (!normal_of_.empty()) {
+  // Indices without any value are ignored.
+  if (!normals_.empty() && !normal_of_.empty()) {
     normal_of_.resize(3 * num_triangles, kNoValue);
     sets.push_back(
         normal_attribute(std::move(normals_), std::move(normal_of_), mesh.xyz, mesh.triangles));
   }
-  if (!uv_of_.empty()) {
+  if (!uv_.empty() && !uv_of_.empty()) {
     uv_of_.resize(3 * num_triangles, kNoValue);
     sets.push_back(uv_attribute(std::move(uv_), std::move(uv_of_)));
   }

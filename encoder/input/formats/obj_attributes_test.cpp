@@ -88,9 +88,12 @@ TEST(ObjAttributes, MissingCornersGetUsualValues) {
 TEST(ObjAttributes, IndicesOutOfRangeAreNamed) {
   expect_error(kVertices + "vt 0 0\nf 1/1 2/2 3/1\n",
                "a.obj:6: texture coordinate index 2 is out of range 1 to 1");
-  expect_error(kVertices + "f 1/1 2/1 3/1\n",
-               "a.obj:5: texture coordinate index 1, but the file "
-               "has none; is it complete?");
+  const SingleMesh none = mesh_of(kVertices + "f 1/1/1 2/1/2 3/1/2\n");
+  EXPECT_TRUE(none.attributes.sets.empty());
+  EXPECT_EQ(none.notes,
+            (std::vector<std::string>{
+                "ignores each texture coordinate index, as the file has none of these",
+                "ignores each normal index, as the file has none of these"}));
   expect_error(kVertices + "vn 0 0 1\nf 1//1 2//0 3//1\n", "a.obj:6: normal index 0;");
   expect_error(kVertices + "vn 0 0 1\nf 1//1 2//-2 3//1\n",
                "a.obj:6: normal index -2, but only 1 come before it");

@@ -50,8 +50,8 @@ class ObjParser {
     }
     check_highest(vertices_, num_vertices());
     if (limit_.with_attributes) {
-      check_highest(uv_, attributes_.num_uv());
-      check_highest(normals_, attributes_.num_normals());
+      check_or_ignore(uv_, attributes_.num_uv());
+      check_or_ignore(normals_, attributes_.num_normals());
       if (!error_ && !attributes_.finish(mesh_, limit_)) fail_for_memory();
     }
     if (error_) return *error_;
@@ -72,14 +72,20 @@ class ObjParser {
   void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }
 
   static std::string out_of_range(const Indexed& kind, std::int64_t index, std::int64_t count) {
-    const std::string number = kind.name + std::string(" index ") + std::to_string(index);
-    if (count == 0) return number + ", but the file has none; is it complete?";
-    return number + " is out of range 1 to " + std::to_string(count) +
-           "; is the file complete?";
+    return kind.name + std::string(" index ") + std::to_string(index) +
+           " is out of range 1 to " + std::to_string(count) + "; is the file complete?";
   }
 
   void check_highest(const Indexed& kind, std::int64_t count) {
     if (kind.highest > count) fail(kind.highest_line, out_of_range(kind, kind.highest, count));
+  }
+
+  // Some files have indices into lists that they do not have.
+  void check_or_ignore(const Indexed& kind, std::int64_t count) {
+    if (count > 0) return check_highest(kind, count);
+    if (kind.highest == 0) return;
+    mesh_.notes.push_back(std::string("ignores each ") + kind.name +
+                          " index, as the file has none of these");
   }
 
   void push(float value, std::vector<float>& list) {
