@@ -53,11 +53,11 @@ is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
 stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
 with --format pc2 -o -, without a mesh and with a frame count of 0.
 
-OBJ files hold the texture coordinates, normals, materials and parts of a stream,
-and colours of vertices; numbered materials are in a .mtl file beside them. PLY
-files hold texture coordinates, normals and colours of vertices only: vertices at
-which these differ are split, into as many as there are combinations. Normals are
-those of each frame. There are none of these with --coarse.
+OBJ files hold texture coordinates, normals, colours of vertices, materials and
+parts; a .mtl file beside them has plain materials, which are numbered. PLY files
+hold texture coordinates, normals and colours, of vertices only: vertices become
+several, one for each distinct combination of these. Normals are those of each
+frame. With --coarse, there is none of this.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
