@@ -54,10 +54,10 @@ stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
 with --format pc2 -o -, without a mesh and with a frame count of 0.
 
 OBJ files hold texture coordinates, normals, colours of vertices, materials and
-parts; a .mtl file beside them has plain materials, which are numbered. PLY files
-hold texture coordinates, normals and colours, of vertices only: vertices become
-several, one for each distinct combination of these. Normals are those of each
-frame. With --coarse, there is none of this.
+parts; a .mtl file beside them has plain materials, which are numbered. PLY
+files hold texture coordinates, normals and colours, of vertices only: vertices
+become several, one for each distinct combination of these. Normals are those of
+each frame. With --coarse, there is none of this.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.

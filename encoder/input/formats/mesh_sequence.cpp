@@ -114,7 +114,7 @@ const SourceAttribute* find_attribute(const SourceAttributes& attributes,
 bool are_near(const SourceAttribute& a, const SourceAttribute& b,
               std::span<const Triangle> triangles) {
   if (a.num_components != b.num_components || a.max_value != b.max_value) return false;
-  const float kNear = a.max_value == 0 ? 1e-4F : 0.5F;
+  const float near = a.max_value == 0 ? 1e-4F : 0.5F;
   const auto value_of = [&](const SourceAttribute& set, std::size_t corner) {
     if (set.domain == AttributeDomain::kTriangle) return corner / 3;
     return std::size_t{set.value_of_corner.empty() ? triangles[corner / 3][corner % 3]
@@ -125,7 +125,7 @@ bool are_near(const SourceAttribute& a, const SourceAttribute& b,
     for (std::size_t c = 0; c < n; ++c) {
       const float x = a.values[n * value_of(a, corner) + c];
       const float y = b.values[n * value_of(b, corner) + c];
-      if (std::abs(x - y) > kNear) return false;
+      if (std::abs(x - y) > near) return false;
     }
   }
   return true;
