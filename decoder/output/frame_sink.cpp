@@ -99,6 +99,10 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
 
 }  // namespace
 
+bool holds_attributes(SinkFormat format) {
+  return is_mesh(format) || format == SinkFormat::kPc2 || format == SinkFormat::kMdd;
+}
+
 SinkFormat sink_format(const std::string& path, SinkFormat given) {
   if (given != SinkFormat::kByName) return given;
   const SinkFormat named = format_of_extension(lower_extension(path));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/io/output_file.h"
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
@@ -69,10 +70,15 @@ struct SinkOptions {
   GltfMotion motion = GltfMotion::kAuto;
   std::uint32_t max_targets = kUsualMaxTargets;  // beside bones
   std::uint64_t max_skin_bytes = 1U << 30;       // memory for the frames of a skin, all at once
+  // Of `triangles`, as the decoder gives them; OBJ and PLY files hold some of them.
+  std::vector<AttributeSet> attributes{};
   // On all bytes written, temporary files included; null: none. If more is certain to be
   // needed, opening the sink fails.
   std::shared_ptr<OutputLimit> limit{};
 };
+
+// Whether files of a format, or the mesh beside them, can hold attributes.
+bool holds_attributes(SinkFormat format);
 
 // The format to use: `given` unless kByName, otherwise from the form of `path`; never kByName.
 SinkFormat sink_format(const std::string& path, SinkFormat given);
@@ -81,6 +87,7 @@ SinkFormat sink_format(const std::string& path, SinkFormat given);
 //   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
 //   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame
+//                       (all OBJ files: a .mtl file beside them, if there are materials)
 //   x.glb               glTF: one mesh, moved by bones and morph targets
 //   x.obj, x.ply        if there is only one frame
 //   anything else       a folder of OBJ files, frame_0000.obj, frame_0001.obj, ...

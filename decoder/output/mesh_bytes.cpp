@@ -1,12 +1,13 @@
 #include "decoder/output/mesh_bytes.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
+#include <cmath>
 
-#include "common/io/binary_numbers.h"
-#include "common/io/float_position.h"
-#include "common/io/output_file.h"
+#include "decoder/output/obj_bytes.h"
+#include "decoder/output/ply_bytes.h"
 
 namespace rlpc {
 
@@ -19,74 +20,110 @@ void append_digits(std::string& text, Number value) {
   text.append(digits.data(), result.ptr);
 }
 
+// A set of vertices or corners with so many components, smoothing aside.
+const AttributeSet* find_values(const SinkOptions& options, const char* name,
+                                std::uint32_t least, std::uint32_t most) {
+  const AttributeSet* const set = find_set(options.attributes, name);
+  if (set == nullptr || set->header.domain == AttributeDomain::kTriangle) return nullptr;
+  if (set->header.domain == AttributeDomain::kCorner && options.triangles.empty()) {
+    return nullptr;
+  }
+  const std::uint32_t n = number_components(set->header);
+  return n >= least && n <= most ? set : nullptr;
+}
+
+const AttributeSet* find_indices(const SinkOptions& options, const char* name) {
+  const AttributeSet* const set = find_set(options.attributes, name);
+  if (set == nullptr) return nullptr;
+  const AttributeHeader& header = set->header;
+  const bool fits = header.domain == AttributeDomain::kTriangle &&
+                    header.kind == ValueKind::kIntegers && header.num_components == 1;
+  return fits ? set : nullptr;
+}
+
+float finite(float x) { return std::isfinite(x) ? x : 0.0F; }
+
+// IEC 61966-2-1
+float srgb_of_linear(float x) {
+  if (!(x > 0.0F)) return 0.0F;
+  if (x >= 1.0F) return 1.0F;
+  if (x <= 0.0031308F) return 12.92F * x;
+  return static_cast<float>(1.055 * std::pow(double{x}, 1.0 / 2.4) - 0.055);
+}
+
 }  // namespace
 
 void append_number(std::string& text, float value) { append_digits(text, value); }
 void append_number(std::string& text, std::uint64_t value) { append_digits(text, value); }
 
+void append_rounded(std::string& text, float value) {
+  constexpr double kScale = 1e4;
+  const double rounded = std::round(double{value} * kScale) / kScale;
+  append_digits(text, rounded == 0.0 ? 0.0 : rounded);  // no "-0"
+}
+
 std::string frame_rate_text(FrameRate frame_rate) {
   return std::to_string(frame_rate.numerator) + "/" + std::to_string(frame_rate.denominator);
 }
 
-MeshBytes::MeshBytes(SinkFormat format, const SinkOptions& options)
-    : format_(format),
-      ascii_(format == SinkFormat::kObj || options.ascii),
-      grid_(options.grid) {
-  assert(format == SinkFormat::kObj || format == SinkFormat::kPly);
-  append_header(options);
-  append_faces(options);
+MeshAttributes::MeshAttributes(const SinkOptions& options)
+    : uv(find_values(options, "uv0", 2, 2)),
+      normal(find_values(options, "normal", 0, 3)),
+      colour(find_values(options, "colour0", 3, 4)),
+      material(find_indices(options, "material")),
+      part(find_indices(options, "part")) {
+  if (normal == nullptr || normal->header.kind == ValueKind::kSmoothing) return;
+  if (number_components(normal->header) != 3) normal = nullptr;
 }
 
-void MeshBytes::append_header(const SinkOptions& options) {
-  const std::string rate = "frame_rate " + frame_rate_text(options.frame_rate) + "\n";
-  if (format_ == SinkFormat::kObj) {
-    header_ = "# " + rate;
-    return;
+std::vector<float> MeshAttributes::uv_numbers() const {
+  std::vector<float> numbers = attribute_numbers(*uv);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = finite(i % 2 == 0 ? numbers[i] : 1.0F - numbers[i]);
   }
-  header_ = std::string("ply\nformat ") + (ascii_ ? "ascii" : "binary_little_endian") +
-            " 1.0\ncomment " + rate + "element vertex " + std::to_string(options.num_vertices) +
-            "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-            std::to_string(options.triangles.size()) +
-            "\nproperty list uchar uint vertex_indices\nend_header\n";
+  return numbers;
 }
 
-void MeshBytes::append_faces(const SinkOptions& options) {
-  const bool obj = format_ == SinkFormat::kObj;
-  for (const Triangle& t : options.triangles) {
-    if (ascii_) {
-      faces_ += obj ? "f" : "3";
-    } else {
-      faces_ += '\3';
-    }
-    for (const std::uint32_t v : t) {
-      if (!ascii_) {
-        append_u32(faces_, v);
-        continue;
-      }
-      faces_ += ' ';
-      append_number(faces_, std::uint64_t{v} + (obj ? 1 : 0));
-    }
-    if (ascii_) faces_ += '\n';
+std::vector<float> MeshAttributes::colour_numbers() const {
+  std::vector<float> numbers = attribute_numbers(*colour);
+  const std::uint32_t n = number_components(colour->header);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] =
+        i % n < 3 ? srgb_of_linear(numbers[i]) : std::clamp(finite(numbers[i]), 0.0F, 1.0F);
   }
+  return numbers;
 }
 
-const std::string& MeshBytes::frame(std::span<const std::int32_t> positions) {
-  bytes_ = header_;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const float x = float_position(grid_, i % 3, positions[i]);
-    if (!ascii_) {
-      append_f32(bytes_, x);
-      continue;
-    }
-    if (i % 3 > 0) {
-      bytes_ += ' ';
-    } else if (format_ == SinkFormat::kObj) {
-      bytes_ += "v ";
-    }
-    append_number(bytes_, x);
-    if (i % 3 == 2) bytes_ += '\n';
+MeshNormals::MeshNormals(const MeshAttributes& attributes, const SinkOptions& options) {
+  if (attributes.normal == nullptr) return;
+  normals_.emplace(*attributes.normal, options.triangles, options.num_vertices);
+  numbers_.resize(3 * std::size_t{normals_->count()});
+}
+
+std::span<const float> MeshNormals::of(std::span<const float> xyz) {
+  normals_->compute(xyz, numbers_);
+  for (float& x : numbers_) x = finite(x);
+  return numbers_;
+}
+
+std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions& options,
+                                           const std::string& materials) {
+  if (format == SinkFormat::kObj) return std::make_unique<ObjBytes>(options, materials);
+  assert(format == SinkFormat::kPly);
+  return std::make_unique<PlyBytes>(options);
+}
+
+std::string mtl_text(const SinkOptions& options) {
+  const MeshAttributes attributes(options);
+  if (attributes.material == nullptr) return "";
+  std::vector<std::uint32_t> used = attributes.material->values;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::string text = kMtlBegin;
+  for (const std::uint32_t m : used) {
+    text += "newmtl " + material_name(m) + "\nKd 0.8 0.8 0.8\n";
   }
-  return bytes_ += faces_;
+  return text;
 }
 
 }  // namespace rlpc

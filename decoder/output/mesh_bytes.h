@@ -1,10 +1,14 @@
-// Formats one frame as a mesh file (OBJ, PLY).
+// Formats frames as mesh files (OBJ, PLY).
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "decoder/output/attribute_values.h"
 #include "decoder/output/frame_sink.h"
 
 namespace rlpc {
@@ -12,27 +16,62 @@ namespace rlpc {
 // The shortest decimal text that reads back as the same number.
 void append_number(std::string& text, float value);
 void append_number(std::string& text, std::uint64_t value);
+// The same of a number rounded to four decimals.
+void append_rounded(std::string& text, float value);
 // "30000/1001", for the comment in which rlpcenc finds the frame rate.
 std::string frame_rate_text(FrameRate frame_rate);
 
-class MeshBytes {
- public:
-  // OBJ, or PLY as options.ascii says.
-  MeshBytes(SinkFormat format, const SinkOptions& options);
+// Those attributes that mesh files can hold, in their conventions; null: none.
+struct MeshAttributes {
+  explicit MeshAttributes(const SinkOptions& options);
 
-  // The whole file of one frame, valid until the next call.
-  const std::string& frame(std::span<const std::int32_t> positions);
+  const AttributeSet* uv = nullptr;
+  const AttributeSet* normal = nullptr;
+  const AttributeSet* colour = nullptr;
+  const AttributeSet* material = nullptr;
+  const AttributeSet* part = nullptr;
+
+  // [value of uv][2], v pointing up
+  std::vector<float> uv_numbers() const;
+  // [value of colour][number_components()], sRGB, 0 to 1
+  std::vector<float> colour_numbers() const;
+};
+
+// The normals of each frame, if the stream has any.
+class MeshNormals {
+ public:
+  // Keeps references to both.
+  MeshNormals(const MeshAttributes& attributes, const SinkOptions& options);
+
+  bool exist() const { return normals_.has_value(); }
+  // [normal][3]; xyz: the vertices of the frame.
+  std::span<const float> of(std::span<const float> xyz);
+  std::uint32_t of_corner(std::size_t corner) const { return normals_->of_corner(corner); }
 
  private:
-  void append_header(const SinkOptions& options);
-  void append_faces(const SinkOptions& options);
-
-  SinkFormat format_;
-  bool ascii_;
-  Grid grid_;
-  std::string header_;
-  std::string faces_;
-  std::string bytes_;
+  std::optional<FrameNormals> normals_;
+  std::vector<float> numbers_;
 };
+
+class MeshBytes {
+ public:
+  MeshBytes() = default;
+  MeshBytes(const MeshBytes&) = delete;
+  MeshBytes& operator=(const MeshBytes&) = delete;
+  virtual ~MeshBytes() = default;
+
+  // The whole file of one frame, valid until the next call.
+  virtual const std::string& frame(std::span<const std::int32_t> positions) = 0;
+};
+
+// kObj, or kPly as options.ascii says; options must outlive it. materials: the name of the file
+// with mtl_text(), empty if there is none.
+std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions& options,
+                                           const std::string& materials);
+
+// The first line of mtl_text().
+inline constexpr const char* kMtlBegin = "# materials of rlpcdec\n";
+// A file with the materials that OBJ files of these attributes use; empty if they use none.
+std::string mtl_text(const SinkOptions& options);
 
 }  // namespace rlpc

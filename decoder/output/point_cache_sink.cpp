@@ -1,17 +1,15 @@
 // The sink of point caches: X.pc2 or X.mdd, with the mesh X.obj.
-#include <array>
 #include <cassert>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "common/io/binary_numbers.h"
 #include "common/io/float_position.h"
 #include "common/io/interrupts.h"
 #include "common/io/output_file.h"
+#include "decoder/output/companion_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
 
@@ -23,13 +21,14 @@ constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  /
 
 class PointCacheSink : public FrameSink {
  public:
-  // mesh: none in a live stream.
+  // mesh: none in a live stream. materials: of the mesh, if it has any.
   PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points,
-                 std::optional<OutputFile> mesh)
+                 std::optional<OutputFile> mesh, std::optional<OutputFile> materials)
       : mdd_(format == SinkFormat::kMdd),
         options_(std::move(options)),
         points_(std::move(points)),
-        mesh_(std::move(mesh)) {}
+        mesh_(std::move(mesh)),
+        materials_(std::move(materials)) {}
 
   std::optional<OutputError> write_header() {
     if (mdd_) return write_mdd_header();
@@ -46,9 +45,7 @@ class PointCacheSink : public FrameSink {
     assert(positions.size() == 3 * std::size_t{options_.num_vertices});
     assert(written_ < options_.num_frames);
     if (written_++ == 0 && mesh_) {
-      if (auto error = mesh_->write(MeshBytes(SinkFormat::kObj, options_).frame(positions))) {
-        return error;
-      }
+      if (auto error = write_mesh(positions)) return error;
     }
     bytes_.clear();
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -64,12 +61,27 @@ class PointCacheSink : public FrameSink {
     if (auto error = points_.close()) return error;
     if (!mesh_) return points_.commit();
     if (auto error = mesh_->close()) return error;
+    if (materials_) {
+      if (auto error = materials_->close()) return error;
+    }
     const HoldInterrupts hold;
+    if (materials_) {
+      if (auto error = materials_->commit()) return error;
+    }
     if (auto error = mesh_->commit()) return error;
     return points_.commit();
   }
 
  private:
+  std::optional<OutputError> write_mesh(std::span<const std::int32_t> positions) {
+    std::string name;
+    if (materials_) {
+      name = std::filesystem::path(materials_->path()).filename().string();
+      if (auto error = materials_->write(mtl_text(options_))) return error;
+    }
+    return mesh_->write(make_mesh_bytes(SinkFormat::kObj, options_, name)->frame(positions));
+  }
+
   // Frames, points, and the times of the frames in seconds.
   std::optional<OutputError> write_mdd_header() {
     std::string bytes;
@@ -85,19 +97,10 @@ class PointCacheSink : public FrameSink {
   SinkOptions options_;
   OutputFile points_;
   std::optional<OutputFile> mesh_;
+  std::optional<OutputFile> materials_;
   std::string bytes_;
   std::uint32_t written_ = 0;
 };
-
-// Whether X.obj may be replaced: since the user did not name it, only a file that MeshBytes
-// wrote, which its beginning shows.
-bool may_replace_mesh(const std::string& path) {
-  constexpr std::string_view kOurs = "# frame_rate ";
-  std::array<char, kOurs.size()> begin{};
-  std::ifstream file(path);
-  file.read(begin.data(), begin.size());
-  return file.gcount() == 0 || std::string_view(begin.data(), begin.size()) == kOurs;
-}
 
 }  // namespace
 
@@ -111,7 +114,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
     auto points = OutputFile::create(path, options.limit);
     if (!points) return points.error();
     auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
-                                                 std::nullopt);
+                                                 std::nullopt, std::nullopt);
     if (auto error = sink->write_header()) return *error;
     return std::unique_ptr<FrameSink>(std::move(sink));
   }
@@ -120,16 +123,25 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
     return OutputError{path + ": the mesh of the point cache goes to " + mesh_path +
                        "; choose another name"};
   }
-  if (!may_replace_mesh(mesh_path)) {
-    return OutputError{mesh_path + ": already exists, not written by rlpcdec; the mesh of " +
-                       path + " would replace it. Choose another name, or remove it"};
+  if (auto error = check_companion(mesh_path, "# frame_rate ", "the mesh of " + path)) {
+    return *error;
   }
   auto points = OutputFile::create(path, options.limit);
   if (!points) return points.error();
   auto mesh = OutputFile::create(mesh_path, options.limit);
   if (!mesh) return mesh.error();
+  std::optional<OutputFile> materials;
+  if (!mtl_text(options).empty()) {
+    const std::string beside = std::filesystem::path(path).replace_extension(".mtl").string();
+    if (auto error = check_companion(beside, kMtlBegin, "the materials of " + path)) {
+      return *error;
+    }
+    auto created = OutputFile::create(beside, options.limit);
+    if (!created) return created.error();
+    materials.emplace(std::move(*created));
+  }
   auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
-                                               std::move(*mesh));
+                                               std::move(*mesh), std::move(materials));
   if (auto error = sink->write_header()) return *error;
   return std::unique_ptr<FrameSink>(std::move(sink));
 }

@@ -53,6 +53,12 @@ is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
 stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
 with --format pc2 -o -, without a mesh and with a frame count of 0.
 
+OBJ files hold texture coordinates, normals, colours of vertices, materials and
+parts; a .mtl file beside them has plain materials, which are numbered. PLY
+files hold texture coordinates, normals and colours, of vertices only: vertices
+become several, one for each distinct combination of these. Normals are those of
+each frame. With --coarse, there is none of this.
+
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
 
@@ -101,6 +107,7 @@ struct Options {
   bool ascii = false;
   rlpc::GltfMotion motion = rlpc::GltfMotion::kAuto;
   std::uint32_t max_targets = rlpc::kUsualMaxTargets;
+  bool no_attributes = false;
   bool verify_only = false;
   bool no_hashes = false;
   bool conceals = false;
@@ -261,6 +268,26 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
   return std::nullopt;
 }
 
+// Those that the output holds. Returns the exit code of an error; frames are written all the
+// same.
+int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
+                    std::vector<rlpc::AttributeSet>& attributes) {
+  const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
+  const bool has_mesh = !(live && format == rlpc::SinkFormat::kPc2);
+  if (o.no_attributes || is_coarse(o) || !has_mesh || !rlpc::holds_attributes(format) ||
+      !decoder.has_attributes()) {
+    return rlpc::kExitDone;
+  }
+  auto sets = decoder.attributes();
+  if (!sets) {
+    return complain(rlpc::stream_message(o.input, sets.error(), o.decoder.limits) +
+                        "; frames are written without attributes",
+                    rlpc::exit_code(sets.error().code));
+  }
+  attributes = std::move(*sets);
+  return rlpc::kExitDone;
+}
+
 int decode(const Options& o) {
   auto source = rlpc::file_or_standard_input(o.input, o.decoder.limits.max_memory_bytes);
   if (!source) return complain(o, source.error());
@@ -285,6 +312,7 @@ int decode(const Options& o) {
   if (!span) return complain(span.error(), rlpc::kExitUsage);
   const std::uint32_t count = span->last - span->first + 1;
   std::unique_ptr<rlpc::FrameSink> sink;
+  int attributes_code = rlpc::kExitDone;
   if (!o.verify_only) {
     rlpc::SinkOptions options{decoder->num_vertices(),
                               count,
@@ -299,6 +327,7 @@ int decode(const Options& o) {
     options.motion = o.motion;
     options.max_targets = o.max_targets;
     options.max_skin_bytes = o.decoder.limits.max_memory_bytes / 2;
+    attributes_code = read_attributes(o, *decoder, live, options.attributes);
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {
@@ -318,7 +347,7 @@ int decode(const Options& o) {
     }
   }
   report(o, *decoder, frames, sink.get());
-  return frames.loss_code;
+  return frames.loss_code != rlpc::kExitDone ? frames.loss_code : attributes_code;
 }
 
 struct Outputs {
@@ -364,6 +393,12 @@ void add_format_options(CLI::App& app, Options& o, const Outputs& outputs) {
   app.add_option("--clip", o.clip, "This part only; rlpcinfo lists them")
       ->option_text("NAME")
       ->excludes("--frames")
+      ->excludes(outputs.page)
+      ->group(kOutput);
+  app.add_flag("--no-attributes", o.no_attributes,
+               "Positions and triangles only, without texture coordinates, normals, colours, "
+               "materials")
+      ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--ascii", o.ascii, "PLY files as text")

@@ -49,6 +49,7 @@ class FrameSource {
     std::vector<Clip> clips{};
     SourceAttributes attributes{};
     std::string asset{};
+    SourceMaterials materials{};
     std::uint64_t memory_bytes = 0;
     std::optional<Axes> axes_of_mesh{};
   };
@@ -62,7 +63,8 @@ class FrameSource {
   FrameRate frame_rate() const { return shape_.frame_rate; }
   // Every index is below num_vertices(). May be empty: a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
-  // Notes for the user, one line each, about dropped or merged data.
+  // Notes for the user, one line each, about dropped or merged data. Reading frames may add
+  // some.
   const std::vector<std::string>& notes() const { return shape_.notes; }
   // All files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
@@ -76,6 +78,7 @@ class FrameSource {
   const SourceAttributes& attributes() const { return shape_.attributes; }
   // Materials, textures and names of parts: a GLB without geometry; empty: none.
   const std::string& asset() const { return shape_.asset; }
+  const SourceMaterials& materials() const { return shape_.materials; }
 
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
@@ -89,6 +92,7 @@ class FrameSource {
  protected:
   explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}
   void set_axes_of_mesh(const std::optional<Axes>& axes) { shape_.axes_of_mesh = axes; }
+  void add_note(std::string note) { shape_.notes.push_back(std::move(note)); }
 
  private:
   Shape shape_;

@@ -21,6 +21,7 @@ class FrameStream {
     std::uint32_t num_vertices = 0;
     FrameRate frame_rate;
     std::vector<Triangle> triangles;  // every index below num_vertices; may be empty
+    SourceAttributes attributes{};
   };
 
   explicit FrameStream(Shape shape) : shape_(std::move(shape)) {}

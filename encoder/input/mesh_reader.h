@@ -14,21 +14,36 @@ struct SingleMesh {
   std::vector<float> xyz;               // 3 per vertex, at least one vertex, all finite
   std::vector<Triangle> triangles;      // polygons as fans from their first corner
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
+  SourceAttributes attributes{};        // of the triangles
+  SourceMaterials materials{};
+  std::string material_library{};             // as OBJ files name .mtl files
+  std::vector<std::string> material_files{};  // those that have been read
+  std::vector<std::string> notes{};           // about dropped data
+
+  // Of what grows while a file is read.
+  std::uint64_t memory_bytes() const {
+    return std::uint64_t{xyz.capacity()} * sizeof(float) +
+           std::uint64_t{triangles.capacity()} * sizeof(Triangle) + attributes.memory_bytes();
+  }
 };
 
-// Memory limits of a mesh, in addition to the text that it is read from.
+// What to read of a mesh, and its memory limits, in addition to the text that it is read from.
 struct MeshLimit {
   std::uint64_t of_all = kUsualEncoderBytes;  // for messages
   std::uint64_t of_mesh = kUsualEncoderBytes;
+  bool with_attributes = true;  // otherwise they are skipped, not checked
 
-  // Whether a vector of the mesh may grow by one element: growing takes three times its memory.
-  template <class T>
-  bool leaves_room(const SingleMesh& mesh, const std::vector<T>& grows) const {
+  // Whether a vector may grow by one element: growing takes three times its memory. holds: has
+  // memory_bytes(), with those of the vector.
+  template <class Holder, class T>
+  bool leaves_room(const Holder& holds, const std::vector<T>& grows) const {
     if (grows.size() < grows.capacity()) return true;
-    const auto bytes = [](const auto& all) {
-      return std::uint64_t{all.capacity()} * sizeof(all[0]);
-    };
-    return bytes(mesh.xyz) + bytes(mesh.triangles) + 2 * bytes(grows) <= of_mesh;
+    return holds.memory_bytes() + 2 * std::uint64_t{grows.capacity()} * sizeof(T) <= of_mesh;
+  }
+  // Whether so many more bytes may be held.
+  template <class Holder>
+  bool leaves_room_for(const Holder& holds, std::uint64_t bytes) const {
+    return holds.memory_bytes() + bytes <= of_mesh;
   }
 };
 
@@ -38,10 +53,11 @@ bool is_mesh_extension(const std::string& path);
 // Reads a mesh in the format given by the extension, otherwise by the contents. Errors: a bad
 // file; more than max_memory_bytes for the file and its mesh.
 InputResult<SingleMesh> read_mesh(const std::string& path,
-                                  std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+                                  std::uint64_t max_memory_bytes = kUsualEncoderBytes,
+                                  bool with_attributes = true);
 
-// The shape of a source with the triangles of `mesh`. The frame rate is `frame_rate` if given,
-// otherwise that of the mesh, otherwise `usual`.
+// The shape of a source with triangles, attributes and notes of `mesh`. The frame rate is
+// `frame_rate` if given, otherwise that of the mesh, otherwise `usual`.
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual = {});

@@ -18,7 +18,7 @@ struct SourceAttribute {
   AttributeDomain domain = AttributeDomain::kCorner;
   Kind kind = Kind::kNumbers;
   std::uint32_t num_components = 1;  // 1 to 4
-  // Of normalised integers: 255, or 65535, which stand for 1; otherwise 0.
+  // Of normalised integers: the one that stands for 1, 2^n - 1; otherwise 0.
   std::uint32_t max_value = 0;
   std::vector<float> values{};  // [value][component], all finite
   // Of corners: the index of the value of each, 3 per triangle. Empty: vertices and triangles
@@ -34,6 +34,24 @@ struct SourceAttributes {
   // each corner the index of its one.
   std::vector<float> rest_xyz{};
   std::vector<std::uint32_t> rest_of_corner{};
+
+  std::uint64_t memory_bytes() const {
+    const auto bytes = [](const auto& all) {
+      return std::uint64_t{all.capacity()} * sizeof(all[0]);
+    };
+    std::uint64_t sum = bytes(rest_xyz) + bytes(rest_of_corner);
+    for (const SourceAttribute& set : sets)
+      sum += bytes(set.values) + bytes(set.value_of_corner);
+    return sum;
+  }
+};
+
+// What the numbers of `material` and `part` stand for, where the input says so.
+struct SourceMaterials {
+  std::vector<std::string> names{};  // [value of `material`]; without the last: no material
+  std::vector<std::string> part_names{};  // [value of `part`]
+  std::string mtl{};                      // contents of the .mtl files
+  std::vector<std::string> textures{};    // image files, as the input names them
 };
 
 }  // namespace rlpc

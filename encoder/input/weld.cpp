@@ -139,6 +139,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   shape.clips = source->clips();
   shape.attributes = source->attributes();
   shape.asset = source->asset();
+  shape.materials = source->materials();
   shape.memory_bytes = source->memory_bytes();
   if (vertices.size() < welded.size()) {
     const std::size_t merged = welded.size() - vertices.size();

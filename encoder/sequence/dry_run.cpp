@@ -27,6 +27,7 @@ class StretchSource final : public FrameSource {
                      {},
                      source.attributes(),
                      source.asset(),
+                     source.materials(),
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {}

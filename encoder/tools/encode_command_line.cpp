@@ -45,6 +45,10 @@ INPUT is one of
 
 The format is taken from the extension, otherwise detected from the contents.
 
+Texture coordinates, normals and colours of OBJ and PLY files are kept, and the
+number of the material of each triangle. A sequence has those of its first file,
+a point cache those of its mesh. Vertices are not split along seams.
+
 Qualities
   word               KG error   mean normal deviation
   preview            1 %        2 to 9 degrees: dents are visible

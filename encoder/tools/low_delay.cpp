@@ -61,7 +61,7 @@ InputResult<LowDelayReport> finish(FrameEncoder& encoder, std::optional<InputErr
 InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOptions& options,
                                              const ByteSink& sink, const Progress& progress) {
   FrameFormat format{source.num_vertices(), source.num_frames(), source.frame_rate(),
-                     source.triangles()};
+                     source.triangles(), source.attributes()};
   std::vector<float> xyz(3 * std::size_t{format.num_vertices});
   BoxOfFrames box;
   for (std::uint32_t f = 0; f < format.num_frames && !options.box; ++f) {
@@ -83,7 +83,8 @@ InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions
                                         const ByteSink& sink,
                                         const std::function<bool()>& flush) {
   const FrameStream::Shape& shape = stream.shape();
-  FrameFormat format{shape.num_vertices, 0, shape.frame_rate, shape.triangles};
+  FrameFormat format{shape.num_vertices, 0, shape.frame_rate, shape.triangles,
+                     shape.attributes};
   std::vector<float> xyz(3 * std::size_t{format.num_vertices});
   auto more = stream.next_frame(xyz);
   if (!more) return more.error();

@@ -378,8 +378,12 @@ int run(EncodeOptions& o) {
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) o.settings.asset = (*source)->asset();
   if (o.dry_run) return run_dry(o, **source);
+  const std::size_t told = (*source)->notes().size();
   auto report = encode_to_files(o, **source);
   if (!report) return complain(report.error().message);
+  for (std::size_t i = told; i < (*source)->notes().size() && !o.quiet; ++i) {
+    complain(name + ": " + (*source)->notes()[i]);
+  }
   const std::uint32_t frames = report->header.num_frames;
   return tell(o, **source, {std::move(*report), frames});
 }

@@ -35,6 +35,20 @@ OBJ_SEEDS = [
     b"\xef\xbb\xbfo a\r\nv 0 0 0 1.0\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 0 0\r\nv 0 1 0\r\n"
     b"f 1/1/1 2//1 3/1\r\nf -1 -2 -3\r\n",
     b"v 1 2 \\\n 3 # three\n\nv 0.1 3.4028235e38 -1.17549435e-38\rg x\nf 1 2 1\n",
+    b"v 0 0 0 1 0 0.5\nv 1 0 0\nv 0 1 0\nvt 0 1\nvt 0.5\nvn 0 0 1\nusemtl m\nf 1/1/1 2/2 3//1\n"
+    b"g b c\nusemtl n\nf -1/-1/-1 2/1 3 1\n",
+]
+PLY_SEEDS = [
+    b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    b"property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+    b"property float s\nproperty float t\nproperty uchar red\nproperty uchar green\n"
+    b"property uchar blue\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+    b"0 0 0 0 0 1 0 1 1 2 3\n1 0 0 0 0 1 0 1 1 2 3\n0 1 0 0 0 1 0 1 1 2 3\n3 0 1 2\n",
+    b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+    b"property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\n"
+    b"property list uchar float texcoord\nproperty float red\nproperty float green\n"
+    b"property float blue\nproperty short texnumber\nend_header\n"
+    + struct.pack("<9fB3iB9fh", *range(9), 3, 0, 1, 2, 6, *[0.5] * 9, 1),
 ]
 
 
@@ -318,7 +332,8 @@ def seeds_of(target, streams, root):
     if target == "obj_fuzz":
         return OBJ_SEEDS + [obj_text(p, t) for p, t, _ in small_animations()]
     if target in ("off_fuzz", "ply_fuzz"):
-        return [b for p, t, _ in small_animations() for b in mesh_files(target[:3], p, t)]
+        seeds = PLY_SEEDS if target == "ply_fuzz" else []
+        return seeds + [b for p, t, _ in small_animations() for b in mesh_files(target[:3], p, t)]
     if target == "mdd_fuzz":
         return [bytes([len(p) - 1]) + mdd_bytes(p, f) for p, _, f in small_animations()]
     if target == "pc2_fuzz":

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include "common/io/numbered_name.h"
+#include "encoder/input/formats/material_files.h"
 #include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
@@ -99,18 +102,52 @@ std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
           " gaps, the first between " + first_gap + "; the gaps are closed"};
 }
 
+const SourceAttribute* find_attribute(const SourceAttributes& attributes,
+                                      const std::string& name) {
+  for (const SourceAttribute& set : attributes.sets) {
+    if (set.name == name) return &set;
+  }
+  return nullptr;
+}
+
+// Whether two sets of the same triangles have the same values, except for rounding.
+bool are_near(const SourceAttribute& a, const SourceAttribute& b,
+              std::span<const Triangle> triangles) {
+  if (a.num_components != b.num_components || a.max_value != b.max_value) return false;
+  const float near = a.max_value == 0 ? 1e-4F : 0.5F;
+  const auto value_of = [&](const SourceAttribute& set, std::size_t corner) {
+    if (set.domain == AttributeDomain::kTriangle) return corner / 3;
+    return std::size_t{set.value_of_corner.empty() ? triangles[corner / 3][corner % 3]
+                                                   : set.value_of_corner[corner]};
+  };
+  const std::size_t n = a.num_components;
+  for (std::size_t corner = 0; corner < 3 * triangles.size(); ++corner) {
+    for (std::size_t c = 0; c < n; ++c) {
+      const float x = a.values[n * value_of(a, corner) + c];
+      const float y = b.values[n * value_of(b, corner) + c];
+      if (std::abs(x - y) > near) return false;
+    }
+  }
+  return true;
+}
+
 class MeshSequence : public FrameSource {
  public:
   MeshSequence(Shape shape, std::vector<std::string> paths, std::uint64_t max_memory_bytes)
       : FrameSource(std::move(shape)),
         paths_(std::move(paths)),
-        max_memory_bytes_(max_memory_bytes) {}
+        max_memory_bytes_(max_memory_bytes),
+        has_compared_attributes_(paths_.size(), false) {
+    has_compared_attributes_[0] = true;
+  }
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    const auto mesh = read_mesh(paths_[frame], max_memory_bytes_);
+    const auto mesh =
+        read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame]);
     if (!mesh) return mesh.error();
     if (auto error = compare_with_first(frame, *mesh)) return error;
+    if (!has_compared_attributes_[frame]) compare_attributes(frame, mesh->attributes);
     std::copy(mesh->xyz.begin(), mesh->xyz.end(), xyz.begin());
     return std::nullopt;
   }
@@ -141,6 +178,22 @@ class MeshSequence : public FrameSource {
     return std::nullopt;
   }
 
+  // Adds a note about the first file whose attributes are not those of the first one.
+  void compare_attributes(std::uint32_t frame, const SourceAttributes& found) {
+    has_compared_attributes_[frame] = true;
+    for (const SourceAttribute& set : found.sets) {
+      if (set.name == "normal") continue;  // moves with the frames
+      const SourceAttribute* const first = find_attribute(attributes(), set.name);
+      if (first != nullptr && are_near(*first, set, triangles())) continue;
+      add_note(paths_[frame] + ": " + set.name +
+               (first == nullptr
+                    ? " is dropped, as " + paths_[0] + " has none"
+                    : " differs from that of " + paths_[0] + ", which is kept for all frames"));
+      has_compared_attributes_.assign(paths_.size(), true);
+      return;
+    }
+  }
+
   // Counted from 1, as in OBJ files.
   static std::string corners(const Triangle& t) {
     std::string text;
@@ -150,6 +203,7 @@ class MeshSequence : public FrameSource {
 
   std::vector<std::string> paths_;
   std::uint64_t max_memory_bytes_;
+  std::vector<bool> has_compared_attributes_;  // [frame]
 };
 
 }  // namespace
@@ -237,12 +291,12 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
     std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes) {
   assert(!paths.empty());
-  auto first = read_mesh(paths[0], max_memory_bytes);
+  auto first = read_mesh_and_materials(paths[0], max_memory_bytes);
   if (!first) return first.error();
   auto shape =
       shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
-  shape.notes = notes_on(paths);
-  shape.files = paths;
+  for (std::string& note : notes_on(paths)) shape.notes.push_back(std::move(note));
+  shape.files.insert(shape.files.begin(), paths.begin(), paths.end());
   return std::unique_ptr<FrameSource>(
       std::make_unique<MeshSequence>(std::move(shape), std::move(paths), max_memory_bytes));
 }

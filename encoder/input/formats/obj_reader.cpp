@@ -4,15 +4,27 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "encoder/input/formats/mesh_attributes.h"
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/formats/obj_attributes.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {
 
 namespace {
+
+// What corners of faces refer to by number.
+struct Indexed {
+  const char* name;
+  // The largest index so far of one that has not been read yet, and its line.
+  std::int64_t highest = 0;
+  std::uint64_t highest_line = 0;
+};
 
 class ObjParser {
  public:
@@ -28,17 +40,26 @@ class ObjParser {
         read_face();
       } else if (keyword.empty()) {
         read_comment();
+      } else if (limit_.with_attributes) {
+        read_attribute(keyword);
       }
       if (error_) return *error_;
     }
     if (mesh_.xyz.empty()) {
       return InputError{name_ + ": no vertex (no line \"v x y z\"); is this an OBJ file?"};
     }
-    if (highest_index_ > num_vertices()) {
-      fail(highest_line_, out_of_range(highest_index_));
-      return *error_;
+    check_highest(vertices_, num_vertices());
+    if (limit_.with_attributes) {
+      check_or_ignore(uv_, attributes_.num_uv());
+      check_or_ignore(normals_, attributes_.num_normals());
+      if (!error_ && !attributes_.finish(mesh_, limit_)) fail_for_memory();
     }
+    if (error_) return *error_;
     return std::move(mesh_);
+  }
+
+  std::uint64_t memory_bytes() const {
+    return mesh_.memory_bytes() + attributes_.memory_bytes();
   }
 
  private:
@@ -50,26 +71,59 @@ class ObjParser {
 
   void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }
 
-  std::string out_of_range(std::int64_t index) const {
-    return "vertex index " + std::to_string(index) + " is out of range 1 to " +
-           std::to_string(num_vertices()) + "; is the file complete?";
+  static std::string out_of_range(const Indexed& kind, std::int64_t index, std::int64_t count) {
+    return kind.name + std::string(" index ") + std::to_string(index) +
+           " is out of range 1 to " + std::to_string(count) + "; is the file complete?";
   }
 
-  // Reads "v x y z" and ignores the rest of the line.
+  void check_highest(const Indexed& kind, std::int64_t count) {
+    if (kind.highest > count) fail(kind.highest_line, out_of_range(kind, kind.highest, count));
+  }
+
+  // Some files have indices into lists that they do not have.
+  void check_or_ignore(const Indexed& kind, std::int64_t count) {
+    if (count > 0) return check_highest(kind, count);
+    if (kind.highest == 0) return;
+    mesh_.notes.push_back(std::string("ignores each ") + kind.name +
+                          " index, as the file has none of these");
+  }
+
+  void push(float value, std::vector<float>& list) {
+    if (!limit_.leaves_room(*this, list)) return fail_for_memory();
+    list.push_back(value);
+  }
+
+  // Reads "v x y z" or "v x y z r g b", and ignores other rests of the line.
   void read_vertex() {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!limit_.leaves_room(mesh_, mesh_.xyz)) return fail_for_memory();
-      mesh_.xyz.push_back(read_float());
+    for (int axis = 0; axis < 3 && !error_; ++axis) {
+      push(read_float("a vertex needs three coordinates"), mesh_.xyz);
+    }
+    if (!error_ && limit_.with_attributes) read_colour();
+  }
+
+  void read_colour() {
+    std::array<float, 3> colour{};
+    std::size_t count = 0;
+    for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
+      std::optional<std::string> problem;
+      const float value = parse_coordinate(word, problem);
+      if (problem || count == colour.size()) return;
+      colour[count++] = value;
+    }
+    if (count < colour.size()) return;
+    const auto vertex = static_cast<std::size_t>(num_vertices() - 1);
+    if (!attributes_.add_colour(vertex, colour, limit_, mesh_.memory_bytes())) {
+      fail_for_memory();
     }
   }
 
-  float read_float() {
+  float read_float(const char* if_none) {
     const std::string_view word = words_.next();
     if (word.empty()) {
-      fail(words_.line(), "a vertex needs three coordinates");
+      fail(words_.line(), if_none);
       return 0;
     }
     std::optional<std::string> problem;
@@ -78,19 +132,49 @@ class ObjParser {
     return value;
   }
 
+  void read_attribute(std::string_view keyword) {
+    if (keyword == "vt") {
+      push(read_float("a texture coordinate needs one number or more"), attributes_.uv());
+      const std::string_view word = words_.next();
+      std::optional<std::string> problem;
+      push(word.empty() ? 0 : parse_coordinate(word, problem), attributes_.uv());
+      if (problem) fail(words_.line(), *problem);
+    } else if (keyword == "vn") {
+      for (int axis = 0; axis < 3 && !error_; ++axis) {
+        push(read_float("a normal needs three coordinates"), attributes_.normals());
+      }
+    } else if (keyword == "usemtl") {
+      attributes_.set_material(rest_of_words());
+    } else if (keyword == "o") {
+      attributes_.set_object(rest_of_words());
+    } else if (keyword == "g") {
+      attributes_.set_group(rest_of_words());
+    } else if (keyword == "mtllib" && mesh_.material_library.empty()) {
+      mesh_.material_library = rest_of_words();
+    }
+    if (!limit_.leaves_room_for(*this, 0)) fail_for_memory();
+  }
+
+  std::string rest_of_words() {
+    std::string text;
+    for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
+      if (!text.empty()) text += ' ';
+      text += word;
+    }
+    return text;
+  }
+
   // Reads "f a b c ..." as a fan from the first corner.
   void read_face() {
-    Triangle fan{};
+    std::array<ObjCorner, 3> fan{};
     std::size_t corners = 0;
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
-      const std::uint32_t vertex = parse_corner(word);
+      const ObjCorner corner = parse_corner(word);
       if (error_) return;
       if (corners >= 3) fan[1] = fan[2];
-      fan[corners < 2 ? corners : 2] = vertex;
+      fan[corners < 2 ? corners : 2] = corner;
       ++corners;
-      if (corners < 3) continue;
-      if (!limit_.leaves_room(mesh_, mesh_.triangles)) return fail_for_memory();
-      mesh_.triangles.push_back(fan);
+      if (corners >= 3) add_triangle(fan);
     }
     if (corners < 3) {
       fail(words_.line(),
@@ -98,44 +182,61 @@ class ObjParser {
     }
   }
 
-  // Parses v, v/vt, v//vn or v/vt/vn; v counts from 1, or backwards from the last vertex, -1.
-  std::uint32_t parse_corner(std::string_view word) {
-    const char* const last = word.data() + word.size();
-    std::int64_t index = 0;
-    auto [end, ec] = std::from_chars(word.data(), last, index);
-    bool ok = ec == std::errc();
-    for (int part = 0; ok && part < 2 && end != last && *end == '/'; ++part) {
-      std::int64_t unused = 0;
-      const bool may_be_empty = part == 0 && end + 1 != last && end[1] == '/';
-      ++end;
-      if (may_be_empty) continue;
-      const auto tail = std::from_chars(end, last, unused);
-      ok = tail.ec == std::errc();
-      end = tail.ptr;
+  void add_triangle(const std::array<ObjCorner, 3>& corners) {
+    if (!limit_.leaves_room(*this, mesh_.triangles)) return fail_for_memory();
+    const std::size_t triangle = mesh_.triangles.size();
+    mesh_.triangles.push_back({corners[0].vertex, corners[1].vertex, corners[2].vertex});
+    if (limit_.with_attributes &&
+        !attributes_.add_triangle(triangle, corners, limit_, mesh_.memory_bytes())) {
+      fail_for_memory();
     }
-    if (!ok || end != last) {
-      fail(words_.line(),
-           quoted(word) + " is not a face corner; expected v, v/vt, v//vn or v/vt/vn");
-      return 0;
-    }
-    return resolve(index);
   }
 
-  // The zero-based index. Vertices may follow: indices beyond them are checked at the end of
-  // the file.
-  std::uint32_t resolve(std::int64_t index) {
-    if (index == 0) fail(words_.line(), "vertex index 0; vertices are counted from 1");
-    if (index > std::numeric_limits<std::uint32_t>::max() || index < -num_vertices()) {
-      fail(words_.line(), index > 0 ? out_of_range(index)
-                                    : "vertex index " + std::to_string(index) + ", but only " +
-                                          std::to_string(num_vertices()) +
-                                          " vertices come before it");
+  // Parses v, v/vt, v//vn or v/vt/vn; each counts from 1, or backwards from the last, -1.
+  ObjCorner parse_corner(std::string_view word) {
+    const char* const last = word.data() + word.size();
+    std::array<std::int64_t, 3> index{};
+    std::array<bool, 3> is_there{};
+    const char* at = word.data();
+    bool ok = true;
+    for (std::size_t part = 0; part < 3 && ok; ++part) {
+      if (part > 0 && (at == last || *at != '/')) break;
+      if (part > 0) ++at;
+      if (part == 1 && at != last && *at == '/') continue;
+      const auto [end, ec] = std::from_chars(at, last, index[part]);
+      ok = ec == std::errc();
+      is_there[part] = ok;
+      at = end;
     }
-    if (index > num_vertices() && index > highest_index_) {
-      highest_index_ = index;
-      highest_line_ = words_.line();
+    if (!ok || at != last) {
+      fail(words_.line(),
+           quoted(word) + " is not a face corner; expected v, v/vt, v//vn or v/vt/vn");
+      return {};
     }
-    return static_cast<std::uint32_t>(index > 0 ? index - 1 : num_vertices() + index);
+    const auto resolved = [&](std::size_t part, Indexed& kind, std::int64_t count) {
+      if (!is_there[part] || !limit_.with_attributes) return kNoValue;
+      return resolve(index[part], kind, count);
+    };
+    return {resolve(index[0], vertices_, num_vertices()),
+            resolved(1, uv_, attributes_.num_uv()),
+            resolved(2, normals_, attributes_.num_normals())};
+  }
+
+  // The zero-based index. What it refers to may follow: indices beyond that are checked at the
+  // end of the file.
+  std::uint32_t resolve(std::int64_t index, Indexed& kind, std::int64_t count) {
+    const std::string name = kind.name;
+    if (index == 0) fail(words_.line(), name + " index 0; counting starts at 1");
+    if (index > std::numeric_limits<std::uint32_t>::max() || index < -count) {
+      fail(words_.line(), index > 0 ? out_of_range(kind, index, count)
+                                    : name + " index " + std::to_string(index) + ", but only " +
+                                          std::to_string(count) + " come before it");
+    }
+    if (index > count && index > kind.highest) {
+      kind.highest = index;
+      kind.highest_line = words_.line();
+    }
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
   }
 
   void read_comment() {
@@ -150,9 +251,11 @@ class ObjParser {
   const std::string& name_;
   const MeshLimit& limit_;
   SingleMesh mesh_;
+  ObjAttributes attributes_;
   std::optional<InputError> error_;
-  std::int64_t highest_index_ = 0;
-  std::uint64_t highest_line_ = 0;
+  Indexed vertices_{"vertex"};
+  Indexed uv_{"texture coordinate"};
+  Indexed normals_{"normal"};
 };
 
 }  // namespace

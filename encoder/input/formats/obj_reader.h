@@ -1,7 +1,8 @@
-// Wavefront OBJ: vertices and faces, nothing else.
+// Wavefront OBJ: vertices and faces, texture coordinates and normals of their corners, colours
+// (v x y z r g b), materials, objects and groups.
 //
 // Strict where silence would change the animation (numbers, indices, face sizes), lenient where
-// it cannot (other keywords, w and colours after x y z, texture and normal indices). Numbers
+// it cannot (other keywords, w after x y z). Numbers
 // are rounded correctly, so that the same file gives the same stream on every machine.
 #pragma once
 

@@ -38,7 +38,8 @@ TEST(ObjReader, ReadsOneTriangle) {
 }
 
 TEST(ObjReader, AcceptsEveryFormOfCorner) {
-  EXPECT_EQ(triangles_of(kThreeVertices + "f 1/1 2//2 3/3/3\nf -3/-1/-1 -2//-1 -1\n"),
+  const std::string others = "vt 0 0\nvt 1\nvt 0 1 0\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n";
+  EXPECT_EQ(triangles_of(kThreeVertices + others + "f 1/1 2//2 3/3/3\nf -3/-1/-1 -2//-1 -1\n"),
             (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
 }
 

@@ -161,8 +161,12 @@ class HeaderParser {
   }
 
   void parse_comment(TextWords& words) {
-    if (header_.frame_rate || words.next() != "frame_rate") return;
-    if (const auto rate = parse_frame_rate(words.next())) header_.frame_rate = *rate;
+    const std::string_view key = words.next();
+    if (key == "TextureFile") {
+      header_.textures.emplace_back(words.next());
+    } else if (key == "frame_rate" && !header_.frame_rate) {
+      if (const auto rate = parse_frame_rate(words.next())) header_.frame_rate = *rate;
+    }
   }
 
   std::string_view text_;

@@ -34,6 +34,7 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;     // in the order of the file
   std::optional<FrameRate> frame_rate;  // of "comment frame_rate N/D"
+  std::vector<std::string> textures;    // of "comment TextureFile NAME"
   std::size_t body = 0;                 // offset of the first byte after the header
   std::uint64_t body_line = 0;          // number of the line that begins there
 };

@@ -1,15 +1,14 @@
 #include "encoder/input/formats/ply_reader.h"
 
 #include <array>
-#include <bit>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <optional>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/formats/ply_attributes.h"
+#include "encoder/input/formats/ply_body.h"
 #include "encoder/input/formats/ply_header.h"
 #include "encoder/input/input_file.h"
 
@@ -18,142 +17,6 @@ namespace rlpc {
 namespace {
 
 using std::to_string;
-
-// Reads the values of a text body in order; gives zeros after an error.
-class TextBody {
- public:
-  TextBody(std::string_view text, const PlyHeader& header)
-      : words_(text.substr(header.body), header.body_line), bytes_(text.size() - header.body) {}
-
-  // The position of the last value, for error messages.
-  std::string place() const { return ":" + to_string(line_); }
-  const std::optional<std::string>& problem() const { return problem_; }
-  std::uint64_t bytes_left() const { return bytes_ - words_.position(); }
-  // The smallest size of a value: a character and a separator, which the last value may lack.
-  static std::uint64_t least_bytes(PlyType) { return 2; }
-  static std::uint64_t spare_bytes() { return 1; }
-
-  float coordinate(PlyType) {
-    const std::string_view word = next();
-    return problem_ ? 0 : parse_coordinate(word, problem_);
-  }
-
-  std::int64_t integer(PlyType) {
-    const std::string_view word = next();
-    if (problem_) return 0;
-    std::int64_t value = 0;
-    const char* const last = word.data() + word.size();
-    const auto [end, ec] = std::from_chars(word.data(), last, value);
-    if (ec == std::errc() && end == last) return value;
-    problem_ = quoted(word) + " is not an integer";
-    return 0;
-  }
-
-  void skip(PlyType, std::uint64_t count) {
-    for (std::uint64_t i = 0; i < count && !problem_; ++i) next();
-  }
-
-  void expect_end() {
-    if (!words_.next_of_any_line().empty())
-      problem_ = "has data after what the header announces";
-    line_ = words_.line();
-  }
-
- private:
-  std::string_view next() {
-    const std::string_view word = words_.next_of_any_line();
-    line_ = words_.line();
-    if (word.empty() && !problem_)
-      problem_ = "the file ends before all values; is it complete?";
-    return word;
-  }
-
-  TextWords words_;
-  std::uint64_t bytes_;
-  std::uint64_t line_ = 0;
-  std::optional<std::string> problem_;
-};
-
-// Reads the values of a binary body, with the same interface.
-class BinaryBody {
- public:
-  BinaryBody(std::string_view text, const PlyHeader& header)
-      : text_(text),
-        pos_(header.body),
-        little_endian_(header.encoding == PlyEncoding::kLittleEndian) {}
-
-  std::string place() const { return ": byte " + to_string(last_); }
-  const std::optional<std::string>& problem() const { return problem_; }
-  std::uint64_t bytes_left() const { return text_.size() - pos_; }
-  static std::uint64_t least_bytes(PlyType type) { return ply_bytes(type); }
-  static std::uint64_t spare_bytes() { return 0; }
-
-  float coordinate(PlyType type) {
-    if (!is_ply_float(type)) return static_cast<float>(integer(type));
-    const std::uint64_t bits = take(type);
-    const float value = type == PlyType::kF64
-                            ? static_cast<float>(std::bit_cast<double>(bits))
-                            : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-    if (std::isfinite(value)) return value;
-    if (!problem_) {
-      problem_ = std::string("a coordinate is ") +
-                 (std::isnan(value) ? "not a number" : "infinite, or too large for 32 bits") +
-                 "; every coordinate must be finite";
-    }
-    return 0;
-  }
-
-  std::int64_t integer(PlyType type) {
-    const std::uint64_t bits = take(type);
-    switch (type) {
-      case PlyType::kI8:
-        return static_cast<std::int8_t>(bits);
-      case PlyType::kI16:
-        return static_cast<std::int16_t>(bits);
-      case PlyType::kI32:
-        return static_cast<std::int32_t>(bits);
-      default:
-        return static_cast<std::int64_t>(bits);
-    }
-  }
-
-  void skip(PlyType type, std::uint64_t count) {
-    if (!has(type, count)) return;
-    pos_ += static_cast<std::size_t>(count) * ply_bytes(type);
-  }
-
-  void expect_end() {
-    last_ = pos_;
-    if (pos_ < text_.size()) problem_ = "has data after what the header announces";
-  }
-
- private:
-  bool has(PlyType type, std::uint64_t count) {
-    last_ = pos_;
-    if (!problem_ && bytes_left() / ply_bytes(type) < count) {
-      problem_ = "the file ends before all values; is it complete?";
-    }
-    return !problem_;
-  }
-
-  std::uint64_t take(PlyType type) {
-    if (!has(type, 1)) return 0;
-    const std::size_t size = ply_bytes(type);
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t at = little_endian_ ? pos_ + size - 1 - i : pos_ + i;
-      bits = (bits << 8) | static_cast<unsigned char>(text_[at]);
-    }
-    pos_ += size;
-    return bits;
-  }
-
-  std::string_view text_;
-  std::size_t pos_;
-  std::size_t last_ = 0;  // first byte of the last value
-  bool little_endian_;
-  std::optional<std::string> problem_;
-};
 
 template <class Body>
 class PlyReader {
@@ -170,6 +33,7 @@ class PlyReader {
     if (num_vertices_ == 0) {
       return InputError{name_ + ": no vertices: the header needs an element \"vertex\""};
     }
+    attributes_.find_roles(header_, limit_.with_attributes);
     for (const PlyElement& element : header_.elements) {
       if (auto error = check(element)) return *error;
       read_element(element);
@@ -177,6 +41,8 @@ class PlyReader {
     }
     body_.expect_end();
     if (auto error = failure()) return *error;
+    if (!attributes_.finish(mesh_, limit_)) return too_large();
+    if (limit_.with_attributes) mesh_.materials.textures = header_.textures;
     return std::move(mesh_);
   }
 
@@ -188,8 +54,8 @@ class PlyReader {
     return false;
   }
 
-  static bool is_polygon(const PlyProperty& p) {
-    return p.name == "vertex_indices" || p.name == "vertex_index";
+  InputError too_large() const {
+    return InputError{name_ + ": " + memory_problem(limit_.of_all)};
   }
 
   // Checks, before memory is allocated, that the counts of the header are possible and usable.
@@ -208,17 +74,17 @@ class PlyReader {
                         " are left in the file; is it complete?"};
     }
     if (element.name == "vertex") {
-      if (std::uint64_t{element.count} * 12 > limit_.of_mesh) {
-        return InputError{name_ + ": " + memory_problem(limit_.of_all)};
-      }
+      const std::uint64_t floats = 3 + attributes_.floats_per_vertex();
+      if (element.count * floats * sizeof(float) > limit_.of_mesh) return too_large();
       for (const char* axis : {"x", "y", "z"}) {
         if (is_scalar(element, axis)) continue;
         return InputError{name_ + ": element \"vertex\" has no number " + axis};
       }
     } else if (element.name == "face" && element.count > 0) {
       bool found = false;
-      for (const PlyProperty& p : element.properties) {
-        found |= is_polygon(p) && p.length && !is_ply_float(p.type);
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        found |= attributes_.of_faces()[i].kind == PlyRole::Kind::kPolygon &&
+                 !is_ply_float(element.properties[i].type);
       }
       if (!found) {
         return InputError{name_ + ": element \"face\" has no list of integers vertex_indices"};
@@ -230,22 +96,75 @@ class PlyReader {
   }
 
   void read_element(const PlyElement& element) {
-    const bool is_vertex = element.name == "vertex";
-    const bool is_face = element.name == "face";
-    if (is_vertex) mesh_.xyz.resize(3 * std::size_t{element.count});
-    for (std::uint32_t i = 0; i < element.count && !failed(); ++i) {
+    if (element.name == "vertex") return read_vertices(element);
+    if (element.name == "face") return read_faces(element);
+    for (std::uint32_t i = 0; i < element.count; ++i) {
       for (const PlyProperty& p : element.properties) {
-        if (is_vertex && !p.length && p.name.size() == 1 && p.name[0] >= 'x' &&
-            p.name[0] <= 'z') {
-          mesh_.xyz[3 * std::size_t{i} + static_cast<std::size_t>(p.name[0] - 'x')] =
-              body_.coordinate(p.type);
-        } else if (is_face && p.length && is_polygon(p)) {
-          read_polygon(p);
+        skip(p);
+        if (failed()) return;
+      }
+    }
+  }
+
+  void read_vertices(const PlyElement& element) {
+    mesh_.xyz.resize(3 * std::size_t{element.count});
+    attributes_.set_num_vertices(element.count);
+    for (std::size_t v = 0; v < element.count; ++v) {
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyRole& role = attributes_.of_vertices()[i];
+        const PlyProperty& p = element.properties[i];
+        if (role.kind == PlyRole::Kind::kSkipped) {
+          skip(p);
+        } else if (role.kind == PlyRole::Kind::kPosition) {
+          mesh_.xyz[3 * v + role.component] = body_.coordinate(p.type);
         } else {
-          body_.skip(p.type, p.length ? length_of(p) : 1);
+          attributes_.set_of_vertex(v, role, body_.coordinate(p.type));
         }
         if (failed()) return;
       }
+    }
+  }
+
+  void read_faces(const PlyElement& element) {
+    for (std::uint32_t f = 0; f < element.count; ++f) {
+      const std::size_t first = mesh_.triangles.size();
+      for (std::size_t i = 0; i < element.properties.size() && !failed(); ++i) {
+        read_of_face(attributes_.of_faces()[i], element.properties[i]);
+      }
+      if (failed()) return;
+      problem_ = attributes_.end_face(mesh_.triangles.size() - first, mesh_, limit_);
+      if (failed()) return;
+    }
+  }
+
+  void read_of_face(const PlyRole& role, const PlyProperty& p) {
+    switch (role.kind) {
+      case PlyRole::Kind::kPolygon:
+        return read_polygon(p);
+      case PlyRole::Kind::kCornerUv:
+        return read_corner_uv(p);
+      case PlyRole::Kind::kFaceColour:
+        return attributes_.set_of_face(role, body_.coordinate(p.type));
+      case PlyRole::Kind::kMaterial:
+        return attributes_.set_material(body_.integer(p.type));
+      default:
+        return skip(p);
+    }
+  }
+
+  void skip(const PlyProperty& p) { body_.skip(p.type, p.length ? length_of(p) : 1); }
+
+  void read_corner_uv(const PlyProperty& list) {
+    const std::uint64_t length = length_of(list);
+    std::vector<float>& uv = attributes_.corner_uv();
+    for (std::uint64_t i = 0; i < length; ++i) {
+      const float value = body_.coordinate(list.type);
+      if (failed()) return;
+      if (!limit_.leaves_room(mesh_, uv)) {
+        problem_ = memory_problem(limit_.of_all);
+        return;
+      }
+      uv.push_back(value);
     }
   }
 
@@ -297,6 +216,7 @@ class PlyReader {
   const MeshLimit& limit_;
   std::int64_t num_vertices_ = 0;
   SingleMesh mesh_;
+  PlyAttributes attributes_;
   std::optional<std::string> problem_;
 };
 

@@ -14,6 +14,7 @@
 
 #include "common/io/binary_numbers.h"
 #include "encoder/input/axes_fit.h"
+#include "encoder/input/formats/material_files.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
 #include "encoder/input/piped_frames.h"
@@ -226,7 +227,7 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   if (mesh_path == "-" && points_path == "-") {
     return InputError{"standard input: cannot be both the mesh and its point cache"};
   }
-  auto mesh = read_mesh(mesh_path, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   if (points_path == "-" && !may_begin_cache(beginning_of("-"), num_vertices)) {
@@ -256,8 +257,8 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(
   const std::vector<float> mesh_xyz = mesh->xyz;
   auto shape =
       shape_of(std::move(*mesh), static_cast<std::uint32_t>(layout->frames), frame_rate, usual);
-  shape.files = {mesh_path, points_path};
-  shape.notes = std::move(notes);
+  shape.files.insert(shape.files.begin(), {mesh_path, points_path});
+  shape.notes.insert(shape.notes.end(), notes.begin(), notes.end());
   shape.memory_bytes += file->memory_bytes();
   auto source = std::make_unique<PointCache>(std::move(shape), std::move(*file), *layout);
   source->compare_axes(mesh_xyz);
@@ -302,7 +303,7 @@ class Pc2Stream final : public FrameStream {
 InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
     std::FILE* file, const std::string& name, const std::string& mesh_path,
     const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) {
-  auto mesh = read_mesh(mesh_path, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   std::array<char, kPc2HeaderBytes> header{};
@@ -314,7 +315,8 @@ InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
   if (auto error = check_points(name, *layout, mesh_path, num_vertices)) return *error;
   FrameSource::Shape shape = shape_of(std::move(*mesh), 1, frame_rate);
   return std::unique_ptr<FrameStream>(std::make_unique<Pc2Stream>(
-      FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles)},
+      FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles),
+                         std::move(shape.attributes)},
       file));
 }
 

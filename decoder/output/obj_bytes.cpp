@@ -1,0 +1,106 @@
+#include "decoder/output/obj_bytes.h"
+
+#include "common/io/float_position.h"
+
+namespace rlpc {
+
+std::string material_name(std::uint32_t number) { return "material_" + std::to_string(number); }
+
+ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
+    : options_(options), attributes_(options), normals_(attributes_, options) {
+  header_ = "# frame_rate " + frame_rate_text(options.frame_rate) + "\n";
+  if (!materials.empty()) header_ += "mtllib " + materials + "\n";
+  const AttributeSet* const colour = attributes_.colour;
+  // OBJ files have colours of vertices only.
+  if (colour != nullptr && colour->header.domain == AttributeDomain::kVertex) {
+    colours_ = attributes_.colour_numbers();
+    colour_width_ = number_components(colour->header);
+  }
+  append_uv();
+  append_faces();
+}
+
+void ObjBytes::append_uv() {
+  if (attributes_.uv == nullptr) return;
+  const std::vector<float> uv = attributes_.uv_numbers();
+  for (std::size_t i = 0; i < uv.size(); i += 2) {
+    header_ += "vt ";
+    append_number(header_, uv[i]);
+    header_ += ' ';
+    append_number(header_, uv[i + 1]);
+    header_ += '\n';
+  }
+}
+
+void ObjBytes::append_faces() {
+  const AttributeSet* const uv = attributes_.uv;
+  const auto number_of = [](const AttributeSet* set, std::size_t triangle) {
+    return set->values[triangle];
+  };
+  const auto changes = [&](const AttributeSet* set, std::size_t triangle) {
+    return set != nullptr &&
+           (triangle == 0 || number_of(set, triangle) != number_of(set, triangle - 1));
+  };
+  for (std::size_t t = 0; t < options_.triangles.size(); ++t) {
+    if (changes(attributes_.part, t)) {
+      faces_ += "g part_" + std::to_string(number_of(attributes_.part, t)) + "\n";
+    }
+    if (changes(attributes_.material, t)) {
+      faces_ += "usemtl " + material_name(number_of(attributes_.material, t)) + "\n";
+    }
+    faces_ += 'f';
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = options_.triangles[t][k];
+      const std::size_t c = 3 * t + k;
+      faces_ += ' ';
+      append_number(faces_, std::uint64_t{v} + 1);
+      if (uv != nullptr) {
+        faces_ += '/';
+        const std::uint32_t value = uv->value_of_corner.empty() ? v : uv->value_of_corner[c];
+        append_number(faces_, std::uint64_t{value} + 1);
+      }
+      if (!normals_.exist()) continue;
+      faces_ += uv != nullptr ? "/" : "//";
+      append_number(faces_, std::uint64_t{normals_.of_corner(c)} + 1);
+    }
+    faces_ += '\n';
+  }
+}
+
+const std::string& ObjBytes::frame(std::span<const std::int32_t> positions) {
+  bytes_ = header_;
+  xyz_.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    xyz_[i] = float_position(options_.grid, i % 3, positions[i]);
+  }
+  append_vertices();
+  append_normals();
+  return bytes_ += faces_;
+}
+
+void ObjBytes::append_vertices() {
+  for (std::size_t v = 0; v < xyz_.size() / 3; ++v) {
+    bytes_ += 'v';
+    for (std::size_t c = 0; c < 3; ++c) {
+      bytes_ += ' ';
+      append_number(bytes_, xyz_[3 * v + c]);
+    }
+    for (std::size_t c = 0; c < 3 && colour_width_ > 0; ++c) {
+      bytes_ += ' ';
+      append_rounded(bytes_, colours_[colour_width_ * v + c]);
+    }
+    bytes_ += '\n';
+  }
+}
+
+void ObjBytes::append_normals() {
+  if (!normals_.exist()) return;
+  const std::span<const float> normals = normals_.of(xyz_);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    bytes_ += i % 3 == 0 ? "vn " : " ";
+    append_rounded(bytes_, normals[i]);
+    if (i % 3 == 2) bytes_ += '\n';
+  }
+}
+
+}  // namespace rlpc

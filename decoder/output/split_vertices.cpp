@@ -1,0 +1,111 @@
+#include "decoder/output/split_vertices.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+namespace rlpc {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+// Of each value, the index of the first one that is equal.
+Indices first_equals(const AttributeSet& set) {
+  Indices first(set.num_values());
+  std::iota(first.begin(), first.end(), 0U);
+  if (set.header.has_faces()) return first;
+  const std::size_t n = set.header.num_components;
+  const auto compare = [&](std::uint32_t a, std::uint32_t b) {
+    const auto* const values = set.values.data();
+    return std::lexicographical_compare_three_way(values + a * n, values + (a + 1) * n,
+                                                  values + b * n, values + (b + 1) * n);
+  };
+  Indices sorted = first;
+  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto order = compare(a, b);
+    return order == 0 ? a < b : order < 0;
+  });
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (compare(sorted[i - 1], sorted[i]) == 0) first[sorted[i]] = first[sorted[i - 1]];
+  }
+  return first;
+}
+
+// Of each corner, the index of its value.
+Indices values_of_corners(const AttributeSet& set, std::span<const Triangle> triangles) {
+  assert(set.header.domain != AttributeDomain::kTriangle);
+  const Indices first = first_equals(set);
+  Indices values(3 * triangles.size());
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    values[c] = set.value_of_corner.empty() ? triangles[c / 3][c % 3] : set.value_of_corner[c];
+    if (values[c] < first.size()) values[c] = first[values[c]];  // smoothing has no values
+  }
+  return values;
+}
+
+// The corners of each vertex: corners[begin[v]] to corners[begin[v + 1] - 1].
+struct CornersOfVertices {
+  Indices begin;
+  Indices corners;
+};
+
+CornersOfVertices corners_of_vertices(std::span<const Triangle> triangles,
+                                      std::uint32_t num_vertices) {
+  CornersOfVertices all{Indices(std::size_t{num_vertices} + 1), Indices(3 * triangles.size())};
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) ++all.begin[v + 1];
+  }
+  std::partial_sum(all.begin.begin(), all.begin.end(), all.begin.begin());
+  Indices next(all.begin.begin(), all.begin.end() - 1);
+  for (std::uint32_t c = 0; c < all.corners.size(); ++c) {
+    all.corners[next[triangles[c / 3][c % 3]]++] = c;
+  }
+  return all;
+}
+
+}  // namespace
+
+SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t num_vertices,
+                             std::span<const AttributeSet* const> sets) {
+  std::vector<Indices> values;
+  for (const AttributeSet* const set : sets) {
+    values.push_back(values_of_corners(*set, triangles));
+  }
+  const auto compare = [&](std::uint32_t c, std::uint32_t d) {
+    for (const Indices& of_set : values) {
+      if (of_set[c] != of_set[d]) return of_set[c] < of_set[d] ? -1 : 1;
+    }
+    return 0;
+  };
+  CornersOfVertices all = corners_of_vertices(triangles, num_vertices);
+  SplitVertices split;
+  split.value_of_vertex.resize(sets.size());
+  split.triangles.assign(triangles.begin(), triangles.end());
+  for (std::uint32_t v = 0; v < num_vertices; ++v) {
+    const auto corners =
+        std::span(all.corners).subspan(all.begin[v], all.begin[v + 1] - all.begin[v]);
+    std::sort(corners.begin(), corners.end(), [&](std::uint32_t c, std::uint32_t d) {
+      const int order = compare(c, d);
+      return order == 0 ? c < d : order < 0;
+    });
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::uint32_t c = corners[i];
+      if (i == 0 || compare(corners[i - 1], c) != 0) {
+        split.stream_vertex.push_back(v);
+        for (std::size_t s = 0; s < sets.size(); ++s) {
+          split.value_of_vertex[s].push_back(values[s][c]);
+        }
+      }
+      split.triangles[c / 3][c % 3] = split.num_vertices() - 1;
+    }
+    if (!corners.empty()) continue;
+    split.stream_vertex.push_back(v);
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      const bool has_own = sets[s]->header.domain == AttributeDomain::kVertex;
+      split.value_of_vertex[s].push_back(has_own ? v : 0);
+    }
+  }
+  return split;
+}
+
+}  // namespace rlpc

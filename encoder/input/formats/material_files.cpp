@@ -1,0 +1,111 @@
+#include "encoder/input/formats/material_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/input_file.h"
+
+namespace rlpc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Whether a name leads to a place in or below the folder, also where it is a link.
+bool stays_below(const fs::path& folder, const fs::path& name) {
+  if (!name.is_relative() || std::find(name.begin(), name.end(), "..") != name.end()) {
+    return false;
+  }
+  std::error_code missing;
+  const fs::path real = fs::canonical(folder / name, missing);
+  if (missing) return true;
+  const fs::path way = real.lexically_relative(fs::canonical(folder, missing));
+  return !way.empty() && *way.begin() != "..";
+}
+
+// "mtllib a.mtl b.mtl", or one name with blanks.
+std::vector<std::string> library_names(const std::string& words, const fs::path& folder) {
+  std::error_code unknown;
+  if (fs::is_regular_file(folder / words, unknown)) return {words};
+  std::vector<std::string> names;
+  TextWords text(words);
+  for (std::string_view name = text.next(); !name.empty(); name = text.next()) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+void read_libraries(const std::string& path, std::uint64_t max_memory_bytes, SingleMesh& mesh) {
+  if (mesh.material_library.empty() || path == "-") return;
+  const fs::path of_mesh = fs::path(path).parent_path();
+  // With its folder, so that it is never "-", which is standard input.
+  const fs::path folder = of_mesh.empty() ? fs::path(".") : of_mesh;
+  for (const std::string& name : library_names(mesh.material_library, folder)) {
+    if (!stays_below(folder, name)) {
+      mesh.notes.push_back("does not read " + rlpc::quoted(name) +
+                           ", which is not in the folder of the mesh");
+      continue;
+    }
+    const std::string file = (folder / name).string();
+    const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
+    auto text = read_whole_file(file, max_memory_bytes - std::min(held, max_memory_bytes));
+    if (!text) {
+      mesh.notes.push_back("materials: " + text.error().message);
+      continue;
+    }
+    mesh.materials.mtl += *text;
+    if (!text->ends_with('\n')) mesh.materials.mtl += '\n';
+    mesh.material_files.push_back(file);
+  }
+  for (std::string& texture : textures_of(mesh.materials.mtl)) {
+    mesh.materials.textures.push_back(std::move(texture));
+  }
+}
+
+void note_what_is_dropped(SingleMesh& mesh) {
+  const SourceMaterials& materials = mesh.materials;
+  const auto count = [](std::size_t n, const std::string& what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  std::string dropped;
+  if (!materials.names.empty()) dropped = count(materials.names.size(), "material");
+  if (!materials.textures.empty()) {
+    dropped += (dropped.empty() ? "" : ", ") + count(materials.textures.size(), "texture");
+  }
+  if (dropped.empty()) return;
+  mesh.notes.push_back("dropped: " + dropped +
+                       "; of materials, only their numbers at the triangles are kept");
+}
+
+}  // namespace
+
+std::vector<std::string> textures_of(std::string_view mtl) {
+  std::vector<std::string> textures;
+  std::set<std::string_view> known;
+  for (TextWords words(mtl); !words.at_end(); words.next_line()) {
+    const std::string_view keyword = words.next();
+    const bool is_map = keyword.starts_with("map_") || keyword == "bump" || keyword == "disp" ||
+                        keyword == "decal" || keyword == "refl" || keyword == "norm";
+    if (!is_map) continue;
+    // Options come before the name.
+    std::string_view name;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) name = word;
+    if (!name.empty() && known.insert(name).second) textures.emplace_back(name);
+  }
+  return textures;
+}
+
+InputResult<SingleMesh> read_mesh_and_materials(const std::string& path,
+                                                std::uint64_t max_memory_bytes) {
+  auto mesh = read_mesh(path, max_memory_bytes);
+  if (!mesh) return mesh;
+  read_libraries(path, max_memory_bytes, *mesh);
+  note_what_is_dropped(*mesh);
+  return mesh;
+}
+
+}  // namespace rlpc
