@@ -203,6 +203,7 @@ std::span<const std::uint32_t> Decoder::coarse_vertices() const {
 std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }
 Result<std::string> Decoder::asset() { return impl_->asset(); }
+bool Decoder::has_asset() const { return impl_->stream().asset_unit().has_value(); }
 bool Decoder::has_attributes() const { return impl_->stream().attribute_unit().has_value(); }
 Result<std::vector<AttributeSet>> Decoder::attributes() { return impl_->attributes(); }
 std::optional<SkeletonPose> Decoder::pose() { return impl_->pose(); }

@@ -131,6 +131,7 @@ class Decoder {
   // The asset of the stream (7.16), a GLB without geometry; empty: none. Not checked beyond its
   // size. Errors leave the frames decodable.
   Result<std::string> asset();
+  bool has_asset() const;
   // Whether the stream has attributes.
   bool has_attributes() const;
   // Decodes the attributes (Annex F), from the first frame, which is decoded for it even if

@@ -54,6 +54,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "clip table";
     case UnitType::kAttributes:
       return "attributes";
+    case UnitType::kAsset:
+      return "asset";
   }
   return "of unknown type";
 }

@@ -7,6 +7,15 @@ namespace rlpc {
 namespace {
 
 constexpr std::array kRules = std::to_array<RuleExplanation>({
+    {"R-AST-01", "7.16", "The asset is not one zlib stream that inflates to asset_size bytes.",
+     "asset_size is the size before inflating; or bytes follow the zlib stream.",
+     "Write the size of the asset itself, and one complete zlib stream without a dictionary."},
+    {"R-AST-02", "7.16", "An asset of asset_format 0 is not a GLB.",
+     "The JSON of a .gltf file was written, or a file that was cut off.",
+     "Write a whole binary glTF 2.0 file, without meshes."},
+    {"R-AST-03", "7.16", "An asset is not where it belongs.",
+     "It was written at the end, or before the connectivity.",
+     "Write it after the connectivity unit and before the first GOF or skinned model unit."},
     {"R-ATT-01", "F.3", "The attribute unit is not between connectivity and the first GOF.",
      "A tool appended the unit to a stream, or copied it into one that had attributes.",
      "Write one attribute unit after the connectivity, before all GOFs and skinned models."},

@@ -70,6 +70,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
       return clip_table(unit, *payload);
     case UnitType::kAttributes:
       return attributes(unit, *payload);
+    case UnitType::kAsset:
+      return asset(unit, *payload);
   }
 }
 

@@ -79,6 +79,9 @@ class StreamValidator {
   void check_attribute_names(const UnitHeader& unit, const CodedAttributes& coded);
   void compare_first_frame(const AccessUnit& access_unit);
 
+  // validator_asset.cpp
+  void asset(const UnitHeader& unit, const Payload& payload);
+
   // validator_models.cpp: skinned models.
   void begin_model(const UnitHeader& unit);
   void model(const UnitHeader& unit, const Payload& payload);

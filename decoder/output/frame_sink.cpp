@@ -100,7 +100,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
 }  // namespace
 
 bool holds_attributes(SinkFormat format) {
-  return is_mesh(format) || format == SinkFormat::kPc2 || format == SinkFormat::kMdd;
+  return is_mesh(format) || format == SinkFormat::kPc2 || format == SinkFormat::kMdd ||
+         format == SinkFormat::kGlb;
 }
 
 SinkFormat sink_format(const std::string& path, SinkFormat given) {

@@ -271,12 +271,21 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
 // Those that the output holds. Returns the exit code of an error; frames are written all the
 // same.
 int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
-                    std::vector<rlpc::AttributeSet>& attributes) {
+                    rlpc::SinkOptions& options) {
   const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
   const bool has_mesh = !(live && format == rlpc::SinkFormat::kPc2);
   if (o.no_attributes || is_coarse(o) || !has_mesh || !rlpc::holds_attributes(format) ||
-      !decoder.has_attributes()) {
+      !(decoder.has_attributes() || decoder.has_asset())) {
     return rlpc::kExitDone;
+  }
+  if (format == rlpc::SinkFormat::kGlb) {
+    auto asset = decoder.asset();
+    if (!asset) {
+      return complain(rlpc::stream_message(o.input, asset.error(), o.decoder.limits) +
+                          "; frames are written without materials",
+                      rlpc::exit_code(asset.error().code));
+    }
+    options.asset = std::move(*asset);
   }
   auto sets = decoder.attributes();
   if (!sets) {
@@ -284,7 +293,7 @@ int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
                         "; frames are written without attributes",
                     rlpc::exit_code(sets.error().code));
   }
-  attributes = std::move(*sets);
+  options.attributes = std::move(*sets);
   return rlpc::kExitDone;
 }
 
@@ -327,7 +336,7 @@ int decode(const Options& o) {
     options.motion = o.motion;
     options.max_targets = o.max_targets;
     options.max_skin_bytes = o.decoder.limits.max_memory_bytes / 2;
-    attributes_code = read_attributes(o, *decoder, live, options.attributes);
+    attributes_code = read_attributes(o, *decoder, live, options);
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));
     if (!opened) {

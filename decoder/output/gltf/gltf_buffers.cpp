@@ -114,6 +114,18 @@ std::uint32_t GltfBuffers::add_vectors(std::span<const float> xyz) {
   return add_accessor(std::move(accessor));
 }
 
+std::uint32_t GltfBuffers::add_normals(std::span<const float> xyz) {
+  return add_vertex_values(xyz, 3);
+}
+
+std::uint32_t GltfBuffers::add_vertex_values(std::span<const float> values,
+                                             std::uint32_t width) {
+  const std::string type = "VEC" + std::to_string(width);
+  GltfJson accessor = accessor_of(kFloat, values.size() / width, type.c_str());
+  accessor["bufferView"] = add_floats(values, kVertexTarget);
+  return add_accessor(std::move(accessor));
+}
+
 std::optional<std::uint32_t> GltfBuffers::add_moves(std::span<const float> moves) {
   const std::uint64_t count = moves.size() / 3;
   std::vector<std::uint32_t> moving;

@@ -46,7 +46,12 @@ class GltfBuffers {
  public:
   // xyz of each vertex.
   std::uint32_t add_vectors(std::span<const float> xyz);
-  // The same, sparse if that is smaller; none if all are zero.
+  // Unit vectors, and numbers of 2 to 4 components, of each vertex.
+  std::uint32_t add_normals(std::span<const float> xyz);
+  std::uint32_t add_vertex_values(std::span<const float> values, std::uint32_t width);
+  // A file, such as a texture; the index of its view.
+  std::uint32_t add_image(std::string_view bytes) { return add_view(bytes, 0); }
+  // The same as add_vectors(), sparse if that is smaller; none if all are zero.
   std::optional<std::uint32_t> add_moves(std::span<const float> moves);
   // Bytes -127 to 127 of each vertex, in units or in 1/127 units (KHR_mesh_quantization).
   std::uint32_t add_byte_vectors(std::span<const std::int8_t> xyz, bool in_parts_of_127);

@@ -28,16 +28,28 @@ void GltfMorph::add_frame(std::span<const float> xyz) {
   std::vector<float> places = of_output_vertices(mesh_, xyz, 3);
   if (num_frames_ == 0) {
     base_ = std::move(places);
-    base_accessor_ = buffers.add_vectors(base_);
+    attributes_["POSITION"] = buffers.add_vectors(base_);
+    look_.add_attributes(xyz, attributes_, buffers);
+    if (look_.has_normals()) base_normals_ = look_.normals(xyz);
   } else if (const auto moves = exact_moves(base_, places)) {
     if (const auto accessor = buffers.add_moves(*moves)) {
       weights_.push_back({num_frames_, add_target(*accessor)});
+      add_normal_moves(xyz);
     }
   } else {
     weights_.push_back({num_frames_, minus_base_target()});
     weights_.push_back({num_frames_, add_target(buffers.add_vectors(places))});
+    add_normal_moves(xyz);
   }
   ++num_frames_;
+}
+
+// Adds what a frame changes of the normals to its target, the last one.
+void GltfMorph::add_normal_moves(std::span<const float> xyz) {
+  if (base_normals_.empty()) return;
+  std::vector<float> moves = look_.normals(xyz);
+  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= base_normals_[i];
+  targets_.back()["NORMAL"] = document_.buffers.add_normals(moves);
 }
 
 std::uint32_t GltfMorph::add_target(std::uint32_t accessor) {
@@ -81,9 +93,15 @@ bool GltfMorph::finish(std::span<const Clip> spans, FrameRate frame_rate) {
   root["scene"] = 0;
   root["scenes"] = GltfJson::array({{{"nodes", GltfJson::array({0})}}});
   root["nodes"] = GltfJson::array({{{"mesh", 0}}});
-  root["materials"] = plain_materials();
-  GltfJson mesh = {
-      {"primitives", primitives_of(mesh_, {{"POSITION", base_accessor_}}, targets_, buffers)}};
+  look_.add_materials(root, buffers);
+  for (GltfJson& target : targets_) {
+    // All targets have the same attributes.
+    if (!base_normals_.empty() && !target.contains("NORMAL")) {
+      target["NORMAL"] =
+          buffers.add_zero_vectors(static_cast<std::uint32_t>(mesh_.vertex.size()));
+    }
+  }
+  GltfJson mesh = {{"primitives", primitives_of(mesh_, attributes_, targets_, buffers)}};
   if (!targets_.empty()) mesh["weights"] = std::vector<int>(targets_.size(), 0);
   root["meshes"] = GltfJson::array({std::move(mesh)});
   if (num_frames_ == 1) return true;

@@ -10,6 +10,7 @@
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/gltf_look.h"
 #include "decoder/output/gltf/gltf_mesh.h"
 
 namespace rlpc {
@@ -17,7 +18,8 @@ namespace rlpc {
 class GltfMorph {
  public:
   // Both must outlive it.
-  GltfMorph(GltfDocument& document, const GltfMesh& mesh) : document_(document), mesh_(mesh) {}
+  GltfMorph(GltfDocument& document, const GltfLook& look)
+      : document_(document), look_(look), mesh_(look.mesh()) {}
 
   // xyz of the vertices of the stream.
   void add_frame(std::span<const float> xyz);
@@ -33,15 +35,18 @@ class GltfMorph {
   };
 
   std::uint32_t add_target(std::uint32_t accessor);
+  void add_normal_moves(std::span<const float> xyz);
   std::uint32_t minus_base_target();
   std::uint32_t weights_of(const Clip& clip);
 
   GltfDocument& document_;
+  const GltfLook& look_;
   const GltfMesh& mesh_;
   GltfJson targets_ = GltfJson::array();
   std::vector<Weight> weights_;  // those that are 1, ascending
   std::vector<float> base_;      // frame 0, of output vertices
-  std::uint32_t base_accessor_ = 0;
+  std::vector<float> base_normals_;
+  GltfJson attributes_;  // of frame 0
   std::optional<std::uint32_t> minus_base_;
   std::uint32_t num_frames_ = 0;
 };

@@ -26,7 +26,7 @@ class GltfMorphSink final : public GltfSink {
   GltfMorphSink(SinkOptions of_sink, OutputFile file, const std::string& why)
       : GltfSink(std::move(of_sink), std::move(file)),
         document_(options().frame_rate),
-        morph_(document_, mesh()) {
+        morph_(document_, look()) {
     if (!why.empty()) remark(why);
   }
 
@@ -47,8 +47,10 @@ class GltfMorphSink final : public GltfSink {
 GltfSink::GltfSink(SinkOptions options, OutputFile file)
     : options_(std::move(options)),
       file_(std::move(file)),
-      mesh_(plain_mesh(options_.num_vertices, options_.triangles)),
-      spans_(animation_spans(options_.clips, options_.num_frames, options_.first_number)) {}
+      look_(options_.attributes, options_.triangles, options_.num_vertices, options_.asset),
+      spans_(animation_spans(options_.clips, options_.num_frames, options_.first_number)) {
+  if (!look_.problem().empty()) remark(look_.problem());
+}
 
 std::string GltfSink::name() const {
   return file_.path() == "-" ? "standard output" : file_.path();

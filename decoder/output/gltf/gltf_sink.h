@@ -13,7 +13,7 @@
 #include "common/mesh/clip.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/gltf/gltf_document.h"
-#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/gltf_look.h"
 #include "decoder/output/gltf/gltf_morph.h"
 
 namespace rlpc {
@@ -41,13 +41,13 @@ class GltfSink : public FrameSink {
   std::optional<OutputError> write(GltfDocument& document);
 
   const SinkOptions& options() const { return options_; }
-  const GltfMesh& mesh() const { return mesh_; }
+  const GltfLook& look() const { return look_; }
   const std::vector<Clip>& spans() const { return spans_; }
 
  private:
   SinkOptions options_;
   OutputFile file_;
-  GltfMesh mesh_;
+  GltfLook look_;
   std::vector<Clip> spans_;
   std::vector<std::string> remarks_;
   std::uint32_t written_ = 0;

@@ -160,17 +160,19 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
 }
 
 // The attributes and morph targets of the mesh.
-GltfJson mesh_of(const GltfMesh& mesh, std::size_t num_joints, std::span<const float> rest,
+GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const float> rest,
                  const SkinInfluences& influences, const PrincipalShapes& shapes,
                  GltfBuffers& buffers) {
+  const GltfMesh& mesh = look.mesh();
   const auto joints =
       of_output_vertices<std::uint16_t>(mesh, influences.joints, kJointsOfVertex);
   const auto weights =
       of_output_vertices<std::uint16_t>(mesh, influences.weights, kJointsOfVertex);
-  const GltfJson attributes = {
+  GltfJson attributes = {
       {"POSITION", buffers.add_vectors(of_output_vertices(mesh, rest, 3))},
       {"JOINTS_0", buffers.add_joints(joints, static_cast<std::uint32_t>(num_joints))},
       {"WEIGHTS_0", buffers.add_joint_weights(weights)}};
+  look.add_attributes(rest, attributes, buffers);
   GltfJson targets = GltfJson::array();
   GltfJson first_weights = GltfJson::array();
   for (Eigen::Index k = 0; k < shapes.targets.cols(); ++k) {
@@ -189,7 +191,7 @@ GltfJson mesh_of(const GltfMesh& mesh, std::size_t num_joints, std::span<const f
 
 }  // namespace
 
-GltfSkin add_skin(GltfDocument& document, const GltfMesh& mesh, SkinSource& source,
+GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
                   std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets) {
   GltfBuffers& buffers = document.buffers;
   const Skeleton& skeleton = *source.skeleton;
@@ -212,13 +214,13 @@ GltfSkin add_skin(GltfDocument& document, const GltfMesh& mesh, SkinSource& sour
   root["scene"] = 0;
   root["scenes"] = GltfJson::array({{{"nodes", GltfJson::array({kMeshNode, kRootNode})}}});
   root["nodes"] = nodes_of(motion);
-  root["materials"] = plain_materials();
+  look.add_materials(root, buffers);
   if (skin.num_targets > 0) {
-    root["extensionsUsed"] = {kQuantization};
-    root["extensionsRequired"] = {kQuantization};
+    root["extensionsUsed"].push_back(kQuantization);
+    root["extensionsRequired"].push_back(kQuantization);
   }
   root["meshes"] =
-      GltfJson::array({mesh_of(mesh, skin.num_joints, rest, influences, shapes, buffers)});
+      GltfJson::array({mesh_of(look, skin.num_joints, rest, influences, shapes, buffers)});
   root["skins"] = GltfJson::array({skin_of(motion, buffers)});
   if (source.frames.size() > 1) {
     GltfJson animations = GltfJson::array();

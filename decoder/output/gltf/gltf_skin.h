@@ -10,7 +10,7 @@
 #include "common/mesh/mesh.h"
 #include "common/mesh/skeleton.h"
 #include "decoder/output/gltf/gltf_document.h"
-#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/gltf_look.h"
 #include "decoder/output/gltf/skin_joints.h"
 #include "decoder/output/gltf/skin_shape.h"
 
@@ -34,7 +34,7 @@ struct SkinSource {
 
 // Fills the document. source: places that are not known are fitted. spans: of
 // animation_spans().
-GltfSkin add_skin(GltfDocument& document, const GltfMesh& mesh, SkinSource& source,
+GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
                   std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets);
 
 }  // namespace rlpc

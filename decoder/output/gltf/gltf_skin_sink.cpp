@@ -105,7 +105,7 @@ class GltfSkinSink final : public GltfSink {
     }
     poses_.take(source_);
     GltfDocument document(options().frame_rate);
-    const GltfSkin skin = add_skin(document, mesh(), source_, spans(), options().frame_rate,
+    const GltfSkin skin = add_skin(document, look(), source_, spans(), options().frame_rate,
                                    options().max_targets);
     const std::string means =
         plural(skin.num_joints, "bone") + " and " + plural(skin.num_targets, "morph target");
@@ -145,7 +145,7 @@ class GltfSkinSink final : public GltfSink {
 
   std::optional<OutputError> finish_as_morph() {
     GltfDocument document(options().frame_rate);
-    GltfMorph morph(document, mesh());
+    GltfMorph morph(document, look());
     for (std::vector<float>& xyz : source_.frames) {
       morph.add_frame(xyz);
       if (auto error = failure(document)) return error;

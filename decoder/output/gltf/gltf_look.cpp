@@ -1,0 +1,194 @@
+#include "decoder/output/gltf/gltf_look.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/io/binary_numbers.h"
+#include "decoder/output/split_vertices.h"
+
+namespace rlpc {
+namespace {
+
+// Of a set that vertices have; empty: none.
+std::string semantic_of(const AttributeHeader& header) {
+  const std::string& name = header.name;
+  const auto number_after = [&](const char* word) -> std::optional<std::string> {
+    const std::string prefix = word;
+    if (!name.starts_with(prefix) || name.size() == prefix.size()) return std::nullopt;
+    const std::string digits = name.substr(prefix.size());
+    const bool is_number =
+        std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return is_number ? std::optional(digits) : std::nullopt;
+  };
+  if (header.domain == AttributeDomain::kTriangle) return "";
+  if (const auto n = number_after("uv"); n && header.num_components == 2) {
+    return "TEXCOORD_" + *n;
+  }
+  if (const auto n = number_after("colour"); n && header.num_components >= 3) {
+    return "COLOR_" + *n;
+  }
+  return "";
+}
+
+bool is_normal_set(const AttributeHeader& header) {
+  const bool is_direction =
+      header.kind == ValueKind::kUnitVectors || header.kind == ValueKind::kSmoothing;
+  return header.name == "normal" && is_direction && header.domain != AttributeDomain::kTriangle;
+}
+
+}  // namespace
+
+GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles,
+                   std::uint32_t num_vertices, const std::string& asset) {
+  std::vector<const AttributeSet*> split;
+  std::vector<std::string> semantics;
+  for (const AttributeSet& set : sets) {
+    const bool is_normal = is_normal_set(set.header) && !triangles.empty();
+    const std::string semantic = is_normal ? "NORMAL" : semantic_of(set.header);
+    if (semantic.empty()) continue;
+    split.push_back(&set);
+    semantics.push_back(semantic);
+  }
+  SplitVertices vertices = split_vertices(triangles, num_vertices, split);
+  mesh_.vertex = std::move(vertices.stream_vertex);
+  for (std::size_t s = 0; s < split.size(); ++s) {
+    std::vector<std::uint32_t>& value_of = vertices.value_of_vertex[s];
+    if (semantics[s] == "NORMAL") {
+      normals_ = std::make_unique<FrameNormals>(*split[s], triangles, num_vertices);
+      normal_of_vertex_ = std::move(value_of);
+      continue;
+    }
+    Values& values = values_.emplace_back();
+    values.semantic = semantics[s];
+    values.width = number_components(split[s]->header);
+    const std::vector<float> numbers = attribute_numbers(*split[s]);
+    for (const std::uint32_t i : value_of) {
+      const auto of_value =
+          std::span(numbers).subspan(std::size_t{i} * values.width, values.width);
+      values.numbers.insert(values.numbers.end(), of_value.begin(), of_value.end());
+    }
+  }
+  read_asset(asset);
+  make_parts(sets, std::move(vertices.triangles));
+}
+
+// A part of the mesh for each pair of a material and a part of the stream.
+void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
+                          std::vector<Triangle> triangles) {
+  const auto of_triangles = [&](const char* name) {
+    const AttributeSet* const set = find_set(sets, name);
+    const bool fits = set != nullptr && set->header.domain == AttributeDomain::kTriangle &&
+                      set->header.num_components == 1;
+    return fits ? set : nullptr;
+  };
+  const AttributeSet* const material = of_triangles("material");
+  const AttributeSet* const part = of_triangles("part");
+  const std::size_t num_materials =
+      asset_.contains("materials") ? asset_["materials"].size() : 0;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> found;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const std::uint32_t p = part != nullptr ? part->values[t] : 0;
+    const std::uint32_t m = material != nullptr ? material->values[t] : 0;
+    const auto number = static_cast<std::uint32_t>(std::min<std::size_t>(m, num_materials));
+    const auto [place, is_new] = found.try_emplace({p, number}, mesh_.parts.size());
+    if (is_new) mesh_.parts.push_back({{}, number});
+    mesh_.parts[place->second].triangles.push_back(triangles[t]);
+  }
+  if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
+}
+
+// The chunks of a GLB.
+void GltfLook::read_asset(const std::string& asset) {
+  constexpr std::size_t kHeaderBytes = 12;
+  constexpr std::size_t kChunkBytes = 8;
+  if (asset.empty()) return;
+  problem_ = "the stream's materials are not a GLB; they are left out";
+  if (!asset.starts_with("glTF") || asset.size() < kHeaderBytes + kChunkBytes) return;
+  std::string json;
+  for (std::size_t at = kHeaderBytes; at + kChunkBytes <= asset.size();) {
+    const std::uint64_t size = load_u32(asset, at);
+    if (size > asset.size() - at - kChunkBytes) return;
+    const std::string kind = asset.substr(at + 4, 4);
+    (kind == "JSON" ? json : asset_bytes_) = asset.substr(at + kChunkBytes, size);
+    at += kChunkBytes + size;
+  }
+  asset_ = GltfJson::parse(json, nullptr, false);
+  const auto is_array = [&](const char* key) {
+    return !asset_.contains(key) || asset_[key].is_array();
+  };
+  bool is_good = asset_.is_object() && !asset_.is_discarded();
+  for (const char* const key : {"materials", "textures", "samplers", "images", "bufferViews",
+                                "extensionsUsed", "extensionsRequired"}) {
+    is_good = is_good && is_array(key);
+  }
+  if (!is_good) {
+    asset_ = nullptr;
+    return;
+  }
+  problem_.clear();
+}
+
+void GltfLook::add_attributes(std::span<const float> xyz, GltfJson& attributes,
+                              GltfBuffers& buffers) const {
+  if (has_normals()) attributes["NORMAL"] = buffers.add_normals(normals(xyz));
+  for (const Values& values : values_) {
+    attributes[values.semantic] = buffers.add_vertex_values(values.numbers, values.width);
+  }
+}
+
+std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
+  std::vector<float> all(3 * std::size_t{normals_->count()});
+  normals_->compute(xyz, all);
+  std::vector<float> normals;
+  normals.reserve(3 * normal_of_vertex_.size());
+  for (const std::uint32_t i : normal_of_vertex_) {
+    const auto of_vertex = std::span(all).subspan(3 * std::size_t{i}, 3);
+    normals.insert(normals.end(), of_vertex.begin(), of_vertex.end());
+  }
+  return normals;
+}
+
+void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
+  root["materials"] = GltfJson::array();
+  if (asset_.is_object()) {
+    for (const char* const key : {"materials", "textures", "samplers", "images"}) {
+      if (asset_.contains(key)) root[key] = asset_[key];
+    }
+    for (const char* const key : {"extensionsUsed", "extensionsRequired"}) {
+      if (!asset_.contains(key)) continue;
+      for (const GltfJson& name : asset_[key]) root[key].push_back(name);
+    }
+    if (root.contains("images")) {
+      for (GltfJson& image : root["images"]) {
+        if (!image.is_object() || !image.contains("bufferView")) continue;
+        image["bufferView"] = buffers.add_image(image_bytes(image["bufferView"]));
+      }
+    }
+  }
+  // Triangles without a material that is there have the last one.
+  const std::size_t count = root["materials"].size();
+  const bool needs_plain =
+      std::any_of(mesh_.parts.begin(), mesh_.parts.end(),
+                  [&](const GltfMesh::Part& part) { return part.material >= count; });
+  if (needs_plain) root["materials"].push_back(plain_materials()[0]);
+}
+
+// The bytes of a view of the asset; empty if it has none.
+std::string GltfLook::image_bytes(const GltfJson& number) const {
+  const auto size_of = [](const GltfJson& view, const char* key) -> std::uint64_t {
+    return view.contains(key) && view[key].is_number_unsigned() ? view[key].get<std::uint64_t>()
+                                                                : 0;
+  };
+  if (!number.is_number_unsigned() || !asset_.contains("bufferViews")) return "";
+  const GltfJson& views = asset_["bufferViews"];
+  if (number.get<std::uint64_t>() >= views.size()) return "";
+  const GltfJson& view = views[number.get<std::uint64_t>()];
+  const std::uint64_t offset = size_of(view, "byteOffset");
+  const std::uint64_t size = size_of(view, "byteLength");
+  if (offset > asset_bytes_.size() || size > asset_bytes_.size() - offset) return "";
+  return asset_bytes_.substr(offset, size);
+}
+
+}  // namespace rlpc

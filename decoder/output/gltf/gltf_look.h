@@ -1,0 +1,59 @@
+// What a glTF mesh looks like: values of its vertices, normals, materials and textures.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/attributes/attribute_set.h"
+#include "common/mesh/mesh.h"
+#include "decoder/output/attribute_values.h"
+#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/gltf_mesh.h"
+
+namespace rlpc {
+
+class GltfLook {
+ public:
+  // sets and triangles: of the stream, which must outlive it. asset: of the stream (7.16);
+  // empty: none.
+  GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles,
+           std::uint32_t num_vertices, const std::string& asset);
+
+  // Vertices are split where their values differ; there is a part for each material and part of
+  // the stream.
+  const GltfMesh& mesh() const { return mesh_; }
+  // Adds texture coordinates, colours and normals to the attributes of the primitives. xyz: of
+  // the vertices of the stream, for normals.
+  void add_attributes(std::span<const float> xyz, GltfJson& attributes,
+                      GltfBuffers& buffers) const;
+  bool has_normals() const { return normals_ != nullptr; }
+  // Of output vertices.
+  std::vector<float> normals(std::span<const float> xyz) const;
+  // Sets materials, textures and what they need.
+  void add_materials(GltfJson& root, GltfBuffers& buffers) const;
+  // Why the asset was left out; empty: it was not.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  struct Values {
+    std::string semantic;        // TEXCOORD_0
+    std::uint32_t width = 2;     // components
+    std::vector<float> numbers;  // of output vertices
+  };
+
+  std::string image_bytes(const GltfJson& number) const;
+  void read_asset(const std::string& asset);
+  void make_parts(const std::vector<AttributeSet>& sets, std::vector<Triangle> triangles);
+
+  GltfMesh mesh_;
+  std::vector<Values> values_;
+  std::unique_ptr<FrameNormals> normals_;
+  std::vector<std::uint32_t> normal_of_vertex_;
+  GltfJson asset_;           // null: none
+  std::string asset_bytes_;  // its binary chunk
+  std::string problem_;
+};
+
+}  // namespace rlpc
