@@ -12,6 +12,7 @@ import rlpd
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
 import specdec  # noqa: E402
 
+
 def expectation_of(data, program):
     """The specification's result for a stream: the decoded part of its sidecar.
 
