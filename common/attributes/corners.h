@@ -21,8 +21,8 @@ inline std::uint32_t vertex_of_corner(std::span<const Triangle> triangles, std::
   return triangles[c / 3][c % 3];
 }
 
-// F.4 EdgeMate: of each edge, the one of another triangle that runs along it in the other
-// direction; kNoCorner: none. Indices of vertices are below num_vertices.
+// F.4 FindEdgeMates( ): EdgeMate, of each edge the one of another triangle that runs along it
+// in the other direction; kNoCorner: none. Indices of vertices are below num_vertices.
 std::vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
                                            std::span<const Triangle> triangles);
 

@@ -11,9 +11,9 @@
 #include "common/mesh/coded_meshes.h"
 #include "encoder/frame_gof/frame_coding.h"
 #include "encoder/rest/rest_coding.h"
+#include "encoder/sequence/attribute_stage.h"
 #include "encoder/sequence/frame_coder.h"
 #include "encoder/sequence/sequence_coding.h"
-#include "encoder/sequence/attribute_stage.h"
 #include "encoder/sequence/stream_assembly.h"
 
 namespace rlpc {

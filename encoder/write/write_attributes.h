@@ -1,4 +1,4 @@
-// F.2 Attributes, writing side.
+// Attribute units (Annex F), writing side.
 #pragma once
 
 #include <cstdint>

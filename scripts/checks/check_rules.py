@@ -4,7 +4,7 @@
 Every rule id in braces ends a sentence that begins with "It is a requirement of bitstream
 conformance that" (a stream that breaks it is invalid) or "A stream is unsupported unless". Of each
 rule the list has: id, clause, effect, sentence, and which process of the pseudo-code checks it:
-decoding in order, only random access, or none.
+decoding in order, only decoding of attributes, only random access, or none.
 
 Every rule is checked by rlpcval: its id is a string in the code of the validator, in the parsers
 that the validator includes, or in the readers of bits and sections that these share.
@@ -26,6 +26,7 @@ EFFECTS = {"It is a requirement of bitstream conformance that": "invalid",
            "A stream is unsupported unless": "unsupported"}
 
 DECODING, RANDOM_ACCESS, NONE = "decoding", "random access", "none"
+ATTRIBUTES = "attributes"
 # Decoding in order runs no block of these: GOF index, and random access.
 _RANDOM_ACCESS_CLAUSES = ("6.9", "8.8")
 
@@ -55,6 +56,8 @@ def checked_by(spec, rule):
         return NONE
     clauses = [number for number, clause in spec.clauses.items() if f'"{rule}"' in clause.text]
     innermost = [a for a in clauses if not any(b.startswith(a + ".") for b in clauses)]
+    if all(number.startswith("F.") for number in innermost):
+        return ATTRIBUTES  # Annex F, which a decoder may leave out
     return RANDOM_ACCESS if set(innermost) <= set(_RANDOM_ACCESS_CLAUSES) else DECODING
 
 

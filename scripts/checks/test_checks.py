@@ -234,6 +234,8 @@ class Rules(TreeTest):
         tree = self.tree(self.TEXT)
         for clauses, expected in (((), ["none", "none"]),
                                   (("6.9", "R-ABC-01"), ["random access", "none"]),
+                                  (("F.2", "R-ABC-01", "F.7", "R-ABC-01"),
+                                   ["attributes", "none"]),
                                   (("6.9", "R-ABC-01", "R-ABC-02", "8.8", "R-ABC-02"),
                                    ["random access", "random access"]),
                                   (("6.5", "R-ABC-01", "8.8", "R-ABC-01", "R-ABC-02"),

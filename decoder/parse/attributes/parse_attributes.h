@@ -1,4 +1,4 @@
-// F.2 Attributes, parsing side.
+// Attribute units (Annex F), parsing side.
 #pragma once
 
 #include <cstdint>

@@ -117,9 +117,9 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
   }
   for (const std::string name : {"TEXCOORD_", "COLOR_"}) {
     for (const std::uint32_t accessor : numbered(attributes, name, counts)) {
-      const std::size_t number = static_cast<std::size_t>(std::count_if(
-          primitive.attributes.begin(), primitive.attributes.end(),
-          [&](const GltfAttribute& a) { return a.semantic.starts_with(name); }));
+      const std::size_t number = static_cast<std::size_t>(
+          std::count_if(primitive.attributes.begin(), primitive.attributes.end(),
+                        [&](const GltfAttribute& a) { return a.semantic.starts_with(name); }));
       primitive.attributes.push_back({name + to_string(number), accessor});
     }
   }
