@@ -3,6 +3,7 @@
 Not used by the judge, but for writing suites and by tests.
 """
 
+import hashlib
 import pathlib
 import sys
 
@@ -30,3 +31,20 @@ def expectation_of(data, program):
     return {"expect": "accept", "frames": len(digest.frame_sha256),
             "sha256_int": digest.sha256(), "sha256_f32": digest.sha256_f32(),
             "frame_sha256": digest.frame_sha256}
+
+
+def attributes_of(data, program):
+    """The specification's result for OUT.rlpa, the sidecar's "attributes".
+
+    The SHA-256 of the file, "none" if there is to be no file, or the rule that the stream breaks;
+    None if the stream has no attribute unit.
+    """
+    if not specdec.has_attribute_unit(data):
+        return None
+    parts = []
+    decoder = specdec.Decoder(program, data, lambda frames: None, write_attributes=parts.append)
+    try:
+        decoder.call(specdec.WITH_ATTRIBUTES)
+    except specdec.Verdict as verdict:
+        return verdict.rule
+    return hashlib.sha256(b"".join(parts)).hexdigest() if parts else "none"

@@ -12,10 +12,11 @@ COLUMNS = (
     ("full", "full", "decodes to the right 32-bit floats"),
     ("strict", "strict", "is refused, after exactly the frames before the error"),
     ("diagnostic", "diagnostic", "is refused for the right rule"),
+    ("attributes", "rlpa", "decodes to the right attributes, or is refused for them"),
 )
 # Grade: the columns that it takes.
 GRADES = {"R-int": ("int",), "R-full": ("int", "full"), "R-strict": ("int", "strict"),
-          "R-diagnostic": ("int", "strict", "diagnostic")}
+          "R-diagnostic": ("int", "strict", "diagnostic"), "R-attributes": ("attributes",)}
 PASS, FAIL, NOT_RUN, NONE = "pass", "fail", "not run", ""
 NOT_SUPPORTED, NOT_DECLARED, NO_RULE = "unsupported", "not declared", "no rule"
 
@@ -39,6 +40,7 @@ class Grader:
         self._decoder = decoder
         self._reference = reference
         self._floats = "f32" in decoder.answer["outputs"]
+        self._attributes = "rlpa" in decoder.answer["outputs"]
 
     def judge(self, stream):
         with tempfile.TemporaryDirectory(prefix="rlpc-judge-") as folder:
@@ -132,6 +134,8 @@ class Grader:
             cells["strict"] = state
             cells["diagnostic"] = self._rule_cell(stream, judgement, run) if state == PASS else state
         judgement.cells = cells
+        if stream.attributes is not None:
+            cells["attributes"] = self._attributes_cell(stream, judgement, state)
 
     def _rule_cell(self, stream, judgement, run):
         if run.finished.code == UNSUPPORTED and not self._decoder.declares(stream):
@@ -153,6 +157,23 @@ class Grader:
                                   "command": self._decoder.decode_command(stream, "f32")})
         return FAIL
 
+    def _attributes_cell(self, stream, judgement, state):
+        if not self._attributes:
+            return NOT_DECLARED
+        if state != PASS:
+            return state
+        with tempfile.TemporaryDirectory(prefix="rlpc-judge-") as folder:
+            run = self._decoder.decode(stream, "rlpa", folder)
+            text = _attributes_complaint(stream, run)
+        if text is not None:
+            judgement.outcome, judgement.reason, judgement.text = "FAIL-attributes", "rlpa", text
+            judgement.details.update({"exit": run.finished.ending(),
+                                      "command": self._decoder.decode_command(stream, "rlpa")})
+            return FAIL
+        if run.finished.code == REJECTED and judgement.cells["diagnostic"] == PASS:
+            judgement.cells["diagnostic"] = _attributes_rule_cell(stream, judgement, run)
+        return PASS
+
     def _float_complaint(self, stream, run):
         """(text or None, first difference or None) of the .f32 output."""
         if run.finished.code != DECODED:
@@ -164,6 +185,37 @@ class Grader:
         path, complaint = self._reference.output(stream)
         found = divergence.first_float_difference(run.output, path) if path else None
         return f"floats: {describe(found) if found else 'wrong hash'}", found
+
+
+def _attributes_complaint(stream, run):
+    """What is wrong with a decoding to OUT.rlpa, or None."""
+    due = stream.attributes
+    done, exists = run.finished, run.output.is_file() and run.output.stat().st_size > 0
+    if due.startswith("R-"):
+        if done.code != REJECTED:
+            return f"attributes: {done.ending()}, expected exit code 1, as they break {due}"
+        if run.complaint:
+            return f"attributes: {done.ending()}, but {run.complaint}"
+        return "attributes are refused, but OUT.rlpa is written" if exists else None
+    if done.code != DECODED:
+        return f"decodes to .rlpd, but to .rlpa: {done.ending()}"
+    if due == "none":
+        return "writes OUT.rlpa, but the stream has no attributes" if exists else None
+    if not exists:
+        return "exit code 0, but OUT.rlpa does not exist"
+    return None if rlpd.file_sha256(run.output) == due else "attributes: wrong hash"
+
+
+def _attributes_rule_cell(stream, judgement, run):
+    """Whether attributes that were refused correctly were refused for the right rule."""
+    rule = run.verdict.get("rule")
+    if rule is None:
+        return NO_RULE
+    if rule == stream.attributes:
+        return PASS
+    judgement.reason = "rule"
+    judgement.text = f"attributes: reports {rule}, expected {stream.attributes}"
+    return FAIL
 
 
 def _must(stream):
@@ -206,6 +258,8 @@ def _listed(value):
 def not_run(stream, reason):
     """For a stream that was never decoded."""
     concerned = ("int", "full") if stream.expect == "accept" else ("strict", "diagnostic")
+    if stream.attributes is not None:
+        concerned += ("attributes",)
     return Judgement("NOT-RUN", "interrupted", reason,
                      {key: NOT_RUN if key in concerned else NONE for key, *_ in COLUMNS},
                      {"exit": "not run"})
@@ -240,6 +294,12 @@ def grade(rows, name):
             "not_run": counts[NOT_RUN], "of": of, "text": text}
 
 
+def grades_of(rows):
+    """All grades; R-attributes only where streams have attributes."""
+    found = [grade(rows, name) for name in GRADES]
+    return [g for g in found if g["of"] or g["grade"] != "R-attributes"]
+
+
 def _decodes_any(rows):
     """A grade requires streams that decode, unless the suite has none."""
     states = {row["cells"]["int"] for row in rows} - {NONE}
@@ -256,4 +316,5 @@ def everything_passed(grades, wanted=None):
         return status.get(wanted) == "PASS"
     return (bool(status) and status.get("R-int", "PASS") == "PASS"
             and status.get("R-full", "PASS") in ("PASS", "NOT DECLARED")
+            and status.get("R-attributes", "PASS") in ("PASS", "NOT DECLARED")
             and status.get("R-strict", "PASS") == "PASS")

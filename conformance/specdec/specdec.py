@@ -23,6 +23,7 @@ import argparse
 import json
 import pathlib
 import re
+import struct
 import sys
 import traceback
 import zlib
@@ -33,6 +34,8 @@ import spec_program  # noqa: E402
 
 DONE, INVALID, UNSUPPORTED, LIMIT, IO, USAGE, SPEC_ERROR = 0, 1, 2, 3, 4, 64, 70
 SPEC = pathlib.Path(__file__).resolve().parents[2] / "spec"
+WITH_ATTRIBUTES = "stream_with_attributes"  # the function that is run for OUT.rlpa
+_STREAM_HEADER_BYTES, _UNIT_HEADER, _CRC_BYTES, _ATTRIBUTES = 10, struct.Struct(">BI"), 4, 0x88
 
 
 class Verdict(Exception):
@@ -101,6 +104,17 @@ def _checked_width(value):
     return value
 
 
+def has_attribute_unit(data):
+    """Whether there is one, wherever it is; units are followed as far as their sizes lead."""
+    at = _STREAM_HEADER_BYTES
+    while at + _UNIT_HEADER.size <= len(data):
+        code, size = _UNIT_HEADER.unpack_from(data, at)
+        if code == _ATTRIBUTES:
+            return True
+        at += _UNIT_HEADER.size + size + _CRC_BYTES
+    return False
+
+
 class Output:
     """A file that is created with the first bytes written to it."""
 
@@ -163,7 +177,7 @@ def decode(options):
                       options.check_widths, output.write)
     verdict = {}
     try:
-        decoder.call("stream_with_attributes" if wants_attributes else "stream")
+        decoder.call(WITH_ATTRIBUTES if wants_attributes else "stream")
         code = DONE
     except Verdict as error:
         code = error.code
