@@ -1,5 +1,6 @@
 """Random legal streams of the High profile: skinned models and GOFs that use them, too."""
 
+import random_attributes
 import random_main
 import random_streams
 
@@ -18,9 +19,10 @@ class HighPlan(random_main.MainPlan):
         self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
         self.frames_percent = n.pick([0, 0, 30, 100])  # share of GOFs of frames
         self.open_end = n.chance(30)
+        self.attributes = random_attributes.AttributePlan(n)
 
 
-class HighSource(random_main.MainSource):
+class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     """Values of the elements that the Main profile does not have, too."""
 
     temporal_layer = 0  # of the slice
@@ -230,6 +232,11 @@ class HighSequence(random_main.MainSequence):
         super()._skippable()
         if self._n.chance(10):
             self._unit("CLIP_TABLE")
+        ns = self._writer.ns
+        if (self._plan.attributes.percent and ns["HasAttributes"] == 0 and "Triangles" in ns
+                and not self._writer.gof_frames and not self._writer.model_indices
+                and self._n.chance(self._plan.attributes.percent)):
+            self._unit("ATTRIBUTES")
 
     def _gof(self):
         # R-IDX-05; where the end is open, the GOF that follows has a frame at least.

@@ -282,6 +282,7 @@ class RandomBuilder:
     """Builds random streams of a profile: `plan`, `source` and `sequence` are its classes."""
 
     def __init__(self, program, plan=None, source=None, sequence=None):
+        self._program = program
         self._code = stream_writer.writing_code(program)
         self._plan_class = plan or Plan
         self._source_class = source or RandomSource
@@ -297,7 +298,7 @@ class RandomBuilder:
         writer.stream_header(recipe_source.SIGNATURE, [1, self._sequence_class.version_minor])
         source.gates(lambda gate: operations.pop(0), writer.ns)
         self._sequence_class(plan, writer).write()
-        return bytes(writer.data), writer
+        return writer.finish(self._program), writer
 
     def _plan_connectivity(self, plan):
         """Runs the connectivity once, to know the number of vertices it needs."""

@@ -12,6 +12,7 @@ _DROP = re.compile(r"drop\s+(\d+)$")
 _COMPONENT = re.compile(r"component\s+(\d+|all)$")
 _ENTRY = re.compile(r"([a-z][a-z0-9_]*)((?:\[\d+\])*)\s*=\s*(.*)$")
 _RANDOM = re.compile(r"random\((-?\d+),(-?\d+)\)$")
+_RARE = re.compile(r"rare\((\d+),(\d+)\)$")
 _TIMES = re.compile(r"(\d+)\*(.+)$")
 LISTS = ("rules", "features")
 META = ("title", "tier", "seed", "twin", "level", "expect", "note", "superseded_by") + LISTS
@@ -105,8 +106,18 @@ class Values:
         if self._left <= 0:
             self._at += 1
             self._left = None
-        match = _RANDOM.match(text)
+        match, rare = _RANDOM.match(text), _RARE.match(text)
+        if rare:
+            return str(self._rare(*map(int, rare.groups())))
         return str(self._numbers.between(*map(int, match.groups()))) if match else text
+
+    def _rare(self, percent, limit):
+        """0, or in some cases a number of any magnitude up to a limit."""
+        if not self._numbers.chance(percent):
+            return 0
+        most = (1 << self._numbers.between(1, limit.bit_length())) - 1
+        magnitude = min(limit, self._numbers.between(1, most))
+        return -magnitude if self._numbers.chance(50) else magnitude
 
     def next(self):
         text = self.next_text()

@@ -20,7 +20,7 @@ _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
              "num_components": ("num_components_delta", None),
              "vertex_order": ("vertex_order_delta", None)}
 _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "deflated", "payload",
-                            "payload_cut", "payload_append", "payload_replaced", "section_end",
+                            "attribute_name", "payload_cut", "payload_append", "payload_replaced", "section_end",
                             "alignment", "stop"}
 # The elements with which a component begins, unless that one comes directly before.
 _FIRST_OF_COMPONENT = {"trajectory_flag": None, "scale_idx_delta": "trajectory_flag",
@@ -52,6 +52,7 @@ class RecipeSource:
         self._component = None
         self._before = {}  # last absolute values
         self._gates = None
+        self._name = []  # bytes left of the name of an attribute set
         self.unit_code = 0
         self.used = []  # (name, indices, value) as written
 
@@ -137,6 +138,8 @@ class RecipeSource:
             found = self._absolute(writer.ns, name, indices)
         if found is None:
             found = self._cluster(writer.ns, name)
+        if found is None and name.startswith("attribute_name_"):
+            found = self._attribute_name(writer.ns, name)
         if found is None and self._gates is not None:
             found = self._gates.value(name)
         return inferred(writer, name, indices) if found is None else found
@@ -177,6 +180,17 @@ class RecipeSource:
         return self._before["cluster"]
 
 
+    def _attribute_name(self, ns, element):
+        """Size or next byte of the name of a set: of `attribute_name`, or "0", "1", ..."""
+        if element == "attribute_name_size_minus1":
+            values = self._values.get("attribute_name", {}).get(())
+            given = values is not None and not values.done()
+            text = values.next_text() if given else chr(ord("0") + len(ns["SetName"]))
+            self._name = list(text.encode())
+            return len(self._name) - 1
+        return self._name.pop(0) if self._name else ord("0")
+
+
 def _triangles(entry):
     text = entry.text.replace(",", " ").split()
     if entry.name == "triangles":
@@ -201,8 +215,8 @@ def inferred(writer, name, indices):
     if name == "position_crc":
         hashes = writer.hash_of_gof(ns["per_frame_flag"])
         return hashes[indices[0]] if indices[0] < len(hashes) else 0
-    if name == "frame_crc":
-        return None  # known once the frame has been written
+    if name in ("frame_crc", "first_frame_crc"):
+        return None  # known once the frame, or the whole stream, has been written
     if name == "layer_group_idx" and writer.source.unit_code == ns["FRAME"]:
         return ns["FrameGroups"][ns["frame_idx"]]
     if name in _SLICES:
@@ -255,6 +269,7 @@ class StreamBuilder:
     """Writes the stream of a recipe."""
 
     def __init__(self, program):
+        self._program = program
         self._elements = set(stream_writer.element_names(program))
         self._code = stream_writer.writing_code(program)
 
@@ -277,7 +292,7 @@ class StreamBuilder:
             _infer_positions(writer, codes, offsets, code)
             offsets.append((code, len(writer.data)))
             self._unit(recipe, writer, source, unit, code, codes)
-        return _finish(bytes(writer.data), settings), writer
+        return _finish(writer.finish(self._program), settings), writer
 
     def _unit(self, recipe, writer, source, unit, code, codes):
         broken = len(writer.broken)

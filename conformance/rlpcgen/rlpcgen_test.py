@@ -20,6 +20,7 @@ import mesh_gates  # noqa: E402
 import random_high  # noqa: E402
 import recipe as recipes  # noqa: E402
 import recipe_source  # noqa: E402
+import specdec  # noqa: E402
 import spec_program  # noqa: E402
 import stream_writer  # noqa: E402
 import stress  # noqa: E402
@@ -225,6 +226,18 @@ class RandomTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stderr}")
                 self.assertEqual(hashlib.sha256(output.read_bytes()).hexdigest(),
                                  expected(stream.read_bytes())["sha256_int"], f"seed {seed}")
+                self.attributes_are_the_same(stream, seed)
+
+    def attributes_are_the_same(self, stream, seed):
+        attributes = expectation.attributes_of(stream.read_bytes(), PROGRAM)
+        if attributes is None:
+            return
+        output = stream.with_name("out.rlpa")
+        done = subprocess.run([BIN / "rlpcdec", "decode", stream, output], capture_output=True,
+                              text=True)
+        self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stderr}")
+        self.assertEqual(hashlib.sha256(output.read_bytes()).hexdigest(), attributes,
+                         f"seed {seed}")
 
     def digest(self, profile):
         # STRESS.json has digests by seed, so seeds give the same streams for ever.
@@ -268,7 +281,52 @@ class RandomHigh(RandomTest):
         self.decode_to_the_same("high")
 
     def test_the_generator_has_not_changed(self):
-        self.assertEqual(self.digest("high"), "aa2b0a6e6456e864")
+        self.assertEqual(self.digest("high"), "5fc17327727913a5")
+
+
+class AttributeUnits(unittest.TestCase):
+    """What recipes say of attributes, and what they leave open (Annex F)."""
+
+    TEXT = TETRAHEDRON.replace("unit GOF", """unit ATTRIBUTES
+  attribute_name = uv0 ä
+  num_attribute_sets_minus1 = 2
+  num_components_minus1 = 1
+  prediction_idc = 2
+  value_residual = rare(50, 9) ...
+unit GOF""")
+
+    def decoded(self, text):
+        """(the rule that attributes break or None, variables of the specification)"""
+        decoder = specdec.Decoder(PROGRAM, build(text), lambda frames: None,
+                                  write_attributes=lambda data: None)
+        try:
+            decoder.call(specdec.WITH_ATTRIBUTES)
+        except specdec.Verdict as verdict:
+            return verdict.rule, decoder.variables
+        return None, decoder.variables
+
+    def test_names_are_given_or_numbers(self):
+        rule, v = self.decoded(self.TEXT)
+        self.assertIsNone(rule)
+        self.assertEqual([bytes(name).decode() for name in v["SetName"]], ["uv0", "ä", "2"])
+
+    def test_the_hash_of_the_first_frame_is_right_unless_it_is_given(self):
+        self.assertIsNone(self.decoded(self.TEXT)[0])
+        wrong = self.TEXT.replace("prediction_idc", "first_frame_crc = 7\n  prediction_idc")
+        self.assertEqual(self.decoded(wrong)[0], "R-ATT-08")
+
+    def test_a_wrong_crc_of_the_unit_stays_wrong(self):
+        text = self.TEXT.replace("prediction_idc", "unit_crc = wrong\n  prediction_idc")
+        self.assertEqual(expected(build(text))["rule"], "R-UNT-03")
+
+    def test_rare_numbers(self):
+        entry = recipes.Entry("value_residual", (), "400*rare(10, 60)", "")
+        values = recipes.Values(entry, 1)
+        numbers = [values.next() for _ in range(400)]
+        self.assertTrue(values.done())
+        self.assertGreater(numbers.count(0), 300)
+        self.assertGreater(max(map(abs, numbers)), 10)
+        self.assertLessEqual(max(map(abs, numbers)), 60)
 
 
 class StressTier(unittest.TestCase):

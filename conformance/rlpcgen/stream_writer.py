@@ -154,7 +154,8 @@ class StreamWriter:
         self.ns["StartReading"]()
         self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
                        HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
-                       NumGofFrames=0)
+                       NumGofFrames=0, HasAttributes=0,
+                       WantsAttributes=lambda: "Triangles" in self.ns)
         self.ns["StartModels"]()
         self.inferred = {}  # element -> value, or list of values, that fits what is written
         self.gof_frames = []  # num_gof_frames_minus1 of each GOF
@@ -164,6 +165,8 @@ class StreamWriter:
         self.running_hash = 0
         self._num_crcs = 0  # hashes of frames in the unit
         self._crcs = []  # those that are known once it has been written: (number, place)
+        self._first_frame_crcs = []  # those that the whole stream gives: (bit position, unit)
+        self._unit_start = 0
         self._decoded_frames = 0  # of a GOF of frames
         self._counts_gof = False  # the last GOF is in gof_frames
 
@@ -230,6 +233,9 @@ class StreamWriter:
         value = self.source.value(self, name, tuple(indices), descriptor, arguments)
         if name == "frame_crc" and value is None:
             self._crcs.append((self._num_crcs, len(self.data)))
+            value = 0
+        if name == "first_frame_crc" and value is None:
+            self._first_frame_crcs.append((self.ns["BitPosition"], self._unit_start))
             value = 0
         self._num_crcs += name == "frame_crc"
         if descriptor in BIT_DESCRIPTORS:
@@ -327,7 +333,7 @@ class StreamWriter:
         if code == ns["GOF_INDEX"] and ns.get("open_end_flag"):
             ns["NumFrames"] = ns["NumParsedFrames"]  # as random access knows it
         self.source.unit_code = code
-        start = len(self.data)
+        start = self._unit_start = len(self.data)
         ns["unit_header"]()
         ns["UnitCode"] = code
         if payload is not None:
@@ -440,6 +446,26 @@ class StreamWriter:
             ns["FrameCrc"][frame][0] = crc
         self._crcs, self._num_crcs = [], 0
 
+    def finish(self, program):
+        """The whole stream, with the hash of its first frame wherever the source left it open."""
+        if self._first_frame_crcs:
+            crc = _hash_of_first_frame(program, bytes(self.data))
+            for position, unit in self._first_frame_crcs:
+                self._set_first_frame_crc(position, unit, crc)
+        return bytes(self.data)
+
+    def _set_first_frame_crc(self, position, unit, crc):
+        """In the place of zeros; unit_crc changes as it must, or stays as wrong as it was."""
+        end = unit + 5 + int.from_bytes(self.data[unit + 1:unit + 5], "big")
+        before = zlib.crc32(self.data[unit:end])
+        for bit in range(32):
+            at = position + bit
+            if at < 8 * end:
+                self.data[at // 8] |= (crc >> (31 - bit) & 1) << (7 - at % 8)
+        change = before ^ zlib.crc32(self.data[unit:end])
+        written = int.from_bytes(self.data[end:end + 4], "big")
+        self.data[end:end + 4] = (written ^ change).to_bytes(4, "big")
+
     def _start_model(self):
         self.model_indices.append(self.ns["model_idx"])
         self._model_pending = True
@@ -484,6 +510,26 @@ class StreamWriter:
     def _collect_hash(self, frame):
         self.frame_hashes.append(self.ns["HashOfPositions"](0))
         self.running_hash = self.ns["HashOfPositions"](self.running_hash)
+
+
+def _hash_of_first_frame(program, data):
+    """FirstHash of the specification; 0 if decoding the stream gives no frame."""
+    class Broken(Exception):
+        pass
+
+    def require(condition, rule):
+        if not condition:
+            raise Broken
+
+    ns = program.compile({"StreamBytes": data, "require": require, "supported": require,
+                          "inflates_to": lambda first, end, size: 1,
+                          "output_bytes": lambda output: None,
+                          "output_attributes": lambda output: None})
+    try:
+        ns["stream_with_attributes"]()
+    except Broken:
+        pass  # R-ATT-08 at the latest
+    return ns.get("FirstHash", 0)
 
 
 def _digits(value, width):

@@ -10,6 +10,7 @@ import hashlib
 import json
 import multiprocessing
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -52,6 +53,9 @@ class _Worker:
             return place.stem, data, sidecar
         data, writer = self._random.build(int(name))
         found = expectation.expectation_of(data, self._program)
+        attributes = expectation.attributes_of(data, self._program)
+        if attributes is not None:
+            found["attributes"] = attributes
         return f"RND-{int(name):04}a", data, {
             "id": f"RND-{int(name):04}a", "title": f"Random stream of seed {name}",
             "spec": self._folder.name[1:], "profile": self._profile,
@@ -84,11 +88,31 @@ class _Worker:
                                  f"specdec: {found['expect']} {found.get('rule', '')}")
             if decoded != found["sha256_int"]:
                 return decoded, "rlpcdec and specdec decode to different integers"
+            if "attributes" in found:
+                attributes, complaint = self._decode_attributes(stream, found["attributes"])
+                decoded = f"{decoded} {attributes}"
+                if complaint is not None:
+                    return decoded, complaint
             checked = subprocess.run([self._bin / "rlpcval", "--quiet", stream],
                                      capture_output=True, text=True)
             if checked.returncode not in _VALIDATOR_CODES[found["expect"]]:
                 return decoded, f"rlpcval: {checked.stdout[-300:]}{checked.stderr[-300:]}"
         return decoded, None
+
+
+    def _decode_attributes(self, stream, expected):
+        """(SHA-256 of OUT.rlpa, rule or "none"; complaint or None)"""
+        output = stream.with_name("out.rlpa")
+        done = subprocess.run([self._bin / "rlpcdec", "decode", stream, output],
+                              capture_output=True, text=True)
+        if output.is_file():
+            found = hashlib.sha256(output.read_bytes()).hexdigest()
+        elif done.returncode == 0:
+            found = "none"
+        else:
+            found = re.search(r"R-[A-Z]{3}-[0-9]{2}|$", done.stderr.splitlines()[-1]).group()
+        return found, (None if found == expected
+                       else f"rlpcdec: attributes {found}; specdec: {expected}")
 
 
 def _start(*arguments):

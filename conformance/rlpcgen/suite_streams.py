@@ -64,7 +64,13 @@ def _expect(recipe, found, place):
         if found["expect"] != "accept" or not rules:
             raise StreamsError(f"{place}: `expect: either` is for streams that decode, but "
                                "violate a rule that decoding need not check")
+        if _is_rule(found.get("attributes")) and rules != [found["attributes"]]:
+            raise StreamsError(f"{place}: `rules: {', '.join(rules)}`, but the attributes break "
+                               f"{found['attributes']} first")
         return announced
+    if found["expect"] == "accept" and _is_rule(found.get("attributes")):
+        raise StreamsError(f"{place}: attributes break {found['attributes']}; if that is intended, "
+                           "write `expect: either`, as decoders may skip them")
     if found["expect"] == "accept":
         if announced not in (None, "accept") or "x" in recipe.path.stem:
             raise StreamsError(f"{place}: should be refused, but decodes")
@@ -78,6 +84,10 @@ def _expect(recipe, found, place):
     return found["expect"]
 
 
+def _is_rule(attributes):
+    return attributes is not None and attributes.startswith("R-")
+
+
 def sidecar_of(recipe, data, folder, program):
     """The sidecar of a stream."""
     place = recipe.path
@@ -87,6 +97,9 @@ def sidecar_of(recipe, data, folder, program):
     if "title" not in recipe.meta or recipe.meta.get("tier") not in suite.TIERS:
         raise StreamsError(f"{place}: a recipe has a title and a tier: {', '.join(suite.TIERS)}")
     found = expectation.expectation_of(data, program)
+    attributes = expectation.attributes_of(data, program)
+    if attributes is not None:
+        found["attributes"] = attributes
     expect = _expect(recipe, found, place)
     found.pop("expect")
     level = recipe.meta.get("level", _header_value(recipe, "level_idc"))
