@@ -52,6 +52,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "metadata";
     case UnitType::kClipTable:
       return "clip table";
+    case UnitType::kAttributes:
+      return "attributes";
   }
   return "of unknown type";
 }
@@ -170,6 +172,9 @@ void print_report(std::FILE* out, const std::string& path, const ValidationRepor
                counted(report.bytes, "byte").c_str(), counted(report.units, "unit").c_str(),
                counted(report.gofs, "GOF").c_str(), counted(report.frames, "frame").c_str(),
                report.hashed_frames, report.hashed_frames == 1 ? "has" : "have");
+  if (report.attribute_sets > 0) {
+    std::fprintf(out, "  attributes: %s\n", counted(report.attribute_sets, "set").c_str());
+  }
   for (const Finding& f : report.findings) print_finding(out, f);
   if (report.omitted > 0) {
     std::fprintf(out, "\n  %s not listed\n", counted(report.omitted, "error").c_str());
@@ -201,6 +206,7 @@ nlohmann::ordered_json json_of(const std::string& path, const ValidationReport& 
                                  {"gofs", report.gofs},
                                  {"frames", report.frames},
                                  {"hashed_frames", report.hashed_frames},
+                                 {"attribute_sets", report.attribute_sets},
                                  {"findings", nlohmann::ordered_json::array()},
                                  {"omitted", report.omitted}};
   if (report.stopped) {

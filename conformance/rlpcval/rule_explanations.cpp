@@ -7,6 +7,39 @@ namespace rlpc {
 namespace {
 
 constexpr std::array kRules = std::to_array<RuleExplanation>({
+    {"R-ATT-01", "F.3", "The attribute unit is not between connectivity and the first GOF.",
+     "A tool appended the unit to a stream, or copied it into one that had attributes.",
+     "Write one attribute unit after the connectivity, before all GOFs and skinned models."},
+    {"R-ATT-02", "F.3", "There are too many attribute sets.",
+     "Each part of the mesh was given sets of its own.",
+     "Write at most 64 sets; one set of triangles can say which part each belongs to."},
+    {"R-ATT-03", "F.3", "The domain of a set does not exist, or triangles have smoothing.",
+     "Normals of triangles were written as smoothing; or reading is out of step.",
+     "Use domains 0 to 2. Smoothing is for vertices and corners; flat shading is smoothing of "
+     "corners with seams everywhere."},
+    {"R-ATT-04", "F.3", "The bits, step or origin of a set are out of range.",
+     "Unit vectors need 2 bits for each component at least; an origin was written in units of "
+     "the values instead of steps.",
+     "Use a step from 2^-126 to 2^127, and origins of up to 2^24 steps."},
+    {"R-ATT-05", "F.3", "The prediction of a set does not exist for its values.",
+     "Only unit vectors, and integers of two components, can be predicted from positions.",
+     "Use prediction_idc 0 or 1."},
+    {"R-ATT-06", "F.3", "The weight of faces or the kind of diagonals does not exist.",
+     "Reading is out of step.", "Use 0 to 2 for both."},
+    {"R-ATT-07", "F.3", "The difference of two floats has more than 32 bits.",
+     "The difference was not taken modulo 2^32, or of other bits than those of OrderedBits( ).",
+     "Code the difference of the ordered bits, modulo 2^32 if that is shorter."},
+    {"R-ATT-08", "F.3",
+     "The first frame is not the one that the attributes were predicted from.",
+     "Slices or frames of the first GOF were left out, or the frames were encoded again, with "
+     "the old attribute unit.",
+     "Encode the attributes again from the first frame as it is decoded now, or remove their "
+     "unit."},
+    {"R-ATT-09", "F.3",
+     "The name of an attribute set is not UTF-8 without control characters, or occurs twice.",
+     "A name in another encoding, or with a terminating zero byte; two sets of one kind "
+     "without numbers.",
+     "Write names in UTF-8, without a zero at the end, and number sets of one kind: uv0, uv1."},
     {"R-BIT-01", "9.2",
      "A fixed-length or Exp-Golomb code goes past the end of its payload, or the stream ends "
      "within signature and version.",

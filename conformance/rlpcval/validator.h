@@ -65,8 +65,9 @@ struct ValidationReport {
   std::optional<SequenceHeader> header;
   std::uint64_t bytes = 0;
   std::uint32_t units = 0;
-  std::uint32_t gofs = 0;           // whose sections were read to the end
-  std::uint32_t frames = 0;         // of these GOFs
+  std::uint32_t gofs = 0;    // whose sections were read to the end
+  std::uint32_t frames = 0;  // of these GOFs
+  std::uint32_t attribute_sets = 0;
   std::uint32_t hashed_frames = 0;  // whose positions match their hash
   std::uint32_t gofs_of_hashed_frames =
       0;  // GOFs of frames, each of which has a hash of its own

@@ -68,6 +68,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
       return metadata(unit, *payload);
     case UnitType::kClipTable:
       return clip_table(unit, *payload);
+    case UnitType::kAttributes:
+      return attributes(unit, *payload);
   }
 }
 
@@ -136,6 +138,7 @@ void StreamValidator::connectivity(const UnitHeader& unit, const Payload& payloa
   }
   lead_.context.header = h;
   lead_.context.set_connectivity(*triangles);
+  lead_.triangles = *triangles;
   lead_.has_connectivity = true;
   recons_.emplace(lead_.context);
 }
@@ -266,7 +269,9 @@ void StreamValidator::end_gof() {
   if (const auto* skinned = std::get_if<SkinnedGof>(&gof_.access_unit->gof)) {
     use_model(*skinned);
   }
-  if (lead_.header->positions) compare_frame_crcs(*gof_.access_unit);
+  if (!lead_.header->positions) return;
+  compare_frame_crcs(*gof_.access_unit);
+  if (index_.gofs.size() == 1 && !gap_) compare_first_frame(*gof_.access_unit);
 }
 
 // 6.7 gof_hash( )

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
@@ -71,6 +72,13 @@ class StreamValidator {
   // Whether units that need the sequence header can be read; reports it if not.
   bool can_read();
 
+  // validator_attributes.cpp: attribute units.
+  void attributes(const UnitHeader& unit, const Payload& payload);
+  // Reports it if not.
+  bool has_place_for_attributes(const UnitHeader& unit);
+  void check_attribute_names(const UnitHeader& unit, const CodedAttributes& coded);
+  void compare_first_frame(const AccessUnit& access_unit);
+
   // validator_models.cpp: skinned models.
   void begin_model(const UnitHeader& unit);
   void model(const UnitHeader& unit, const Payload& payload);
@@ -111,8 +119,17 @@ class StreamValidator {
     bool connectivity_suspect = false;
     bool has_vertex_order = false;
     StreamContext context;  // once there is connectivity
+    std::vector<Triangle> triangles;
   };
   LeadingUnits lead_;
+
+  // What attributes were predicted from, until that frame has been decoded.
+  struct FirstFrame {
+    std::uint32_t crc = 0;
+    std::optional<FindingUnit> place;
+    std::uint64_t bit_pos = 0;
+  };
+  FirstFrame first_frame_;
 
   // A GOF or skinned model. Parser: of its units, if those so far could be read.
   template <class Parser>
