@@ -40,6 +40,18 @@ def run_stream(data, program=PROGRAM, trace=None, widths=False):
     return code, rule, decoder.place()[1], output.getvalue()
 
 
+def run_attributes(data, widths=False):
+    """(exit code, rule or None, .rlpa) of specdec."""
+    output = io.BytesIO()
+    decoder = specdec.Decoder(PROGRAM, data, lambda frames: None, widths=widths,
+                              write_attributes=output.write)
+    try:
+        decoder.call(specdec.WITH_ATTRIBUTES)
+    except specdec.Verdict as verdict:
+        return verdict.code, verdict.rule, b""
+    return specdec.DONE, None, output.getvalue()
+
+
 def units_of(stream):
     """(type, payload) of every unit."""
     place, units = STREAM_HEADER_BYTES, []

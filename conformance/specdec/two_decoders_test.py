@@ -19,7 +19,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import spec_program  # noqa: E402
 from specdec_testing import (  # noqa: E402
-    ROOT, FolderTest, cut_animation, encode, run_stream, soup_animation, stream_of, units_of)
+    ROOT, FolderTest, cut_animation, encode, run_attributes, run_stream, soup_animation, stream_of,
+    units_of)
 
 BIN = None
 
@@ -265,6 +266,62 @@ class DamagedHighStreams(DamagedStreams):
 
     def stream(self):
         return (ROOT / "streams/v1.2/accept/MDL/MDL-0005a.rlpc").read_bytes()
+
+
+class Attributes(Clips):
+    """Annex F: the same .rlpa, or the same rule."""
+
+    def decode_both(self, data, case):
+        stream, output = self.folder / "in.rlpc", self.folder / "out.rlpa"
+        stream.write_bytes(data)
+        output.unlink(missing_ok=True)
+        done = subprocess.run([BIN / "rlpcdec", "decode", stream, output], capture_output=True,
+                              text=True, check=False)
+        rule = None
+        if done.returncode != 0:
+            word, _, text = done.stderr.splitlines()[-1].partition(" ")
+            self.assertEqual(word, "rlpc-verdict", case)
+            rule = json.loads(text).get("rule")
+        found = output.read_bytes() if output.exists() else b""
+        expected = run_attributes(data)
+        self.assertEqual((done.returncode, rule), expected[:2], case)
+        self.assertTrue(found == expected[2], f"{case}: other bytes")
+        return rule
+
+    def test_damaged_units(self):
+        r = random.Random(11)
+        rules = set()
+        for path in sorted((ROOT / "streams/v1.2/accept/ATT").glob("*.rlpc")):
+            data = path.read_bytes()
+            if len(data) > 3000:
+                continue
+            for number in range(4):
+                all_units = units_of(data)
+                at = next(u for u, (code, _) in enumerate(all_units) if code == 0x88)
+                payload = bytearray(all_units[at][1])
+                if number == 3:
+                    del payload[r.randrange(len(payload)):]
+                else:
+                    payload[r.randrange(min(len(payload), r.choice((12, 1000))))] ^= (
+                        1 << r.randrange(8))
+                all_units[at] = 0x88, bytes(payload)
+                rules.add(self.decode_both(stream_of(data, all_units), f"{path.name} {number}"))
+        self.assertGreaterEqual(rules, {None, "R-RNG-01", "R-BIT-01", "R-ATT-08"})
+
+    def test_every_intermediate_fits_64_bits(self):
+        for name in ("ATT-0006a", "ATT-0008a", "ATT-0010a", "ATT-0030a", "ATT-0033a"):
+            data = (ROOT / f"streams/v1.2/accept/ATT/{name}.rlpc").read_bytes()
+            self.assertEqual(run_attributes(data, widths=True)[0], 0, name)
+
+    def test_units_do_not_matter_to_positions(self):
+        data = (ROOT / "streams/v1.2/accept/ATT/ATT-0001a.rlpc").read_bytes()
+        all_units = units_of(data)
+        plain = stream_of(data, [unit for unit in all_units if unit[0] != 0x88])
+        damaged = stream_of(data, [(code, b"\xff" if code == 0x88 else payload)
+                                   for code, payload in all_units])
+        for stream in (data, damaged):
+            self.assertEqual(self.rlpcdec(stream), self.rlpcdec(plain))
+            self.assertEqual(run_stream(stream), run_stream(plain))
 
 
 def main():

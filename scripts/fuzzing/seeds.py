@@ -14,7 +14,7 @@ STREAM_HEADER_BYTES = 10
 UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
 SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE, MODEL = 1, 2, 3, 4, 6, 7
-GOF_INDEX, GOF_HASH, METADATA, CLIP_TABLE = 129, 130, 131, 138
+GOF_INDEX, GOF_HASH, METADATA, ATTRIBUTES, CLIP_TABLE = 129, 130, 131, 136, 138
 # In the order of decoder/fuzz/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA, CLIP_TABLE]
 
@@ -272,12 +272,20 @@ def payload_seeds(found, counts):
             yield struct.pack("<BH", SMALL_PAYLOADS.index(code), (count - 1) & 65535) + payload
 
 
+def attributes_seeds(found, _):
+    """With a grid of 4 by 3, the mesh of several streams of the suite."""
+    for code, payload in found:
+        if code == ATTRIBUTES:
+            yield bytes([3, 2, 0]) + payload
+
+
 def sequence_header_seeds(found, _):
     yield found[0][1]
 
 
 FROM_PARTS = {"skinned_gof_fuzz": skinned_gof_seeds, "connectivity_fuzz": connectivity_seeds,
-              "cluster_gof_fuzz": cluster_gof_seeds, "payload_fuzz": payload_seeds, "sequence_header_fuzz": sequence_header_seeds}
+              "cluster_gof_fuzz": cluster_gof_seeds, "payload_fuzz": payload_seeds,
+              "attributes_fuzz": attributes_seeds, "sequence_header_fuzz": sequence_header_seeds}
 
 
 def gltf_seeds(root):
