@@ -186,7 +186,7 @@ class Workshop:
         except contract.ContractError:
             yield "--rlpc-conformance", "CRASH"
             return
-        decoder.answer["outputs"] = ["rlpd"]
+        decoder.answer["outputs"] = ["rlpd", "rlpa"]
         grader = grading.Grader(decoder, _NoReference())
         hangs = 0
         for stream in list(self._streams):

@@ -51,11 +51,12 @@ class Goals:
 def measure(goals, data):
     """The measurement of a stream; raises what the specification's program itself raises."""
     target = goals.target
-    decoder = specdec.Decoder(target, data, lambda output: None)
+    decoder = specdec.Decoder(target, data, lambda output: None,
+                              write_attributes=lambda output: None)
     verdict = {"code": specdec.DONE, "rule": None}
     try:
         decoder.call(target.entries[0])
-        _run_others(decoder, target)
+        _run_others(decoder, target, specdec.has_attribute_unit(data))
     except specdec.Verdict as error:
         verdict = {"code": error.code, "rule": error.rule}
         decoder.place()
@@ -63,9 +64,10 @@ def measure(goals, data):
     return {"specification": goals.digest, "verdict": verdict, **_seen(goals, decoder.variables)}
 
 
-def _run_others(decoder, target):
+def _run_others(decoder, target, has_attributes):
     """What is run after decoding in order; lists count only if nothing has broken a rule."""
-    good = [_keeps_rules(decoder, name) for name in target.entries[1:]]
+    good = [_keeps_rules(decoder, name) for name in target.entries[1:]
+            if has_attributes or name != specdec.WITH_ATTRIBUTES]
     if all(good):
         for name, items in target.for_each.items():
             for item in decoder.variables.get(items, []):
