@@ -154,7 +154,7 @@ class StreamWriter:
         self.ns["StartReading"]()
         self.ns.update(MaxUnitBytes=0xFFFFFFFF, NumParsedFrames=0, NumOutputFrames=0,
                        HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
-                       NumGofFrames=0, HasAttributes=0,
+                       NumGofFrames=0, HasAttributes=0, WantsAsset=lambda: True,
                        WantsAttributes=lambda: "Triangles" in self.ns)
         self.ns["StartModels"]()
         self.inferred = {}  # element -> value, or list of values, that fits what is written

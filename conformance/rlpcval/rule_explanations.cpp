@@ -13,7 +13,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-AST-02", "7.16", "An asset of asset_format 0 is not a GLB.",
      "The JSON of a .gltf file was written, or a file that was cut off.",
      "Write a whole binary glTF 2.0 file, without meshes."},
-    {"R-AST-03", "7.16", "An asset is not where it belongs.",
+    {"R-AST-03", "7.16", "An asset is not where it belongs, or there are two.",
      "It was written at the end, or before the connectivity.",
      "Write it after the connectivity unit and before the first GOF or skinned model unit."},
     {"R-ATT-01", "F.3", "The attribute unit is not between connectivity and the first GOF.",

@@ -35,10 +35,12 @@ std::string glb_problem(const std::string& glb) {
 // 6.16 asset( )
 void StreamValidator::asset(const UnitHeader& unit, const Payload& payload) {
   const auto seen = [&](UnitType type) { return seen_[static_cast<std::uint8_t>(type)] > 0; };
-  if (!seen(UnitType::kConnectivity) || seen(UnitType::kGof) || seen(UnitType::kModel)) {
-    findings_.unchecked("R-AST-03", "unit_type", unit.offset * 8,
-                        "an asset comes after the connectivity unit and before the first GOF "
-                        "or skinned model");
+  if (seen(UnitType::kAsset) || !seen(UnitType::kConnectivity) || seen(UnitType::kGof) ||
+      seen(UnitType::kModel)) {
+    findings_.unchecked(
+        "R-AST-03", "unit_type", unit.offset * 8,
+        "an asset comes once, after the connectivity unit and before the first GOF "
+        "or skinned model");
     return;
   }
   BitReader r(payload, unit.payload_offset() * 8);

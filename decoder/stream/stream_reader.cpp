@@ -41,7 +41,7 @@ Result<bool> StreamReader::open() {
     } else if (unit->type() == UnitType::kAttributes && have_connectivity && !attribute_unit_) {
       if (auto ok = units_.skip(*unit); !ok) return ok;
       attribute_unit_ = *unit;
-    } else if (unit->type() == UnitType::kAsset && have_connectivity) {
+    } else if (unit->type() == UnitType::kAsset && have_connectivity && !asset_unit_) {
       if (auto ok = units_.skip(*unit); !ok) return ok;
       asset_unit_ = *unit;
     } else if (auto ok = read_ancillary(*unit); !ok) {

@@ -47,7 +47,7 @@ class StreamReader {
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const std::string& metadata() const { return metadata_; }  // the last so far
   const std::vector<Clip>& clips() const { return clips_; }  // likewise
-  // The last asset unit so far, whose CRC has been checked; none: there is none.
+  // The asset unit, whose CRC has been checked; none: there is none.
   const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
   // The attribute unit, whose CRC has been checked; none: there is none.
   const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
