@@ -195,7 +195,7 @@ class Cutting(CutTest):
         info = self.ok("rlpcinfo", path, "--json").json()
         # The largest number of layers that some GOF must keep.
         least = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
-                    for gof in info["gofs"] if "num_bones" in gof)
+                    for gof in info["gofs"] if "cut_to_layers" in gof)
         for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers"),
                           ("temporal", "cut_to_temporal_layers")):
             for g, gof in enumerate(info["gofs"]):
