@@ -35,7 +35,8 @@ import spec_program  # noqa: E402
 DONE, INVALID, UNSUPPORTED, LIMIT, IO, USAGE, SPEC_ERROR = 0, 1, 2, 3, 4, 64, 70
 SPEC = pathlib.Path(__file__).resolve().parents[2] / "spec"
 WITH_ATTRIBUTES = "stream_with_attributes"  # the function that is run for OUT.rlpa
-_STREAM_HEADER_BYTES, _UNIT_HEADER, _CRC_BYTES, _ATTRIBUTES = 10, struct.Struct(">BI"), 4, 0x88
+_STREAM_HEADER_BYTES, _UNIT_HEADER, _CRC_BYTES = 10, struct.Struct(">BI"), 4
+_ATTRIBUTES, _ASSET = 0x88, 0x89
 
 
 class Verdict(Exception):
@@ -105,11 +106,12 @@ def _checked_width(value):
 
 
 def has_attribute_unit(data):
-    """Whether there is one, wherever it is; units are followed as far as their sizes lead."""
+    """Whether there is one, or an asset unit, wherever it is; units are followed as far as their
+    sizes lead."""
     at = _STREAM_HEADER_BYTES
     while at + _UNIT_HEADER.size <= len(data):
         code, size = _UNIT_HEADER.unpack_from(data, at)
-        if code == _ATTRIBUTES:
+        if code in (_ATTRIBUTES, _ASSET):
             return True
         at += _UNIT_HEADER.size + size + _CRC_BYTES
     return False

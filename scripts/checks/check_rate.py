@@ -43,7 +43,7 @@ def measure(root, bin_folder):
         out = pathlib.Path(folder, "a.rlpc")
         for name, arguments in sorted(inputs(root)):
             for setting in SETTINGS:
-                done = subprocess.run([bin_folder / "rlpcenc", *arguments, "-o", out,
+                done = subprocess.run([bin_folder / "rlpcenc", *arguments, "--no-attributes", "-o", out,
                                        *setting.split()], capture_output=True)
                 if done.returncode not in (0, 2):
                     raise subprocess.CalledProcessError(done.returncode, done.args,

@@ -12,7 +12,7 @@ import subprocess
 # {file}: what is to be measured; {order}: order map; {raw}: a file between two steps;
 # {out}: decoded point cache. A step is run as one process.
 RLPC_ENCODE = ("rlpcenc {mesh} --points {points} -o {file} --order-map {order} --gof {gof} "
-               "--quiet {setting}",)
+               "--no-attributes --quiet {setting}",)
 DEFAULT_GOF_ENCODE = tuple(step.replace("--gof {gof} ", "") for step in RLPC_ENCODE)
 RLPC_DECODE = ("rlpcdec {file} -o {out} --quiet",)
 XZ, ZSTD = "--lzma2=preset=9e,lc=4,pb=0", "--ultra -22"

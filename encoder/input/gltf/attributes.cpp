@@ -101,6 +101,7 @@ class AttributeCollector {
   }
 
   void add_triangle_sets(SourceAttributes& all) const {
+    if (triangles_.empty()) return;
     SourceAttribute material{.name = "material"};
     SourceAttribute part{.name = "part"};
     for (SourceAttribute* const set : {&material, &part}) {
