@@ -21,6 +21,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE = "streams/inputs/encoder_bytes.json"
 # Settings that check_stability.py does not already encode.
+POSITIONS_ALONE = ("--no-attributes",)
 SETTINGS = ("--kg 1", "--kg 0.2", "--kg 0.05", "--kg 0.1 --gof all", "--kg 0.2 --gof 30",
             "--kg 0.2 --preset fast",
             "--profile baseline --kg 1", "--profile baseline --kg 0.1 --gof all",
@@ -43,8 +44,9 @@ def measure(root, bin_folder):
         out = pathlib.Path(folder, "a.rlpc")
         for name, arguments in sorted(inputs(root)):
             for setting in SETTINGS:
-                done = subprocess.run([bin_folder / "rlpcenc", *arguments, "--no-attributes", "-o", out,
-                                       *setting.split()], capture_output=True)
+                done = subprocess.run([bin_folder / "rlpcenc", *arguments, "-o", out,
+                                       *setting.split(), *POSITIONS_ALONE],
+                                      capture_output=True)
                 if done.returncode not in (0, 2):
                     raise subprocess.CalledProcessError(done.returncode, done.args,
                                                         stderr=done.stderr)

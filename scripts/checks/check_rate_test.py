@@ -21,7 +21,9 @@ name=$(basename "${1%.*}")
 if [ "$2" = --points ]; then [ "$3" = "${1%.obj}.pc2" ] || exit 1; shift 2; fi
 out=$3
 shift 3
-size=$(sed -n "s/ $name $*\$//p" "$(dirname "$0")/sizes")
+setting="$*"
+setting="${setting% --no-attributes}"
+size=$(sed -n "s/ $name $setting\$//p" "$(dirname "$0")/sizes")
 size=${size:-1000}
 head -c "${size#-}" /dev/zero > "$out"
 [ "$size" -gt 0 ] || exit 2
