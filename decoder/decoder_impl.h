@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "common/owned.h"
 #include "common/parallel/for_each.h"
@@ -31,7 +30,7 @@ class Decoder::Impl : public Owned {
   Result<bool> frame(std::uint32_t frame, std::span<std::int32_t> positions);
   Result<bool> prefetch(std::uint32_t frame);
   Result<GofRange> gof_of(std::uint32_t frame);
-  Result<std::vector<GofRange>> gofs();
+  Result<Vector<GofRange>> gofs();
   Result<std::optional<std::uint32_t>> skip_damage();
   Result<std::uint32_t> parse_rest();
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/io/float_position.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -157,7 +158,7 @@ void write_normals(std::span<const double> sums, const rlpc_channel& channel) {
 }
 
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,
-                 bool by_angle, std::vector<double>& sums) {
+                 bool by_angle, rlpc::Vector<double>& sums) {
   sums.assign(positions.size(), 0);
   for (const Triangle& t : triangles) {
     std::array<Vec3d, 3> edges{};  // from corner k to the next

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "decoder/c_api/rlpc_frame_output.h"
 
 namespace rlpc {
@@ -36,6 +36,6 @@ void write_normals(std::span<const double> sums, const rlpc_channel& channel);
 
 // The sum of the normals of the triangles around each vertex, by area or by angle.
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,
-                 bool by_angle, std::vector<double>& sums);
+                 bool by_angle, rlpc::Vector<double>& sums);
 
 }  // namespace rlpc

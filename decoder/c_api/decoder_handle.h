@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "common/c_api/c_handle.h"
 #include "common/owned.h"
@@ -14,9 +13,9 @@
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
 struct rlpc_decoder {
   std::optional<rlpc::Decoder> decoder;
-  std::vector<std::int32_t> positions;  // of the last frame that was converted
-  bool has_frame = false;               // whether there is one
-  std::vector<double> normal_sums;      // [num_vertices][3], of the last frame with normals
+  rlpc::Vector<std::int32_t> positions;  // of the last frame that was converted
+  bool has_frame = false;                // whether there is one
+  rlpc::Vector<double> normal_sums;      // [num_vertices][3], of the last frame with normals
   rlpc::HandleError error;
   bool is_placed = false;
   bool is_allocated = false;  // by the owner

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "common/io/float_position.h"
+#include "common/owned.h"
 #include "decoder/c_api/convert_frame.h"
 #include "decoder/c_api/decoder_handle.h"
 
@@ -228,7 +228,7 @@ rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float mos
                                                        ? "least or most is null"
                                                        : "no frame has been decoded");
     }
-    const std::vector<std::int32_t>& positions = decoder->positions;
+    const rlpc::Vector<std::int32_t>& positions = decoder->positions;
     for (std::size_t c = 0; c < 3; ++c) {
       std::int32_t low = positions[c];
       std::int32_t high = positions[c];

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/bit_reader.h"
 #include "common/bitstream/range_decoder.h"
 #include "common/bitstream/residual_models.h"
+#include "common/owned.h"
 #include "decoder/parse/memory_limit.h"
 #include "decoder/parse/parse_residual.h"
 
@@ -109,7 +109,7 @@ class SectionReader {
     return static_cast<int>(value);
   }
   // 9.5.6 ae_tree( models, depth ): models of the inner nodes, root at index 1.
-  std::uint32_t tree(std::vector<BitModel>& models, const char* element) {
+  std::uint32_t tree(Vector<BitModel>& models, const char* element) {
     const std::uint64_t at = mark();
     std::size_t node = 1;
     while (node < models.size()) node = 2 * node + (rd_.bin(models[node]) ? 1 : 0);

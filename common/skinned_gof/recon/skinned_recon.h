@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/owned.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/recon/trajectory_prediction.h"
@@ -19,7 +19,7 @@
 namespace rlpc {
 
 // 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels);
+Vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels);
 
 // 8.14.3 Positions: the weighted mean of a point moved by its bones; 4 fractional bits, |point|
 // < 2^31. The plain twin of the computation of SkinnedRecon for many vertices.
@@ -54,10 +54,10 @@ class SkinnedRecon {
   PositionWidths widths_;
   Kernels loops_;
   std::shared_ptr<const ModelRecon> model_;
-  std::vector<BoneMotion> bones_;
+  Vector<BoneMotion> bones_;
   // Displacements; row 3 * f + c: coordinate c of frame f. Of the skinned model, then of local
   // component groups.
-  std::vector<ComponentSum> sums_;
+  Vector<ComponentSum> sums_;
 };
 
 }  // namespace rlpc

@@ -2,17 +2,18 @@
 
 #include <zlib.h>
 
+#include "common/owned.h"
 #include "common/syntax/sequence_header.h"
 
 namespace rlpc {
 
 // 6.10 metadata( )
-Result<std::string> parse_metadata(BitReader& r) {
+Result<String> parse_metadata(BitReader& r) {
   const std::uint32_t size =
       r.u(32, "metadata_size", {0, std::int64_t{kMaxMetadataBytes}}, "R-MET-01");
   if (r.error()) return *r.error();
   const auto deflated = r.remaining_bytes();
-  std::string json(size + 1, '\0');  // one byte more, to detect excess
+  String json(size + 1, '\0');  // one byte more, to detect excess
   uLongf inflated = size + 1;
   uLong used = static_cast<uLong>(deflated.size());
   const int status =
