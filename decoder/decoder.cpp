@@ -1,11 +1,10 @@
 // Implements Decoder (decoder/rlpc_decoder.h).
 #include <algorithm>
 #include <cassert>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/crc32.h"
+#include "common/owned.h"
 #include "decoder/decoder_impl.h"
 
 namespace rlpc {
@@ -202,10 +201,10 @@ std::span<const std::uint32_t> Decoder::coarse_vertices() const {
 }
 std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }
-Result<std::string> Decoder::asset() { return impl_->asset(); }
+Result<String> Decoder::asset() { return impl_->asset(); }
 bool Decoder::has_asset() const { return impl_->stream().asset_unit().has_value(); }
 bool Decoder::has_attributes() const { return impl_->stream().attribute_unit().has_value(); }
-Result<std::vector<AttributeSet>> Decoder::attributes() { return impl_->attributes(); }
+Result<Vector<AttributeSet>> Decoder::attributes() { return impl_->attributes(); }
 std::optional<SkeletonPose> Decoder::pose() { return impl_->pose(); }
 Result<bool> Decoder::next_frame(std::span<std::int32_t> positions) {
   return impl_->next_frame(positions);
@@ -218,9 +217,9 @@ Result<bool> Decoder::frame(std::uint32_t frame, std::span<std::int32_t> positio
 DecoderMemory Decoder::memory() const { return impl_->memory(); }
 Result<bool> Decoder::prefetch(std::uint32_t frame) { return impl_->prefetch(frame); }
 Result<GofRange> Decoder::gof_of(std::uint32_t frame) { return impl_->gof_of(frame); }
-Result<std::vector<GofRange>> Decoder::gofs() { return impl_->gofs(); }
-const std::string& Decoder::metadata() const { return impl_->stream().metadata(); }
-const std::vector<Clip>& Decoder::clips() const { return impl_->stream().clips(); }
+Result<Vector<GofRange>> Decoder::gofs() { return impl_->gofs(); }
+const String& Decoder::metadata() const { return impl_->stream().metadata(); }
+const Vector<Clip>& Decoder::clips() const { return impl_->stream().clips(); }
 Result<std::optional<std::uint32_t>> Decoder::skip_damage() { return impl_->skip_damage(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }
 std::uint32_t Decoder::position() const { return impl_->position(); }

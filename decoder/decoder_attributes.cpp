@@ -4,17 +4,18 @@
 
 #include "common/attributes/recon/attribute_recon.h"
 #include "common/bitstream/crc32.h"
+#include "common/owned.h"
 #include "decoder/decoder_impl.h"
 #include "decoder/parse/attributes/parse_attributes.h"
 #include "decoder/parse/sequence/parse_asset.h"
 
 namespace rlpc {
 
-Result<std::vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
+Result<Vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
   if (auto ok = stream_.seek(0); !ok) return ok.error();
   const auto unit = stream_.find_gof();
   if (!unit) return unit.error();
-  std::vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
+  Vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
   const auto live = is_live(**unit);
   if (!live) return live.error();
   if (*live) {
@@ -30,7 +31,7 @@ Result<std::vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
   return positions;
 }
 
-Result<std::vector<std::int32_t>> Decoder::Impl::first_frame() {
+Result<Vector<std::int32_t>> Decoder::Impl::first_frame() {
   const ThreadPool::Use use(threads_);
   const SliceCut cut = stream_.access_units().cut();
   const std::uint32_t position = position_;
@@ -45,25 +46,25 @@ Result<std::vector<std::int32_t>> Decoder::Impl::first_frame() {
   return positions;
 }
 
-Result<std::string> Decoder::Impl::asset() {
+Result<String> Decoder::Impl::asset() {
   const auto& unit = stream_.asset_unit();
-  if (!unit) return std::string();
+  if (!unit) return String();
   const auto payload = stream_.units().payload(*unit);
   if (!payload) return payload.error();
   BitReader r = stream_.units().bits(*unit, *payload);
   return parse_asset(r, stream_.access_units().memory_limit());
 }
 
-Result<std::vector<AttributeSet>> Decoder::Impl::attributes() {
+Result<Vector<AttributeSet>> Decoder::Impl::attributes() {
   const auto& unit = stream_.attribute_unit();
-  if (!unit || coarse_) return std::vector<AttributeSet>();
+  if (!unit || coarse_) return Vector<AttributeSet>();
   const auto payload = stream_.units().payload(*unit);
   if (!payload) return payload.error();
   BitReader r = stream_.units().bits(*unit, *payload);
   // Triangles in decoded order.
-  std::vector<Triangle> triangles(stream_.triangles().begin(), stream_.triangles().end());
+  Vector<Triangle> triangles(stream_.triangles().begin(), stream_.triangles().end());
   const auto order = stream_.vertex_order();
-  std::vector<std::uint32_t> decoded(order.size());
+  Vector<std::uint32_t> decoded(order.size());
   for (std::uint32_t v = 0; v < order.size(); ++v) decoded[order[v]] = v;
   for (Triangle& t : triangles) {
     for (std::uint32_t& v : t) v = order.empty() ? v : decoded[v];
@@ -72,7 +73,7 @@ Result<std::vector<AttributeSet>> Decoder::Impl::attributes() {
   const auto coded =
       parse_attributes(r, num_vertices, triangles, stream_.access_units().memory_limit());
   if (!coded) return coded.error();
-  std::vector<std::int32_t> positions;
+  Vector<std::int32_t> positions;
   if (coded->uses_positions()) {
     auto first = first_frame();
     if (!first) return first.error();
@@ -84,7 +85,7 @@ Result<std::vector<AttributeSet>> Decoder::Impl::attributes() {
   auto sets = recon_attributes(*coded, num_vertices, triangles, positions);
   for (AttributeSet& set : sets) {
     if (set.header.domain != AttributeDomain::kVertex || order.empty()) continue;
-    const std::vector<std::uint32_t> values = set.values;
+    const Vector<std::uint32_t> values = set.values;
     const std::size_t n = set.header.num_components;
     for (std::size_t v = 0; v < order.size(); ++v) {
       for (std::size_t c = 0; c < n; ++c) set.values[order[v] * n + c] = values[v * n + c];
@@ -100,19 +101,19 @@ std::optional<SkeletonPose> Decoder::Impl::pose() {
     std::optional<Skeleton> skeleton = gof_->gof.recon->skeleton();
     if (!skeleton) return std::nullopt;
     // The place of each decoded vertex in the output.
-    std::vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
+    Vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
     for (std::size_t i = 0; i < decoded.size(); ++i) {
       decoded[i] = static_cast<std::int32_t>(i / 3);
     }
-    std::vector<std::int32_t> in_output(3 * std::size_t{num_vertices()});
+    Vector<std::int32_t> in_output(3 * std::size_t{num_vertices()});
     to_output_order(decoded, in_output);
-    std::vector<std::vector<SkeletonInfluence>> influences;
+    Vector<Vector<SkeletonInfluence>> influences;
     for (std::size_t v = 0; v < num_vertices(); ++v) {
       influences.push_back(skeleton->influences[static_cast<std::size_t>(in_output[3 * v])]);
     }
     skeleton->influences = std::move(influences);
     if (!skeleton_ || *skeleton_ != *skeleton)
-      skeleton_ = std::make_shared<const Skeleton>(std::move(*skeleton));
+      skeleton_ = make_shared_owned<const Skeleton>(std::move(*skeleton));
     gof_with_skeleton_ = first;
   }
   return SkeletonPose{skeleton_, gof_->gof.recon->places(position_ - 1 - first),

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/decoder_impl.h"
 
 namespace rlpc {
@@ -185,8 +186,8 @@ Result<GofRange> Decoder::Impl::gof_of(std::uint32_t frame) {
   return GofRange{place->first_frame, place->num_frames};
 }
 
-Result<std::vector<GofRange>> Decoder::Impl::gofs() {
-  std::vector<GofRange> ranges;
+Result<Vector<GofRange>> Decoder::Impl::gofs() {
+  Vector<GofRange> ranges;
   const std::uint32_t end = num_frames().value_or(kMaxFrames);
   for (std::uint32_t frame = 0; frame < end;) {
     const auto gof = gof_of(frame);

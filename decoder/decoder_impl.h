@@ -6,9 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "common/owned.h"
 #include "common/parallel/for_each.h"
@@ -32,11 +30,11 @@ class Decoder::Impl : public Owned {
   Result<bool> frame(std::uint32_t frame, std::span<std::int32_t> positions);
   Result<bool> prefetch(std::uint32_t frame);
   Result<GofRange> gof_of(std::uint32_t frame);
-  Result<std::vector<GofRange>> gofs();
+  Result<Vector<GofRange>> gofs();
   Result<std::optional<std::uint32_t>> skip_damage();
   Result<std::uint32_t> parse_rest();
-  Result<std::string> asset();
-  Result<std::vector<AttributeSet>> attributes();
+  Result<String> asset();
+  Result<Vector<AttributeSet>> attributes();
   std::optional<SkeletonPose> pose();
 
   const StreamReader& stream() const { return stream_; }
@@ -76,8 +74,8 @@ class Decoder::Impl : public Owned {
   // Begins preparing the GOFs that come next in the direction of the last frames.
   void look_ahead();
   // Of the whole mesh, uncut, in decoded order; then goes on where it was.
-  Result<std::vector<std::int32_t>> first_frame();
-  Result<std::vector<std::int32_t>> decode_first_frame();
+  Result<Vector<std::int32_t>> first_frame();
+  Result<Vector<std::int32_t>> decode_first_frame();
   // False after the last frame of the GOF.
   Result<bool> decode_live_frame(std::span<std::int32_t> positions);
   Result<bool> decode_frame(std::span<std::int32_t> positions);

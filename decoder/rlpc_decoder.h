@@ -4,7 +4,7 @@
 //   if (!source) return report(source.error());
 //   auto decoder = rlpc::Decoder::open(std::move(*source));
 //   if (!decoder) return report(decoder.error());
-//   std::vector<std::int32_t> positions(3 * decoder->num_vertices());
+//   Vector<std::int32_t> positions(3 * decoder->num_vertices());
 //   for (;;) {
 //     const auto more = decoder->next_frame(positions);
 //     if (!more) return report(more.error());   // rule id, element and bit position
@@ -25,9 +25,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "common/attributes/attribute_set.h"
 #include "common/bitstream/trace.h"
@@ -35,6 +33,7 @@
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/skeleton.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/file_source.h"
@@ -124,13 +123,13 @@ class Decoder {
   std::uint32_t num_layers() const;
   bool has_vertex_order() const;
   // JSON text of the last metadata unit so far; empty if there was none.
-  const std::string& metadata() const;
+  const String& metadata() const;
   // Those of the last clip table so far. Names may have any bytes.
-  const std::vector<Clip>& clips() const;
+  const Vector<Clip>& clips() const;
 
   // The asset of the stream (7.16), a GLB without geometry; empty: none. Not checked beyond its
   // size. Errors leave the frames decodable.
-  Result<std::string> asset();
+  Result<String> asset();
   bool has_asset() const;
   // Whether the stream has attributes.
   bool has_attributes() const;
@@ -138,7 +137,7 @@ class Decoder {
   // the options cut it; position() stays. Vertices, triangles and corners are those of frames
   // and triangles(); not for coarse meshes. Empty if the stream has none. Errors leave the
   // frames decodable. With forward_only, to be called before the first frame.
-  Result<std::vector<AttributeSet>> attributes();
+  Result<Vector<AttributeSet>> attributes();
 
   // Decodes the next frame into positions [num_vertices][3], grid units (clause 8.6). False
   // after the last frame, once the rest of the stream has been checked.
@@ -165,7 +164,7 @@ class Decoder {
   // The GOF of a frame below num_frames; all GOFs. They read headers of units, from the GOF
   // index on if there is one, and decode nothing.
   Result<GofRange> gof_of(std::uint32_t frame);
-  Result<std::vector<GofRange>> gofs();
+  Result<Vector<GofRange>> gofs();
   // After an error of next_frame(): goes on with the next GOF that is not lost, and returns its
   // first frame, which is the next one; none: the rest of the stream is lost. The frames in
   // between, from position() on, are not decoded. Errors: as of next_frame(); there is no way

@@ -5,21 +5,21 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/attributes/attribute_set.h"
-#include "common/attributes/corners.h"
 #include "common/attributes/sectors.h"
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
+#include "common/mesh/corners.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 // What the contexts of a set know of the sets before it.
 struct EarlierSets {
-  std::vector<bool> seams;    // EarlierSeam: of the last set of corners; empty: none
-  std::vector<bool> changes;  // EdgeChange: values of triangles differ across the edge
+  Vector<bool> seams;    // EarlierSeam: of the last set of corners; empty: none
+  Vector<bool> changes;  // EdgeChange: values of triangles differ across the edge
 
   // F.4 KeepSet( ), of a set of triangles with these values.
   void add_triangle_values(std::span<const std::uint32_t> edge_mates,
@@ -34,7 +34,7 @@ class SeamContexts {
 
   BitModel& model(std::uint32_t c) {
     const std::uint32_t a = count_[vertex_of_corner(triangles_, c)];
-    const std::uint32_t b = count_[vertex_of_corner(triangles_, next_in_triangle(c))];
+    const std::uint32_t b = count_[vertex_of_corner(triangles_, next_corner(c))];
     // Unordered pairs of 0 to 2.
     std::uint32_t context = a + b;
     if (a == b && a > 0) {
@@ -58,7 +58,7 @@ class SeamContexts {
   std::array<BitModel, 36> models_;  // SeamModels
   std::span<const Triangle> triangles_;
   const EarlierSets& earlier_;
-  std::vector<std::uint8_t> count_;  // SeamCount, at most 2
+  Vector<std::uint8_t> count_;  // SeamCount, at most 2
 };
 
 class DiagonalContexts {
@@ -74,8 +74,8 @@ class DiagonalContexts {
   }
 
  private:
-  std::array<BitModel, 3> models_;   // DiagonalModels
-  std::vector<std::uint8_t> count_;  // DiagonalCount, at most 3
+  std::array<BitModel, 3> models_;  // DiagonalModels
+  Vector<std::uint8_t> count_;      // DiagonalCount, at most 3
 };
 
 // The means of residuals of one component in each class.
@@ -123,7 +123,7 @@ class ValueContexts {
   std::array<ResidualModels, kSectorClasses> models_;                 // ValueModels
   std::array<std::array<BitModel, 64>, kSectorClasses> float_sizes_;  // FloatSizeModels
   std::array<std::array<std::uint32_t, kMaxAttributeComponents>, kSectorClasses> mean_{};
-  std::vector<std::uint16_t> magnitude_;  // [sector][component], ValueMagnitude
+  Vector<std::uint16_t> magnitude_;  // [sector][component], ValueMagnitude
 };
 
 // Values of triangles: candidates, and models (F.2.3 triangle_values( )).

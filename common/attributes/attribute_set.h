@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -24,7 +24,7 @@ enum class Diagonals : std::uint8_t { kNone, kFlagged, kLikely };
 
 // F.2.2 attribute_header( )
 struct AttributeHeader {
-  std::string name;  // UTF-8 without control characters, 1 to kMaxAttributeNameBytes bytes
+  String name;  // UTF-8 without control characters, 1 to kMaxAttributeNameBytes bytes
   AttributeDomain domain = AttributeDomain::kVertex;
   ValueKind kind = ValueKind::kIntegers;
   std::uint32_t num_components = 1;  // as coded: 2 of unit vectors, 0 of smoothing
@@ -59,12 +59,12 @@ struct AttributeSet {
   AttributeHeader header;
   // Of each corner, 3 per triangle, the index of its value (its sector); empty unless the
   // domain is kCorner. Of smoothing, corners with the same number share a normal.
-  std::vector<std::uint32_t> value_of_corner;
+  Vector<std::uint32_t> value_of_corner;
   // Of each triangle, the number of its face (F.8.1); empty unless header.has_faces().
-  std::vector<std::uint32_t> face_of_triangle;
+  Vector<std::uint32_t> face_of_triangle;
   // Unsigned integers, points of an octahedron (F.8.4) or bits of floats. One for each vertex,
   // sector or triangle; none of smoothing.
-  std::vector<std::uint32_t> values;
+  Vector<std::uint32_t> values;
 
   std::size_t num_values() const {
     return header.num_components == 0 ? 0 : values.size() / header.num_components;
@@ -74,16 +74,16 @@ struct AttributeSet {
 // A set as in the stream: seams and residuals.
 struct CodedAttributeSet {
   AttributeHeader header;
-  std::vector<bool> seams;           // [edge], F.1; of the domain kCorner
-  std::vector<bool> diagonal_flags;  // [edge]; without diagonals: empty
+  Vector<bool> seams;           // [edge], F.1; of the domain kCorner
+  Vector<bool> diagonal_flags;  // [edge]; without diagonals: empty
   // [sector][component], modulo 2^32. Of triangles: values.
-  std::vector<std::uint32_t> residuals;
+  Vector<std::uint32_t> residuals;
 };
 
 // An attribute unit.
 struct CodedAttributes {
   std::uint32_t first_frame_crc = 0;  // if a set uses positions
-  std::vector<CodedAttributeSet> sets;
+  Vector<CodedAttributeSet> sets;
 
   bool uses_positions() const {
     for (const CodedAttributeSet& set : sets) {

@@ -5,18 +5,19 @@
 #include <numeric>
 #include <utility>
 
-#include "common/attributes/corners.h"
+#include "common/mesh/corners.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
 
 ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
                                               std::span<const std::uint32_t> of_corner) {
-  std::vector<std::uint32_t> first(num_sectors + std::size_t{1}, 0);
+  Vector<std::uint32_t> first(num_sectors + std::size_t{1}, 0);
   for (const std::uint32_t x : of_corner) ++first[x + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  std::vector<std::uint32_t> corners(of_corner.size());
+  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  Vector<std::uint32_t> corners(of_corner.size());
   for (std::uint32_t c = 0; c < of_corner.size(); ++c) corners[next[of_corner[c]]++] = c;
   return {std::move(first), std::move(corners)};
 }
@@ -24,11 +25,11 @@ ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
 }  // namespace
 
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
-                           const std::vector<bool>& seams) {
+                           const Vector<bool>& seams) {
   Sectors sectors;
   sectors.of_corner.assign(edge_mates.size(), kNoSector);
   std::uint32_t count = 0;
-  std::vector<std::uint32_t> pending;
+  Vector<std::uint32_t> pending;
   for (std::uint32_t c = 0; c < edge_mates.size(); ++c) {
     if (sectors.of_corner[c] != kNoSector) continue;
     const auto reach = [&](std::uint32_t corner) {
@@ -40,8 +41,8 @@ Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
     while (!pending.empty()) {
       const std::uint32_t e = pending.back();
       pending.pop_back();
-      if (edge_mates[e] != kNoCorner && !seams[e]) reach(next_in_triangle(edge_mates[e]));
-      const std::uint32_t before = previous_in_triangle(e);
+      if (edge_mates[e] != kNoCorner && !seams[e]) reach(next_corner(edge_mates[e]));
+      const std::uint32_t before = previous_corner(e);
       if (edge_mates[before] != kNoCorner && !seams[before]) reach(edge_mates[before]);
     }
     ++count;
@@ -63,17 +64,17 @@ Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle
 SectorOrder::SectorOrder(const Sectors& sectors) {
   constexpr std::size_t kMostCounted = 2;  // complete triangles that make a sector come earlier
   const std::uint32_t count = sectors.count();
-  std::vector<bool> is_placed(count, false);
-  std::vector<std::uint8_t> num_known(sectors.of_corner.size() / 3, 0);
-  std::vector<std::uint8_t> degree(count, 0);
-  std::array<std::vector<std::uint32_t>, kMostCounted> queues;
+  Vector<bool> is_placed(count, false);
+  Vector<std::uint8_t> num_known(sectors.of_corner.size() / 3, 0);
+  Vector<std::uint8_t> degree(count, 0);
+  std::array<Vector<std::uint32_t>, kMostCounted> queues;
   std::array<std::size_t, kMostCounted> heads{};
-  std::vector<std::uint32_t> first_triangle(count);
-  std::vector<std::uint32_t> first_ring(count);
-  std::vector<std::uint8_t> num_triangles(count, 0);
-  std::vector<std::uint8_t> ring_size(count, 0);
-  std::vector<std::uint32_t> triangles_in_order;
-  std::vector<std::uint32_t> rings_in_order;
+  Vector<std::uint32_t> first_triangle(count);
+  Vector<std::uint32_t> first_ring(count);
+  Vector<std::uint8_t> num_triangles(count, 0);
+  Vector<std::uint8_t> ring_size(count, 0);
+  Vector<std::uint32_t> triangles_in_order;
+  Vector<std::uint32_t> rings_in_order;
   order.reserve(count);
   neighbour.assign(count, kNoSector);
   class_of.assign(count, 0);
@@ -89,8 +90,8 @@ SectorOrder::SectorOrder(const Sectors& sectors) {
       ++ring_size[x];
     };
     for (const std::uint32_t c : sectors.corners[x]) {
-      const std::uint32_t a = sectors.of_corner[next_in_triangle(c)];
-      const std::uint32_t b = sectors.of_corner[previous_in_triangle(c)];
+      const std::uint32_t a = sectors.of_corner[next_corner(c)];
+      const std::uint32_t b = sectors.of_corner[previous_corner(c)];
       if (is_placed[a] && is_placed[b] && num_triangles[x] < kMaxSectorTriangles) {
         triangles_in_order.push_back(c);
         ++num_triangles[x];
@@ -134,12 +135,11 @@ SectorOrder::SectorOrder(const Sectors& sectors) {
   }
 
   // From the order of coding to that of sectors.
-  const auto regroup = [&](const std::vector<std::uint32_t>& from,
-                           const std::vector<std::uint8_t>& sizes,
-                           const std::vector<std::uint32_t>& items) {
-    std::vector<std::uint32_t> first{0};
+  const auto regroup = [&](const Vector<std::uint32_t>& from, const Vector<std::uint8_t>& sizes,
+                           const Vector<std::uint32_t>& items) {
+    Vector<std::uint32_t> first{0};
     first.reserve(count + std::size_t{1});
-    std::vector<std::uint32_t> sorted;
+    Vector<std::uint32_t> sorted;
     sorted.reserve(items.size());
     for (std::uint32_t x = 0; x < count; ++x) {
       const auto of_sector = std::span(items).subspan(from[x], sizes[x]);

@@ -4,23 +4,23 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
 #include "common/mesh/topology.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 struct Sectors {
-  std::vector<std::uint32_t> of_corner;  // SectorOf
-  ListOfLists<std::uint32_t> corners;    // SectorCorners
+  Vector<std::uint32_t> of_corner;     // SectorOf
+  ListOfLists<std::uint32_t> corners;  // SectorCorners
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(corners.size()); }
 };
 
 // F.4 MakeSectors( ): of corners, from the edges that are seams; of vertices.
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
-                           const std::vector<bool>& seams);
+                           const Vector<bool>& seams);
 Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
 inline constexpr std::size_t kMaxSectorTriangles = 8;
@@ -32,11 +32,11 @@ inline constexpr std::size_t kSectorClasses = 4;
 struct SectorOrder {
   explicit SectorOrder(const Sectors& sectors);
 
-  std::vector<std::uint32_t> order;      // SectorOrder
+  Vector<std::uint32_t> order;           // SectorOrder
   ListOfLists<std::uint32_t> triangles;  // SectorTriangles: corners, of each sector
   ListOfLists<std::uint32_t> ring;       // SectorRing
-  std::vector<std::uint32_t> neighbour;  // SectorNeighbour; kNoSector: none
-  std::vector<std::uint8_t> class_of;    // SectorClass
+  Vector<std::uint32_t> neighbour;       // SectorNeighbour; kNoSector: none
+  Vector<std::uint8_t> class_of;         // SectorClass
 };
 
 }  // namespace rlpc

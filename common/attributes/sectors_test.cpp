@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/attributes/corners.h"
+#include "common/mesh/corners.h"
 
 namespace rlpc {
 namespace {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -35,12 +36,12 @@ void BitWriter::se(std::int32_t value) {
 
 void BitWriter::byte_alignment() { free_bits_ = 0; }
 
-void BitWriter::append(const std::vector<std::uint8_t>& bytes) {
+void BitWriter::append(const Vector<std::uint8_t>& bytes) {
   assert(free_bits_ == 0);
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 
-std::vector<std::uint8_t> BitWriter::take() {
+Vector<std::uint8_t> BitWriter::take() {
   assert(free_bits_ == 0);
   return std::move(bytes_);
 }

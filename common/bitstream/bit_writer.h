@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -14,11 +15,11 @@ class BitWriter {
   void se(std::int32_t value);
   void byte_alignment();
   // Both require a byte-aligned position.
-  void append(const std::vector<std::uint8_t>& bytes);
-  std::vector<std::uint8_t> take();
+  void append(const Vector<std::uint8_t>& bytes);
+  Vector<std::uint8_t> take();
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  Vector<std::uint8_t> bytes_;
   int free_bits_ = 0;  // in the last byte
 };
 

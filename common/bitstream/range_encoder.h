@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -44,7 +44,7 @@ class RangeEncoder {
 
   // Ends the section: one more byte suffices, as range >= 2^24. The encoder cannot be used
   // afterwards.
-  std::vector<std::uint8_t> finish() {
+  Vector<std::uint8_t> finish() {
     low_ = (low_ + 0xFFFFFF) & ~std::uint64_t{0xFFFFFF};
     shift_low();
     // The held-back bytes can no longer change.
@@ -73,7 +73,7 @@ class RangeEncoder {
     low_ = (low_ & 0x00FFFFFFU) << 8;
   }
 
-  std::vector<std::uint8_t> bytes_;
+  Vector<std::uint8_t> bytes_;
   std::uint64_t low_ = 0;
   std::uint64_t pending_ff_ = 0;
   std::uint32_t range_ = 0xFFFFFFFF;

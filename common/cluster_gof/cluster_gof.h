@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "common/cluster_gof/cluster_map.h"
 #include "common/components/component_limits.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "common/syntax/gof_header.h"
 
 namespace rlpc {
@@ -26,8 +26,8 @@ struct Component {
   int temporal_bits = 1;
   int temporal_predictor = 0;  // order, 0 to kMaxPredictorOrder
   SpatialPredictor spatial_predictor = SpatialPredictor::kNone;
-  std::vector<std::int32_t> temporal_residual;  // [num_gof_frames]
-  std::vector<std::int32_t> spatial_residual;   // [3][coded vertices of the cluster]
+  Vector<std::int32_t> temporal_residual;  // [num_gof_frames]
+  Vector<std::int32_t> spatial_residual;   // [3][coded vertices of the cluster]
 
   bool operator==(const Component&) const = default;
 };
@@ -35,7 +35,7 @@ struct Component {
 struct Cluster {
   bool lcf_flag = false;
   std::array<std::uint32_t, 3> seed_vertex{};  // only with lcf_flag: three distinct vertices
-  std::vector<Component> components;
+  Vector<Component> components;
 
   bool operator==(const Cluster&) const = default;
 };
@@ -44,8 +44,8 @@ struct Cluster {
 // clusters in order, their seeds in order, each vertex once.
 struct SeedTrack {
   std::uint32_t vertex = 0;
-  std::uint32_t anchor = 0;     // track of seed 0 of the cluster; for seed 0, this track
-  std::vector<Vec3i> residual;  // [num_gof_frames]
+  std::uint32_t anchor = 0;  // track of seed 0 of the cluster; for seed 0, this track
+  Vector<Vec3i> residual;    // [num_gof_frames]
 
   bool operator==(const SeedTrack&) const = default;
 };
@@ -55,10 +55,9 @@ struct ClusterGof : GofHeader {
   std::uint32_t seed_step = 1;
   int seed_predictor = 1;  // order, 0 to kMaxPredictorOrder
   bool seed_coupling_flag = false;
-  std::vector<Cluster> clusters;
-  std::vector<SeedTrack> seed_tracks;
-  std::vector<std::uint16_t>
-      cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
+  Vector<Cluster> clusters;
+  Vector<SeedTrack> seed_tracks;
+  Vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
 
   bool operator==(const ClusterGof&) const = default;
 };

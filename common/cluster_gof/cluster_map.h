@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -18,7 +18,7 @@ inline constexpr std::uint16_t kSeedCluster = 0xFFFF;
 
 struct ClusterMapModels {
   std::array<BitModel, 3> cluster_predicted_flag;
-  std::vector<BitModel> cluster_idx;  // [node of the binary tree]
+  Vector<BitModel> cluster_idx;  // [node of the binary tree]
 };
 
 // 9.6.2 Predicted cluster, from the neighbours already decoded.

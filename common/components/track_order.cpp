@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
-std::vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between) {
+Vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between) {
   assert(track_levels >= 0 && track_levels <= kMaxTrackLevels);
   const int levels = between > 0 ? track_levels : 0;
-  std::vector<TrackPlace> order;
+  Vector<TrackPlace> order;
   order.reserve(num_frames);
   for (int level = 0; level <= levels; ++level) {
     const std::uint32_t stride = std::uint32_t{1} << (levels - level);
@@ -26,10 +28,10 @@ std::vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, 
   return order;
 }
 
-std::vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer) {
+Vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer) {
   assert(frames.temporal_layers >= 1 && frames.temporal_layers <= frames.levels + 1);
   const int below = frames.levels - (frames.temporal_layers - 1);  // highest level of layer 0
-  std::vector<TrackPlace> places = track_order(frames.count, frames.levels, between);
+  Vector<TrackPlace> places = track_order(frames.count, frames.levels, between);
   std::erase_if(places,
                 [&](const TrackPlace& at) { return std::max(at.level - below, 0) != layer; });
   return places;

@@ -5,7 +5,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -23,7 +24,7 @@ struct TrackPlace {
 };
 
 // 8.17.1 TrackOrder( between )
-std::vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between);
+Vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between);
 
 // What the tracks of a GOF have in common; a skinned model has none.
 struct TrackFrames {
@@ -33,7 +34,7 @@ struct TrackFrames {
 };
 
 // 8.17.3 PlacesOfLayer( between, layer )
-std::vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer);
+Vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer);
 
 // 8.17.2 Prediction at a place: a coordinate of the sum of the neighbours that it has.
 // series(f) returns the value at frame f; |values| < 2^32.

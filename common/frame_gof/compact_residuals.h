@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -41,8 +42,8 @@ class CompactResiduals {
   static constexpr std::int8_t kLarge = std::numeric_limits<std::int8_t>::min();
   static constexpr std::int8_t kMost = std::numeric_limits<std::int8_t>::max();
 
-  std::vector<std::int8_t> small_;
-  std::vector<std::pair<std::size_t, std::int32_t>> large_;  // by index
+  Vector<std::int8_t> small_;
+  Vector<std::pair<std::size_t, std::int32_t>> large_;  // by index
 };
 
 }  // namespace rlpc

@@ -6,11 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/residual_models.h"
 #include "common/frame_gof/frame_gof.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -54,16 +54,16 @@ class FrameContexts {
 
   // What carries over from frame to frame.
   struct State {
-    std::vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
-    std::vector<std::uint32_t> mean;       // FrameLayerMean, [num_layers]
-    std::vector<std::uint16_t> magnitude;  // of the last frame, summed over the axes
+    Vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
+    Vector<std::uint32_t> mean;                                // FrameLayerMean, [num_layers]
+    Vector<std::uint16_t> magnitude;  // of the last frame, summed over the axes
   };
 
   const CodedMesh& mesh_;
   std::size_t num_layer_groups_;
-  std::vector<State> states_;          // of the first frame, then [num_depths]: of the others
-  State* state_ = nullptr;             // of the frame
-  std::vector<std::uint16_t> before_;  // FrameMagnitudeBefore
+  Vector<State> states_;          // of the first frame, then [num_depths]: of the others
+  State* state_ = nullptr;        // of the frame
+  Vector<std::uint16_t> before_;  // FrameMagnitudeBefore
   bool is_first_ = true;
   std::size_t group_ = 0;
   // State of the current vertex:

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "common/frame_gof/compact_residuals.h"
 #include "common/frame_gof/frame_order.h"
 #include "common/frame_gof/patch_motion.h"
 #include "common/mesh/weight_settings.h"
+#include "common/owned.h"
 #include "common/rest/rest_shape.h"
 #include "common/syntax/gof_header.h"
 
@@ -36,26 +36,26 @@ struct CodedFrame {
   std::optional<std::uint32_t> reference;
   std::optional<FrameCrc> frame_crc;
   FramePatches patches;
-  CompactResiduals residual;            // [num_vertices][3]; empty: all are zero
-  std::vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
+  CompactResiduals residual;       // [num_vertices][3]; empty: all are zero
+  Vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
   // [num_vertices] in a first frame with an order of its own, if there are counterparts.
-  std::vector<Counterpart> counterparts;
+  Vector<Counterpart> counterparts;
 
   bool operator==(const CodedFrame&) const = default;
 };
 
 struct FrameSettings {
   FramePattern pattern;
-  bool exact_flag = false;                           // positions are sums of whole grid units
-  std::vector<std::uint32_t> step{kExactFrameStep};  // [num_depths]
+  bool exact_flag = false;                      // positions are sums of whole grid units
+  Vector<std::uint32_t> step{kExactFrameStep};  // [num_depths]
   bool learning_flag = false;
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
   bool frame_hash_flag = false;
-  std::uint32_t max_earlier_distance = 0;          // in coding order, of repeated and reference
-  std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
-  std::vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
-  RestSettings rest;                               // of the first frame
+  std::uint32_t max_earlier_distance = 0;     // in coding order, of repeated and reference
+  Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
+  Vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
+  RestSettings rest;                          // of the first frame
   std::uint32_t num_patches = 0;
   PatchOfVertex patch_of_vertex;  // [num_vertices] if there are patches
 
@@ -64,7 +64,7 @@ struct FrameSettings {
 
 // Copies share the frames.
 struct FrameGof : GofHeader, FrameSettings {
-  std::shared_ptr<const std::vector<CodedFrame>> frames;  // [num_frames]; set once parsed
+  std::shared_ptr<const Vector<CodedFrame>> frames;  // [num_frames]; set once parsed
 
   bool operator==(const FrameGof& other) const {
     return static_cast<const GofHeader&>(*this) == other &&

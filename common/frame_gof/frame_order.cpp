@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 std::uint32_t FramePattern::period() const {
@@ -56,7 +58,7 @@ void FrameOrder::add_dyadic(std::uint32_t first, std::uint32_t length) {
     std::uint32_t depth;
   };
   add({first + length, first, first, 0});
-  std::vector<Span> spans{{first, first + length, 1}};
+  Vector<Span> spans{{first, first + length, 1}};
   while (!spans.empty()) {
     const Span span = spans.back();
     spans.pop_back();

@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -30,7 +31,7 @@ struct FramePattern {
   enum Kind : std::uint8_t { kPrevious, kFirst, kDyadic, kExplicit };
   Kind kind = kPrevious;
   int period_log2 = 1;                // kDyadic
-  std::vector<PatternEntry> entries;  // kExplicit, in coding order: as many as the period
+  Vector<PatternEntry> entries;       // kExplicit, in coding order: as many as the period
   std::uint32_t temporal_layers = 1;  // 1 to num_depths()
 
   std::uint32_t period() const;
@@ -75,9 +76,9 @@ class FrameOrder {
   void add_dyadic(std::uint32_t first, std::uint32_t length);
   void add(const FramePlace& place);
 
-  std::vector<FramePlace> places_;
-  std::vector<std::uint32_t> place_of_;  // [frame]
-  std::vector<std::uint32_t> last_use_;  // [frame]
+  Vector<FramePlace> places_;
+  Vector<std::uint32_t> place_of_;  // [frame]
+  Vector<std::uint32_t> last_use_;  // [frame]
 };
 
 }  // namespace rlpc

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
 #include "common/frame_gof/patch_motion.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -67,7 +67,7 @@ class PatchContexts {
   };
   struct State {
     explicit State(std::size_t num_patches) : patches(num_patches) {}
-    std::vector<Patch> patches;
+    Vector<Patch> patches;
     std::array<std::array<BitModel, kPatchModes - 1>, kPatchModes> mode_models;
     std::array<ResidualModels, 2> residual_models;
     std::array<std::uint32_t, 2> mean{kFirstMean, kFirstMean};
@@ -77,7 +77,7 @@ class PatchContexts {
   Patch& patch() { return state().patches[patch_]; }
   static std::size_t kind(std::size_t i) { return i < kOffsetValues ? 0 : 1; }
 
-  std::vector<State> states_;  // [depth]
+  Vector<State> states_;  // [depth]
   std::uint32_t depth_ = 0;
   std::size_t patch_ = 0;
 };

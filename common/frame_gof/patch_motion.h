@@ -4,7 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -28,10 +29,10 @@ struct PatchMotion {
 };
 
 // The patch of each vertex; empty: there are none.
-using PatchOfVertex = std::vector<std::uint16_t>;
+using PatchOfVertex = Vector<std::uint16_t>;
 
 // The patches of a frame; none: all are predicted from neighbours.
-using FramePatches = std::vector<PatchMotion>;
+using FramePatches = Vector<PatchMotion>;
 
 inline PatchMode mode_of(const FramePatches& patches, const PatchOfVertex& patch_of_vertex,
                          std::uint32_t v) {

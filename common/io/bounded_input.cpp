@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -36,7 +38,7 @@ std::span<const std::uint8_t> PipedInput::beginning() {
 
 void PipedInput::read_more(std::uint64_t bytes) {
   if (blocks_.empty() || blocks_.back().size() == kBlockBytes) blocks_.emplace_back();
-  std::vector<std::uint8_t>& block = blocks_.back();
+  Vector<std::uint8_t>& block = blocks_.back();
   const std::size_t before = block.size();
   const auto wanted =
       static_cast<std::size_t>(std::min<std::uint64_t>(bytes, kBlockBytes - before));

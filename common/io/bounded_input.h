@@ -7,7 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -46,9 +47,8 @@ class PipedInput {
   State state_ = State::kReading;
   std::uint64_t size_ = 0;
   std::uint64_t forgotten_ = 0;  // whole blocks at the start of `blocks_`
-  std::vector<std::uint8_t> beginning_;
-  std::vector<std::vector<std::uint8_t>>
-      blocks_;  // after the beginning; all but the last are full
+  Vector<std::uint8_t> beginning_;
+  Vector<Vector<std::uint8_t>> blocks_;  // after the beginning; all but the last are full
 };
 
 // Reads a small file. None: it cannot be read, or has more than max_bytes.

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr std::int64_t kMaxSegmentSum = (std::int64_t{1} << 31) - 1;
 constexpr std::size_t kMaxRows = 24;  // of the sums that are found at a time
 
 // The limbs of a factor, the lowest first.
-std::vector<FactorLimb> limbs_of(int bits) {
+Vector<FactorLimb> limbs_of(int bits) {
   if (bits <= kNarrowBits) return {{0, bits - 1, false}};
   return {{0, kLowLimbBits - 1, true}, {kLowLimbBits, bits - 1 - kLowLimbBits, false}};
 }
@@ -48,8 +50,8 @@ void SpatialFactors::add(std::span<const std::int32_t> spatial, int spatial_bits
   ++num_components_;
 }
 
-std::vector<std::int32_t> SpatialFactors::tile(std::size_t tile) const {
-  std::vector<std::int32_t> factors(kTileValues * num_components_);
+Vector<std::int32_t> SpatialFactors::tile(std::size_t tile) const {
+  Vector<std::int32_t> factors(kTileValues * num_components_);
   for (std::size_t list = 0; list < limbs_.size(); ++list) {
     const std::int32_t unit = list == 0 ? 1 : 1 << kLowLimbBits;
     const Limbs& limbs = limbs_[list];
@@ -93,7 +95,7 @@ class ComponentSum::SegmentMaker {
     if (place.component >= temporal_.size()) return 0;
     const int bits = temporal_[place.component].bits;
     if (bits == 0) return 0;
-    const std::vector<FactorLimb> limbs = limbs_of(bits);
+    const Vector<FactorLimb> limbs = limbs_of(bits);
     if (limb_ >= limbs.size()) return 0;
     return std::int64_t{1} << (limbs[limb_].size_log2 + place.size_log2);
   }
@@ -155,7 +157,7 @@ void ComponentSum::add_tile(std::size_t tile, std::size_t first_row, std::size_t
     const std::size_t rows = std::min(kMaxRows, num_rows - r);
     std::int64_t* const out = &sums[r * kTileValues];
     for (const Segment& segment : segments_) {
-      const std::vector<std::int16_t>& of_tile = spatial_->limbs_[segment.list].tiles[tile];
+      const Vector<std::int16_t>& of_tile = spatial_->limbs_[segment.list].tiles[tile];
       const FactorPairs factors{segment.temporal.data(), num_rows_,
                                 &of_tile[2 * kTileValues * segment.first_pair],
                                 segment.num_pairs};

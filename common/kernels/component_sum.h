@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/int_math.h"
 #include "common/kernels/kernels.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -57,7 +57,7 @@ class SpatialFactors {
 
   // The factors of the values of a tile, normalised: [kTileValues][num_components]; 0 where
   // there are fewer values.
-  std::vector<std::int32_t> tile(std::size_t tile) const;
+  Vector<std::int32_t> tile(std::size_t tile) const;
 
   std::size_t num_values() const { return num_values_; }
   std::size_t num_components() const { return num_components_; }
@@ -72,8 +72,8 @@ class SpatialFactors {
       std::size_t component;
       int size_log2;
     };
-    std::vector<Place> places;
-    std::vector<std::vector<std::int16_t>> tiles;  // [tile][pairs][kTileValues][2]
+    Vector<Place> places;
+    Vector<Vector<std::int16_t>> tiles;  // [tile][pairs][kTileValues][2]
   };
 
   std::size_t num_values_;
@@ -84,7 +84,7 @@ class SpatialFactors {
 // The temporal factor of a component, [num_rows], scaled, within `bits` (at most 26). No bits:
 // the component does not occur.
 struct TemporalFactor {
-  std::vector<std::int32_t> values;
+  Vector<std::int32_t> values;
   int bits = 0;
 };
 
@@ -111,14 +111,14 @@ class ComponentSum {
     int shift;
     std::size_t first_pair;
     std::size_t num_pairs;
-    std::vector<std::int16_t> temporal;  // [pairs][num_rows][2]
+    Vector<std::int16_t> temporal;  // [pairs][num_rows][2]
   };
   class SegmentMaker;
 
   std::shared_ptr<const SpatialFactors> spatial_;
   std::size_t num_rows_;
   Kernels loops_;
-  std::vector<Segment> segments_;
+  Vector<Segment> segments_;
 };
 
 }  // namespace rlpc

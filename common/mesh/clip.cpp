@@ -1,12 +1,14 @@
 #include "common/mesh/clip.h"
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
 bool is_continuation(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
 
 // Bytes of the character at a place; 0: it is none, or a control character.
-std::size_t character_at(const std::string& text, std::size_t at) {
+std::size_t character_at(const String& text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned char {
     return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U;
   };
@@ -30,7 +32,7 @@ std::size_t character_at(const std::string& text, std::size_t at) {
 
 }  // namespace
 
-std::size_t find_clip_name_error(const std::string& name) {
+std::size_t find_clip_name_error(const String& name) {
   std::size_t at = 0;
   while (at < name.size()) {
     const std::size_t size = character_at(name, at);

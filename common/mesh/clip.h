@@ -3,12 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
 struct Clip {
-  std::string name;  // UTF-8 without control characters, 1 to kMaxClipNameBytes bytes
+  String name;  // UTF-8 without control characters, 1 to kMaxClipNameBytes bytes
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;  // at least 1
 
@@ -21,6 +22,6 @@ inline constexpr std::size_t kMaxClipNameBytes = 256;
 
 // Offset of the first byte that makes a name of a clip wrong: it is not well-formed UTF-8
 // (RFC 3629), or part of a control character; the size of the name if it is right.
-std::size_t find_clip_name_error(const std::string& name);
+std::size_t find_clip_name_error(const String& name);
 
 }  // namespace rlpc

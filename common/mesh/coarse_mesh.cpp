@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -23,9 +25,9 @@ CoarseMeshes CoarseMeshes::of_output(std::uint32_t num_vertices,
                                      std::span<const Triangle> triangles,
                                      std::span<const std::uint32_t> output_index) {
   if (output_index.empty()) return {num_vertices, triangles};
-  std::vector<std::uint32_t> decoded(num_vertices);
+  Vector<std::uint32_t> decoded(num_vertices);
   for (std::uint32_t v = 0; v < num_vertices; ++v) decoded[output_index[v]] = v;
-  std::vector<Triangle> in_decoded_order(triangles.begin(), triangles.end());
+  Vector<Triangle> in_decoded_order(triangles.begin(), triangles.end());
   for (Triangle& t : in_decoded_order) t = {decoded[t[0]], decoded[t[1]], decoded[t[2]]};
   return {num_vertices, in_decoded_order};
 }
@@ -46,7 +48,7 @@ CoarseMesh CoarseMeshes::mesh(std::uint32_t num_layers,
         mesh.vertices.begin(), mesh.vertices.end(),
         [&](std::uint32_t a, std::uint32_t b) { return output_index[a] < output_index[b]; });
   }
-  std::vector<std::uint32_t> place(num_vertices);
+  Vector<std::uint32_t> place(num_vertices);
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) place[mesh.vertices[i]] = i;
   for (const LayeredTriangle& t : triangles_) {
     if (!is_in(t, num_layers)) continue;

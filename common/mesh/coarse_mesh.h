@@ -3,16 +3,16 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
 #include "common/mesh/vertex_layers.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 struct CoarseMesh {
-  std::vector<std::uint32_t> vertices;  // in decoded order; sorted by their output order
-  std::vector<Triangle> triangles;      // indices in `vertices`
+  Vector<std::uint32_t> vertices;  // in decoded order; sorted by their output order
+  Vector<Triangle> triangles;      // indices in `vertices`
 };
 
 struct MeshSize {
@@ -42,7 +42,7 @@ class CoarseMeshes {
 
  private:
   std::uint32_t num_layers_ = 1;
-  std::vector<std::uint8_t> layer_of_vertex_;  // [num_vertices]
+  Vector<std::uint8_t> layer_of_vertex_;  // [num_vertices]
   LayeredTriangles triangles_;
 };
 

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/rest_order.h"
 #include "common/mesh/topology.h"
 #include "common/mesh/vertex_layers.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -48,8 +48,8 @@ class CodedMesh {
   const Topology& topology_;
   const VertexLayers& layers_;
   const RestOrder* rest_order_;
-  std::vector<std::uint32_t> index_;        // 0, 1, 2, ...
-  std::vector<std::uint32_t> layer_first_;  // [num_layers + 1], index in the order
+  Vector<std::uint32_t> index_;        // 0, 1, 2, ...
+  Vector<std::uint32_t> layer_first_;  // [num_layers + 1], index in the order
 };
 
 }  // namespace rlpc

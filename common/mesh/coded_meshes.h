@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/rest_order.h"
 #include "common/mesh/topology.h"
 #include "common/mesh/vertex_layers.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -39,7 +39,7 @@ class CodedMeshes {
  private:
   VertexLayers layers_;
   std::optional<RestOrder> rest_order_;
-  std::vector<CodedMesh> meshes_;
+  Vector<CodedMesh> meshes_;
 };
 
 }  // namespace rlpc

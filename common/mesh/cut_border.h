@@ -10,9 +10,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -77,9 +77,9 @@ class CutBorder {
   Triangle count_triangle(std::uint32_t v0, std::uint32_t v1, std::uint32_t v2);
   void touch(std::uint32_t node);
 
-  std::vector<Node> nodes_;  // in order of creation, including removed ones
-  std::vector<std::uint32_t> degree_;
-  std::vector<std::uint32_t> urgent_;
+  Vector<Node> nodes_;  // in order of creation, including removed ones
+  Vector<std::uint32_t> degree_;
+  Vector<std::uint32_t> urgent_;
   std::size_t first_urgent_ = 0;
   std::uint32_t oldest_ = 0;
   std::uint32_t urgent_degree_;

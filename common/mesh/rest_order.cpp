@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/mesh/vertex_layers.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -15,14 +16,14 @@ constexpr std::size_t kMostCounted = 3;  // hinges that make a vertex come earli
 
 // Lists of indices below a limit, in the order of appending.
 ListOfLists<std::uint32_t> group_indices(
-    std::size_t num_lists, const std::vector<std::array<std::uint32_t, 4>>& lists_of_index) {
-  std::vector<std::uint32_t> first(num_lists + 1, 0);
+    std::size_t num_lists, const Vector<std::array<std::uint32_t, 4>>& lists_of_index) {
+  Vector<std::uint32_t> first(num_lists + 1, 0);
   for (const auto& lists : lists_of_index) {
     for (const std::uint32_t list : lists) ++first[list + 1];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  std::vector<std::uint32_t> items(first.back());
+  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  Vector<std::uint32_t> items(first.back());
   for (std::uint32_t i = 0; i < lists_of_index.size(); ++i) {
     for (const std::uint32_t list : lists_of_index[i]) items[next[list]++] = i;
   }
@@ -48,14 +49,14 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
   const auto is_regular = [](const Triangle& t) {
     return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
   };
-  std::vector<std::uint32_t> first(place_.size() + 1, 0);
+  Vector<std::uint32_t> first(place_.size() + 1, 0);
   for (const Triangle& t : triangles) {
     if (!is_regular(t)) continue;
     for (std::size_t k = 0; k < 3; ++k) ++first[std::min(t[k], t[(k + 1) % 3]) + 1];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Side> sides(first.back());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  Vector<Side> sides(first.back());
+  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
   for (const Triangle& t : triangles) {
     if (!is_regular(t)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -69,7 +70,7 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
     std::array<std::uint32_t, 2> sides{};
     std::uint32_t count = 0;
   };
-  std::vector<Across> across(place_.size());
+  Vector<Across> across(place_.size());
   edges_.reserve(sides.size() / 2);  // exact for a closed surface
   first_edge_.assign(place_.size() + 1, 0);
   for (std::uint32_t low = 0; low < place_.size(); ++low) {
@@ -104,20 +105,20 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
 
 // 8.18.2 Order: MakeRestOrder( )
 void RestOrder::make_order() {
-  std::vector<std::array<std::uint32_t, 4>> vertices(edges_.size());
+  Vector<std::array<std::uint32_t, 4>> vertices(edges_.size());
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     vertices[i] = {edges_[i].low, edges_[i].high, edges_[i].corners[0], edges_[i].corners[1]};
   }
   const ListOfLists<std::uint32_t> edges_of_vertex = group_indices(place_.size(), vertices);
-  std::vector<std::uint8_t> num_known(edges_.size(), 0);
-  std::vector<std::uint8_t> degree(place_.size(), 0);
-  std::array<std::vector<std::uint32_t>, kMostCounted + 1> queues;
+  Vector<std::uint8_t> num_known(edges_.size(), 0);
+  Vector<std::uint8_t> degree(place_.size(), 0);
+  std::array<Vector<std::uint32_t>, kMostCounted + 1> queues;
   std::array<std::size_t, kMostCounted + 1> heads{};
-  std::vector<std::uint32_t> first_hinge{0};
+  Vector<std::uint32_t> first_hinge{0};
   first_hinge.resize(place_.size() + 1);
-  std::vector<Hinge> hinges_in_order;
-  std::vector<std::uint32_t> begin_of(place_.size());
-  std::vector<std::uint8_t> count_of(place_.size(), 0);
+  Vector<Hinge> hinges_in_order;
+  Vector<std::uint32_t> begin_of(place_.size());
+  Vector<std::uint8_t> count_of(place_.size(), 0);
   order_.reserve(place_.size());
   std::uint32_t lowest = 0;
   while (order_.size() < place_.size()) {
@@ -150,7 +151,7 @@ void RestOrder::make_order() {
       }
     }
   }
-  std::vector<Hinge> hinges;
+  Vector<Hinge> hinges;
   hinges.reserve(hinges_in_order.size());
   for (std::size_t v = 0; v < place_.size(); ++v) {
     const auto of_vertex = std::span(hinges_in_order).subspan(begin_of[v], count_of[v]);
@@ -162,8 +163,8 @@ void RestOrder::make_order() {
 
 // 8.18.2 Order: FindRestRing( v ), of all vertices
 void RestOrder::make_rings(const Topology& topology) {
-  std::vector<std::uint32_t> first{0};
-  std::vector<std::uint32_t> items;
+  Vector<std::uint32_t> first{0};
+  Vector<std::uint32_t> items;
   for (std::uint32_t v = 0; v < place_.size(); ++v) {
     const auto add_once = [&](std::uint32_t u) {
       const auto ring = std::span(items).subspan(first.back());

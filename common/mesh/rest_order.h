@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
 #include "common/mesh/topology.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -62,13 +62,13 @@ class RestOrder {
   void make_order();
   void make_rings(const Topology& topology);
 
-  std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> place_;  // [num_vertices]
+  Vector<std::uint32_t> order_;
+  Vector<std::uint32_t> place_;  // [num_vertices]
   ListOfLists<Hinge> hinges_of_vertex_;
   ListOfLists<std::uint32_t> rings_;
-  std::vector<Edge> edges_;                // Hinges, by their lower vertex
-  std::vector<std::uint32_t> first_edge_;  // [num_vertices + 1], by the lower vertex
-  std::vector<std::uint32_t> by_ends_;     // indices into edges_, by both ends
+  Vector<Edge> edges_;                // Hinges, by their lower vertex
+  Vector<std::uint32_t> first_edge_;  // [num_vertices + 1], by the lower vertex
+  Vector<std::uint32_t> by_ends_;     // indices into edges_, by both ends
 };
 
 }  // namespace rlpc

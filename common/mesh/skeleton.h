@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -35,8 +35,8 @@ struct SkeletonInfluence {
 
 // The rest shape is not part of it: it follows from the frames and the poses.
 struct Skeleton {
-  std::vector<SkeletonBone> bones;                         // at least one
-  std::vector<std::vector<SkeletonInfluence>> influences;  // [num_vertices], at least one each
+  Vector<SkeletonBone> bones;                    // at least one
+  Vector<Vector<SkeletonInfluence>> influences;  // [num_vertices], at least one each
   // Measures of the error that the stream has: the step in which rest positions, or seed
   // tracks, have been coded, 1/16 grid units; and the number of values that have been coded for
   // each vertex, besides those of frames.
@@ -48,8 +48,8 @@ struct Skeleton {
 // The bones in one frame.
 struct SkeletonPose {
   std::shared_ptr<const Skeleton> skeleton;
-  std::vector<BonePlace> places;  // [bone]
-  std::size_t num_values = 0;     // that have been coded for the frame
+  Vector<BonePlace> places;    // [bone]
+  std::size_t num_values = 0;  // that have been coded for the frame
 };
 
 }  // namespace rlpc

@@ -4,18 +4,20 @@
 #include <compare>
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
 // Groups (vertex, item) pairs by vertex, keeping their order within a vertex.
 template <class T>
 ListOfLists<T> group(std::uint32_t num_vertices,
-                     const std::vector<std::pair<std::uint32_t, T>>& pairs) {
-  std::vector<std::uint32_t> first(num_vertices + 1, 0);
+                     const Vector<std::pair<std::uint32_t, T>>& pairs) {
+  Vector<std::uint32_t> first(num_vertices + 1, 0);
   for (const auto& [vertex, item] : pairs) ++first[vertex + 1];
   for (std::size_t v = 0; v < num_vertices; ++v) first[v + 1] += first[v];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  std::vector<T> items(pairs.size());
+  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  Vector<T> items(pairs.size());
   for (const auto& [vertex, item] : pairs) items[next[vertex]++] = item;
   return {std::move(first), std::move(items)};
 }
@@ -23,11 +25,11 @@ ListOfLists<T> group(std::uint32_t num_vertices,
 // Sorts (vertex, item) pairs: by vertex with a counting sort, then the few items of each
 // vertex.
 template <class T>
-void sort_pairs(std::uint32_t num_vertices, std::vector<std::pair<std::uint32_t, T>>& pairs) {
-  std::vector<std::uint32_t> end(num_vertices + 1, 0);
+void sort_pairs(std::uint32_t num_vertices, Vector<std::pair<std::uint32_t, T>>& pairs) {
+  Vector<std::uint32_t> end(num_vertices + 1, 0);
   for (const auto& [vertex, item] : pairs) ++end[vertex + 1];
   for (std::size_t v = 0; v < num_vertices; ++v) end[v + 1] += end[v];
-  std::vector<std::pair<std::uint32_t, T>> by_vertex(pairs.size());
+  Vector<std::pair<std::uint32_t, T>> by_vertex(pairs.size());
   for (const auto& pair : pairs) by_vertex[end[pair.first]++] = pair;
   std::uint32_t begin = 0;
   for (std::size_t v = 0; v < num_vertices; ++v) {
@@ -40,7 +42,7 @@ void sort_pairs(std::uint32_t num_vertices, std::vector<std::pair<std::uint32_t,
 // 8.3.1 Earlier neighbours
 ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
                                                    std::span<const Triangle> triangles) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  Vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   pairs.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -63,7 +65,7 @@ struct EdgeOf {
 // 8.3.2 Parallelograms: only across edges of exactly two triangles.
 ListOfLists<Parallelogram> find_parallelograms(std::uint32_t num_vertices,
                                                std::span<const Triangle> triangles) {
-  std::vector<std::pair<std::uint32_t, EdgeOf>> edges;  // by the lower vertex
+  Vector<std::pair<std::uint32_t, EdgeOf>> edges;  // by the lower vertex
   edges.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
@@ -73,7 +75,7 @@ ListOfLists<Parallelogram> find_parallelograms(std::uint32_t num_vertices,
     }
   }
   sort_pairs(num_vertices, edges);
-  std::vector<std::pair<std::uint32_t, Parallelogram>> pairs;
+  Vector<std::pair<std::uint32_t, Parallelogram>> pairs;
   for (std::size_t i = 0; i < edges.size();) {
     const auto& [low, edge] = edges[i];
     std::size_t end = i + 1;

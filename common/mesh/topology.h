@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -15,7 +15,7 @@ template <class T>
 class ListOfLists {
  public:
   ListOfLists() = default;
-  ListOfLists(std::vector<std::uint32_t> first, std::vector<T> items)
+  ListOfLists(Vector<std::uint32_t> first, Vector<T> items)
       : first_(std::move(first)), items_(std::move(items)) {}
   std::span<const T> operator[](std::size_t i) const {
     return std::span<const T>(items_).subspan(first_[i], first_[i + 1] - first_[i]);
@@ -23,8 +23,8 @@ class ListOfLists {
   std::size_t size() const { return first_.empty() ? 0 : first_.size() - 1; }
 
  private:
-  std::vector<std::uint32_t> first_;  // [size + 1]
-  std::vector<T> items_;
+  Vector<std::uint32_t> first_;  // [size + 1]
+  Vector<T> items_;
 };
 
 // a + b - c predicts the vertex; the triangles (v, a, b) and (a, b, c) share an edge.

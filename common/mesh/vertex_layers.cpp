@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/mesh/triangulations.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -78,9 +79,9 @@ class Rest {
     --valence_[c.vertex];
   }
 
-  std::vector<Corner> corners_;
-  std::vector<std::uint32_t> first_;    // [num_vertices]
-  std::vector<std::uint32_t> valence_;  // [num_vertices]
+  Vector<Corner> corners_;
+  Vector<std::uint32_t> first_;    // [num_vertices]
+  Vector<std::uint32_t> valence_;  // [num_vertices]
 };
 
 // The triangles that the rest of the mesh has had, and the passes that added and removed them,
@@ -116,7 +117,7 @@ class History {
 
  private:
   LayeredTriangles& all_;
-  std::vector<std::uint32_t> latest_;  // by index in Rest: index in all_
+  Vector<std::uint32_t> latest_;  // by index in Rest: index in all_
 };
 
 // 8.9.3 Ring of a vertex
@@ -152,7 +153,7 @@ class LayerMaker {
   VertexLayers make();
 
  private:
-  void remove_layer(std::vector<std::uint32_t>& rest);
+  void remove_layer(Vector<std::uint32_t>& rest);
   std::optional<Ring> find_ring(std::uint32_t v);
   const Triangulation* choose_triangulation(const Ring& ring, EdgeSet barred) const;
   void look_around(std::uint32_t v, const Ring& ring);
@@ -161,22 +162,22 @@ class LayerMaker {
   [[gnu::noinline]] void note_removal(std::span<const std::uint32_t> taken, const Ring& ring,
                                       const Triangulation& triangulation);
   void set_outer_rings(std::span<const std::uint32_t> removed);
-  void order_layers(const std::vector<std::uint32_t>& base);
-  void set_base_rings(const std::vector<std::uint32_t>& base);
+  void order_layers(const Vector<std::uint32_t>& base);
+  void set_base_rings(const Vector<std::uint32_t>& base);
 
   Rest rest_;
   std::optional<History> history_;
   VertexLayers layers_;
   std::uint8_t num_passes_ = 0;
-  std::vector<std::uint8_t> locked_in_pass_;  // [num_vertices]
-  std::vector<std::uint32_t> removed_;        // in order of removal
-  std::vector<std::size_t> removed_before_;   // [pass - 1], vertices removed before that pass
+  Vector<std::uint8_t> locked_in_pass_;  // [num_vertices]
+  Vector<std::uint32_t> removed_;        // in order of removal
+  Vector<std::size_t> removed_before_;   // [pass - 1], vertices removed before that pass
   // Vertices removed in this pass, in order, for outer_ring.
-  std::vector<std::uint32_t> around_;
-  std::vector<std::uint32_t> around_end_;
+  Vector<std::uint32_t> around_;
+  Vector<std::uint32_t> around_end_;
   // [num_vertices]: 0, except within a function that sets it: place in a fan or
   // a ring plus 1
-  std::vector<std::uint8_t> place_;
+  Vector<std::uint8_t> place_;
   Surroundings surroundings_;  // of the current vertex
 };
 
@@ -351,7 +352,7 @@ void LayerMaker::note_removal(std::span<const std::uint32_t> taken, const Ring& 
 }
 
 // 8.9.1 General: RemoveLayer( rest ), one pass; vertices that stay remain in `rest`.
-void LayerMaker::remove_layer(std::vector<std::uint32_t>& rest) {
+void LayerMaker::remove_layer(Vector<std::uint32_t>& rest) {
   const std::size_t before = removed_.size();
   around_.clear();
   around_end_.clear();
@@ -391,7 +392,7 @@ constexpr std::uint32_t max_layers(std::uint32_t num_vertices) {
 static_assert(max_layers(1U << 23) == kMaxLayers);
 
 // 8.9.7 Order of the layers, and base: up to here, layer_of_vertex is the pass.
-void LayerMaker::order_layers(const std::vector<std::uint32_t>& base) {
+void LayerMaker::order_layers(const Vector<std::uint32_t>& base) {
   layers_.num_layers = num_passes_ + 1U;
   assert(layers_.num_layers <= kMaxLayers);  // so that a pass fits into 8 bits
   for (const std::uint32_t v : removed_) {
@@ -411,7 +412,7 @@ void LayerMaker::order_layers(const std::vector<std::uint32_t>& base) {
 }
 
 // 8.9.7 Order of the layers, and base: BaseRing( v )
-void LayerMaker::set_base_rings(const std::vector<std::uint32_t>& base) {
+void LayerMaker::set_base_rings(const Vector<std::uint32_t>& base) {
   for (std::size_t i = 0; i < base.size(); ++i) {
     const std::uint32_t v = base[i];
     std::array<std::uint32_t, kMaxRing + 1> highest{};  // descending
@@ -433,7 +434,7 @@ void LayerMaker::set_base_rings(const std::vector<std::uint32_t>& base) {
 
 // 8.9.1 General: MakeLayers( )
 VertexLayers LayerMaker::make() {
-  std::vector<std::uint32_t> rest(layers_.ring.size());
+  Vector<std::uint32_t> rest(layers_.ring.size());
   for (std::uint32_t v = 0; v < rest.size(); ++v) rest[v] = v;
   for (bool go_on = !rest.empty(); go_on;) {
     const std::size_t visited = rest.size();

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -28,17 +28,17 @@ class VertexLists {
   void set(std::uint32_t v, std::span<const std::uint32_t> items);
 
  private:
-  std::vector<std::uint32_t> first_;  // [size]
-  std::vector<std::uint8_t> size_;    // [size]
-  std::vector<std::uint32_t> items_;
+  Vector<std::uint32_t> first_;  // [size]
+  Vector<std::uint8_t> size_;    // [size]
+  Vector<std::uint32_t> items_;
 };
 
 struct VertexLayers {
   std::uint32_t num_layers = 1;
-  std::vector<std::uint8_t> layer_of_vertex;  // [num_vertices]: 0 is the base, the coarsest
-  std::vector<std::uint32_t> layer_order;     // all vertices, by layer, then by index
-  VertexLists ring;        // in the order of the walk; in the base: ascending
-  VertexLists outer_ring;  // ascending; in the base: empty
+  Vector<std::uint8_t> layer_of_vertex;  // [num_vertices]: 0 is the base, the coarsest
+  Vector<std::uint32_t> layer_order;     // all vertices, by layer, then by index
+  VertexLists ring;                      // in the order of the walk; in the base: ascending
+  VertexLists outer_ring;                // ascending; in the base: empty
 };
 
 // A triangle that is part of the rest of the mesh while that has min_layers to max_layers
@@ -51,7 +51,7 @@ struct LayeredTriangle {
 // RestTriangles of 8.9.2. A removal adds at most five triangles for each by which it reduces
 // the rest of the mesh, so that a mesh of n triangles has at most 6 * n; closed surfaces have
 // at most 3 * n.
-using LayeredTriangles = std::vector<LayeredTriangle>;
+using LayeredTriangles = Vector<LayeredTriangle>;
 
 // 8.9 Vertex layers
 //

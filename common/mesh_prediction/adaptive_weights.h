@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh_prediction/geometry_weights.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -41,8 +41,8 @@ class AdaptiveWeights {
   std::size_t count_ = 0;           // trajectories of the pass
   std::size_t adaptive_count_ = 0;  // of these, adaptive ones
   std::span<const std::size_t> group_end_;
-  std::vector<std::uint32_t> first_;   // [num_vertices + 1]
-  std::vector<std::int32_t> weights_;  // AdaptiveWeights
+  Vector<std::uint32_t> first_;   // [num_vertices + 1]
+  Vector<std::int32_t> weights_;  // AdaptiveWeights
 };
 
 // Predicts the values of one vertex after the other, factor by factor. One per thread.
@@ -70,9 +70,9 @@ class VertexAdaptation {
   std::uint32_t vertex_ = 0;
   std::size_t ring_size_ = 0;
   std::size_t next_ = 0;
-  std::vector<std::uint32_t> neighbours_;
-  std::vector<std::int32_t> mean_;     // [count]: of the ring
-  std::vector<std::int32_t> offsets_;  // [count][stride]
+  Vector<std::uint32_t> neighbours_;
+  Vector<std::int32_t> mean_;     // [count]: of the ring
+  Vector<std::int32_t> offsets_;  // [count][stride]
 };
 
 }  // namespace rlpc

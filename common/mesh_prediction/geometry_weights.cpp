@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -143,9 +144,9 @@ class VertexWeights {
   const WeightSettings& settings_;
   const std::array<std::span<const std::int32_t>, 3>& rest_;
   std::size_t ring_size_ = 0;
-  std::vector<std::uint32_t> vertices_;  // ring, then outer ring
-  std::vector<std::int64_t> weights_;
-  std::vector<Vec3l> offsets_;
+  Vector<std::uint32_t> vertices_;  // ring, then outer ring
+  Vector<std::int64_t> weights_;
+  Vector<Vec3l> offsets_;
   Vec3l gap_{};
 };
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/weight_settings.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -30,8 +30,8 @@ class GeometryWeights {
   std::size_t size() const { return weights_.size(); }  // of all vertices
 
  private:
-  std::vector<std::uint32_t> first_;  // [num_vertices + 1]
-  std::vector<std::int32_t> weights_;
+  Vector<std::uint32_t> first_;  // [num_vertices + 1]
+  Vector<std::int32_t> weights_;
 };
 
 }  // namespace rlpc

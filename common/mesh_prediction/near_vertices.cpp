@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/parallel/for_each.h"
 
 namespace rlpc {
@@ -99,14 +99,14 @@ class NearSearch {
   const CodedMesh& mesh_;
   std::span<const std::uint32_t> base_;  // ascending
   std::span<const std::int32_t> values_;
-  std::vector<std::uint32_t> vertices_;
-  std::vector<std::pair<std::int64_t, std::uint32_t>> found_;  // distance, vertex
+  Vector<std::uint32_t> vertices_;
+  Vector<std::pair<std::int64_t, std::uint32_t>> found_;  // distance, vertex
 };
 
 }  // namespace
 
 VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values) {
-  std::vector<NearList> near(mesh.num_vertices());
+  Vector<NearList> near(mesh.num_vertices());
   for_ranges(near.size(), kTogether, [&](std::size_t first, std::size_t end) {
     NearSearch search(mesh, values);
     for (std::size_t v = first; v < end; ++v) {

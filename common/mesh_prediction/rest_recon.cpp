@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/fixed_point.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -61,9 +62,9 @@ void RestRecon::finish(const Vec3i& residual) {
   }
 }
 
-std::vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
-                                     std::span<const std::int32_t> residuals,
-                                     std::span<const Counterpart> counterparts) {
+Vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
+                                std::span<const std::int32_t> residuals,
+                                std::span<const Counterpart> counterparts) {
   Counterparts found(order);
   for (const std::uint32_t v : order.order()) {
     bool used = false;

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
 #include "common/mesh/rest_order.h"
 #include "common/mesh_prediction/rest_prediction.h"
+#include "common/owned.h"
 #include "common/rest/counterparts.h"
 #include "common/rest/rest_shape.h"
 
@@ -32,14 +32,14 @@ class RestRecon {
   void finish(const Vec3i& residual);
 
   // [num_vertices][3]
-  std::vector<std::int32_t>& values() { return values_; }
+  Vector<std::int32_t>& values() { return values_; }
 
  private:
   const RestOrder& order_;
   RestSettings settings_;
   std::int64_t rest_step_;
   int bits_;
-  std::vector<std::int32_t> values_;
+  Vector<std::int32_t> values_;
   // Of the current vertex:
   std::uint32_t v_ = 0;
   Vec3l prediction_{};
@@ -48,8 +48,8 @@ class RestRecon {
 
 // 8.18.6 Reconstruction: ReconstructRest( ): all vertices, with their residuals, [num_vertices]
 // [3], and counterparts, [num_vertices] or empty. Positions, [num_vertices][3].
-std::vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
-                                     std::span<const std::int32_t> residuals,
-                                     std::span<const Counterpart> counterparts);
+Vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
+                                std::span<const std::int32_t> residuals,
+                                std::span<const Counterpart> counterparts);
 
 }  // namespace rlpc

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "common/owned.h"
 
@@ -144,9 +143,9 @@ class ThreadPool::Impl : public Owned {
   std::condition_variable changed_;
   std::atomic<std::size_t> changes_ = 0;  // written with the lock
   std::size_t sleepers_ = 0;
-  std::vector<Loop*> loops_;
+  Vector<Loop*> loops_;
   bool ends_ = false;
-  std::vector<std::thread> others_;
+  Vector<std::thread> others_;
 };
 
 thread_local ThreadPool::Impl* ThreadPool::Impl::of_thread = nullptr;

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "common/mesh/rest_order.h"
+#include "common/owned.h"
 #include "common/rest/rest_shape.h"
 
 namespace rlpc {
@@ -81,9 +81,9 @@ class Counterparts {
   };
 
   const RestOrder& order_;
-  std::vector<std::uint32_t> counterpart_of_vertex_;  // [num_vertices]
-  std::vector<RestClass> class_of_vertex_;            // [num_vertices]
-  std::vector<Listed> listed_;                        // HingeList
+  Vector<std::uint32_t> counterpart_of_vertex_;  // [num_vertices]
+  Vector<RestClass> class_of_vertex_;            // [num_vertices]
+  Vector<Listed> listed_;                        // HingeList
   // Of the current vertex:
   std::uint32_t v_ = 0;
   HingePairs pairs_;

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
 #include "common/mesh/rest_order.h"
+#include "common/owned.h"
 #include "common/rest/counterparts.h"
 
 namespace rlpc {
@@ -69,8 +69,8 @@ class RestContexts {
 
  private:
   const RestOrder& order_;
-  Means mean_{};                                                    // RestMean
-  std::vector<std::array<std::uint8_t, kRestFactors>> magnitudes_;  // [num_vertices]
+  Means mean_{};                                               // RestMean
+  Vector<std::array<std::uint8_t, kRestFactors>> magnitudes_;  // [num_vertices]
   // State of the current vertex:
   std::uint32_t vertex_ = 0;
   OfCoordinates* mean_of_class_ = nullptr;

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
@@ -53,7 +53,7 @@ class InfluencePrediction {
   std::size_t num_bones_;
   int total_;
   std::span<const std::uint32_t> ring_;
-  std::vector<Candidate> candidates_;
+  Vector<Candidate> candidates_;
   Influences found_;
   int num_extra_ = 0;
   int left_ = 0;

@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "common/components/component_limits.h"
 #include "common/components/track_order.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/weight_settings.h"
+#include "common/owned.h"
 #include "common/rest/rest_shape.h"
 #include "common/syntax/gof_header.h"
 
@@ -32,7 +32,7 @@ inline constexpr int kTemporalWeightOffset = 256;
 inline constexpr int kMaxTemporalPredictor = 7;
 
 // Residuals of a series of three coordinates, in steps; [num_gof_frames].
-using TrackResiduals = std::vector<Vec3i>;
+using TrackResiduals = Vector<Vec3i>;
 
 struct Bone {
   std::int32_t parent = -1;  // index of an earlier bone; -1: root
@@ -92,20 +92,20 @@ struct SkinnedModel {
   Prediction prediction = Prediction::kLayers;
   WeightSettings weights;
   RestSettings rest;
-  std::vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
-  std::vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
-  std::vector<Bone> bones;
+  Vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
+  Vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
+  Vector<Bone> bones;
   std::uint32_t num_component_groups = 0;
   // [group], the end of each component group among the spatial factors; [0] is kRestFactors.
   // Groups without any slice are absent.
-  std::vector<std::size_t> group_end{kRestFactors};
-  std::vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
-  std::vector<Trajectory> trajectories;
-  std::vector<Influences> influences;  // [num_vertices]
+  Vector<std::size_t> group_end{kRestFactors};
+  Vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
+  Vector<Trajectory> trajectories;
+  Vector<Influences> influences;  // [num_vertices]
   // [num_vertices] if there are counterparts, otherwise empty
-  std::vector<Counterpart> counterparts;
+  Vector<Counterpart> counterparts;
   // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
-  std::vector<std::vector<std::int32_t>> vertex_residual;
+  Vector<Vector<std::int32_t>> vertex_residual;
   bool is_cut = false;  // slices were dropped on request (SliceCut)
 
   bool operator==(const SkinnedModel&) const = default;
@@ -118,7 +118,7 @@ struct SkinnedGof : GofHeader, SkinnedModel {
   int num_temporal_layers = 1;  // 1 to track_levels + 1
   // [group], the temporal layers besides the first of which it has a slice; empty if there are
   // none in the GOF. Residuals of absent slices are zero.
-  std::vector<std::uint32_t> temporal_layers;
+  Vector<std::uint32_t> temporal_layers;
   // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
   // vertices is then there. The settings, bones and leading trajectories of the GOF are those
   // of the model, with their motion; slice_layers counts the component groups of both; and

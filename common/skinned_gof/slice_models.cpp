@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -19,8 +21,7 @@ static_assert(kMaxReciprocal * (kMaxReciprocal * 255 * 256) < (std::uint64_t{1} 
 VertexContexts::VertexContexts(const CodedMesh& mesh, std::size_t num_factors)
     : mesh_(&mesh),
       mean_(num_factors, 256),
-      magnitudes_(
-          std::make_shared<std::vector<std::uint8_t>>(mesh.num_vertices() * num_factors)),
+      magnitudes_(make_shared_owned<Vector<std::uint8_t>>(mesh.num_vertices() * num_factors)),
       sums_(num_factors),
       ring_mean_(num_factors),
       outer_mean_(num_factors) {}

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/bitstream/bit_model.h"
 #include "common/bitstream/residual_models.h"
 #include "common/components/track_models.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
@@ -86,15 +86,15 @@ class VertexContexts {
                        std::span<std::uint32_t> means);
 
   const CodedMesh* mesh_;
-  std::vector<std::uint32_t> mean_;  // ComponentMean, [num_factors]
+  Vector<std::uint32_t> mean_;  // ComponentMean, [num_factors]
   // ResidualMagnitude, [num_vertices][num_factors]
-  std::shared_ptr<std::vector<std::uint8_t>> magnitudes_;
-  std::vector<std::uint16_t> sums_;  // [num_factors]
+  std::shared_ptr<Vector<std::uint8_t>> magnitudes_;
+  Vector<std::uint16_t> sums_;  // [num_factors]
   // State of the current vertex:
   std::uint32_t vertex_ = 0;
-  std::size_t next_ = 0;                   // next factor
-  std::vector<std::uint32_t> ring_mean_;   // [num_factors]
-  std::vector<std::uint32_t> outer_mean_;  // [num_factors]
+  std::size_t next_ = 0;              // next factor
+  Vector<std::uint32_t> ring_mean_;   // [num_factors]
+  Vector<std::uint32_t> outer_mean_;  // [num_factors]
   std::uint32_t latest_mean_ = 0;
   std::uint64_t activity_sum_ = 0;
   std::uint64_t activity_mean_ = 0;

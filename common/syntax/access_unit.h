@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <optional>
 #include <variant>
-#include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/frame_gof/frame_gof.h"
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/gof_hash.h"
 #include "common/syntax/gof_header.h"
@@ -32,13 +32,13 @@ struct SliceEntry {
 };
 
 // 7.14.2: those of the frames of a GOF that have one; empty if the GOF has none.
-using FrameCrcs = std::vector<std::optional<FrameCrc>>;
+using FrameCrcs = Vector<std::optional<FrameCrc>>;
 
 struct AccessUnit {
   AnyGof gof;
-  std::vector<SliceEntry> slices;  // in the order of the stream
-  std::optional<GofHash> hash;     // none: no hash unit, or not requested
-  std::uint64_t gof_bytes = 0;     // size of the GOF unit
+  Vector<SliceEntry> slices;    // in the order of the stream
+  std::optional<GofHash> hash;  // none: no hash unit, or not requested
+  std::uint64_t gof_bytes = 0;  // size of the GOF unit
   // Slices were dropped on request (SliceCut): they are not among `slices`, and the hash does
   // not match the remaining positions.
   bool is_cut = false;

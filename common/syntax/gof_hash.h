@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
 struct GofHash {
   bool per_frame_flag = false;
-  std::vector<std::uint32_t> position_crc;  // one per frame, or one for the GOF
+  Vector<std::uint32_t> position_crc;  // one per frame, or one for the GOF
 };
 
 }  // namespace rlpc

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/syntax/stream_format.h"
 
 namespace rlpc {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = Vector<std::uint8_t>;
 
 // Signature and version; the version is that of the profile.
 Bytes write_stream_header(std::uint32_t profile_idc);
@@ -30,8 +30,8 @@ struct ModelIndexEntry {
 };
 struct GofIndexEntries {
   std::uint64_t first_gof_offset = 0;
-  std::vector<GofEntry> gofs;
-  std::vector<ModelIndexEntry> models;
+  Vector<GofEntry> gofs;
+  Vector<ModelIndexEntry> models;
 
   // R-IDX-02: whether all distances can be written.
   bool fits() const;

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "common/attributes/corners.h"
 #include "common/attributes/recon/attribute_recon.h"
 #include "common/attributes/sectors.h"
 #include "common/bitstream/bit_reader.h"
 #include "common/bitstream/crc32.h"
+#include "common/mesh/corners.h"
 #include "decoder/parse/attributes/parse_attributes.h"
 #include "encoder/attributes/corner_map.h"
 #include "encoder/attributes/encode_attributes.h"

@@ -20,15 +20,14 @@ class GofParser : public Owned {
   virtual Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) = 0;
   // A slice or frame unit: adds it, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
-                             std::vector<SliceEntry>& slices);
+                             Vector<SliceEntry>& slices);
   virtual bool drops(BitReader& /*r*/) { return false; }
   virtual bool is_cut() const { return false; }
   virtual std::uint64_t memory_bytes() const { return 0; }  // 0: no slices follow
   virtual AnyGof finish() = 0;
 };
 
-Result<bool> GofParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
-                              std::vector<SliceEntry>&) {
+Result<bool> GofParser::slice(BitReader& r, std::uint64_t unit_bit_pos, Vector<SliceEntry>&) {
   r.fail(Errc::kInvalid, "R-UNT-05", "slice_unit", unit_bit_pos);
   return *r.error();
 }
@@ -65,7 +64,7 @@ class SkinnedParser final : public GofParser {
                                            : parser_.bones(r, header, models);
   }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
-                     std::vector<SliceEntry>& slices) override {
+                     Vector<SliceEntry>& slices) override {
     if (auto ok = parser_.slice(r, unit_bit_pos); !ok) return ok;
     if (parser_.last_slice()) slices.push_back(*parser_.last_slice());
     return true;
@@ -90,7 +89,7 @@ class FramesParser final : public GofParser {
     return parser_->gof(r, header);
   }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
-                     std::vector<SliceEntry>& slices) override {
+                     Vector<SliceEntry>& slices) override {
     if (auto ok = parser_->frame(r, unit_bit_pos); !ok) return ok;
     if (parser_->last_unit()) slices.push_back(*parser_->last_unit());
     return true;

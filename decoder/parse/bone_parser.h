@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/skinned_gof/slice_models.h"
 #include "common/syntax/sequence_header.h"
@@ -101,8 +101,8 @@ class BoneParser {
   const SequenceHeader& header_;
   TrackFrames frames_;
   BoneModels models_;
-  std::vector<std::uint32_t> rotation_mean_;
-  std::vector<std::uint32_t> origin_mean_;
+  Vector<std::uint32_t> rotation_mean_;
+  Vector<std::uint32_t> origin_mean_;
 };
 
 }  // namespace rlpc

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/skinned_gof/model_slots.h"
 #include "common/syntax/access_unit.h"
@@ -20,8 +20,8 @@ namespace rlpc {
 struct ParsedModel {
   std::uint32_t model_idx = 0;
   std::shared_ptr<const SkinnedModel> model;
-  std::vector<SliceEntry> slices;  // in the order of the stream
-  std::uint64_t bytes = 0;         // size of its unit
+  Vector<SliceEntry> slices;  // in the order of the stream
+  std::uint64_t bytes = 0;    // size of its unit
 };
 
 // Limits are checked as by AccessUnitParser. After an error it can only be destroyed.

@@ -4,6 +4,7 @@
 
 #include "common/cluster_gof/cluster_models.h"
 #include "common/int_math.h"
+#include "common/owned.h"
 #include "decoder/parse/parse_cluster_map.h"
 #include "decoder/parse/parse_component_header.h"
 #include "decoder/parse/parse_track.h"
@@ -61,10 +62,10 @@ class ClusterSectionParser {
   ClusterGof& gof_;
   MemoryLimit memory_;
   ClusterModels models_;
-  std::vector<std::size_t> coded_vertices_;  // of each cluster
+  Vector<std::size_t> coded_vertices_;  // of each cluster
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
-  std::vector<std::uint32_t> frame_mean_;
+  Vector<std::uint32_t> frame_mean_;
   Component previous_;  // header of the previous component
 };
 
@@ -121,7 +122,7 @@ void ClusterSectionParser::seed_tracks() {
   const std::uint64_t values = 3 * std::uint64_t{gof_.seed_tracks.size()} * gof_.num_frames;
   count_factors(values, "seed_residual");
   take_memory(kBytesPerTrackValue * values, "seed_residual");
-  const std::vector<TrackPlace> order = track_order(gof_.num_frames, 0, 0);
+  const Vector<TrackPlace> order = track_order(gof_.num_frames, 0, 0);
   for (SeedTrack& track : gof_.seed_tracks) {
     if (failed()) return;
     track.residual.assign(gof_.num_frames, {});
@@ -138,7 +139,7 @@ void ClusterSectionParser::component_counts() {
   for (const std::uint16_t i : gof_.cluster_of_vertex) {
     if (i != kSeedCluster) ++coded_vertices_[i];
   }
-  std::vector<std::size_t> counts(gof_.clusters.size(), 0);
+  Vector<std::size_t> counts(gof_.clusters.size(), 0);
   std::uint64_t memory = 0;
   for (std::size_t i = 0; i < counts.size() && !failed(); ++i) {
     const Range range{0, header_.level().max_components};

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_cluster_map.h"
 #include "decoder/parse/parse_frame_pattern.h"
@@ -71,10 +72,10 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
   order_.emplace(gof_.pattern, gof_.num_frames);
-  const std::vector<std::uint32_t> none(gof_.pattern.temporal_layers, 0);
+  const Vector<std::uint32_t> none(gof_.pattern.temporal_layers, 0);
   layer_places_.assign(gof_.pattern.temporal_layers, {0, none});
   frames_of_group_.assign(gof_.pattern.temporal_layers,
-                          std::vector<std::uint32_t>(gof_.layer_group_size.size()));
+                          Vector<std::uint32_t>(gof_.layer_group_size.size()));
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
   end_temporal_layer_ = std::min(cut_.max_temporal_layers, gof_.pattern.temporal_layers);
   return true;
@@ -134,8 +135,8 @@ void FrameGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
 }
 
 // 8.19.1 FindUnitFrames( more )
-std::vector<std::uint32_t> FrameGofParser::unit_places(const SliceEntry& unit) const {
-  std::vector<std::uint32_t> places;
+Vector<std::uint32_t> FrameGofParser::unit_places(const SliceEntry& unit) const {
+  Vector<std::uint32_t> places;
   for (std::uint32_t place = order_->place_of(unit.frame_idx);
        place < order_->num_frames() && places.size() < unit.num_frames; ++place) {
     if (gof_.pattern.temporal_layer((*order_)[place].depth) == unit.temporal_layer_idx) {
@@ -182,7 +183,7 @@ void FrameGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
   const std::uint32_t group = unit.layer_group_idx;
   const std::uint32_t first = order_->place_of(unit.frame_idx);
   unit.temporal_layer_idx = gof_.pattern.temporal_layer((*order_)[first].depth);
-  std::vector<std::uint32_t> places{first};
+  Vector<std::uint32_t> places{first};
   if (num_groups == 1) {
     const std::uint64_t at = r.bit_pos();
     const std::int64_t most = std::int64_t{gof_.num_frames} - 1;
@@ -202,7 +203,7 @@ void FrameGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
     r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
     return;
   }
-  std::vector<std::uint32_t> coded;
+  Vector<std::uint32_t> coded;
   for (const std::uint32_t place : places) {
     if (frame_start(r, unit, place)) coded.push_back(place);
     if (r.error()) return;
@@ -230,7 +231,7 @@ bool FrameGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint
       gof_.max_earlier_distance > 0 && unit.layer_group_idx == 0 && place > 0;
   if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
   if (r.error()) return false;
-  std::vector<std::uint32_t>& frames_of_group = frames_of_group_[unit.temporal_layer_idx];
+  Vector<std::uint32_t>& frames_of_group = frames_of_group_[unit.temporal_layer_idx];
   if (!frame.repeated) {
     ++frames_of_group[unit.layer_group_idx];
     frame.layer_groups = unit.layer_group_idx + 1;
@@ -353,7 +354,7 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
 
 // 6.14.2 positions_in_order( )
 void FrameGofParser::positions_in_order(SectionReader& section, CodedFrame& frame) {
-  std::vector<std::int32_t> residuals(frame.residual.size());
+  Vector<std::int32_t> residuals(frame.residual.size());
   if (gof_.rest.counterparts_flag) frame.counterparts.resize(header_.num_vertices);
   parse_rest_residuals(section, mesh_.rest_order(), residuals, frame.counterparts);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -383,7 +384,7 @@ void FrameGofParser::frame_residuals(SectionReader& section, const SliceEntry& u
 }
 
 FrameGof FrameGofParser::finish() {
-  gof_.frames = std::make_shared<const std::vector<CodedFrame>>(std::move(frames_));
+  gof_.frames = make_shared_owned<const Vector<CodedFrame>>(std::move(frames_));
   return std::move(gof_);
 }
 

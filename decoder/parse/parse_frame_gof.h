@@ -5,13 +5,13 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/frame_gof/frame_contexts.h"
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/patch_contexts.h"
 #include "common/mesh/coded_mesh.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/sequence_header.h"
@@ -66,7 +66,7 @@ class FrameGofParser {
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
   // Places of the frames of a unit; fewer than it claims if there are no more.
-  std::vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
+  Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
   bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
   // False: the frame repeats another.
   bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
@@ -84,19 +84,19 @@ class FrameGofParser {
   MemoryLimit memory_;
   SliceCut cut_;
   FrameGof gof_;  // without its frames
-  std::vector<CodedFrame> frames_;
+  Vector<CodedFrame> frames_;
   std::optional<FrameContexts> contexts_;
   std::optional<PatchContexts> patch_contexts_;  // if there are patches
   std::optional<FrameOrder> order_;
   std::uint32_t next_place_ = 0;  // LastPlace + 1
   // Of each temporal layer: how far its frame units have got.
   struct LayerPlace {
-    std::uint32_t next = 0;             // LastPlaceOfLayer + 1
-    std::vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
+    std::uint32_t next = 0;        // LastPlaceOfLayer + 1
+    Vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
   };
-  std::vector<LayerPlace> layer_places_;
+  Vector<LayerPlace> layer_places_;
   // [temporal layer][layer group]: frames that have the layer group.
-  std::vector<std::vector<std::uint32_t>> frames_of_group_;
+  Vector<Vector<std::uint32_t>> frames_of_group_;
   std::uint32_t end_layer_group_ = 0;     // of those that the cut keeps
   std::uint32_t end_temporal_layer_ = 0;  // likewise
   bool is_cut_ = false;

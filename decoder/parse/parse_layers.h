@@ -2,18 +2,18 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 // Layers of each group; the groups have all layers together. Empty after an error.
-inline std::vector<std::uint32_t> parse_layer_groups(BitReader& r, std::uint32_t num_layers) {
+inline Vector<std::uint32_t> parse_layer_groups(BitReader& r, std::uint32_t num_layers) {
   const std::uint32_t num_groups =
       r.ue("num_layer_groups_minus1", {0, std::int64_t{num_layers} - 1}, "R-BON-03") + 1;
   if (r.error()) return {};
-  std::vector<std::uint32_t> sizes(num_groups, 1);
+  Vector<std::uint32_t> sizes(num_groups, 1);
   std::int64_t left = num_layers;
   for (std::uint32_t j = 0; j + 1 < num_groups; ++j) {
     const std::int64_t groups_after = num_groups - j - 1;
@@ -24,7 +24,7 @@ inline std::vector<std::uint32_t> parse_layer_groups(BitReader& r, std::uint32_t
   return sizes;
 }
 
-inline void parse_layer_steps(BitReader& r, std::vector<std::uint8_t>& steps) {
+inline void parse_layer_steps(BitReader& r, Vector<std::uint8_t>& steps) {
   for (std::uint8_t& step : steps) {
     step = static_cast<std::uint8_t>(r.u(4, "layer_step_minus1") + 1);
   }

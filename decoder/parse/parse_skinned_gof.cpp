@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 #include "decoder/parse/bone_parser.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_layers.h"
@@ -235,7 +236,7 @@ void SkinnedGofParser::load_model() {
 }
 
 std::shared_ptr<const SkinnedModel> SkinnedGofParser::finish_model() {
-  return std::make_shared<SkinnedModel>(std::move(static_cast<SkinnedModel&>(gof_)));
+  return make_shared_owned<SkinnedModel>(std::move(static_cast<SkinnedModel&>(gof_)));
 }
 
 // 8.14.1 MayFollow( group, index )

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/mesh/coded_meshes.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/skinned_gof/model_slots.h"
 #include "common/skinned_gof/skinned_gof.h"
@@ -117,7 +117,7 @@ class SkinnedGofParser {
     std::uint32_t first_own_group = 1;
     SliceModels models;
     Trajectory previous;  // header of the previous trajectory
-    std::vector<std::uint32_t> trajectory_mean;
+    Vector<std::uint32_t> trajectory_mean;
     std::shared_ptr<VertexModels> vertex_models;
     std::shared_ptr<VertexModels> models_of_group;
     std::optional<VertexContexts> contexts;  // of the current group

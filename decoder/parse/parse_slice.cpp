@@ -182,7 +182,7 @@ void SkinnedGofParser::SliceParser::influences(std::uint32_t v,
 
 // 6.12.3 spatial_residuals( v )
 void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
-  std::vector<std::int32_t>& residuals = gof_.vertex_residual[parser_.own_group(group_)];
+  Vector<std::int32_t>& residuals = gof_.vertex_residual[parser_.own_group(group_)];
   const std::size_t size = residuals.size() / parser_.header_.num_vertices;
   VertexContexts& contexts = *state_.contexts;
   contexts.start(v);

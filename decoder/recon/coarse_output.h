@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -25,9 +25,9 @@ class CoarseOutput {
 
  private:
   std::uint32_t num_layers_ = 1;
-  std::vector<std::uint32_t> decoded_;   // decoded indices, in output order
-  std::vector<std::uint32_t> vertices_;  // [as decoded_]
-  std::vector<Triangle> triangles_;
+  Vector<std::uint32_t> decoded_;   // decoded indices, in output order
+  Vector<std::uint32_t> vertices_;  // [as decoded_]
+  Vector<Triangle> triangles_;
 };
 
 }  // namespace rlpc

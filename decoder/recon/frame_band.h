@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "common/owned.h"
 #include "decoder/recon/gof_recon.h"
 
 namespace rlpc {
@@ -39,7 +39,7 @@ class FrameBand {
   bool is_back_ = false;
   std::uint32_t first_ = 0;
   std::uint32_t count_ = 0;
-  std::vector<std::int32_t> positions_;  // [count_][frame_size]
+  Vector<std::int32_t> positions_;  // [count_][frame_size]
 };
 
 }  // namespace rlpc

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <list>
 #include <memory>
 
 #include "common/owned.h"
@@ -48,7 +47,7 @@ class GofCache {
   void drop_excess();
 
   std::uint64_t max_bytes_;
-  std::list<std::unique_ptr<LoadedGof>> gofs_;  // the last used first
+  LinkedList<std::unique_ptr<LoadedGof>> gofs_;  // the last used first
 };
 
 }  // namespace rlpc

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/cluster_gof/recon/cluster_recon.h"
+#include "common/owned.h"
 #include "common/skinned_gof/recon/skinned_recon.h"
 #include "decoder/recon/ordered_recon.h"
 
@@ -19,7 +20,7 @@ class ReconOfKind final : public GofRecon {
     recon_.frames(first, count, positions);
   }
   std::optional<Skeleton> skeleton() const override { return recon_.skeleton(); }
-  std::vector<BonePlace> places(std::uint32_t f) const override { return recon_.places(f); }
+  Vector<BonePlace> places(std::uint32_t f) const override { return recon_.places(f); }
   std::size_t values_of_frame() const override { return recon_.values_of_frame(); }
 
  private:

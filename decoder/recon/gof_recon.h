@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/mesh/skeleton.h"
 #include "common/owned.h"
@@ -35,7 +34,7 @@ class GofRecon : public Owned {
   // The bones that move its vertices, in decoded order, and their places in a frame of the GOF;
   // none if no bones do.
   virtual std::optional<Skeleton> skeleton() const { return std::nullopt; }
-  virtual std::vector<BonePlace> places(std::uint32_t /*f*/) const { return {}; }
+  virtual Vector<BonePlace> places(std::uint32_t /*f*/) const { return {}; }
   virtual std::size_t values_of_frame() const { return 0; }
   // Of ordered ones: how many frames before the last one asked for are kept, so that the way
   // back takes no decoding. To be called before the first frame.

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/frame_gof/recon/frame_recon.h"
 #include "common/owned.h"
@@ -43,7 +41,7 @@ class LiveGof : public Owned {
 
  private:
   struct Decoded {
-    std::vector<std::int32_t> positions;
+    Vector<std::int32_t> positions;
     std::optional<FrameCrc> crc;
   };
 
@@ -57,8 +55,8 @@ class LiveGof : public Owned {
   FrameGofParser parser_;
   std::optional<FrameRecon> recon_;
   bool ended_ = false;
-  std::uint32_t next_output_ = 0;             // NextOutput
-  std::map<std::uint32_t, Decoded> waiting_;  // frames decoded before their turn
+  std::uint32_t next_output_ = 0;        // NextOutput
+  Map<std::uint32_t, Decoded> waiting_;  // frames decoded before their turn
   Decoded frame_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 void ModelRecons::erase_unused() {
@@ -16,7 +18,7 @@ std::shared_ptr<ModelRecons::Entry> ModelRecons::entry_of(
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const auto& entry) { return entry->model == model; });
   if (found != entries_.end()) return *found;
-  return entries_.emplace_back(std::make_shared<Entry>(model));
+  return entries_.emplace_back(make_shared_owned<Entry>(model));
 }
 
 std::shared_ptr<const ModelRecon> ModelRecons::of(
@@ -25,8 +27,8 @@ std::shared_ptr<const ModelRecon> ModelRecons::of(
   const std::shared_ptr<Entry> entry = entry_of(model);
   const std::lock_guard lock(entry->making);
   if (!entry->recon) {
-    entry->recon = std::make_shared<ModelRecon>((*context_.meshes)[model->prediction], *model,
-                                                context_.header.position_bits, true);
+    entry->recon = make_shared_owned<ModelRecon>((*context_.meshes)[model->prediction], *model,
+                                                 context_.header.position_bits, true);
   }
   return entry->recon;
 }

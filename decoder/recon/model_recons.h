@@ -3,8 +3,8 @@
 
 #include <memory>
 #include <mutex>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/stream_context.h"
@@ -33,7 +33,7 @@ class ModelRecons {
 
   const StreamContext& context_;
   std::mutex listing_;
-  std::vector<std::shared_ptr<Entry>> entries_;
+  Vector<std::shared_ptr<Entry>> entries_;
 };
 
 }  // namespace rlpc

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 void OrderedRecon::frames(std::uint32_t first, std::uint32_t count,
@@ -11,7 +13,7 @@ void OrderedRecon::frames(std::uint32_t first, std::uint32_t count,
   const std::size_t values = 3 * std::size_t{mesh_.num_vertices()};
   for (std::uint32_t i = 0; i < count; ++i) {
     go_to(first + i);
-    const std::vector<std::int32_t>& decoded = decoded_.at(first + i);
+    const Vector<std::int32_t>& decoded = decoded_.at(first + i);
     std::copy(decoded.begin(), decoded.end(),
               positions.begin() + static_cast<std::ptrdiff_t>(i * values));
   }
@@ -47,7 +49,7 @@ void OrderedRecon::go_to(std::uint32_t frame) const {
     const FramePlace& next = order_[recon_->place()];
     recon_->decode(next, order_.last_use(next.frame), (*gof_.frames)[next.frame]);
     if (next.frame < first_kept) continue;
-    std::vector<std::int32_t>& positions = decoded_[next.frame];
+    Vector<std::int32_t>& positions = decoded_[next.frame];
     positions.resize(3 * std::size_t{mesh_.num_vertices()});
     recon_->positions(positions);
   }

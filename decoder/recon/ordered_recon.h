@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/recon/frame_recon.h"
+#include "common/owned.h"
 #include "decoder/recon/gof_recon.h"
 
 namespace rlpc {
@@ -47,7 +46,7 @@ class OrderedRecon final : public GofRecon {
   mutable std::optional<FrameRecon> recon_;
   // [frame]: positions of the last one asked for, of those kept before it, and of later ones
   // that have been decoded.
-  mutable std::map<std::uint32_t, std::vector<std::int32_t>> decoded_;
+  mutable Map<std::uint32_t, Vector<std::int32_t>> decoded_;
 };
 
 }  // namespace rlpc

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/recon/async.h"
 
 namespace rlpc {
@@ -108,7 +109,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
   for (const StreamModels::Alive& alive : stream_.models().find_alive(place.offset)) {
     auto& slot = ahead.models[alive.model_idx];
     if (alive.model) {
-      slot = std::make_shared<ModelAhead>();
+      slot = make_shared_owned<ModelAhead>();
       slot->is_tried = true;
       slot->parsed = ParsedModel{alive.model_idx, alive.model, {}, 0};
       continue;
@@ -147,7 +148,7 @@ bool Prefetch::start_slots(std::uint64_t offset) {
   if (!models) return false;
   for (std::size_t m = 0; m < slots_.size(); ++m) {
     if (!models->of_idx[m]) continue;
-    slots_[m] = std::make_shared<ModelAhead>();
+    slots_[m] = make_shared_owned<ModelAhead>();
     slots_[m]->is_tried = true;
     slots_[m]->parsed = ParsedModel{static_cast<std::uint32_t>(m), models->of_idx[m], {}, 0};
   }
@@ -193,7 +194,7 @@ std::shared_ptr<Prefetch::ModelAhead> Prefetch::collect_model(const UnitHeader& 
                                                               std::uint64_t max_bytes) {
   auto coded = stream_.access_units().collect_model(unit, max_bytes);
   if (!coded) return nullptr;
-  auto model = std::make_shared<ModelAhead>();
+  auto model = make_shared_owned<ModelAhead>();
   model->offset = unit.offset;
   model->end = coded->back().header.end();
   model->coded = std::move(*coded);

@@ -6,12 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <future>
-#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/parallel/for_each.h"
 #include "decoder/recon/model_recons.h"
 #include "decoder/recon/prepared_gof.h"
@@ -59,7 +58,7 @@ class Prefetch {
   struct ModelAhead {
     std::uint64_t offset = 0;
     std::uint64_t end = 0;
-    std::vector<CodedUnit> coded;
+    Vector<CodedUnit> coded;
     std::array<std::shared_ptr<ModelAhead>, kMaxModels> before;  // those alive
     std::mutex parsing;
     bool is_tried = false;
@@ -70,7 +69,7 @@ class Prefetch {
   struct Ahead {
     CodedAccessUnit coded;
     // Since the GOF before; at most kMaxModels, or the GOF is not prepared.
-    std::vector<std::shared_ptr<ModelAhead>> new_models;
+    Vector<std::shared_ptr<ModelAhead>> new_models;
     Slots models;                    // those alive
     std::uint32_t first_wanted = 0;  // frame of the GOF
     std::optional<PreparedGof> gof;
@@ -81,7 +80,7 @@ class Prefetch {
              coded.gof.first_frame == first_frame;
     }
   };
-  using List = std::list<Ahead>;  // threads refer to its elements
+  using List = LinkedList<Ahead>;  // threads refer to its elements
 
   void start(Ahead& ahead);
   // Drops one without waiting for its thread.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_header.h"
 
@@ -92,14 +93,14 @@ Result<bool> AccessUnitReader::check_fits(const UnitHeader& unit, std::uint64_t 
   return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
 }
 
-Result<std::vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
-                                                            std::uint64_t taken_bytes) {
+Result<Vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
+                                                       std::uint64_t taken_bytes) {
   if (auto ok = check_fits(unit, taken_bytes, memory_limit()); !ok) return ok.error();
   return units_.payload(unit);
 }
 
 Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
-                                          const std::vector<std::uint8_t>& payload,
+                                          const Vector<std::uint8_t>& payload,
                                           std::uint32_t first_frame,
                                           const ModelSlots& models) const {
   BitReader r = units_.bits(unit, payload);
@@ -135,9 +136,9 @@ Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
   return parser.finish();
 }
 
-std::optional<std::vector<CodedUnit>> AccessUnitReader::collect_model(
+std::optional<Vector<CodedUnit>> AccessUnitReader::collect_model(
     const UnitHeader& model_unit, std::uint64_t max_memory_bytes) {
-  std::vector<CodedUnit> coded;
+  Vector<CodedUnit> coded;
   std::uint64_t num_bytes = 0;
   for (std::optional<UnitHeader> unit = model_unit; unit;) {
     num_bytes += unit->size;
@@ -152,7 +153,7 @@ std::optional<std::vector<CodedUnit>> AccessUnitReader::collect_model(
   return coded;
 }
 
-Result<ParsedModel> AccessUnitReader::parse_model(const std::vector<CodedUnit>& coded,
+Result<ParsedModel> AccessUnitReader::parse_model(const Vector<CodedUnit>& coded,
                                                   const ModelSlots& models,
                                                   std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
@@ -167,7 +168,7 @@ Result<ParsedModel> AccessUnitReader::parse_model(const std::vector<CodedUnit>& 
 }
 
 Result<bool> AccessUnitReader::parse_unit(ModelParser& parser, const UnitHeader& unit,
-                                          const std::vector<std::uint8_t>& payload,
+                                          const Vector<std::uint8_t>& payload,
                                           const ModelSlots& models) const {
   BitReader r = units_.bits(unit, payload);
   const std::uint64_t unit_bytes = unit.end() - unit.offset;

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
@@ -20,13 +20,13 @@ namespace rlpc {
 
 struct CodedUnit {
   UnitHeader header;
-  std::vector<std::uint8_t> payload;
+  Vector<std::uint8_t> payload;
 };
 
 // The units of an access unit, not parsed except for the GOF header.
 struct CodedAccessUnit {
   GofHeader gof;
-  std::vector<CodedUnit> units;  // the GOF unit first
+  Vector<CodedUnit> units;  // the GOF unit first
 
   // Bytes from the start of the stream.
   std::uint64_t end() const { return units.back().header.end(); }
@@ -75,18 +75,17 @@ class AccessUnitReader {
   Result<AccessUnit> parse(const CodedAccessUnit& coded, const ModelSlots& models,
                            std::uint64_t max_memory_bytes) const;
   // The same for a skinned model.
-  std::optional<std::vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
-                                                      std::uint64_t max_memory_bytes);
-  Result<ParsedModel> parse_model(const std::vector<CodedUnit>& coded, const ModelSlots& models,
+  std::optional<Vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
+                                                 std::uint64_t max_memory_bytes);
+  Result<ParsedModel> parse_model(const Vector<CodedUnit>& coded, const ModelSlots& models,
                                   std::uint64_t max_memory_bytes) const;
 
  private:
   Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
-                          const std::vector<std::uint8_t>& payload, std::uint32_t first_frame,
+                          const Vector<std::uint8_t>& payload, std::uint32_t first_frame,
                           const ModelSlots& models) const;
   Result<bool> parse_unit(ModelParser& parser, const UnitHeader& unit,
-                          const std::vector<std::uint8_t>& payload,
-                          const ModelSlots& models) const;
+                          const Vector<std::uint8_t>& payload, const ModelSlots& models) const;
   MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
   // Whether there is memory for the payload of a unit, in addition to what its access unit or
   // skinned model has taken.
@@ -96,7 +95,7 @@ class AccessUnitReader {
   template <class Parser>
   Result<bool> is_dropped(const UnitHeader& unit, Parser& parser);
   // Such a payload.
-  Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
+  Result<Vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
   // The slice unit that follows `unit`; none if another unit follows.
   Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
   Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit,

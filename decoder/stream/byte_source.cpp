@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
 class MemorySource final : public ByteSource {
  public:
-  explicit MemorySource(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
+  explicit MemorySource(Vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
   std::uint64_t size() const override { return bytes_.size(); }
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
     if (offset > bytes_.size() || out.size() > bytes_.size() - offset) return false;
@@ -17,12 +19,12 @@ class MemorySource final : public ByteSource {
   }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  Vector<std::uint8_t> bytes_;
 };
 
 }  // namespace
 
-std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes) {
+std::unique_ptr<ByteSource> memory_source(Vector<std::uint8_t> bytes) {
   return std::make_unique<MemorySource>(std::move(bytes));
 }
 

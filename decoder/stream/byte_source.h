@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/owned.h"
 
@@ -30,6 +29,6 @@ class ByteSource : public Owned {
 };
 
 // A source that holds a copy of the bytes.
-std::unique_ptr<ByteSource> memory_source(std::vector<std::uint8_t> bytes);
+std::unique_ptr<ByteSource> memory_source(Vector<std::uint8_t> bytes);
 
 }  // namespace rlpc

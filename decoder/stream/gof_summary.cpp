@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -77,7 +79,7 @@ void add_kind(const FrameGof& gof, GofSummary& summary) {
 
 // 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:
 // of the groups before.
-void add_groups(const std::vector<SliceEntry>& slices, const SliceCut& cut,
+void add_groups(const Vector<SliceEntry>& slices, const SliceCut& cut,
                 std::uint64_t trajectories, SliceGroups& groups) {
   for (const SliceEntry& slice : slices) {
     if (slice.component_group_idx < groups.component_groups) continue;
@@ -103,7 +105,7 @@ GofSummary summary_of(const AccessUnit& access_unit) {
 class Summariser {
  public:
   void add(const ParsedModel& parsed) {
-    const auto model = std::make_shared<ModelSummary>();
+    const auto model = make_shared_owned<ModelSummary>();
     model->number = summary_.models.size();
     model->model_idx = parsed.model_idx;
     model->num_component_groups = parsed.model->num_component_groups;
@@ -147,8 +149,8 @@ std::uint32_t SlicedSummary::num_groups() const {
   return groups;
 }
 
-std::vector<SliceEntry> SlicedSummary::slices_by_group() const {
-  std::vector<SliceEntry> groups;
+Vector<SliceEntry> SlicedSummary::slices_by_group() const {
+  Vector<SliceEntry> groups;
   for (const SliceEntry& slice : slices) {
     const auto is_same = [&](const SliceEntry& other) {
       return other.component_group_idx == slice.component_group_idx &&

@@ -9,8 +9,8 @@
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "decoder/slice_cut.h"
@@ -55,18 +55,18 @@ struct GofFigure {
 struct SlicedSummary {
   std::uint64_t bytes = 0;  // of its unit
 
-  std::vector<GofFigure> figures;  // the same keys for each GOF of a kind
+  Vector<GofFigure> figures;  // the same keys for each GOF of a kind
 
   // 0 if the kind lacks the key.
   std::uint32_t figure(std::string_view key) const;
 
   // Of kinds that have slices.
-  std::vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
-  std::vector<SliceEntry> slices;                  // or frame units
-  const char* first_group = nullptr;               // what component group 0 has
+  Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
+  Vector<SliceEntry> slices;                  // or frame units
+  const char* first_group = nullptr;          // what component group 0 has
 
   // The same, with those that differ only in their frames taken together.
-  std::vector<SliceEntry> slices_by_group() const;
+  Vector<SliceEntry> slices_by_group() const;
   // Component groups up to the last that has a slice, including that of the rest positions.
   std::uint32_t num_groups() const;
   // Temporal layers up to the last that has a slice.
@@ -95,7 +95,7 @@ struct GofSummary : SlicedSummary {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::shared_ptr<const ModelSummary> model;  // that it uses; null: none
-  std::vector<VertexModes> vertex_modes;      // [num_frames] if it has patches
+  Vector<VertexModes> vertex_modes;           // [num_frames] if it has patches
 
   // Bytes and slices are its own; layers are those of its skinned model.
   SliceTotals totals(const SliceGroups& groups) const;
@@ -105,8 +105,8 @@ struct GofSummary : SlicedSummary {
 };
 
 struct StreamSummary {
-  std::vector<std::shared_ptr<const ModelSummary>> models;  // in the order of the stream
-  std::vector<GofSummary> gofs;
+  Vector<std::shared_ptr<const ModelSummary>> models;  // in the order of the stream
+  Vector<GofSummary> gofs;
 
   std::uint32_t num_frames() const {
     return gofs.empty() ? 0 : gofs.back().first_frame + gofs.back().num_frames;

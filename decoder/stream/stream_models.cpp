@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 #include "common/syntax/stream_format.h"
 #include "decoder/parse/parse_skinned_gof.h"
 
@@ -25,7 +26,7 @@ void StreamModels::put(std::uint64_t offset, Entry entry) {
   place->second = std::move(entry);
 }
 
-void StreamModels::add(const std::vector<ModelLocation>& locations) {
+void StreamModels::add(const Vector<ModelLocation>& locations) {
   for (const ModelLocation& l : locations) {
     if (!entries_.contains(l.offset)) put(l.offset, {l.model_idx, 0, nullptr, {}});
   }
@@ -35,9 +36,9 @@ void StreamModels::add(std::uint64_t offset, std::uint64_t end, const ParsedMode
   put(offset, {parsed.model_idx, end, parsed.model, {}});
 }
 
-std::vector<std::uint64_t> StreamModels::alive_at(std::uint64_t offset) const {
-  std::vector<std::uint64_t> alive;
-  for (const std::set<std::uint64_t>& of_idx : offsets_) {
+Vector<std::uint64_t> StreamModels::alive_at(std::uint64_t offset) const {
+  Vector<std::uint64_t> alive;
+  for (const Set<std::uint64_t>& of_idx : offsets_) {
     const auto after = of_idx.lower_bound(offset);
     if (after != of_idx.begin()) alive.push_back(*std::prev(after));
   }
@@ -66,7 +67,7 @@ bool StreamModels::take_back(std::uint64_t offset, Entry& entry) {
 }
 
 Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
-  const std::vector<std::uint64_t> alive = alive_at(gof_offset);
+  const Vector<std::uint64_t> alive = alive_at(gof_offset);
   const auto num_dropped = std::erase_if(kept_, [&](std::uint64_t offset) {
     const bool drop = !std::binary_search(alive.begin(), alive.end(), offset);
     if (drop) {
@@ -87,8 +88,8 @@ Result<ModelSlots> StreamModels::at(std::uint64_t gof_offset) {
   return models;
 }
 
-std::vector<StreamModels::Alive> StreamModels::find_alive(std::uint64_t gof_offset) const {
-  std::vector<Alive> alive;
+Vector<StreamModels::Alive> StreamModels::find_alive(std::uint64_t gof_offset) const {
+  Vector<Alive> alive;
   for (const std::uint64_t offset : alive_at(gof_offset)) {
     const Entry& entry = entries_.at(offset);
     alive.push_back(

@@ -4,12 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <set>
 #include <utility>
-#include <vector>
 
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/skinned_gof/model_slots.h"
 #include "decoder/parse/model_parser.h"
@@ -30,7 +28,7 @@ class StreamModels {
       : units_(units), access_units_(access_units) {}
 
   // What is known without parsing it: the list of the GOF index.
-  void add(const std::vector<ModelLocation>& locations);
+  void add(const Vector<ModelLocation>& locations);
   // A model that was parsed elsewhere; end: of its units, bytes from the start of the stream.
   void add(std::uint64_t offset, std::uint64_t end, const ParsedModel& parsed);
 
@@ -48,7 +46,7 @@ class StreamModels {
     std::uint32_t model_idx = 0;
     std::shared_ptr<const SkinnedModel> model;  // null: has to be parsed
   };
-  std::vector<Alive> find_alive(std::uint64_t gof_offset) const;
+  Vector<Alive> find_alive(std::uint64_t gof_offset) const;
 
   // Calls `see` with each skinned model that read() parses.
   using See = std::function<void(const ParsedModel& model)>;
@@ -64,7 +62,7 @@ class StreamModels {
     std::weak_ptr<const SkinnedModel> dropped;  // while a GOF that is kept uses it
   };
   // In the order of the stream.
-  std::vector<std::uint64_t> alive_at(std::uint64_t offset) const;
+  Vector<std::uint64_t> alive_at(std::uint64_t offset) const;
   void put(std::uint64_t offset, Entry entry);
   // Whether the model is there, possibly because somebody else has kept it.
   bool take_back(std::uint64_t offset, Entry& entry);
@@ -72,9 +70,9 @@ class StreamModels {
 
   UnitReader& units_;
   AccessUnitReader& access_units_;
-  std::map<std::uint64_t, Entry> entries_;                   // by offset
-  std::array<std::set<std::uint64_t>, kMaxModels> offsets_;  // of the entries, by model_idx
-  std::set<std::uint64_t> kept_;                             // those whose model is there
+  Map<std::uint64_t, Entry> entries_;                   // by offset
+  std::array<Set<std::uint64_t>, kMaxModels> offsets_;  // of the entries, by model_idx
+  Set<std::uint64_t> kept_;                             // those whose model is there
   See see_;
   std::function<void()> dropped_;
 };

@@ -5,10 +5,9 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "common/mesh/clip.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
@@ -45,8 +44,8 @@ class StreamReader {
   std::span<const Triangle> triangles() const { return triangles_; }  // in output order
   // 8.6.1: output index of each decoded vertex; empty: the same.
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
-  const std::string& metadata() const { return metadata_; }  // the last so far
-  const std::vector<Clip>& clips() const { return clips_; }  // likewise
+  const String& metadata() const { return metadata_; }  // the last so far
+  const Vector<Clip>& clips() const { return clips_; }  // likewise
   // The asset unit, whose CRC has been checked; none: there is none.
   const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
   // The attribute unit, whose CRC has been checked; none: there is none.
@@ -116,16 +115,16 @@ class StreamReader {
   StreamContext context_;
   AccessUnitReader access_units_;
   StreamModels models_;
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> vertex_order_;
-  std::string metadata_;
-  std::vector<Clip> clips_;
+  Vector<Triangle> triangles_;
+  Vector<std::uint32_t> vertex_order_;
+  String metadata_;
+  Vector<Clip> clips_;
   std::optional<UnitHeader> attribute_unit_;
   std::optional<UnitHeader> asset_unit_;
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;
-  std::vector<GofLocation> gofs_;  // those seen so far, ascending
+  Vector<GofLocation> gofs_;  // those seen so far, ascending
   bool index_tried_ = false;
   bool ended_ = false;
 };

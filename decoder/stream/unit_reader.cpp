@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/bitstream/crc32.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -91,14 +92,14 @@ Result<bool> UnitReader::check_crc(const UnitHeader& unit, std::uint32_t compute
   return true;
 }
 
-Result<std::vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
+Result<Vector<std::uint8_t>> UnitReader::payload(const UnitHeader& unit) {
   const std::uint64_t needed_bytes =
       memory_.bytes_in_use + unit.size + source_->memory_bytes() - bytes_at_first_;
   if (needed_bytes > memory_.max_bytes || std::uint64_t{unit.size} > kMaxPayloadBytes) {
     return Error{Errc::kLimitExceeded, "", "unit_size", unit.offset * 8 + 8, needed_bytes};
   }
   trace_header(unit);
-  std::vector<std::uint8_t> bytes(kUnitHeaderBytes + std::size_t{unit.size} + kUnitCrcBytes);
+  Vector<std::uint8_t> bytes(kUnitHeaderBytes + std::size_t{unit.size} + kUnitCrcBytes);
   if (!source_->read(unit.offset, bytes)) {
     return Error{Errc::kIo, "", "unit_payload", unit.payload_offset() * 8};
   }
@@ -128,9 +129,9 @@ Result<bool> UnitReader::skip(const UnitHeader& unit) {
   return check_crc(unit, crc, big_endian(stored));
 }
 
-Result<std::vector<std::uint8_t>> UnitReader::payload_start(const UnitHeader& unit,
-                                                            std::uint32_t max_bytes) {
-  std::vector<std::uint8_t> bytes(std::min(unit.size, max_bytes));
+Result<Vector<std::uint8_t>> UnitReader::payload_start(const UnitHeader& unit,
+                                                       std::uint32_t max_bytes) {
+  Vector<std::uint8_t> bytes(std::min(unit.size, max_bytes));
   if (!source_->read(unit.payload_offset(), bytes)) {
     return Error{Errc::kIo, "", "unit_payload", unit.payload_offset() * 8};
   }

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/bitstream/trace.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/stream_format.h"
 #include "decoder/parse/memory_limit.h"
@@ -49,14 +49,13 @@ class UnitReader {
   // Sets the memory that others use from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
   // Reads the payload of a unit and checks its CRC.
-  Result<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
+  Result<Vector<std::uint8_t>> payload(const UnitHeader& unit);
   // Skips a unit and checks its CRC. Allocates nothing.
   Result<bool> skip(const UnitHeader& unit);
   // Reads up to max_bytes from the beginning of a payload, without checking the CRC.
-  Result<std::vector<std::uint8_t>> payload_start(const UnitHeader& unit,
-                                                  std::uint32_t max_bytes);
+  Result<Vector<std::uint8_t>> payload_start(const UnitHeader& unit, std::uint32_t max_bytes);
   // Reader over a payload, with positions from the start of the stream.
-  BitReader bits(const UnitHeader& unit, const std::vector<std::uint8_t>& payload) const {
+  BitReader bits(const UnitHeader& unit, const Vector<std::uint8_t>& payload) const {
     return BitReader(payload, unit.payload_offset() * 8, trace_);
   }
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "common/owned.h"
+
 namespace rlpc {
 namespace {
 
@@ -26,8 +28,8 @@ VertexModes modes_of(const CodedFrame& frame, const PatchOfVertex& patch_of_vert
 
 }  // namespace
 
-std::vector<VertexModes> vertex_modes(const FrameGof& gof) {
-  std::vector<VertexModes> modes;
+Vector<VertexModes> vertex_modes(const FrameGof& gof) {
+  Vector<VertexModes> modes;
   if (gof.num_patches == 0) return modes;
   for (const CodedFrame& frame : *gof.frames) {
     modes.push_back(modes_of(frame, gof.patch_of_vertex));

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/frame_gof/frame_gof.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -18,6 +18,6 @@ struct VertexModes {
 };
 
 // [num_frames]; empty if the GOF has no patches.
-std::vector<VertexModes> vertex_modes(const FrameGof& gof);
+Vector<VertexModes> vertex_modes(const FrameGof& gof);
 
 }  // namespace rlpc

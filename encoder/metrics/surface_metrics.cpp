@@ -8,34 +8,32 @@
 namespace rlpc {
 namespace {
 
-using Vector = std::array<double, 3>;
+using Vec3 = std::array<double, 3>;
 
-Vector point(std::span<const float> xyz, std::uint32_t vertex) {
+Vec3 point(std::span<const float> xyz, std::uint32_t vertex) {
   const std::size_t i = 3 * std::size_t{vertex};
   return {xyz[i], xyz[i + 1], xyz[i + 2]};
 }
 
-Vector minus(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-Vector cross(const Vector& a, const Vector& b) {
+Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
 // A normal whose length is twice the area of the triangle.
-Vector normal(std::span<const float> xyz, const Triangle& t) {
-  const Vector p = point(xyz, t[0]);
+Vec3 normal(std::span<const float> xyz, const Triangle& t) {
+  const Vec3 p = point(xyz, t[0]);
   return cross(minus(point(xyz, t[1]), p), minus(point(xyz, t[2]), p));
 }
 
 double diagonal(std::span<const float> xyz) {
-  Vector low = point(xyz, 0);
-  Vector high = low;
+  Vec3 low = point(xyz, 0);
+  Vec3 high = low;
   for (std::size_t i = 0; i < xyz.size(); ++i) {
     low[i % 3] = std::min(low[i % 3], static_cast<double>(xyz[i]));
     high[i % 3] = std::max(high[i % 3], static_cast<double>(xyz[i]));
@@ -129,8 +127,8 @@ double StedAccumulator::temporal_part(std::span<const float> original,
                                       std::span<const float> decoded) {
   double sum = 0;
   for (std::uint32_t v = 0; v < num_vertices_; ++v) {
-    const Vector step = minus(point(original, v), point(previous_original_, v));
-    const Vector decoded_step = minus(point(decoded, v), point(previous_decoded_, v));
+    const Vec3 step = minus(point(original, v), point(previous_original_, v));
+    const Vec3 decoded_step = minus(point(decoded, v), point(previous_decoded_, v));
     const double apart = frame_distance_ * frame_distance_;
     const Pair next{std::sqrt(dot(step, step) + apart),
                     std::sqrt(dot(decoded_step, decoded_step) + apart)};
@@ -166,10 +164,10 @@ void SurfaceAccumulator::add_normals(std::span<const float> original,
   double angles = 0;
   double areas = 0;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const Vector n = normal(original, triangles_[t]);
+    const Vec3 n = normal(original, triangles_[t]);
     const double area = length(n) / 2;
     if (area == 0) continue;
-    const Vector m = normal(decoded, triangles_[t]);
+    const Vec3 m = normal(decoded, triangles_[t]);
     const double angle =
         length(m) == 0 ? 90.0 : kDegrees * std::atan2(length(cross(n, m)), dot(n, m));
     angles += angle * area;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/mesh/corners.h"
 #include "common/mesh/mesh.h"
 
 namespace rlpc {
@@ -19,9 +20,6 @@ struct HalfEdges {
   std::vector<std::uint32_t> instance;  // [corner], 0 to num_instances - 1
   std::uint32_t num_instances = 0;
 };
-
-constexpr std::uint32_t next_corner(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
-constexpr std::uint32_t previous_corner(std::uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
 
 // The half-edge that starts at the same vertex, one triangle further around it; kNone at a
 // mesh boundary. The two functions turn in opposite directions.

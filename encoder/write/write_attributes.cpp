@@ -5,9 +5,9 @@
 #include <cassert>
 
 #include "common/attributes/attribute_contexts.h"
-#include "common/attributes/corners.h"
 #include "common/attributes/sectors.h"
 #include "common/bitstream/bit_writer.h"
+#include "common/mesh/corners.h"
 #include "encoder/write/section_writer.h"
 
 namespace rlpc {

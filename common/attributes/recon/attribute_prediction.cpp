@@ -65,10 +65,10 @@ AttributeValue AttributePredictor::value_of(const AttributeValue& prediction,
 
 // CornerAcross( ), whose value is known
 std::optional<std::uint32_t> AttributePredictor::corner_across(std::uint32_t e) const {
-  const std::uint32_t edge = next_in_triangle(e);
+  const std::uint32_t edge = next_corner(e);
   if (mesh_.edge_mates[edge] == kNoCorner) return std::nullopt;
   if (!mesh_.seams.empty() && mesh_.seams[edge]) return std::nullopt;
-  const std::uint32_t c = previous_in_triangle(mesh_.edge_mates[edge]);
+  const std::uint32_t c = previous_corner(mesh_.edge_mates[edge]);
   if (!is_known_[sector_of(c)]) return std::nullopt;
   return c;
 }
@@ -79,8 +79,8 @@ AttributeValue AttributePredictor::from_neighbours(std::uint32_t x) const {
   const auto triangles = mesh_.order.triangles[x];
   const bool is_parallelogram = mesh_.header.prediction == AttributePrediction::kParallelogram;
   for (const std::uint32_t e : triangles) {
-    const AttributeValue& a = value(sector_of(next_in_triangle(e)));
-    const AttributeValue& b = value(sector_of(previous_in_triangle(e)));
+    const AttributeValue& a = value(sector_of(next_corner(e)));
+    const AttributeValue& b = value(sector_of(previous_corner(e)));
     const auto across = is_parallelogram ? corner_across(e) : std::nullopt;
     for (std::size_t c = 0; c < mesh_.header.num_components; ++c) {
       prediction[c] += across ? 2 * (a[c] + b[c] - value(sector_of(*across))[c]) : a[c] + b[c];
@@ -119,8 +119,8 @@ void AttributePredictor::add_uv_prediction(std::size_t kind, std::int64_t u, std
 
 void AttributePredictor::add_uv_predictions(std::uint32_t e) {
   constexpr std::int64_t kOne = std::int64_t{1} << kCornerFractionBits;
-  const std::uint32_t from = next_in_triangle(e);
-  const std::uint32_t to = previous_in_triangle(e);
+  const std::uint32_t from = next_corner(e);
+  const std::uint32_t to = previous_corner(e);
   const AttributeValue& a = value(sector_of(from));
   const AttributeValue& b = value(sector_of(to));
   const auto across = corner_across(e);
@@ -170,9 +170,8 @@ void AttributePredictor::learn_uv(std::uint32_t x, const AttributeValue& value) 
     mean += squared >= mean ? (squared - mean) >> 5 : -((mean - squared) >> 5);
   }
   for (const std::uint32_t e : mesh_.order.triangles[x]) {
-    const std::int64_t turn =
-        doubled_area(this->value(sector_of(next_in_triangle(e))),
-                     this->value(sector_of(previous_in_triangle(e))), value);
+    const std::int64_t turn = doubled_area(this->value(sector_of(next_corner(e))),
+                                           this->value(sector_of(previous_corner(e))), value);
     if (turn > 0) ++turn_;
     if (turn < 0) --turn_;
   }

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/attributes/attribute_set.h"
 #include "common/attributes/recon/corner_geometry.h"
 #include "common/attributes/recon/normals.h"
 #include "common/attributes/sectors.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -18,7 +18,7 @@ namespace rlpc {
 struct AttributeMesh {
   const AttributeHeader& header;
   std::span<const std::uint32_t> edge_mates;
-  const std::vector<bool>& seams;  // empty: none
+  const Vector<bool>& seams;  // empty: none
   const Sectors& sectors;
   const SectorOrder& order;
   const CornerGeometry* geometry = nullptr;  // if header.uses_positions()
@@ -58,9 +58,9 @@ class AttributePredictor {
   void learn_uv(std::uint32_t x, const AttributeValue& value);
 
   AttributeMesh mesh_;
-  std::vector<AttributeValue> values_;  // [sector]
-  std::vector<bool> is_known_;
-  std::vector<UvPrediction> uv_predictions_;   // of the sector predicted last
+  Vector<AttributeValue> values_;  // [sector]
+  Vector<bool> is_known_;
+  Vector<UvPrediction> uv_predictions_;        // of the sector predicted last
   std::array<std::int64_t, 3> squared_error_;  // SquaredError
   std::int64_t turn_ = 0;                      // Turn
 };

@@ -4,18 +4,19 @@
 #include <optional>
 #include <utility>
 
-#include "common/attributes/corners.h"
 #include "common/attributes/recon/attribute_prediction.h"
 #include "common/attributes/sectors.h"
+#include "common/mesh/corners.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
 
 // DecodeValues( )
-std::vector<std::uint32_t> recon_values(const AttributeMesh& mesh,
-                                        std::span<const std::uint32_t> residuals) {
+Vector<std::uint32_t> recon_values(const AttributeMesh& mesh,
+                                   std::span<const std::uint32_t> residuals) {
   const std::uint32_t n = mesh.header.num_components;
-  std::vector<std::uint32_t> values(std::size_t{n} * mesh.sectors.count());
+  Vector<std::uint32_t> values(std::size_t{n} * mesh.sectors.count());
   AttributePredictor predictor(mesh);
   for (const std::uint32_t x : mesh.order.order) {
     const AttributeValue prediction = predictor.predict(x);
@@ -63,13 +64,12 @@ AttributeSet recon_set(const CodedAttributeSet& coded, std::uint32_t num_vertice
 
 }  // namespace
 
-std::vector<AttributeSet> recon_attributes(const CodedAttributes& coded,
-                                           std::uint32_t num_vertices,
-                                           std::span<const Triangle> triangles,
-                                           std::span<const std::int32_t> first_frame) {
-  const std::vector<std::uint32_t> edge_mates = find_edge_mates(num_vertices, triangles);
+Vector<AttributeSet> recon_attributes(const CodedAttributes& coded, std::uint32_t num_vertices,
+                                      std::span<const Triangle> triangles,
+                                      std::span<const std::int32_t> first_frame) {
+  const Vector<std::uint32_t> edge_mates = find_edge_mates(num_vertices, triangles);
   const CornerGeometry geometry(triangles, first_frame);
-  std::vector<AttributeSet> sets;
+  Vector<AttributeSet> sets;
   sets.reserve(coded.sets.size());
   for (const CodedAttributeSet& set : coded.sets) {
     sets.push_back(recon_set(set, num_vertices, edge_mates, geometry));

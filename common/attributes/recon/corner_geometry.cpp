@@ -30,8 +30,7 @@ Vec3l CornerGeometry::triangle_normal(std::uint32_t t) const {
 
 bool CornerGeometry::is_longest_edge(std::uint32_t c) const {
   const std::int64_t length = edge_length(c);
-  return length >= edge_length(next_in_triangle(c)) &&
-         length >= edge_length(previous_in_triangle(c));
+  return length >= edge_length(next_corner(c)) && length >= edge_length(previous_corner(c));
 }
 
 bool CornerGeometry::is_likely_diagonal(std::uint32_t c, std::uint32_t mate) const {
@@ -47,7 +46,7 @@ bool CornerGeometry::is_likely_diagonal(std::uint32_t c, std::uint32_t mate) con
 }
 
 std::int64_t CornerGeometry::angle_at(std::uint32_t c) const {
-  const auto sides = differences<2>(c, {next_in_triangle(c), previous_in_triangle(c)});
+  const auto sides = differences<2>(c, {next_corner(c), previous_corner(c)});
   const std::int64_t length = dot(sides[0], sides[0]);
   if (length == 0 || sides[1] == Vec3l{}) return 0;
   const std::int64_t x = dot(sides[0], sides[1]);

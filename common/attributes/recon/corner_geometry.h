@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "common/attributes/corners.h"
 #include "common/int_math.h"
+#include "common/mesh/corners.h"
 #include "common/mesh/mesh.h"
 
 namespace rlpc {
@@ -59,7 +59,7 @@ class CornerGeometry {
     return {std::int64_t{b[0]} - a[0], std::int64_t{b[1]} - a[1], std::int64_t{b[2]} - a[2]};
   }
   std::int64_t edge_length(std::uint32_t c) const {
-    const Vec3l edge = difference(c, next_in_triangle(c));
+    const Vec3l edge = difference(c, next_corner(c));
     return dot(edge, edge);
   }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 // F.8.1 MakeFaces( )
 Faces::Faces(const CornerGeometry& geometry, Diagonals diagonals,
-             std::span<const std::uint32_t> edge_mates, const std::vector<bool>& seams,
-             const std::vector<bool>& flags, bool with_normals) {
+             std::span<const std::uint32_t> edge_mates, const Vector<bool>& seams,
+             const Vector<bool>& flags, bool with_normals) {
   const auto num_triangles = static_cast<std::uint32_t>(edge_mates.size() / 3);
   face_of_.resize(num_triangles);
   std::iota(face_of_.begin(), face_of_.end(), 0U);
@@ -17,7 +19,7 @@ Faces::Faces(const CornerGeometry& geometry, Diagonals diagonals,
     for (std::uint32_t t = 0; t < num_triangles; ++t) normals_[t] = geometry.triangle_normal(t);
   }
   if (diagonals == Diagonals::kNone) return;
-  std::vector<std::uint8_t> size(num_triangles, 1);
+  Vector<std::uint8_t> size(num_triangles, 1);
   for (std::uint32_t c = 0; c < edge_mates.size(); ++c) {
     const std::uint32_t mate = edge_mates[c];
     if (mate == kNoCorner || mate > c || (!seams.empty() && seams[c])) continue;
@@ -78,7 +80,7 @@ Vec3l sector_normal(const CornerGeometry& geometry, const FaceView& faces,
     }
     return sum;
   }
-  std::vector<std::uint32_t> once;
+  Vector<std::uint32_t> once;
   once.reserve(corners.size());
   for (const std::uint32_t c : corners) once.push_back(faces.face_of[c / 3]);
   std::sort(once.begin(), once.end());

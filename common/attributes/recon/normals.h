@@ -4,11 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/attributes/attribute_set.h"
 #include "common/attributes/recon/corner_geometry.h"
 #include "common/attributes/sectors.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -27,11 +27,11 @@ class Faces {
  public:
   // seams: empty: none. Without normals, positions are needed only by Diagonals::kLikely.
   Faces(const CornerGeometry& geometry, Diagonals diagonals,
-        std::span<const std::uint32_t> edge_mates, const std::vector<bool>& seams,
-        const std::vector<bool>& flags, bool with_normals);
+        std::span<const std::uint32_t> edge_mates, const Vector<bool>& seams,
+        const Vector<bool>& flags, bool with_normals);
 
   FaceView view() const { return {face_of_, normals_}; }
-  std::vector<std::uint32_t>& of_triangles() { return face_of_; }
+  Vector<std::uint32_t>& of_triangles() { return face_of_; }
 
  private:
   std::uint32_t root(std::uint32_t t) const {
@@ -39,8 +39,8 @@ class Faces {
     return t;
   }
 
-  std::vector<std::uint32_t> face_of_;
-  std::vector<Vec3l> normals_;  // [triangle]; of a face, at its lowest triangle
+  Vector<std::uint32_t> face_of_;
+  Vector<Vec3l> normals_;  // [triangle]; of a face, at its lowest triangle
 };
 
 // A point of the unfolded octahedron.

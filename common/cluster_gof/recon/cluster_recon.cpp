@@ -5,6 +5,7 @@
 
 #include "common/components/series_predictor.h"
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -13,10 +14,10 @@ SpatialPrediction::SpatialPrediction(const Topology& topology,
                                      std::span<const std::uint32_t> vertices,
                                      std::span<const std::uint16_t> cluster_of_vertex,
                                      std::span<const std::uint32_t> local_index) {
-  std::vector<std::uint32_t> neighbour_first{0};
-  std::vector<std::uint32_t> parallelogram_first{0};
-  std::vector<std::uint32_t> neighbours;
-  std::vector<Parallelogram> parallelograms;
+  Vector<std::uint32_t> neighbour_first{0};
+  Vector<std::uint32_t> parallelogram_first{0};
+  Vector<std::uint32_t> neighbours;
+  Vector<Parallelogram> parallelograms;
   for (const std::uint32_t v : vertices) {
     const std::uint16_t cluster = cluster_of_vertex[v];
     const auto inside = [&](std::uint32_t u) { return cluster_of_vertex[u] == cluster; };
@@ -68,8 +69,8 @@ ClusterMembers cluster_members(const ClusterGof& gof) {
 }
 
 // 8.5.1 Temporal values
-std::vector<std::int32_t> recon_temporal(const Component& component) {
-  std::vector<std::int32_t> values(component.temporal_residual.size());
+Vector<std::int32_t> recon_temporal(const Component& component) {
+  Vector<std::int32_t> values(component.temporal_residual.size());
   for (std::uint32_t f = 0; f < values.size(); ++f) {
     const std::int64_t prediction =
         predict_series([&](std::uint32_t g) { return std::int64_t{values[g]}; }, f,
@@ -80,9 +81,9 @@ std::vector<std::int32_t> recon_temporal(const Component& component) {
 }
 
 // 8.3 Spatial prediction process
-std::vector<std::int32_t> recon_spatial(const Component& component,
-                                        const SpatialPrediction& prediction) {
-  std::vector<std::int32_t> values = component.spatial_residual;
+Vector<std::int32_t> recon_spatial(const Component& component,
+                                   const SpatialPrediction& prediction) {
+  Vector<std::int32_t> values = component.spatial_residual;
   const std::size_t n = values.size() / 3;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::span<std::int32_t> plane(values.data() + c * n, n);
@@ -103,7 +104,7 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
       fraction_bits_(gof.fraction_bits),
       seed_step_(gof.seed_step),
       tracks_(recon_seed_tracks(gof, header.position_bits)) {
-  std::vector<std::size_t> track_of_vertex(header.num_vertices, 0);
+  Vector<std::size_t> track_of_vertex(header.num_vertices, 0);
   for (const SeedTrack& track : gof.seed_tracks) {
     track_of_vertex[track.vertex] = track_vertex_.size();
     track_vertex_.push_back(track.vertex);
@@ -112,11 +113,11 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
   clusters_.reserve(gof.clusters.size());
   for (std::size_t i = 0; i < gof.clusters.size(); ++i) {
     const Cluster& cluster = gof.clusters[i];
-    std::vector<std::uint32_t>& vertices = members.vertices[i];
+    Vector<std::uint32_t>& vertices = members.vertices[i];
     const SpatialPrediction prediction(topology, vertices, gof.cluster_of_vertex,
                                        members.local_index);
-    const auto spatial = std::make_shared<SpatialFactors>(3 * vertices.size());
-    std::vector<TemporalFactor> temporal;
+    const auto spatial = make_shared_owned<SpatialFactors>(3 * vertices.size());
+    Vector<TemporalFactor> temporal;
     for (const Component& component : cluster.components) {
       spatial->add(recon_spatial(component, prediction), component.spatial_bits);
       temporal.push_back({recon_temporal(component), component.temporal_bits});
@@ -136,12 +137,12 @@ ClusterRecon::ClusterRecon(const SequenceHeader& header, const Topology& topolog
 
 // 8.5.3 Spatial factor, and sum over the components: the local coordinates of frames first to
 // first + count - 1, [count][3][vertices].
-std::vector<std::int32_t> ClusterRecon::local_coordinates(const ComponentSum& factors,
-                                                          std::uint32_t first,
-                                                          std::uint32_t count) const {
+Vector<std::int32_t> ClusterRecon::local_coordinates(const ComponentSum& factors,
+                                                     std::uint32_t first,
+                                                     std::uint32_t count) const {
   const std::size_t size = factors.num_values();
-  std::vector<std::int32_t> local(count * size);
-  std::vector<std::int64_t> sums(count * kTileValues);
+  Vector<std::int32_t> local(count * size);
+  Vector<std::int64_t> sums(count * kTileValues);
   for (std::size_t begin = 0; begin < size; begin += kTileValues) {
     std::fill(sums.begin(), sums.end(), 0);
     factors.add_tile(begin / kTileValues, first, count, sums);
@@ -205,8 +206,8 @@ Skeleton ClusterRecon::skeleton() const {
   return skeleton;
 }
 
-std::vector<BonePlace> ClusterRecon::places(std::uint32_t f) const {
-  std::vector<BonePlace> places;
+Vector<BonePlace> ClusterRecon::places(std::uint32_t f) const {
+  Vector<BonePlace> places;
   for (const ClusterState& cluster : clusters_) {
     constexpr std::int64_t kOne = std::int64_t{1} << kAxisFractionBits;
     BonePlace place{{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}}, {}};
@@ -234,7 +235,7 @@ void ClusterRecon::frames(std::uint32_t first, std::uint32_t count,
     }
   }
   for (const ClusterState& cluster : clusters_) {
-    const std::vector<std::int32_t> local = local_coordinates(cluster.factors, first, count);
+    const Vector<std::int32_t> local = local_coordinates(cluster.factors, first, count);
     for (std::uint32_t f = 0; f < count; ++f) {
       const std::size_t num_values = cluster.factors.num_values();
       cluster_frame(cluster, first + f, std::span(local).subspan(f * num_values, num_values),

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/cluster_gof/cluster_gof.h"
 #include "common/cluster_gof/recon/lcf.h"
@@ -12,6 +11,7 @@
 #include "common/kernels/component_sum.h"
 #include "common/mesh/skeleton.h"
 #include "common/mesh/topology.h"
+#include "common/owned.h"
 #include "common/syntax/sequence_header.h"
 
 namespace rlpc {
@@ -37,16 +37,16 @@ class SpatialPrediction {
 
 // Coded vertices of each cluster, ascending, and the place of each vertex in its list.
 struct ClusterMembers {
-  std::vector<std::vector<std::uint32_t>> vertices;
-  std::vector<std::uint32_t> local_index;  // [num_vertices]; unspecified for seeds
+  Vector<Vector<std::uint32_t>> vertices;
+  Vector<std::uint32_t> local_index;  // [num_vertices]; unspecified for seeds
 };
 ClusterMembers cluster_members(const ClusterGof& gof);
 
 // 8.5.1 Temporal values of a component, predictions undone; [num_gof_frames], 24 bits.
-std::vector<std::int32_t> recon_temporal(const Component& component);
+Vector<std::int32_t> recon_temporal(const Component& component);
 // 8.3: spatial values of a component, predictions undone; [3][n], within spatial_bits.
-std::vector<std::int32_t> recon_spatial(const Component& component,
-                                        const SpatialPrediction& prediction);
+Vector<std::int32_t> recon_spatial(const Component& component,
+                                   const SpatialPrediction& prediction);
 
 class ClusterRecon {
  public:
@@ -65,19 +65,19 @@ class ClusterRecon {
   // The clusters as bones, in decoded order, and their local coordinate frames in a frame of
   // the GOF. In the rest shape, they are where they are in the first frame.
   Skeleton skeleton() const;
-  std::vector<BonePlace> places(std::uint32_t f) const;
+  Vector<BonePlace> places(std::uint32_t f) const;
   static constexpr std::size_t values_of_frame() { return 0; }
 
  private:
   struct ClusterState {
     bool lcf_flag;
     std::array<std::size_t, 3> seed_track;
-    std::vector<std::uint32_t> vertices;
+    Vector<std::uint32_t> vertices;
     ComponentSum factors;
   };
 
-  std::vector<std::int32_t> local_coordinates(const ComponentSum& factors, std::uint32_t first,
-                                              std::uint32_t count) const;
+  Vector<std::int32_t> local_coordinates(const ComponentSum& factors, std::uint32_t first,
+                                         std::uint32_t count) const;
   void cluster_frame(const ClusterState& cluster, std::uint32_t f,
                      std::span<const std::int32_t> local,
                      std::span<std::int32_t> positions) const;
@@ -86,9 +86,9 @@ class ClusterRecon {
   int position_bits_;
   int fraction_bits_;
   std::uint32_t seed_step_;
-  std::vector<std::uint32_t> track_vertex_;
-  std::vector<Track> tracks_;
-  std::vector<ClusterState> clusters_;
+  Vector<std::uint32_t> track_vertex_;
+  Vector<Track> tracks_;
+  Vector<ClusterState> clusters_;
 };
 
 }  // namespace rlpc

@@ -1,12 +1,13 @@
 #include "common/cluster_gof/recon/seed_tracks.h"
 
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 // 8.2.1 Prediction of a seed position
-std::int64_t predict_seed(const ClusterGof& gof, const std::vector<Track>& tracks,
-                          std::size_t index, std::uint32_t f, std::size_t c) {
+std::int64_t predict_seed(const ClusterGof& gof, const Vector<Track>& tracks, std::size_t index,
+                          std::uint32_t f, std::size_t c) {
   const std::size_t anchor = gof.seed_tracks[index].anchor;
   const auto series_of = [&](std::size_t track) {
     return [&tracks, track, c](std::uint32_t g) { return std::int64_t{tracks[track][g][c]}; };
@@ -24,8 +25,8 @@ std::int64_t predict_seed(const ClusterGof& gof, const std::vector<Track>& track
 }
 
 // 8.2 Seed track process
-std::vector<Track> recon_seed_tracks(const ClusterGof& gof, int position_bits) {
-  std::vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
+Vector<Track> recon_seed_tracks(const ClusterGof& gof, int position_bits) {
+  Vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     for (std::uint32_t f = 0; f < gof.num_frames; ++f) {
       for (std::size_t c = 0; c < 3; ++c) {

@@ -8,6 +8,7 @@
 #include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/mesh_prediction/rest_recon.h"
+#include "common/owned.h"
 #include "common/parallel/for_each.h"
 
 namespace rlpc {
@@ -92,7 +93,7 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
     return end_frame();
   }
   if (patches_) move_patches(frame.patches);
-  const std::vector<std::int32_t>* const repeated =
+  const Vector<std::int32_t>* const repeated =
       frame.repeated ? &kept_.at(*frame.repeated).values : nullptr;
   std::uint32_t layer = 0;
   for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
@@ -136,7 +137,7 @@ void FrameRecon::decode(const FramePlace& place, std::uint32_t last_use,
 
 // 8.19.1 DecodePositionsInOrder( )
 void FrameRecon::decode_positions_in_order(const CodedFrame& frame) {
-  std::vector<std::int32_t> residuals(values_.size());
+  Vector<std::int32_t> residuals(values_.size());
   for (std::size_t i = 0; i < frame.residual.size(); ++i) residuals[i] = frame.residual[i];
   const RestOrder& order = mesh_.rest_order();
   const RestRecon recon(order, settings_.rest, settings_.step[0], position_bits_);
@@ -172,12 +173,12 @@ void FrameRecon::move_patches(const FramePatches& patches) {
 
 // 8.19.3 MakeReference( f )
 void FrameRecon::make_reference() {
-  const std::vector<std::int32_t>& a = kept_.at(place_.first).values;
+  const Vector<std::int32_t>& a = kept_.at(place_.first).values;
   if (place_.first == place_.second) {
     reference_ = a;
     return;
   }
-  const std::vector<std::int32_t>& b = kept_.at(place_.second).values;
+  const Vector<std::int32_t>& b = kept_.at(place_.second).values;
   const std::int64_t of_a = place_.second - place_.frame;
   const std::int64_t of_b = place_.frame - place_.first;
   for (std::size_t i = 0; i < reference_.size(); ++i) {
@@ -189,7 +190,7 @@ void FrameRecon::make_reference() {
 // 8.19.2 StartMotion( )
 void FrameRecon::start_motion() {
   near_ = near_vertices(mesh_, values_);
-  std::array<std::vector<std::int32_t>, 3> rest;
+  std::array<Vector<std::int32_t>, 3> rest;
   for (std::size_t c = 0; c < 3; ++c) {
     rest[c].resize(mesh_.num_vertices());
     for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = values_[3 * v + c];
@@ -398,7 +399,7 @@ Vec3i FrameRecon::position(std::uint32_t v, const VertexMotion& motion,
 
 void FrameRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position,
                      bool is_there) {
-  std::vector<std::int32_t>* const errors =
+  Vector<std::int32_t>* const errors =
       number_ > 0 && settings_.learning_flag ? &learned_[temporal_layer_].error : nullptr;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t own = 3 * std::size_t{v} + c;
@@ -448,7 +449,7 @@ void FrameRecon::adapt(Learned& learned, std::uint32_t v, const VertexMotion& mo
 void FrameRecon::end_frame() {
   if (number_ > 0 && settings_.learning_flag) end_errors();
   // Frames that are no longer needed lend their memory.
-  std::vector<std::int32_t> free;
+  Vector<std::int32_t> free;
   for (auto it = kept_.begin(); it != kept_.end();) {
     if (it->second.last_use > number_) {
       ++it;

@@ -5,10 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/frame_gof/frame_gof.h"
 #include "common/frame_gof/recon/patch_recon.h"
@@ -18,6 +16,7 @@
 #include "common/mesh/mesh.h"
 #include "common/mesh_prediction/geometry_weights.h"
 #include "common/mesh_prediction/near_vertices.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -86,15 +85,15 @@ class FrameRecon {
   // 8.19.4: what a temporal layer learns.
   struct Learned {
     // Of the last frame, and the one before it; [num_vertices][3]:
-    std::vector<std::int32_t> plain_error1;
-    std::vector<std::int32_t> plain_error2;
-    std::vector<std::int32_t> error;  // of this frame, and of the last
-    std::vector<std::int32_t> error1;
-    std::vector<std::int32_t> older_error;
-    mutable std::vector<std::int32_t> filters;  // of each vertex: weights, then spread
+    Vector<std::int32_t> plain_error1;
+    Vector<std::int32_t> plain_error2;
+    Vector<std::int32_t> error;  // of this frame, and of the last
+    Vector<std::int32_t> error1;
+    Vector<std::int32_t> older_error;
+    mutable Vector<std::int32_t> filters;  // of each vertex: weights, then spread
   };
   struct Kept {
-    std::vector<std::int32_t> values;
+    Vector<std::int32_t> values;
     std::uint32_t last_use = 0;
   };
 
@@ -125,23 +124,23 @@ class FrameRecon {
   Kernels kernels_;
   int value_bits_;
   int position_bits_;
-  std::uint32_t number_ = 0;            // of the place in coding order
-  FramePlace place_;                    // the last one started
-  std::uint32_t last_use_ = 0;          // of its frame
-  std::uint32_t temporal_layer_ = 0;    // likewise
-  std::map<std::uint32_t, Kept> kept_;  // frames that later ones need
+  std::uint32_t number_ = 0;          // of the place in coding order
+  FramePlace place_;                  // the last one started
+  std::uint32_t last_use_ = 0;        // of its frame
+  std::uint32_t temporal_layer_ = 0;  // likewise
+  Map<std::uint32_t, Kept> kept_;     // frames that later ones need
   // [num_vertices][3], 1/16 grid units:
-  std::vector<std::int32_t> values_;     // FrameValues
-  std::vector<std::int32_t> reference_;  // Reference
-  std::vector<std::int32_t> motion_;     // values_ - reference_
+  Vector<std::int32_t> values_;     // FrameValues
+  Vector<std::int32_t> reference_;  // Reference
+  Vector<std::int32_t> motion_;     // values_ - reference_
   // From the second frame on:
   VertexLists near_;
   std::optional<GeometryWeights> weights_;
   std::optional<PatchRecon> patches_;
   // If the weights are learned:
-  std::vector<std::int32_t> plain_error_;  // of this frame
-  std::vector<std::size_t> first_;         // [num_vertices]: of its filter
-  std::vector<Learned> learned_;           // [temporal_layers]
+  Vector<std::int32_t> plain_error_;  // of this frame
+  Vector<std::size_t> first_;         // [num_vertices]: of its filter
+  Vector<Learned> learned_;           // [temporal_layers]
 };
 
 }  // namespace rlpc

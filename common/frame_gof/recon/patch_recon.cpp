@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "common/fixed_point.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -23,11 +24,11 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
       value_bits_(value_bits),
       size_(num_patches, 0),
       reach_(num_patches, 1),
-      last_(num_depths, std::vector<Motion>(num_patches, Motion{})),
+      last_(num_depths, Vector<Motion>(num_patches, Motion{})),
       modes_(num_patches, PatchMode::kNeighbours),
       centres_(num_patches) {
   for (const std::uint32_t v : vertices) ++size_[patch_of_vertex[v]];
-  const std::vector<Vec3i> centre = centres(first);
+  const Vector<Vec3i> centre = centres(first);
   const auto distance = [&](std::uint32_t v, std::size_t patch) {
     std::int64_t largest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -36,7 +37,7 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
     }
     return largest;
   };
-  std::vector<std::int64_t> sum(num_patches, 0);
+  Vector<std::int64_t> sum(num_patches, 0);
   for (const std::uint32_t v : vertices)
     sum[patch_of_vertex[v]] += distance(v, patch_of_vertex[v]);
   const auto empty = std::find(size_.begin(), size_.end(), std::size_t{0});
@@ -53,8 +54,8 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
   }
 }
 
-std::vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) const {
-  std::vector<Vec3l> sum(size_.size());
+Vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) const {
+  Vector<Vec3l> sum(size_.size());
   Vec3l of_all{};
   for (const std::uint32_t v : vertices_) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -63,7 +64,7 @@ std::vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) cons
       of_all[c] += value;
     }
   }
-  std::vector<Vec3i> centres(size_.size());
+  Vector<Vec3i> centres(size_.size());
   for (std::size_t p = 0; p < size_.size(); ++p) {
     const Vec3l& total = size_[p] > 0 ? sum[p] : of_all;
     const auto count = static_cast<std::int64_t>(size_[p] > 0 ? size_[p] : vertices_.size());

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/frame_gof/patch_motion.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -52,19 +52,19 @@ class PatchRecon {
 
  private:
   // For each patch; for those without vertices in the lowest layer group, of that group.
-  std::vector<Vec3i> centres(std::span<const std::int32_t> frame) const;
+  Vector<Vec3i> centres(std::span<const std::int32_t> frame) const;
 
   const PatchOfVertex& patch_of_vertex_;
   std::span<const std::uint32_t> vertices_;  // of the lowest layer group
   int value_bits_;
-  std::vector<std::size_t> size_;          // [num_patches]: vertices of the group
-  std::vector<std::int64_t> reach_;        // [num_patches]: PatchReach
-  std::vector<std::vector<Motion>> last_;  // [depth][num_patches]: PatchMotion
+  Vector<std::size_t> size_;     // [num_patches]: vertices of the group
+  Vector<std::int64_t> reach_;   // [num_patches]: PatchReach
+  Vector<Vector<Motion>> last_;  // [depth][num_patches]: PatchMotion
   // Of the frame:
   std::span<const std::int32_t> reference_;
   std::uint32_t depth_ = 0;
-  std::vector<PatchMode> modes_;
-  std::vector<Vec3i> centres_;
+  Vector<PatchMode> modes_;
+  Vector<Vec3i> centres_;
 };
 
 }  // namespace rlpc

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/kernels/component_sum.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -12,9 +13,9 @@ constexpr int kScaledBits = 28;  // FloorLog2 of the largest coordinate after sc
 constexpr int kResidualBits = 31;
 
 // Rotations relative to the parent, [num_frames].
-std::vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_frames,
-                                        int track_levels) {
-  std::vector<Quaternion> relative(num_frames, kNoRotation);
+Vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_frames,
+                                   int track_levels) {
+  Vector<Quaternion> relative(num_frames, kNoRotation);
   if (!bone.rotation_flag) return relative;
   const auto known = [&](std::uint32_t f) -> const Quaternion& { return relative[f]; };
   const std::int64_t step = step_of(bone.rotation_step_idx);
@@ -26,8 +27,8 @@ std::vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_fram
 }
 
 // Offsets of the origin, [num_frames].
-std::vector<Vec3l> recon_offsets(const Bone& bone, std::uint32_t num_frames, int track_levels) {
-  std::vector<Vec3l> offset(num_frames);
+Vector<Vec3l> recon_offsets(const Bone& bone, std::uint32_t num_frames, int track_levels) {
+  Vector<Vec3l> offset(num_frames);
   if (!bone.origin_flag) return offset;
   const std::int64_t step = step_of(bone.origin_step_idx);
   for (const TrackPlace& at : track_order(num_frames, track_levels, bone.origin_between)) {
@@ -134,9 +135,9 @@ BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
   return motion;
 }
 
-std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
-                                    int track_levels) {
-  std::vector<BoneMotion> motions;
+Vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
+                               int track_levels) {
+  Vector<BoneMotion> motions;
   motions.reserve(bones.size());  // children refer to their parents
   for (const Bone& bone : bones) {
     const auto parent = static_cast<std::size_t>(bone.parent);

@@ -4,13 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/components/series_predictor.h"
 #include "common/components/track_order.h"
 #include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
@@ -46,7 +46,7 @@ struct BonePose {
 struct BoneMotion {
   std::int32_t parent = -1;  // index; -1: root
   Vec3l pivot{};
-  std::vector<BonePose> poses;  // [num_gof_frames]
+  Vector<BonePose> poses;  // [num_gof_frames]
 };
 
 // 8.12.3 Moved point; |point| < 2^31.
@@ -103,7 +103,7 @@ BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
 Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f);
 
 // Reconstructs all bones of a GOF.
-std::vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
-                                    int track_levels);
+Vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
+                               int track_levels);
 
 }  // namespace rlpc

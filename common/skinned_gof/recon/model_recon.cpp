@@ -7,6 +7,7 @@
 
 #include "common/int_math.h"
 #include "common/mesh_prediction/rest_recon.h"
+#include "common/owned.h"
 #include "common/parallel/for_each.h"
 #include "common/skinned_gof/influences.h"
 
@@ -27,7 +28,7 @@ struct ValueRecon {
 
   // Vertices that follow each other in the order or, within a layer above the base, any.
   void vertices(const CodedMesh& mesh, std::span<const std::uint32_t> list) const {
-    std::vector<std::int64_t> predicted(bits.size());
+    Vector<std::int64_t> predicted(bits.size());
     std::optional<VertexAdaptation> adaptation;
     if (weights != nullptr) adaptation.emplace(*weights);
     for (const std::uint32_t v : list) {
@@ -67,17 +68,16 @@ struct ValueRecon {
 }  // namespace
 
 // 8.10.2 Spatial values
-std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
-                                       std::size_t group, int position_bits,
-                                       const ValuePrediction& prediction,
-                                       AdaptiveWeights* weights) {
+Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+                                  std::size_t group, int position_bits,
+                                  const ValuePrediction& prediction, AdaptiveWeights* weights) {
   const FactorGroup factors = factor_group(model, group);
-  const std::vector<std::int32_t>& residuals = model.vertex_residual[group];
-  std::vector<int> bits(factors.size(), rest_bits(position_bits));
+  const Vector<std::int32_t>& residuals = model.vertex_residual[group];
+  Vector<int> bits(factors.size(), rest_bits(position_bits));
   for (std::size_t k = 0; k < bits.size() && group > 0; ++k) {
     bits[k] = model.trajectories[factors.first + k - kRestFactors].spatial_bits;
   }
-  std::vector<std::int32_t> values(residuals.size());
+  Vector<std::int32_t> values(residuals.size());
   if (weights != nullptr) weights->start(factors.first - kRestFactors, bits.size());
   ValueRecon recon{model, bits, residuals, prediction, weights, group == 0, values};
   // Vertices of the base, or of a mesh without layers, are predicted from each other.
@@ -92,8 +92,8 @@ std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel
   return values;
 }
 
-std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model) {
-  std::vector<Influences> influences = model.influences;
+Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model) {
+  Vector<Influences> influences = model.influences;
   InfluencePrediction prediction(influences, static_cast<std::uint32_t>(model.bones.size()),
                                  model.weight_bits);
   std::uint32_t first = 0;
@@ -110,7 +110,7 @@ std::vector<Influences> complete_influences(const CodedMesh& mesh, const Skinned
 ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
                        bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
-  const std::vector<std::int32_t> rest = recon_rest(model);
+  const Vector<std::int32_t> rest = recon_rest(model);
   add_influences(model, rest);
   if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
   factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);
@@ -124,7 +124,7 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
                        std::span<const std::int32_t> values)
     : mesh_(mesh), position_bits_(position_bits) {
   add_influences(model, recon_rest(model));
-  auto factors = std::make_shared<SpatialFactors>(num_vertices());
+  auto factors = make_shared_owned<SpatialFactors>(num_vertices());
   const std::size_t count = model.trajectories.size();
   for (std::size_t l = 0; l < count; ++l) {
     factors->add(values.subspan(l), model.trajectories[l].spatial_bits, count);
@@ -132,7 +132,7 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
   factors_ = std::move(factors);
 }
 
-std::vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
+Vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
   if (!model.rest.order_flag) {
     return recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
   }
@@ -142,7 +142,7 @@ std::vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) cons
 }
 
 void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {
-  const std::vector<Influences> influences = complete_influences(mesh_, model);
+  const Vector<Influences> influences = complete_influences(mesh_, model);
   // Exact, except for runs, of which there are usually fewer.
   const std::size_t count = std::accumulate(
       influences.begin(), influences.end(), std::size_t{0},
@@ -155,7 +155,7 @@ void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::
     Influence influence;
     std::size_t vertex;
   };
-  std::vector<Entry> of_tile;
+  Vector<Entry> of_tile;
   for (std::size_t first = 0; first < num_vertices(); first += kTileValues) {
     of_tile.clear();
     for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices()); ++v) {
@@ -198,7 +198,7 @@ void ModelRecon::start_weights(const SkinnedModel& model, std::span<const std::i
 // Of the component groups from 1 on.
 std::shared_ptr<const SpatialFactors> ModelRecon::recon_factors(
     const SkinnedModel& model, AdaptiveWeights* adaptive) const {
-  auto factors = std::make_shared<SpatialFactors>(num_vertices());
+  auto factors = make_shared_owned<SpatialFactors>(num_vertices());
   const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
   for (std::size_t group = 1; group < model.group_end.size(); ++group) {
     const FactorGroup of_group = factor_group(model, group);

@@ -8,13 +8,13 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh_prediction/adaptive_weights.h"
 #include "common/mesh_prediction/value_prediction.h"
+#include "common/owned.h"
 #include "common/skinned_gof/skinned_gof.h"
 
 namespace rlpc {
@@ -31,14 +31,14 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
 // of layers whose slices are absent. weights: null if no factor is adaptive.
-std::vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
-                                       std::size_t group, int position_bits,
-                                       const ValuePrediction& prediction,
-                                       AdaptiveWeights* weights = nullptr);
+Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+                                  std::size_t group, int position_bits,
+                                  const ValuePrediction& prediction,
+                                  AdaptiveWeights* weights = nullptr);
 
 // 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
 // absent; [num_vertices].
-std::vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model);
+Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model);
 
 class ModelRecon {
  public:
@@ -82,7 +82,7 @@ class ModelRecon {
     std::uint32_t end;
   };
 
-  std::vector<std::int32_t> recon_rest(const SkinnedModel& model) const;
+  Vector<std::int32_t> recon_rest(const SkinnedModel& model) const;
   void add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest);
   void start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest);
   std::shared_ptr<const SpatialFactors> recon_factors(const SkinnedModel& model,
@@ -90,15 +90,15 @@ class ModelRecon {
 
   const CodedMesh& mesh_;
   int position_bits_;
-  std::vector<RunRange> runs_;
-  std::vector<std::size_t> first_run_;  // [tiles + 1]
+  Vector<RunRange> runs_;
+  Vector<std::size_t> first_run_;  // [tiles + 1]
   // Influences, by tile, then by bone:
-  std::array<std::vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
-  std::vector<std::int32_t> weight_;
-  std::vector<std::uint8_t> place_;
+  std::array<Vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
+  Vector<std::int32_t> weight_;
+  Vector<std::uint8_t> place_;
   std::shared_ptr<const SpatialFactors> factors_;
   // For component groups to come:
-  std::array<std::vector<std::int32_t>, 3> rest_;
+  std::array<Vector<std::int32_t>, 3> rest_;
   std::optional<GeometryWeights> weights_;
   std::optional<AdaptiveWeights> adaptive_;
 };

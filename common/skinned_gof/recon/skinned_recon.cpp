@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "common/int_math.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 // 8.14.2 Trajectories
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels) {
+Vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels) {
   const auto num_frames = static_cast<std::uint32_t>(trajectory.residual.size());
-  std::vector<Vec3i> values(num_frames);
+  Vector<Vec3i> values(num_frames);
   for (const TrackPlace& at :
        track_order(num_frames, track_levels, trajectory.temporal_between)) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -56,7 +57,8 @@ TemporalFactor temporal_factor(const Trajectory& trajectory, int track_levels) {
 // 8.14.3 Positions
 SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
                            const Kernels& loops)
-    : SkinnedRecon(std::make_shared<ModelRecon>(mesh, gof, position_bits, false), gof, loops) {}
+    : SkinnedRecon(make_shared_owned<ModelRecon>(mesh, gof, position_bits, false), gof, loops) {
+}
 
 SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,
                            const Kernels& loops)
@@ -70,7 +72,7 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
     values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag});
   }
   values_of_frame_ += 3 * gof.trajectories.size();
-  std::vector<TemporalFactor> temporal;
+  Vector<TemporalFactor> temporal;
   for (const Trajectory& t : gof.trajectories) {
     temporal.push_back(temporal_factor(t, gof.track_levels));
   }
@@ -106,8 +108,8 @@ Skeleton SkinnedRecon::skeleton() const {
   return skeleton;
 }
 
-std::vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
-  std::vector<BonePlace> places;
+Vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
+  Vector<BonePlace> places;
   for (const BoneMotion& bone : bones_) {
     places.push_back({bone.poses[f].axes, bone.poses[f].origin});
   }
@@ -142,7 +144,7 @@ void SkinnedRecon::frames(std::uint32_t first, std::uint32_t count,
                           std::span<std::int32_t> positions) const {
   Sums places{};
   std::array<std::array<std::int32_t, kTileValues>, 3> moved{};
-  std::vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);
+  Vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);
   const std::size_t num_vertices = model_->num_vertices();
   for (std::size_t tile = 0; tile < model_->num_tiles(); ++tile) {
     std::fill(displacements.begin(), displacements.end(), 0);

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/kernels/component_sum.h"
 #include "common/kernels/kernels.h"
 #include "common/mesh/coded_mesh.h"
 #include "common/mesh/skeleton.h"
+#include "common/owned.h"
 #include "common/skinned_gof/recon/bones.h"
 #include "common/skinned_gof/recon/model_recon.h"
 #include "common/skinned_gof/recon/trajectory_prediction.h"
@@ -20,7 +20,7 @@
 namespace rlpc {
 
 // 8.14.2 ReconstructTrajectory( ): temporal values, [num_gof_frames].
-std::vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels);
+Vector<Vec3i> recon_trajectory(const Trajectory& trajectory, int track_levels);
 
 // 8.14.3 Positions: the weighted mean of a point moved by its bones; 4 fractional bits, |point|
 // < 2^31. The plain twin of the computation of SkinnedRecon for many vertices.
@@ -47,7 +47,7 @@ class SkinnedRecon {
   std::uint32_t num_frames() const { return num_frames_; }
   // Its bones and influences, in decoded order, and the bones in a frame of the GOF.
   Skeleton skeleton() const;
-  std::vector<BonePlace> places(std::uint32_t f) const;
+  Vector<BonePlace> places(std::uint32_t f) const;
   // The number of values that have been coded for each frame.
   std::size_t values_of_frame() const { return values_of_frame_; }
 
@@ -62,10 +62,10 @@ class SkinnedRecon {
   PositionWidths widths_;
   Kernels loops_;
   std::shared_ptr<const ModelRecon> model_;
-  std::vector<BoneMotion> bones_;
+  Vector<BoneMotion> bones_;
   // Displacements; row 3 * f + c: coordinate c of frame f. Of the skinned model, then of local
   // component groups.
-  std::vector<ComponentSum> sums_;
+  Vector<ComponentSum> sums_;
 };
 
 }  // namespace rlpc

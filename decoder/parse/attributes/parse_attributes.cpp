@@ -2,20 +2,20 @@
 
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "common/attributes/attribute_contexts.h"
-#include "common/attributes/corners.h"
 #include "common/attributes/sectors.h"
 #include "common/int_math.h"
+#include "common/mesh/corners.h"
+#include "common/owned.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
 namespace {
 
 // F.2.2 attribute_name( )
-std::string parse_name(BitReader& r) {
-  std::string name;
+String parse_name(BitReader& r) {
+  String name;
   const std::uint32_t size = r.u(8, "attribute_name_size_minus1") + 1;
   for (std::uint32_t i = 0; i < size && !r.error(); ++i) {
     name += static_cast<char>(r.u(8, "attribute_name_byte"));
@@ -96,7 +96,7 @@ class SetParser {
   SectionReader& section_;
   std::uint32_t num_vertices_;
   std::span<const Triangle> triangles_;
-  std::vector<std::uint32_t> edge_mates_;
+  Vector<std::uint32_t> edge_mates_;
   EarlierSets earlier_;
 };
 

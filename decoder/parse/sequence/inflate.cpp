@@ -2,11 +2,13 @@
 
 #include <zlib.h>
 
+#include "common/owned.h"
+
 namespace rlpc {
 
-std::optional<std::string> inflate_exactly(std::span<const std::uint8_t> deflated,
-                                           std::uint32_t size) {
-  std::string bytes(std::size_t{size} + 1, '\0');  // one byte more, to detect excess
+std::optional<String> inflate_exactly(std::span<const std::uint8_t> deflated,
+                                      std::uint32_t size) {
+  String bytes(std::size_t{size} + 1, '\0');  // one byte more, to detect excess
   uLongf inflated = static_cast<uLongf>(bytes.size());
   uLong used = static_cast<uLong>(deflated.size());
   const int status =

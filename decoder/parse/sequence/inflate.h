@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
+
+#include "common/owned.h"
 
 namespace rlpc {
 
 // inflates_to( ): the bytes that exactly one zlib stream inflates to; none unless they are
 // `size`. Allocates size + 1 bytes.
-std::optional<std::string> inflate_exactly(std::span<const std::uint8_t> deflated,
-                                           std::uint32_t size);
+std::optional<String> inflate_exactly(std::span<const std::uint8_t> deflated,
+                                      std::uint32_t size);
 
 }  // namespace rlpc

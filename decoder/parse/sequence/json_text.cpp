@@ -1,6 +1,6 @@
 #include "decoder/parse/sequence/json_text.h"
 
-#include <vector>
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -44,7 +44,7 @@ class JsonScanner {
 
   std::string_view text_;
   std::size_t pos_ = 0;
-  std::vector<char> open_;  // the closing brackets due; nesting depth is not limited
+  Vector<char> open_;  // the closing brackets due; nesting depth is not limited
 };
 
 bool JsonScanner::take_digits() {

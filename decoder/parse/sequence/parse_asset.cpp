@@ -2,12 +2,13 @@
 
 #include <utility>
 
+#include "common/owned.h"
 #include "decoder/parse/sequence/inflate.h"
 
 namespace rlpc {
 
 // 6.16 asset( )
-Result<std::string> parse_asset(BitReader& r, const MemoryLimit& memory) {
+Result<String> parse_asset(BitReader& r, const MemoryLimit& memory) {
   constexpr std::uint32_t kGlb = 0;
   constexpr std::uint64_t kMostInflation = 1032;  // of deflate
   const std::uint32_t format = r.u(8, "asset_format");
@@ -26,7 +27,7 @@ Result<std::string> parse_asset(BitReader& r, const MemoryLimit& memory) {
     r.fail(Errc::kInvalid, "R-AST-01", "asset_size", at);
     return *r.error();
   }
-  if (format != kGlb) return std::string();
+  if (format != kGlb) return String();
   return std::move(*bytes);
 }
 

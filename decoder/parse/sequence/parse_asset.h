@@ -1,9 +1,8 @@
 // 6.16 Asset, parsing side.
 #pragma once
 
-#include <string>
-
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "decoder/parse/memory_limit.h"
 
@@ -11,6 +10,6 @@ namespace rlpc {
 
 // The bytes of an asset of asset_format 0, inflated; empty for other formats. Fails if they
 // need more memory than is allowed.
-Result<std::string> parse_asset(BitReader& r, const MemoryLimit& memory);
+Result<String> parse_asset(BitReader& r, const MemoryLimit& memory);
 
 }  // namespace rlpc

@@ -1,14 +1,15 @@
 #include "decoder/parse/sequence/parse_clip_table.h"
 
-#include <string>
 #include <utility>
+
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
 
 // 6.15 clip_name( )
-std::string parse_clip_name(BitReader& r) {
-  std::string name;
+String parse_clip_name(BitReader& r) {
+  String name;
   const std::uint32_t size = r.u(8, "clip_name_size_minus1") + 1;
   for (std::uint32_t j = 0; j < size && !r.error(); ++j) {
     name += static_cast<char>(r.u(8, "clip_name_byte"));
@@ -19,9 +20,9 @@ std::string parse_clip_name(BitReader& r) {
 }  // namespace
 
 // 6.15 clip_table( )
-Result<std::vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames) {
+Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames) {
   const std::int64_t frames = num_frames;
-  std::vector<Clip> clips;
+  Vector<Clip> clips;
   const std::uint32_t count =
       r.ue("num_clips_minus1", {0, std::int64_t{kMaxClips} - 1}, "R-CLP-01") + 1;
   std::int64_t end = 0;

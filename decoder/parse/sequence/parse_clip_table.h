@@ -2,16 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/mesh/clip.h"
+#include "common/owned.h"
 #include "common/result.h"
 
 namespace rlpc {
 
 // num_frames: of the sequence, as far as it is known. Names are not checked (R-CLP-03). Memory
 // is in proportion to the payload.
-Result<std::vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames);
+Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames);
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 #include "common/int_math.h"
 #include "common/mesh/connectivity_models.h"
 #include "common/mesh/cut_border.h"
+#include "common/owned.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
@@ -22,7 +23,7 @@ class ConnectivityParser {
         vertex_reuse_(vertex_reuse),
         border_(urgent_degree) {}
 
-  std::vector<Triangle> parse(std::uint32_t num_regular, std::uint32_t num_degenerate);
+  Vector<Triangle> parse(std::uint32_t num_regular, std::uint32_t num_degenerate);
 
  private:
   bool failed() const { return section_.failed(); }
@@ -39,12 +40,12 @@ class ConnectivityParser {
   CutBorder border_;
   ConnectivityModels models_;
   std::uint32_t num_coded_vertices_ = 0;
-  std::vector<Triangle> triangles_;
+  Vector<Triangle> triangles_;
 };
 
 // 6.4.2 connectivity_section( )
-std::vector<Triangle> ConnectivityParser::parse(std::uint32_t num_regular,
-                                                std::uint32_t num_degenerate) {
+Vector<Triangle> ConnectivityParser::parse(std::uint32_t num_regular,
+                                           std::uint32_t num_degenerate) {
   triangles_.reserve(std::size_t{num_regular} + num_degenerate);
   border_.reserve(num_regular);
   while (!failed() && triangles_.size() < num_regular) {
@@ -155,8 +156,8 @@ Triangle ConnectivityParser::degenerate_triangle() {
 }  // namespace
 
 // 6.4.1 connectivity( )
-Result<std::vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
-                                                 std::uint32_t num_triangles) {
+Result<Vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
+                                            std::uint32_t num_triangles) {
   const std::uint32_t num_degenerate =
       r.ue("num_degenerate_triangles", {0, num_triangles}, "R-CON-01");
   const std::uint32_t urgent_degree = r.u(4, "urgent_degree");
@@ -164,8 +165,7 @@ Result<std::vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num
   r.byte_alignment();
   if (r.error()) return *r.error();
   ConnectivityParser parser(r, num_vertices, urgent_degree, vertex_reuse);
-  std::vector<Triangle> triangles =
-      parser.parse(num_triangles - num_degenerate, num_degenerate);
+  Vector<Triangle> triangles = parser.parse(num_triangles - num_degenerate, num_degenerate);
   if (r.error()) return *r.error();
   return triangles;
 }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "common/result.h"
 
 namespace rlpc {
@@ -15,7 +15,7 @@ namespace rlpc {
 // `r` covers exactly the unit's payload. The caller has checked num_vertices and num_triangles
 // against its limits; memory grows with what is decoded, not with what the header claims, and
 // time is linear in the payload and the decoded triangles.
-Result<std::vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
-                                                 std::uint32_t num_triangles);
+Result<Vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
+                                            std::uint32_t num_triangles);
 
 }  // namespace rlpc

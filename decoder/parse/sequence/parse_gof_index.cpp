@@ -1,5 +1,7 @@
 #include "decoder/parse/sequence/parse_gof_index.h"
 
+#include "common/owned.h"
+
 namespace rlpc {
 
 namespace {
@@ -7,8 +9,8 @@ namespace {
 constexpr std::int64_t kAny = 0xFFFFFFFE;
 
 // 6.9 index_of_models( )
-std::vector<ModelLocation> parse_models(BitReader& r, std::uint32_t num_frames) {
-  std::vector<ModelLocation> models;
+Vector<ModelLocation> parse_models(BitReader& r, std::uint32_t num_frames) {
+  Vector<ModelLocation> models;
   const std::uint32_t count = r.ue("num_index_models", {0, num_frames}, "R-IDX-05");
   std::uint64_t offset = 0;
   for (std::uint32_t m = 0; m < count && !r.error(); ++m) {

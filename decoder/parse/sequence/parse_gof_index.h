@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 #include "common/result.h"
 #include "common/syntax/sequence_header.h"
 
@@ -22,8 +22,8 @@ struct ModelLocation {
 };
 
 struct GofIndex {
-  std::vector<GofLocation> gofs;
-  std::vector<ModelLocation> models;
+  Vector<GofLocation> gofs;
+  Vector<ModelLocation> models;
 };
 
 // Offsets are not checked against the units here.

@@ -2,13 +2,14 @@
 
 #include <utility>
 
+#include "common/owned.h"
 #include "common/syntax/sequence_header.h"
 #include "decoder/parse/sequence/inflate.h"
 
 namespace rlpc {
 
 // 6.10 metadata( )
-Result<std::string> parse_metadata(BitReader& r) {
+Result<String> parse_metadata(BitReader& r) {
   const std::uint32_t size =
       r.u(32, "metadata_size", {0, std::int64_t{kMaxMetadataBytes}}, "R-MET-01");
   if (r.error()) return *r.error();

@@ -1,19 +1,19 @@
 #include "decoder/parse/sequence/parse_vertex_order.h"
 
 #include "common/bitstream/residual_models.h"
+#include "common/owned.h"
 #include "decoder/parse/section_reader.h"
 
 namespace rlpc {
 
 // 6.6 vertex_order( )
-Result<std::vector<std::uint32_t>> parse_vertex_order(BitReader& r,
-                                                      std::uint32_t num_vertices) {
+Result<Vector<std::uint32_t>> parse_vertex_order(BitReader& r, std::uint32_t num_vertices) {
   SectionReader section(r, "vertex_order");
   ResidualModels models;
   std::uint32_t mean = 0;
   std::int64_t index = 0;
-  std::vector<std::uint32_t> order;
-  std::vector<bool> taken(num_vertices, false);
+  Vector<std::uint32_t> order;
+  Vector<bool> taken(num_vertices, false);
   for (std::uint32_t v = 0; v < num_vertices && !section.failed(); ++v) {
     const std::int32_t delta = section.residual(models, mean >> 4, "vertex_order_delta");
     mean = update_mean(mean, magnitude_of(delta), 3);

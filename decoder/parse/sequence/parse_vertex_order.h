@@ -2,14 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/bitstream/bit_reader.h"
+#include "common/owned.h"
 #include "common/result.h"
 
 namespace rlpc {
 
 // Per decoded vertex, its index in the output: a permutation of 0 .. num_vertices - 1.
-Result<std::vector<std::uint32_t>> parse_vertex_order(BitReader& r, std::uint32_t num_vertices);
+Result<Vector<std::uint32_t>> parse_vertex_order(BitReader& r, std::uint32_t num_vertices);
 
 }  // namespace rlpc

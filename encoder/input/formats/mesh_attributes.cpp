@@ -11,16 +11,16 @@ namespace rlpc {
 
 namespace {
 
-using Vector = std::array<float, 3>;
+using Vec3 = std::array<float, 3>;
 
-Vector unit(const std::array<double, 3>& v) {
+Vec3 unit(const std::array<double, 3>& v) {
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   if (!(length > 0.0)) return {0.0F, 0.0F, 1.0F};
   return {static_cast<float>(v[0] / length), static_cast<float>(v[1] / length),
           static_cast<float>(v[2] / length)};
 }
 
-Vector face_normal(std::span<const float> xyz, const Triangle& t) {
+Vec3 face_normal(std::span<const float> xyz, const Triangle& t) {
   const auto difference = [&](std::size_t to) {
     std::array<double, 3> d{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -75,7 +75,7 @@ SourceAttribute normal_attribute(std::vector<float> normals,
   for (std::size_t i = 0; i < normals.size(); i += 3) {
     has_length.push_back(normals[i] != 0.0F || normals[i + 1] != 0.0F ||
                          normals[i + 2] != 0.0F);
-    const Vector n = unit({normals[i], normals[i + 1], normals[i + 2]});
+    const Vec3 n = unit({normals[i], normals[i + 1], normals[i + 2]});
     std::copy(n.begin(), n.end(), normals.begin() + static_cast<std::ptrdiff_t>(i));
   }
   std::uint32_t of_face = kNoValue;
@@ -84,7 +84,7 @@ SourceAttribute normal_attribute(std::vector<float> normals,
     if (value_of_corner[c] != kNoValue && has_length[value_of_corner[c]]) continue;
     if (of_face == kNoValue) {
       of_face = static_cast<std::uint32_t>(normals.size() / 3);
-      const Vector n = face_normal(xyz, triangles[c / 3]);
+      const Vec3 n = face_normal(xyz, triangles[c / 3]);
       normals.insert(normals.end(), n.begin(), n.end());
     }
     value_of_corner[c] = of_face;

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
@@ -13,17 +13,15 @@ namespace rlpc {
 inline constexpr std::uint32_t kNoCorner = 0xFFFFFFFF;
 
 // F.1 NextCorner( c ), PreviousCorner( c ) and VertexOfCorner( c )
-constexpr std::uint32_t next_in_triangle(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
-constexpr std::uint32_t previous_in_triangle(std::uint32_t c) {
-  return c % 3 == 0 ? c + 2 : c - 1;
-}
+constexpr std::uint32_t next_corner(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+constexpr std::uint32_t previous_corner(std::uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
 inline std::uint32_t vertex_of_corner(std::span<const Triangle> triangles, std::uint32_t c) {
   return triangles[c / 3][c % 3];
 }
 
 // F.4 FindEdgeMates( ): EdgeMate, of each edge the one of another triangle that runs along it
 // in the other direction; kNoCorner: none. Indices of vertices are below num_vertices.
-std::vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
-                                           std::span<const Triangle> triangles);
+Vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
+                                      std::span<const Triangle> triangles);
 
 }  // namespace rlpc
