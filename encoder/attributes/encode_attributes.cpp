@@ -6,11 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "common/attributes/corners.h"
 #include "common/attributes/recon/attribute_prediction.h"
 #include "common/attributes/sectors.h"
 #include "common/bitstream/crc32.h"
+#include "common/mesh/corners.h"
 #include "encoder/attributes/quantise_attribute.h"
+#include "encoder/attributes/shape_normals.h"
 #include "encoder/attributes/smoothing_search.h"
 #include "encoder/math/det_math.h"
 #include "encoder/write/write_attributes.h"
@@ -19,45 +20,18 @@ namespace rlpc {
 namespace {
 
 using Point = std::array<std::uint32_t, 2>;
-using Vector = std::array<double, 3>;
 
-constexpr std::uint32_t kSmoothingBits =
-    10;  // fixed: of the points that smoothing is fitted to
+constexpr std::uint32_t kSmoothingBits = 10;  // fixed: what smoothing is fitted to
 // fixed: RMS degrees from the normals of the input; at a KG error of 0.1 %, normals of
 // triangles are off by as much (README).
 constexpr double kSmoothingServes = 1.0;
 constexpr std::array kWithoutPositions{AttributePrediction::kMean,
                                        AttributePrediction::kParallelogram};
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// Zero stays zero.
-Vector normalised(Vector v) {
-  const double length = std::sqrt(dot(v, v));
-  for (double& x : v) x = length > 0.0 ? x / length : 0.0;
-  return v;
-}
-
-// Of unit vectors; the same on every machine.
-double angle_between(const Vector& a, const Vector& b) {
-  const Vector across = cross(a, b);
-  const double sine = std::sqrt(dot(across, across));
-  const double cosine = dot(a, b);
-  const double size = std::abs(cosine);
-  constexpr double kHalfPi = 1.5707963267948966;
-  if (sine == 0.0 && size == 0.0) return 0.0;
-  const double angle = sine <= size ? det_atan(sine / size) : kHalfPi - det_atan(size / sine);
-  return cosine < 0.0 ? 2.0 * kHalfPi - angle : angle;
-}
-
-std::vector<Point> octahedron_points(const std::vector<Vector>& normals, std::uint32_t bits) {
+std::vector<Point> octahedron_points(const std::vector<Vec3d>& normals, std::uint32_t bits) {
   std::vector<Point> points;
   points.reserve(normals.size());
-  for (const Vector& n : normals) points.push_back(octahedron_point(n, bits));
+  for (const Vec3d& n : normals) points.push_back(octahedron_point(n, bits));
   return points;
 }
 
@@ -101,7 +75,7 @@ class AttributeEncoder {
   CodedAttributeSet best_of(const Draft& draft,
                             std::span<const AttributePrediction> predictions) const;
   template <class NormalAt>
-  void measure_normals(const Draft& draft, const std::vector<Vector>& normals,
+  void measure_normals(const Draft& draft, const std::vector<Vec3d>& normals,
                        const NormalAt& at, AttributeReport& report) const;
   CodedAttributeSet code_with(const Draft& draft, AttributePrediction prediction,
                               const FaceView& faces) const;
@@ -204,8 +178,7 @@ void AttributeEncoder::find_seams(Draft& draft) const {
   for (std::uint32_t c = 0; c < edge_mates_.size(); ++c) {
     const std::uint32_t mate = edge_mates_[c];
     if (mate >= c) continue;
-    if (are_equal(draft, c, next_in_triangle(mate)) &&
-        are_equal(draft, next_in_triangle(c), mate)) {
+    if (are_equal(draft, c, next_corner(mate)) && are_equal(draft, next_corner(c), mate)) {
       continue;
     }
     draft.seams[c] = draft.seams[mate] = true;
@@ -299,14 +272,14 @@ CodedAttributeSet AttributeEncoder::code_values(Draft draft, AttributeReport& re
 
 // How far other normals are from those of the input.
 template <class NormalAt>
-void AttributeEncoder::measure_normals(const Draft& draft, const std::vector<Vector>& normals,
+void AttributeEncoder::measure_normals(const Draft& draft, const std::vector<Vec3d>& normals,
                                        const NormalAt& at, AttributeReport& report) const {
   constexpr double kDegrees = 57.29577951308232;
   double squares = 0.0;
   double count = 0.0;
   report.largest_error = 0.0;
   for (std::uint32_t x = 0; x < normals.size(); ++x) {
-    const Vector n = draft.sectors.corners[x].empty() ? Vector{} : at(x);
+    const Vec3d n = draft.sectors.corners[x].empty() ? Vec3d{} : at(x);
     if (dot(n, n) == 0.0 || dot(normals[x], normals[x]) == 0.0) continue;
     const double angle = kDegrees * angle_between(n, normals[x]);
     report.largest_error = std::max(report.largest_error, angle);
@@ -355,64 +328,13 @@ void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeS
   set.diagonal_flags = is_likely ? std::move(unlikely) : smoothing.is_diagonal;
 }
 
-// The normals of sectors that follow from a shape.
-class ShapeNormals {
- public:
-  ShapeNormals(const CornerGeometry& geometry, const Sectors& sectors,
-               std::span<const std::uint32_t> edge_mates, const std::vector<bool>& seams,
-               const Smoothing& smoothing)
-      : geometry_(geometry),
-        sectors_(sectors),
-        weight_(smoothing.weight),
-        faces_(geometry, Diagonals::kFlagged, edge_mates, seams, smoothing.is_diagonal, true) {}
-
-  // Of length 1, or zero.
-  Vector normal(std::uint32_t x) const {
-    const Vec3l sum = sector_normal(geometry_, faces_.view(), weight_, sectors_.corners[x]);
-    return normalised({static_cast<double>(sum[0]), static_cast<double>(sum[1]),
-                       static_cast<double>(sum[2])});
-  }
-  // At a right angle to the normal, along an edge of the sector; zero if there is none.
-  Vector tangent(std::uint32_t x) const {
-    const Vector n = normal(x);
-    const std::uint32_t c = sectors_.corners[x][0];
-    const Vec3l edge = geometry_.differences<1>(c, {next_in_triangle(c)})[0];
-    Vector e{static_cast<double>(edge[0]), static_cast<double>(edge[1]),
-             static_cast<double>(edge[2])};
-    const double along = dot(e, n);
-    for (std::size_t k = 0; k < 3; ++k) e[k] -= along * n[k];
-    return normalised(e);
-  }
-
- private:
-  CornerGeometry geometry_;
-  const Sectors& sectors_;
-  SmoothingWeight weight_;
-  Faces faces_;
-};
-
-// Turns a vector with the frame of a sector from one shape to another.
-Vector turned(const Vector& v, const ShapeNormals& from, const ShapeNormals& to,
-              std::uint32_t x) {
-  const std::array<Vector, 2> normals{from.normal(x), to.normal(x)};
-  const std::array<Vector, 2> tangents{from.tangent(x), to.tangent(x)};
-  const Vector first = cross(normals[0], tangents[0]);
-  const Vector second = cross(normals[1], tangents[1]);
-  Vector out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = dot(v, normals[0]) * normals[1][k] + dot(v, tangents[0]) * tangents[1][k] +
-             dot(v, first) * second[k];
-  }
-  return dot(out, out) > 0.0 ? normalised(out) : v;
-}
-
 CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& report) {
   report.values = draft.sectors.count();
   report.is_normal = true;
-  std::vector<Vector> normals;
+  std::vector<Vec3d> normals;
   for (const std::uint32_t i : draft.value_of_sector) {
     const float* const v = i == kNoSector ? nullptr : &draft.source.values[3 * std::size_t{i}];
-    normals.push_back(v == nullptr ? Vector{0.0, 0.0, 1.0} : normalised({v[0], v[1], v[2]}));
+    normals.push_back(v == nullptr ? Vec3d{0.0, 0.0, 1.0} : normalised({v[0], v[1], v[2]}));
   }
   const std::optional<RestShape> rest = rest_shape();
   const CornerGeometry geometry =

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/attributes/corners.h"
+#include "common/mesh/corners.h"
 #include "encoder/math/det_math.h"
 
 namespace rlpc {

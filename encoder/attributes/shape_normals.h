@@ -1,0 +1,48 @@
+// Normals that follow from a shape (F.8), as floats, and vectors that turn with them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/attributes/recon/normals.h"
+#include "common/attributes/sectors.h"
+#include "encoder/attributes/smoothing_search.h"
+
+namespace rlpc {
+
+using Vec3d = std::array<double, 3>;
+
+double dot(const Vec3d& a, const Vec3d& b);
+// Of length 1; zero stays zero.
+Vec3d normalised(Vec3d v);
+// Of unit vectors, in radian; the same on every machine.
+double angle_between(const Vec3d& a, const Vec3d& b);
+
+// The normals of sectors.
+class ShapeNormals {
+ public:
+  // geometry and sectors must outlive it.
+  ShapeNormals(const CornerGeometry& geometry, const Sectors& sectors,
+               std::span<const std::uint32_t> edge_mates, const std::vector<bool>& seams,
+               const Smoothing& smoothing);
+
+  // Of length 1, or zero.
+  Vec3d normal(std::uint32_t x) const;
+  // At a right angle to the normal, along an edge of the sector, which has corners; zero if
+  // there is none.
+  Vec3d tangent(std::uint32_t x) const;
+
+ private:
+  const CornerGeometry& geometry_;
+  const Sectors& sectors_;
+  SmoothingWeight weight_;
+  Faces faces_;
+};
+
+// Turns a vector with normal and tangent of a sector, which has corners, from one shape to
+// another.
+Vec3d turned(const Vec3d& v, const ShapeNormals& from, const ShapeNormals& to, std::uint32_t x);
+
+}  // namespace rlpc
