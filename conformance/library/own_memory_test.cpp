@@ -158,7 +158,7 @@ rlpc_status decode(const Bytes& stream, Heap* heap, std::uint32_t threads) {
   return status;
 }
 
-TEST(OwnMemory, DISABLED_AllOfItComesFromTheCallerAndGoesBack) {
+TEST(OwnMemory, AllOfItComesFromTheCallerAndGoesBack) {
   std::size_t decoded = 0;
   for (const fs::path& path : streams()) {
     const Bytes stream = read(path);
@@ -195,7 +195,7 @@ TEST(OwnMemory, SeveralThreadsUseItToo) {
   EXPECT_EQ(decoded, 40U);
 }
 
-TEST(OwnMemory, DISABLED_WithoutItDecodingEndsAndAllGoesBack) {
+TEST(OwnMemory, WithoutItDecodingEndsAndAllGoesBack) {
   std::size_t ended = 0;
   std::size_t tried = 0;
   for (const fs::path& path : streams()) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/io/float_position.h"
+#include "common/owned.h"
 
 namespace rlpc {
 namespace {
@@ -104,15 +105,15 @@ Int16Scale int16_scale(const Grid& grid, int position_bits) {
   return result;
 }
 
-void write_positions(std::span<const std::int32_t> positions, const Grid& grid,
+void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
                      const Int16Scale& scale, const rlpc_channel& channel) {
-  const std::size_t count = positions.size() / 3;
+  const std::size_t count = positions.num_vertices();
   const auto as_float = [&](std::size_t v, std::size_t c) {
-    return float_position(grid, c, positions[3 * v + c]);
+    return float_position(grid, c, positions.at(v)[c]);
   };
   switch (channel.format) {
     case RLPC_INT32:
-      write(channel, count, [&](std::size_t v, std::size_t c) { return positions[3 * v + c]; });
+      write(channel, count, [&](std::size_t v, std::size_t c) { return positions.at(v)[c]; });
       break;
     case RLPC_FLOAT:
       write(channel, count, as_float);
@@ -125,19 +126,19 @@ void write_positions(std::span<const std::int32_t> positions, const Grid& grid,
       const double step = std::ldexp(1.0, grid.log2_step);
       write(channel, count, [&](std::size_t v, std::size_t c) {
         const double coordinate =
-            (static_cast<double>(positions[3 * v + c]) + grid.origin[c]) * step;
+            (static_cast<double>(positions.at(v)[c]) + grid.origin[c]) * step;
         return rounded<std::int16_t>((coordinate - scale.offset[c]) / scale.scale[c]);
       });
     }
   }
 }
 
-void write_normals(std::span<const double> sums, const rlpc_channel& channel) {
-  const std::size_t count = sums.size() / 3;
+void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
+  const std::size_t count = sums.num_vertices();
   const auto write_as = [&](const auto& convert) {
     Vec3d normal{};
     write(channel, count, [&](std::size_t v, std::size_t c) {
-      if (c == 0) normal = unit_vector(&sums[3 * v]);
+      if (c == 0) normal = unit_vector(sums.at(v));
       return convert(normal[c]);
     });
   };
@@ -157,7 +158,7 @@ void write_normals(std::span<const double> sums, const rlpc_channel& channel) {
 }
 
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,
-                 bool by_angle, std::vector<double>& sums) {
+                 bool by_angle, rlpc::Vector<double>& sums) {
   sums.assign(positions.size(), 0);
   for (const Triangle& t : triangles) {
     std::array<Vec3d, 3> edges{};  // from corner k to the next

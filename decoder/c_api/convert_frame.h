@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "decoder/c_api/rlpc_frame_output.h"
 
 namespace rlpc {
@@ -26,16 +26,31 @@ struct Int16Scale {
 // Holds every position of position_bits.
 Int16Scale int16_scale(const Grid& grid, int position_bits);
 
+// Triples of numbers, [i][3], and where each output vertex has its own: empty if vertex i has
+// triple i.
+template <class Number>
+struct Triples {
+  std::span<const Number> numbers;
+  std::span<const std::uint32_t> of_vertex;
+
+  std::size_t num_vertices() const {
+    return of_vertex.empty() ? numbers.size() / 3 : of_vertex.size();
+  }
+  const Number* at(std::size_t vertex) const {
+    return &numbers[3 * (of_vertex.empty() ? vertex : std::size_t{of_vertex[vertex]})];
+  }
+};
+
 // Both write bytes_needed() at most. The format has been checked.
 //
-// positions: [num_vertices][3], grid units
-void write_positions(std::span<const std::int32_t> positions, const Grid& grid,
+// positions: grid units
+void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
                      const Int16Scale& scale, const rlpc_channel& channel);
-// sums: [num_vertices][3], of any length
-void write_normals(std::span<const double> sums, const rlpc_channel& channel);
+// sums: of any length
+void write_normals(const Triples<double>& sums, const rlpc_channel& channel);
 
 // The sum of the normals of the triangles around each vertex, by area or by angle.
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,
-                 bool by_angle, std::vector<double>& sums);
+                 bool by_angle, rlpc::Vector<double>& sums);
 
 }  // namespace rlpc

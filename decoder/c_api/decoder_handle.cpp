@@ -1,10 +1,26 @@
 #include "decoder/c_api/decoder_handle.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "decoder/describe_error.h"
 
 namespace rlpc {
+namespace {
+
+template <class Index>
+void write_indices(std::span<const Triangle> triangles, void* out) {
+  auto* place = static_cast<unsigned char*>(out);
+  for (const Triangle& t : triangles) {
+    const std::array corners{static_cast<Index>(t[0]), static_cast<Index>(t[1]),
+                             static_cast<Index>(t[2])};
+    std::copy_n(reinterpret_cast<const unsigned char*>(corners.data()), sizeof corners, place);
+    place += sizeof corners;
+  }
+}
+
+}  // namespace
 
 rlpc_status status_of(Errc code) {
   switch (code) {
@@ -42,6 +58,32 @@ bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_valu
                                           : "the buffer has " + std::to_string(num_values) +
                                                 " values, not " + std::to_string(wanted));
   return false;
+}
+
+rlpc_status give_indices(rlpc_decoder& handle, std::span<const Triangle> triangles,
+                         std::uint32_t num_vertices, const IndexBuffer& buffer) {
+  constexpr std::uint32_t kMostOf16Bits = 65536;
+  const auto bad = [&](const std::string& what) {
+    return handle.error.set(RLPC_BAD_ARGUMENT, what);
+  };
+  if (buffer.index_bytes != 2 && buffer.index_bytes != 4) {
+    return bad("index_bytes: expected 2 or 4, got " + std::to_string(buffer.index_bytes));
+  }
+  if (buffer.index_bytes == 2 && num_vertices > kMostOf16Bits) {
+    return bad("16 bits cannot hold the indices of more than 65536 vertices");
+  }
+  const std::size_t wanted = 3 * triangles.size() * buffer.index_bytes;
+  if (buffer.indices == nullptr) return bad("the buffer is null");
+  if (buffer.num_bytes != wanted) {
+    return bad("the buffer has " + std::to_string(buffer.num_bytes) + " bytes, not " +
+               std::to_string(wanted));
+  }
+  if (buffer.index_bytes == 2) {
+    write_indices<std::uint16_t>(triangles, buffer.indices);
+  } else {
+    write_indices<std::uint32_t>(triangles, buffer.indices);
+  }
+  return RLPC_OK;
 }
 
 }  // namespace rlpc

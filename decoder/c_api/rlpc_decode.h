@@ -25,10 +25,10 @@
 // stream, for each GOF and skinned model, and for the first frame. Within a GOF, every fourth
 // frame allocates temporary buffers, the others nothing; more with several threads, or after a
 // seek. It comes from the callbacks of rlpc_decode_options.allocator, or from C++ operator new;
-// whatever the callbacks are, containers use operator new in this version, and the C and C++
-// runtimes allocate what they need for files, for starting threads, and for the text of an
-// error. If memory runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be
-// closed, which releases everything.
+// whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
+// starting threads, and for the text of an error, and zlib for metadata. If memory runs out,
+// calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
+// everything.
 #pragma once
 
 #include <stddef.h>
@@ -36,6 +36,7 @@
 
 #include "common/c_api/rlpc_clip.h"
 #include "common/c_api/rlpc_status.h"
+#include "decoder/c_api/rlpc_attributes.h"
 #include "decoder/c_api/rlpc_frame_output.h"
 
 #ifdef __cplusplus
@@ -84,9 +85,8 @@ typedef struct rlpc_decode_options {
   // frames (High profile): going back to them takes no decoding. Estimated; part of
   // max_memory_bytes, and dropped where that is short. Default 64 MiB; 0: none.
   uint64_t max_cached_bytes;
-  // Of the memory of this decoder, its handle included, unless that has a place; in this
-  // version, its containers still use operator new. Both functions null, the default: C++
-  // operator new. In librlpcdec alone; librlpc: RLPC_UNSUPPORTED.
+  // Of all memory of this decoder, its handle included, unless that has a place. Both functions
+  // null, the default: C++ operator new. In librlpcdec alone; librlpc: RLPC_UNSUPPORTED.
   rlpc_allocator allocator;
 } rlpc_decode_options;
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "common/io/float_position.h"
+#include "common/owned.h"
 #include "decoder/c_api/convert_frame.h"
 #include "decoder/c_api/decoder_handle.h"
 
@@ -19,7 +19,7 @@ rlpc_status bad_output(rlpc_decoder& handle, const std::string& what) {
 
 // name: of the channel; formats: a list of those it has.
 rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_channel& channel,
-                          std::span<const std::uint32_t> formats) {
+                          std::span<const std::uint32_t> formats, std::size_t num_vertices) {
   if (channel.data == nullptr) return RLPC_OK;
   if (std::find(formats.begin(), formats.end(), channel.format) == formats.end()) {
     return bad_output(
@@ -33,7 +33,6 @@ rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_cha
                                   std::to_string(channel.stride) + " bytes is less than the " +
                                   std::to_string(bytes_of_vertex) + " of a vertex");
   }
-  const std::size_t num_vertices = handle.decoder->num_vertices();
   const bool overflows =
       channel.stride > (SIZE_MAX - bytes_of_vertex) / std::max<std::size_t>(1, num_vertices);
   const std::size_t needed = overflows ? SIZE_MAX : bytes_needed(channel, num_vertices);
@@ -56,11 +55,17 @@ rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) 
     if (!(scale >= 0))
       return bad_output(handle, "int16_scale: expected a positive number, or 0");
   }
-  if (const auto status = check_channel(handle, "positions", output.positions, kOfPositions);
+  if (output.split != 0 && !handle.drawn) {
+    return bad_output(handle, "split: call rlpc_decoder_split first");
+  }
+  const std::size_t num_vertices = output.split != 0 ? handle.drawn->vertices().num_vertices()
+                                                     : handle.decoder->num_vertices();
+  if (const auto status =
+          check_channel(handle, "positions", output.positions, kOfPositions, num_vertices);
       status != RLPC_OK) {
     return status;
   }
-  return check_channel(handle, "normals", output.normals, kOfNormals);
+  return check_channel(handle, "normals", output.normals, kOfNormals, num_vertices);
 }
 
 Int16Scale scale_of(const rlpc_frame_output& output, const SequenceHeader& header) {
@@ -90,26 +95,24 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
   handle.error.clear();
   if (!*more) return RLPC_END;
   handle.has_frame = true;
+  std::span<const std::uint32_t> vertices;
+  if (output.split != 0) vertices = handle.drawn->vertices().stream_vertex;
   if (output.positions.data != nullptr) {
-    write_positions(handle.positions, header.grid, scale_of(output, header), output.positions);
+    write_positions({handle.positions, vertices}, header.grid, scale_of(output, header),
+                    output.positions);
   }
-  if (output.normals.data != nullptr) {
+  if (output.normals.data == nullptr) return RLPC_OK;
+  if (output.split != 0 && handle.drawn->has_normals()) {
+    write_normals(
+        {handle.drawn->normals().sums(std::span<const std::int32_t>(handle.positions)),
+         handle.drawn->normal_of_vertex()},
+        output.normals);
+  } else {
     sum_normals(handle.positions, handle.decoder->triangles(),
                 output.normal_weight == RLPC_BY_ANGLE, handle.normal_sums);
-    write_normals(handle.normal_sums, output.normals);
+    write_normals({handle.normal_sums, vertices}, output.normals);
   }
   return RLPC_OK;
-}
-
-template <class Index>
-void write_indices(std::span<const Triangle> triangles, void* out) {
-  auto* place = static_cast<unsigned char*>(out);
-  for (const Triangle& t : triangles) {
-    const std::array corners{static_cast<Index>(t[0]), static_cast<Index>(t[1]),
-                             static_cast<Index>(t[2])};
-    std::copy_n(reinterpret_cast<const unsigned char*>(corners.data()), sizeof corners, place);
-    place += sizeof corners;
-  }
 }
 
 }  // namespace
@@ -181,30 +184,9 @@ rlpc_status rlpc_decoder_gofs(rlpc_decoder* decoder, rlpc_gof* gofs, size_t max_
 rlpc_status rlpc_decoder_indices(rlpc_decoder* decoder, void* indices, size_t num_bytes,
                                  uint32_t index_bytes) {
   return rlpc::guarded(decoder, [&] {
-    const auto triangles = decoder->decoder->triangles();
-    constexpr std::uint32_t kMostOf16Bits = 65536;
-    if (index_bytes != 2 && index_bytes != 4) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT, "index_bytes: expected 2 or 4, got " +
-                                                       std::to_string(index_bytes));
-    }
-    if (index_bytes == 2 && decoder->decoder->num_vertices() > kMostOf16Bits) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT,
-                                "16 bits cannot hold the indices of more than 65536 vertices");
-    }
-    const std::size_t wanted = 3 * triangles.size() * index_bytes;
-    if (num_bytes != wanted || indices == nullptr) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT,
-                                indices == nullptr
-                                    ? "the buffer is null"
-                                    : "the buffer has " + std::to_string(num_bytes) +
-                                          " bytes, not " + std::to_string(wanted));
-    }
-    if (index_bytes == 2) {
-      rlpc::write_indices<std::uint16_t>(triangles, indices);
-    } else {
-      rlpc::write_indices<std::uint32_t>(triangles, indices);
-    }
-    return RLPC_OK;
+    return rlpc::give_indices(*decoder, decoder->decoder->triangles(),
+                              decoder->decoder->num_vertices(),
+                              {indices, num_bytes, index_bytes});
   });
 }
 
@@ -228,7 +210,7 @@ rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float mos
                                                        ? "least or most is null"
                                                        : "no frame has been decoded");
     }
-    const std::vector<std::int32_t>& positions = decoder->positions;
+    const rlpc::Vector<std::int32_t>& positions = decoder->positions;
     for (std::size_t c = 0; c < 3; ++c) {
       std::int32_t low = positions[c];
       std::int32_t high = positions[c];

@@ -53,6 +53,10 @@ typedef struct rlpc_frame_output {
   // range_min to range_max of rlpc_stream_info; rlpc_decoder_int16_scale tells them.
   double int16_scale[3];
   double int16_offset[3];
+  // 1: a value for each drawn vertex (rlpc_attributes.h); normals are then those of the set
+  // `normal`, with its smoothing and weights, if the stream has one. 0: for each vertex of the
+  // stream.
+  uint32_t split;
 } rlpc_frame_output;
 // NOLINTEND(readability-identifier-naming)
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "decoder/output/attribute_values.h"
 #include "decoder/output/frame_sink.h"
+#include "decoder/surface/attribute_values.h"
 
 namespace rlpc {
 

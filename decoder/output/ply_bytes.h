@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "decoder/output/mesh_bytes.h"
-#include "decoder/output/split_vertices.h"
+#include "decoder/surface/split_vertices.h"
 
 namespace rlpc {
 

@@ -65,15 +65,18 @@ ROOMS = {
     "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
-    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/float_position.h", "common/mesh"}
-                     | _PUBLIC_DECODER,
+    # Attributes and vertices as programs draw them.
+    "decoder/surface": {"common", "common/attributes", "common/mesh"},
+    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/float_position.h",
+                      "common/mesh", "decoder/surface"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
-    "decoder/output": {"common", "common/attributes", "common/io", "common/mesh"},
+    "decoder/output": {"common", "common/attributes", "common/io", "common/mesh",
+                       "decoder/surface"},
     "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/mesh",
-                            "decoder/output"},
+                            "decoder/output", "decoder/surface"},
     # The decoder for JavaScript.
     "decoder/js/wasm": {"common/bitstream", "common/io", "common/mesh", "decoder/stream",
-                        "decoder/recon/prefetch.h"} | _PUBLIC_DECODER,
+                        "decoder/recon/prefetch.h", "decoder/surface"} | _PUBLIC_DECODER,
     "decoder/player": {"common/io", "decoder/output", "decoder/stream", "decoder/tools"}
                       | _PUBLIC_DECODER,
     "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",

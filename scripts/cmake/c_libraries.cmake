@@ -46,23 +46,36 @@ list(FILTER of_decoder EXCLUDE REGEX "/decoder/output/")
 get_target_property(of_common rlpc_common SOURCES)
 get_target_property(of_io rlpc_io SOURCES)
 list(FILTER of_io INCLUDE REGEX "/bounded_input\\.cpp$")
-set(of_library ${c_of_common} ${c_of_decoder} ${of_common} ${of_decoder} ${of_io})
-foreach(kind SHARED STATIC)
-  set(name rlpc_dec)
-  if(kind STREQUAL "STATIC")
-    set(name rlpc_dec_static)
-  endif()
-  rlpc_c_library(${name} rlpcdec ${kind} ${of_library})
+# Compiled once for both; only the files of the interface differ, in what they export.
+add_library(rlpc_dec_objects OBJECT ${of_common} ${of_decoder} ${of_io})
+target_link_libraries(rlpc_dec_objects PRIVATE ZLIB::ZLIB Threads::Threads rlpc_flags)
+target_compile_definitions(rlpc_dec_objects PRIVATE RLPC_VERSION="${PROJECT_VERSION}")
+set_target_properties(rlpc_dec_objects PROPERTIES POSITION_INDEPENDENT_CODE ON)
+
+rlpc_c_library(rlpc_dec rlpcdec SHARED ${c_of_common} ${c_of_decoder}
+  $<TARGET_OBJECTS:rlpc_dec_objects>)
+rlpc_c_library(rlpc_dec_static rlpcdec STATIC ${c_of_common} ${c_of_decoder}
+  $<TARGET_OBJECTS:rlpc_dec_objects>)
+foreach(name rlpc_dec rlpc_dec_static)
   target_link_libraries(${name} PRIVATE ZLIB::ZLIB Threads::Threads)
+endforeach()
+foreach(name rlpc_dec_objects rlpc_dec rlpc_dec_static)
   target_compile_definitions(${name} PRIVATE RLPC_OWNED_MEMORY rlpc=rlpc_decoder_alone)
   # CONTRIBUTING.md says what each is worth.
   target_compile_options(${name} PRIVATE
     $<$<CONFIG:Release>:-Os> -ffunction-sections -fdata-sections)
 endforeach()
-# A static library with code for the link step could be linked by the same compiler alone.
+
+# The shared library is optimised at the link step. What the objects carry for it is removed from
+# the static one, which other compilers must be able to link.
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(rlpc_dec PRIVATE -flto=auto -fno-fat-lto-objects)
-  target_link_options(rlpc_dec PRIVATE -flto=auto -Os)
+  foreach(name rlpc_dec_objects rlpc_dec)
+    target_compile_options(${name} PRIVATE -flto=auto -ffat-lto-objects)
+  endforeach()
+  target_link_options(rlpc_dec PRIVATE -flto=auto -flto-partition=one -Os)
+  add_custom_command(TARGET rlpc_dec_static POST_BUILD VERBATIM
+    COMMAND ${CMAKE_OBJCOPY} --remove-section=.gnu.lto_* --remove-section=.gnu.debuglto_*
+      $<TARGET_FILE:rlpc_dec_static>)
 endif()
 
 configure_file(scripts/cmake/rlpc.h.in ${PROJECT_BINARY_DIR}/rlpc.h @ONLY)

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/io/binary_numbers.h"
-#include "decoder/output/split_vertices.h"
 
 namespace rlpc {
 namespace {
@@ -22,7 +21,6 @@ std::string semantic_of(const AttributeHeader& header) {
         std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
     return is_number ? std::optional(digits) : std::nullopt;
   };
-  if (header.domain == AttributeDomain::kTriangle) return "";
   if (const auto n = number_after("uv"); n && header.num_components == 2) {
     return "TEXCOORD_" + *n;
   }
@@ -32,51 +30,34 @@ std::string semantic_of(const AttributeHeader& header) {
   return "";
 }
 
-bool is_normal_set(const AttributeHeader& header) {
-  const bool is_direction =
-      header.kind == ValueKind::kUnitVectors || header.kind == ValueKind::kSmoothing;
-  return header.name == "normal" && is_direction && header.domain != AttributeDomain::kTriangle;
-}
-
 }  // namespace
 
 GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles,
                    std::uint32_t num_vertices, const std::string& asset) {
-  std::vector<const AttributeSet*> split;
+  Vector<const AttributeSet*> split;
   std::vector<std::string> semantics;
   for (const AttributeSet& set : sets) {
+    if (!is_drawable(set.header, triangles)) continue;
     const bool is_normal = is_normal_set(set.header) && !triangles.empty();
     const std::string semantic = is_normal ? "NORMAL" : semantic_of(set.header);
     if (semantic.empty()) continue;
     split.push_back(&set);
     semantics.push_back(semantic);
   }
-  SplitVertices vertices = split_vertices(triangles, num_vertices, split);
-  mesh_.vertex = std::move(vertices.stream_vertex);
-  for (std::size_t s = 0; s < split.size(); ++s) {
-    std::vector<std::uint32_t>& value_of = vertices.value_of_vertex[s];
-    if (semantics[s] == "NORMAL") {
-      normals_ = std::make_unique<FrameNormals>(*split[s], triangles, num_vertices);
-      normal_of_vertex_ = std::move(value_of);
-      continue;
-    }
-    Values& values = values_.emplace_back();
-    values.semantic = semantics[s];
-    values.width = number_components(split[s]->header);
-    const std::vector<float> numbers = attribute_numbers(*split[s]);
-    for (const std::uint32_t i : value_of) {
-      const auto of_value =
-          std::span(numbers).subspan(std::size_t{i} * values.width, values.width);
-      values.numbers.insert(values.numbers.end(), of_value.begin(), of_value.end());
-    }
+  drawn_ = std::make_unique<DrawnMesh>(std::move(split), triangles, num_vertices);
+  mesh_.vertex = drawn_->vertices().stream_vertex;
+  for (std::size_t s = 0; s < semantics.size(); ++s) {
+    if (semantics[s] == "NORMAL") continue;
+    const std::uint32_t width = number_components(drawn_->sets()[s]->header);
+    values_.push_back({semantics[s], width, drawn_->numbers(s)});
   }
   read_asset(asset);
-  make_parts(sets, std::move(vertices.triangles));
+  make_parts(sets, drawn_->vertices().triangles);
 }
 
 // A part of the mesh for each pair of a material and a part of the stream.
 void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
-                          std::vector<Triangle> triangles) {
+                          std::span<const Triangle> triangles) {
   const auto of_triangles = [&](const char* name) {
     const AttributeSet* const set = find_set(sets, name);
     const bool fits = set != nullptr && set->header.domain == AttributeDomain::kTriangle &&
@@ -139,11 +120,11 @@ void GltfLook::add_attributes(std::span<const float> xyz, GltfJson& attributes,
 }
 
 std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
-  std::vector<float> all(3 * std::size_t{normals_->count()});
-  normals_->compute(xyz, all);
+  std::vector<float> all(3 * std::size_t{drawn_->normals().count()});
+  drawn_->normals().compute(xyz, all);
   std::vector<float> normals;
-  normals.reserve(3 * normal_of_vertex_.size());
-  for (const std::uint32_t i : normal_of_vertex_) {
+  normals.reserve(3 * drawn_->normal_of_vertex().size());
+  for (const std::uint32_t i : drawn_->normal_of_vertex()) {
     const auto of_vertex = std::span(all).subspan(3 * std::size_t{i}, 3);
     normals.insert(normals.end(), of_vertex.begin(), of_vertex.end());
   }

@@ -8,9 +8,9 @@
 
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
-#include "decoder/output/attribute_values.h"
 #include "decoder/output/gltf/gltf_buffers.h"
 #include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/surface/drawn_mesh.h"
 
 namespace rlpc {
 
@@ -28,7 +28,7 @@ class GltfLook {
   // the vertices of the stream, for normals.
   void add_attributes(std::span<const float> xyz, GltfJson& attributes,
                       GltfBuffers& buffers) const;
-  bool has_normals() const { return normals_ != nullptr; }
+  bool has_normals() const { return drawn_->has_normals(); }
   // Of output vertices.
   std::vector<float> normals(std::span<const float> xyz) const;
   // Sets materials, textures and what they need.
@@ -45,12 +45,11 @@ class GltfLook {
 
   std::string image_bytes(const GltfJson& number) const;
   void read_asset(const std::string& asset);
-  void make_parts(const std::vector<AttributeSet>& sets, std::vector<Triangle> triangles);
+  void make_parts(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles);
 
+  std::unique_ptr<DrawnMesh> drawn_;
   GltfMesh mesh_;
   std::vector<Values> values_;
-  std::unique_ptr<FrameNormals> normals_;
-  std::vector<std::uint32_t> normal_of_vertex_;
   GltfJson asset_;           // null: none
   std::string asset_bytes_;  // its binary chunk
   std::string problem_;

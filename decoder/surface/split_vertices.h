@@ -4,20 +4,20 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 
 namespace rlpc {
 
 // What is written of a vertex v of the output.
 struct SplitVertices {
-  std::vector<std::uint32_t> stream_vertex;  // [v], ascending
+  Vector<std::uint32_t> stream_vertex;  // [v], ascending
   // [set][v]: index of a value of the set, or of a normal of FrameNormals.
-  std::vector<std::vector<std::uint32_t>> value_of_vertex;
+  Vector<Vector<std::uint32_t>> value_of_vertex;
   // Of the output; the same order and corners as in the stream.
-  std::vector<Triangle> triangles;
+  Vector<Triangle> triangles;
 
   std::uint32_t num_vertices() const {
     return static_cast<std::uint32_t>(stream_vertex.size());

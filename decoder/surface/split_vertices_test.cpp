@@ -1,4 +1,4 @@
-#include "decoder/output/split_vertices.h"
+#include "decoder/surface/split_vertices.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "decoder/output/split_vertices.h"
+#include "decoder/surface/split_vertices.h"
 
 #include <algorithm>
 #include <cassert>
@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
+using Indices = Vector<std::uint32_t>;
 
 // Of each value, the index of the first one that is equal.
 Indices first_equals(const AttributeSet& set) {
@@ -67,7 +67,7 @@ CornersOfVertices corners_of_vertices(std::span<const Triangle> triangles,
 
 SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t num_vertices,
                              std::span<const AttributeSet* const> sets) {
-  std::vector<Indices> values;
+  Vector<Indices> values;
   for (const AttributeSet* const set : sets) {
     values.push_back(values_of_corners(*set, triangles));
   }

@@ -1,0 +1,168 @@
+#include "decoder/surface/attribute_values.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace rlpc {
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+template <class Coordinate>
+Vec3 difference(std::span<const Coordinate> xyz, std::uint32_t from, std::uint32_t to) {
+  Vec3 v{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    v[c] = static_cast<double>(xyz[3 * std::size_t{to} + c]) -
+           static_cast<double>(xyz[3 * std::size_t{from} + c]);
+  }
+  return v;
+}
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// F.8.4: the vector of a point.
+std::array<float, 3> unit_vector(std::uint32_t u, std::uint32_t v, std::uint32_t bits) {
+  const double h = std::ldexp(1.0, static_cast<int>(bits) - 1) - 1.0;
+  Vec3 n{u - h, v - h, 0.0};
+  n[2] = h - std::abs(n[0]) - std::abs(n[1]);
+  if (n[2] < 0.0) {
+    const double fold = n[2];
+    for (std::size_t c = 0; c < 2; ++c) n[c] += n[c] < 0.0 ? -fold : fold;
+  }
+  const double length = std::sqrt(dot(n, n));
+  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
+          static_cast<float>(n[2] / length)};
+}
+
+float number_of(const AttributeHeader& header, std::uint32_t value, std::uint32_t c) {
+  if (header.kind == ValueKind::kFloats) return std::bit_cast<float>(value);
+  switch (header.scale) {
+    case ValueScale::kNone:
+      break;
+    case ValueScale::kGrid:
+      return static_cast<float>(
+          std::ldexp(static_cast<double>(value) + header.origin[c], header.log2_step));
+    case ValueScale::kNormalised:
+      return static_cast<float>(static_cast<double>(value) /
+                                static_cast<double>(header.max_value()));
+  }
+  return static_cast<float>(value);
+}
+
+}  // namespace
+
+std::uint32_t number_components(const AttributeHeader& header) {
+  return header.kind == ValueKind::kUnitVectors ? 3 : header.num_components;
+}
+
+Vector<float> attribute_numbers(const AttributeSet& set) {
+  Vector<float> numbers;
+  const std::uint32_t n = set.header.num_components;
+  if (set.header.kind == ValueKind::kUnitVectors) {
+    for (std::size_t i = 0; i < set.values.size(); i += 2) {
+      const auto v = unit_vector(set.values[i], set.values[i + 1], set.header.value_bits);
+      numbers.insert(numbers.end(), v.begin(), v.end());
+    }
+    return numbers;
+  }
+  numbers.reserve(set.values.size());
+  for (std::size_t i = 0; i < set.values.size(); ++i) {
+    numbers.push_back(number_of(set.header, set.values[i], static_cast<std::uint32_t>(i % n)));
+  }
+  return numbers;
+}
+
+const AttributeSet* find_set(const Vector<AttributeSet>& sets, const char* name) {
+  for (const AttributeSet& set : sets) {
+    if (set.header.name == name) return &set;
+  }
+  return nullptr;
+}
+
+FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> triangles,
+                           std::uint32_t num_vertices)
+    : set_(set), triangles_(triangles), count_(num_vertices) {
+  if (!set.value_of_corner.empty()) {
+    count_ = 0;
+    for (const std::uint32_t x : set.value_of_corner) count_ = std::max(count_, x + 1);
+  }
+  sums_.resize(3 * std::size_t{count_});
+  if (set.face_of_triangle.empty()) {
+    const Vector<float> numbers = attribute_numbers(set);
+    std::copy(numbers.begin(), numbers.end(), sums_.begin());
+    return;
+  }
+  faces_.resize(triangles.size());
+  if (set.header.weight == SmoothingWeight::kAngle) return;
+  terms_.reserve(3 * triangles.size());
+  for (std::size_t c = 0; c < 3 * triangles.size(); ++c) {
+    terms_.emplace_back(of_corner(c), set.face_of_triangle[c / 3]);
+  }
+  std::sort(terms_.begin(), terms_.end());
+  terms_.erase(std::unique(terms_.begin(), terms_.end()), terms_.end());
+}
+
+// F.8.3, in floats
+template <class Coordinate>
+void FrameNormals::add_up(std::span<const Coordinate> xyz) {
+  std::fill(faces_.begin(), faces_.end(), Vec3{});
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Triangle& v = triangles_[t];
+    const Vec3 n = cross(difference(xyz, v[0], v[1]), difference(xyz, v[0], v[2]));
+    Vec3& face = faces_[set_.face_of_triangle[t]];
+    for (std::size_t c = 0; c < 3; ++c) face[c] += n[c];
+  }
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  const auto add = [&](std::uint32_t normal, const Vec3& face, double weight) {
+    for (std::size_t c = 0; c < 3; ++c) sums_[3 * std::size_t{normal} + c] += weight * face[c];
+  };
+  for (const auto& [normal, f] : terms_) {
+    const double length = set_.header.weight == SmoothingWeight::kArea
+                              ? 1.0
+                              : std::sqrt(dot(faces_[f], faces_[f]));
+    if (length > 0.0) add(normal, faces_[f], 1.0 / length);
+  }
+  if (set_.header.weight != SmoothingWeight::kAngle) return;
+  for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
+    const Vec3& face = faces_[set_.face_of_triangle[c / 3]];
+    const Triangle& t = triangles_[c / 3];
+    const Vec3 a = difference(xyz, t[c % 3], t[(c + 1) % 3]);
+    const Vec3 b = difference(xyz, t[c % 3], t[(c + 2) % 3]);
+    const Vec3 n = cross(a, b);
+    const double length = std::sqrt(dot(face, face));
+    if (length > 0.0) {
+      add(of_corner(c), face, std::atan2(std::sqrt(dot(n, n)), dot(a, b)) / length);
+    }
+  }
+}
+
+std::span<const double> FrameNormals::sums(std::span<const float> xyz) {
+  if (!faces_.empty()) add_up(xyz);
+  return sums_;
+}
+
+std::span<const double> FrameNormals::sums(std::span<const std::int32_t> positions) {
+  if (!faces_.empty()) add_up(positions);
+  return sums_;
+}
+
+void FrameNormals::compute(std::span<const float> xyz, std::span<float> normals) {
+  sums(xyz);
+  for (std::size_t i = 0; i < sums_.size(); i += 3) {
+    const Vec3 n{sums_[i], sums_[i + 1], sums_[i + 2]};
+    const double length = std::sqrt(dot(n, n));
+    for (std::size_t c = 0; c < 3; ++c) {
+      normals[i + c] =
+          length > 0.0 ? static_cast<float>(n[c] / length) : (c == 2 ? 1.0F : 0.0F);
+    }
+  }
+}
+
+}  // namespace rlpc

@@ -1,0 +1,58 @@
+// Values of attributes as numbers (F.3), and normals of any frame (F.8.5).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "common/attributes/attribute_set.h"
+#include "common/mesh/mesh.h"
+#include "common/owned.h"
+
+namespace rlpc {
+
+// Components of the numbers of a set: 3 of unit vectors, 0 of smoothing.
+std::uint32_t number_components(const AttributeHeader& header);
+// [value][component]: integers as value_scale_idc says, floats, unit vectors as x, y, z.
+Vector<float> attribute_numbers(const AttributeSet& set);
+
+// The set of that name; null: none.
+const AttributeSet* find_set(const Vector<AttributeSet>& sets, const char* name);
+
+// Computes the normals of frames. The set and the triangles must outlive it.
+class FrameNormals {
+ public:
+  // set: `normal`, of vertices or corners; its index at a corner is that of a normal here.
+  FrameNormals(const AttributeSet& set, std::span<const Triangle> triangles,
+               std::uint32_t num_vertices);
+
+  std::uint32_t count() const { return count_; }
+  // Index of the normal at corner 3 * t + k.
+  std::uint32_t of_corner(std::size_t corner) const {
+    return set_.value_of_corner.empty() ? triangles_[corner / 3][corner % 3]
+                                        : set_.value_of_corner[corner];
+  }
+  // [count()][3], of any length, from the vertices of a frame, in units of the caller or of the
+  // grid; valid until the next call, which allocates nothing. Time: in proportion to the
+  // corners. Unit vectors of the stream, which are those of the first frame, are given as they
+  // are unless the set has faces.
+  std::span<const double> sums(std::span<const float> xyz);
+  std::span<const double> sums(std::span<const std::int32_t> positions);
+  // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3].
+  void compute(std::span<const float> xyz, std::span<float> normals);
+
+ private:
+  template <class Coordinate>
+  void add_up(std::span<const Coordinate> xyz);
+
+  const AttributeSet& set_;
+  std::span<const Triangle> triangles_;
+  std::uint32_t count_ = 0;
+  // Each face once at each of its normals, unless angles are the weights.
+  Vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // normal, face
+  Vector<std::array<double, 3>> faces_;
+  Vector<double> sums_;
+};
+
+}  // namespace rlpc
