@@ -39,6 +39,8 @@ const std::array<Part, kNumStreamParts>& parts() {
       {"temporal factors", {"temporal_residual", "trajectory_residual"}},
       {"spatial factors", {"spatial_residual"}},
       {"frames", {"frame_residual"}},
+      {"attributes", {"attributes"}},
+      {"materials and textures", {"asset"}},
       {"hashes, index, metadata", {"other"}},
   }};
   return kParts;
@@ -46,7 +48,10 @@ const std::array<Part, kNumStreamParts>& parts() {
 
 constexpr std::size_t kRestPart = 7;
 constexpr std::size_t kSpatialPart = 12;
-constexpr std::size_t kAncillaryPart = 14;
+constexpr std::size_t kAttributePart = 14;
+constexpr std::size_t kAssetPart = 15;
+constexpr std::size_t kAncillaryPart = 16;
+constexpr std::uint64_t kUnitSizeBits = 32;
 
 // The part of all other bits of a unit.
 std::size_t part_of_unit(UnitType type) {
@@ -62,6 +67,10 @@ std::size_t part_of_unit(UnitType type) {
     case UnitType::kSlice:
     case UnitType::kFrame:
       return 4;
+    case UnitType::kAttributes:
+      return kAttributePart;
+    case UnitType::kAsset:
+      return kAssetPart;
     default:
       return kAncillaryPart;
   }
@@ -101,6 +110,7 @@ void BitCounter::element(const char* name, std::int64_t value, std::uint64_t bit
     unit_type_ = static_cast<std::uint8_t>(ancillary_bit_ | value);
     unit_part_ = part_of_unit(UnitType{unit_type_});
   }
+  is_unit_size_ = word == "unit_size";
   if (word == "component_group_idx") rest_positions_ = value == 0;
   const auto part = part_of_.find(word);
   open_part_ = part == part_of_.end() ? unit_part_ : part->second;
@@ -114,9 +124,19 @@ void BitCounter::finish(std::uint64_t bit_pos) {
 
 void BitCounter::close(std::uint64_t bit_pos) {
   if (bit_pos <= last_) return;
-  bits_[open_part_] += bit_pos - last_;
-  unit_bits_[open_part_] += bit_pos - last_;
+  std::uint64_t bits = bit_pos - last_;
+  if (is_unit_size_ && bits > kUnitSizeBits) {  // the payload has not been parsed
+    count(unit_part_, bits - kUnitSizeBits);
+    bits = kUnitSizeBits;
+  }
+  is_unit_size_ = false;
+  count(open_part_, bits);
   last_ = bit_pos;
+}
+
+void BitCounter::count(std::size_t part, std::uint64_t bits) {
+  bits_[part] += bits;
+  unit_bits_[part] += bits;
 }
 
 void BitCounter::close_unit() {

@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kNumStreamParts = 15;
+inline constexpr std::size_t kNumStreamParts = 17;
 using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
 // Bits of each part, in the order used in all tables.
 const std::array<std::string_view, kNumStreamParts>& stream_part_names();
@@ -37,11 +37,13 @@ class BitCounter final : public Trace {
  private:
   void close(std::uint64_t bit_pos);
   void close_unit();
+  void count(std::size_t part, std::uint64_t bits);
 
   bool print_;
   std::map<std::string_view, std::size_t> part_of_;
   PartSizes bits_{};
   std::size_t open_part_ = 0;
+  bool is_unit_size_ = false;  // the last element
   std::uint8_t ancillary_bit_ = 0;
   std::uint8_t unit_type_ = 0;   // as in UnitType
   bool rest_positions_ = false;  // within a slice of rest positions

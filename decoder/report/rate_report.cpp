@@ -18,8 +18,9 @@ constexpr std::size_t kMaxSliceTables = 20;
 // Colours of the parts, in their order, the same on all pages. The usually largest parts have
 // the first colours of the plots of scripts/compare.
 constexpr std::array<const char*, kNumStreamParts> kColours{
-    "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00", "#e69f00", "#009e73",
-    "#8c564b", "#b8a800", "#a6761d", "#cc79a7", "#7b61c4", "#1f8a9e", "#c4c9d1"};
+    "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00",
+    "#e69f00", "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7",
+    "#7b61c4", "#1f8a9e", "#3f7d20", "#94b447", "#c4c9d1"};
 
 // A series per part that occurs, with its bits as the only value.
 std::vector<ChartSeries> part_series(const PartSizes& bits) {

@@ -184,8 +184,11 @@ int inform(const Options& o) {
   if (o.trace) return rlpc::kExitDone;
   rlpc::SequenceHeader header = stream.header();
   header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
-  rlpc::StreamInfo info{o.input,           header,        counter, bytes, *summary,
-                        stream.metadata(), stream.clips()};
+  rlpc::StreamInfo info{o.input,           header,         counter, bytes, *summary,
+                        stream.metadata(), stream.clips(), {}};
+  if (stream.attribute_unit() || stream.asset_unit()) {
+    info.attributes = rlpc::ListedAttributes::of(**source, o.max_memory_bytes);
+  }
   std::optional<rlpc::CoarseMeshes> meshes;
   if (o.coarse || with_pictures) {
     meshes = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),

@@ -345,6 +345,7 @@ void print_json(const StreamInfo& s) {
                              {"first_frame", clip.first_frame},
                              {"num_frames", clip.num_frames}});
   }
+  s.attributes.add_to(json);
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   std::cout << json.dump(2, ' ', false, kReplace) << "\n";
@@ -396,10 +397,19 @@ void print_table(const StreamInfo& s, bool with_gofs) {
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
   print_clips(s.clips);
+  const std::vector<std::string> attributes = s.attributes.lines();
+  if (!attributes.empty()) std::printf("\n  attributes\n");
+  for (const std::string& line : attributes) std::printf("    %s\n", line.c_str());
   if (!s.metadata.empty())
     std::printf("\n  metadata: %s\n", printable_lines(s.metadata).c_str());
   if (s.coarse != nullptr) print_coarse_meshes(*s.coarse);
   if (with_gofs) print_all(s.summary);
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
 }
 
 std::string page_text(const StreamInfo& s) {
@@ -414,6 +424,9 @@ std::string page_text(const StreamInfo& s) {
   page.add_fact("grid", "step 2^" + std::to_string(h.grid.log2_step) + ", positions of " +
                             std::to_string(h.position_bits) + " bits");
   if (!s.clips.empty()) page.add_fact("clips", clips_text(s.clips));
+  if (const auto lines = s.attributes.lines(); !lines.empty()) {
+    page.add_fact("attributes", joined(lines));
+  }
   if (!s.metadata.empty()) page.add_fact("metadata", s.metadata);
   const StreamRates rates{h.num_vertices, h.num_frames, s.bytes, &s.counter, &s.summary};
   const double total = 8.0 * static_cast<double>(s.bytes);

@@ -11,6 +11,7 @@
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/gof_pictures.h"
 #include "decoder/stream/gof_summary.h"
+#include "decoder/tools/listed_attributes.h"
 
 namespace rlpc {
 
@@ -22,6 +23,7 @@ struct StreamInfo {
   const StreamSummary& summary;
   const std::string& metadata;
   const std::vector<Clip>& clips;
+  ListedAttributes attributes;
   const CoarseMeshes* coarse = nullptr;     // to be listed; null: not asked for
   const PicturedFrame* pictured = nullptr;  // of a page
 };
