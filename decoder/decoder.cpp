@@ -219,6 +219,7 @@ Result<bool> Decoder::prefetch(std::uint32_t frame) { return impl_->prefetch(fra
 Result<GofRange> Decoder::gof_of(std::uint32_t frame) { return impl_->gof_of(frame); }
 Result<Vector<GofRange>> Decoder::gofs() { return impl_->gofs(); }
 const String& Decoder::metadata() const { return impl_->stream().metadata(); }
+const Vector<Error>& Decoder::damaged_units() const { return impl_->stream().damaged_units(); }
 const Vector<Clip>& Decoder::clips() const { return impl_->stream().clips(); }
 Result<std::optional<std::uint32_t>> Decoder::skip_damage() { return impl_->skip_damage(); }
 Result<std::uint32_t> Decoder::parse_rest() { return impl_->parse_rest(); }

@@ -79,6 +79,9 @@ struct DecoderOptions {
   // half of it, decoded frames of a GOF of frames. It counts towards max_memory_bytes; where
   // that is not enough, they are dropped. 0: nothing is kept.
   std::uint64_t max_cached_bytes = 0;
+  // Ancillary units whose CRC or contents are wrong count as absent: damaged_units(). Otherwise
+  // they are errors.
+  bool skip_damaged_units = false;
   // There will be no seek(): a source that keeps what it has read can forget it.
   bool forward_only = false;
 };
@@ -126,6 +129,9 @@ class Decoder {
   const String& metadata() const;
   // Those of the last clip table so far. Names may have any bytes.
   const Vector<Clip>& clips() const;
+
+  // What was wrong with ancillary units that count as absent, so far.
+  const Vector<Error>& damaged_units() const;
 
   // The asset of the stream (7.16), a GLB without geometry; empty: none. Not checked beyond its
   // size. Errors leave the frames decodable.

@@ -227,6 +227,37 @@ static void check_arguments(void) {
   CHECK(rlpc_decoder_attributes(NULL, &number) == RLPC_BAD_ARGUMENT);
 }
 
+// A stream of which a byte of the attribute unit was changed.
+static void check_damage(void) {
+  static unsigned char bytes[1 << 14];
+  FILE* const file = fopen(path, "rb");
+  CHECK(file != NULL);
+  if (file == NULL) return;
+  const size_t size = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  size_t at = 0;  // of the attribute unit: ancillary_flag and unit_type, then 32 bits of size
+  while (at + 4 < size && !(bytes[at] == 0x88 && bytes[at + 1] == 0 && bytes[at + 2] == 0))
+    ++at;
+  CHECK(at + 12 < size);
+  bytes[at + 12] ^= 1;
+  rlpc_decoder* decoder = NULL;
+  CHECK(rlpc_decoder_open_memory(bytes, size, NULL, &decoder) == RLPC_BAD_STREAM);
+  rlpc_decoder_close(decoder);
+  rlpc_decode_options options;
+  rlpc_decode_options_init(&options, sizeof options);
+  options.skip_damaged_units = 1;
+  CHECK(rlpc_decoder_open_memory(bytes, size, &options, &decoder) == RLPC_OK);
+  CHECK(rlpc_decoder_num_damaged_units(decoder) == 1);
+  uint32_t number = 7;
+  float xyz[60];
+  CHECK(rlpc_decoder_attributes(decoder, &number) == RLPC_OK && number == 0);
+  while (rlpc_decoder_position(decoder) < 2) {
+    CHECK(rlpc_decoder_next_floats(decoder, xyz, 60) == RLPC_OK);
+  }
+  CHECK(rlpc_decoder_next_floats(decoder, xyz, 60) == RLPC_END);
+  rlpc_decoder_close(decoder);
+}
+
 int main(int argc, char** argv) {
   if (argc < 2) {
     fprintf(stderr, "usage: attributes_test STREAM...\n");
@@ -235,6 +266,7 @@ int main(int argc, char** argv) {
   path = argv[1];
   check_sets();
   check_arguments();
+  check_damage();
   for (int i = 1; i < argc; ++i) {
     path = argv[i];
     check_stream();

@@ -79,6 +79,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   options.cut = {given.max_components, given.max_layers, given.max_temporal_layers};
   options.coarse_layers = given.coarse_layers;
   options.max_cached_bytes = given.max_cached_bytes;
+  options.skip_damaged_units = given.skip_damaged_units != 0;
   return options;
 }
 
@@ -267,6 +268,11 @@ rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_t* indice
 const char* rlpc_decoder_metadata(const rlpc_decoder* decoder) {
   const bool open = decoder != nullptr && decoder->decoder;
   return open ? decoder->decoder->metadata().c_str() : "";
+}
+
+uint32_t rlpc_decoder_num_damaged_units(const rlpc_decoder* decoder) {
+  const bool open = decoder != nullptr && decoder->decoder;
+  return open ? static_cast<std::uint32_t>(decoder->decoder->damaged_units().size()) : 0;
 }
 
 uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder) {

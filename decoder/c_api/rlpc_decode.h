@@ -88,6 +88,9 @@ typedef struct rlpc_decode_options {
   // Of all memory of this decoder, its handle included, unless that has a place. Both functions
   // null, the default: C++ operator new. In librlpcdec alone; librlpc: RLPC_UNSUPPORTED.
   rlpc_allocator allocator;
+  // 1: ancillary units (attributes, the asset, clips, metadata) whose CRC or contents are wrong
+  // count as absent; 0, the default: they are errors.
+  uint32_t skip_damaged_units;
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
@@ -184,6 +187,8 @@ RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_
 // The latest metadata so far, JSON text; "" if there was none. Valid until the next call on the
 // handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
+// How many ancillary units have counted as absent so far (skip_damaged_units).
+RLPC_API uint32_t rlpc_decoder_num_damaged_units(const rlpc_decoder* decoder);
 // The clips of the latest clip table so far: their number, and one of them. The name is valid
 // until the next call that decodes or seeks, and ends at a zero byte, if it has one. index:
 // below the number, otherwise RLPC_BAD_ARGUMENT.

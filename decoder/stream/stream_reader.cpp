@@ -19,6 +19,7 @@ namespace rlpc {
 StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : limits_(options.limits),
       is_coarse_(options.coarse_layers != SliceCut::kAll),
+      skips_damaged_units_(options.skip_damaged_units),
       units_(std::move(source), options.trace, options.limits.max_memory_bytes),
       access_units_(units_, context_, options),
       models_(units_, access_units_) {}
@@ -38,14 +39,10 @@ Result<bool> StreamReader::open() {
       if (auto ok = read_vertex_order(*unit); !ok) return ok;
     } else if (starts_gofs(*unit) && have_connectivity) {
       return true;
-    } else if (unit->type() == UnitType::kAttributes && have_connectivity && !attribute_unit_) {
-      if (auto ok = units_.skip(*unit); !ok) return ok;
-      attribute_unit_ = *unit;
-    } else if (unit->type() == UnitType::kAsset && have_connectivity && !asset_unit_) {
-      if (auto ok = units_.skip(*unit); !ok) return ok;
-      asset_unit_ = *unit;
-    } else if (auto ok = read_ancillary(*unit); !ok) {
-      return ok;
+    } else {
+      const auto is_intact = read_ancillary(*unit);
+      if (!is_intact) return is_intact;
+      if (*is_intact && have_connectivity) keep_place_of(*unit);
     }
     offset_ = unit->end();
   }
@@ -116,8 +113,26 @@ Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
   return true;
 }
 
-// Units that a decoder may skip: checks their CRC, and keeps metadata and clips.
+// Only the first of each counts, as a stream has one at most.
+void StreamReader::keep_place_of(const UnitHeader& unit) {
+  if (unit.type() == UnitType::kAttributes && !attribute_unit_) attribute_unit_ = unit;
+  if (unit.type() == UnitType::kAsset && !asset_unit_) asset_unit_ = unit;
+}
+
+// Units that a decoder may skip: checks their CRC, and keeps metadata and clips. False:
+// damaged; the unit counts as absent.
 Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
+  auto ok = parse_ancillary(unit);
+  if (ok || !skips_damaged_units_ || !unit.ancillary() || ok.error().code != Errc::kInvalid) {
+    return ok;
+  }
+  const std::uint64_t last = damaged_units_.empty() ? 0 : damaged_units_.back().bit_pos;
+  if (ok.error().bit_pos > last)
+    damaged_units_.push_back(ok.error());  // not after a seek again
+  return false;
+}
+
+Result<bool> StreamReader::parse_ancillary(const UnitHeader& unit) {
   if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
   if (unit.type() == UnitType::kMetadata) return read_metadata(unit);
   if (unit.type() == UnitType::kClipTable) return read_clip_table(unit);

@@ -46,6 +46,8 @@ class StreamReader {
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const String& metadata() const { return metadata_; }  // the last so far
   const Vector<Clip>& clips() const { return clips_; }  // likewise
+  // Of ancillary units that count as absent (DecoderOptions::skip_damaged_units).
+  const Vector<Error>& damaged_units() const { return damaged_units_; }
   // The asset unit, whose CRC has been checked; none: there is none.
   const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
   // The attribute unit, whose CRC has been checked; none: there is none.
@@ -99,6 +101,8 @@ class StreamReader {
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
   Result<bool> read_ancillary(const UnitHeader& unit);
+  void keep_place_of(const UnitHeader& unit);
+  Result<bool> parse_ancillary(const UnitHeader& unit);
   Result<bool> read_metadata(const UnitHeader& unit);
   Result<bool> read_clip_table(const UnitHeader& unit);
   Result<bool> check_limits();
@@ -110,6 +114,7 @@ class StreamReader {
 
   DecodeLimits limits_;
   bool is_coarse_;
+  bool skips_damaged_units_;
   std::uint64_t bytes_in_use_ = 0;  // without kept GOFs
   UnitReader units_;
   StreamContext context_;
@@ -119,6 +124,7 @@ class StreamReader {
   Vector<std::uint32_t> vertex_order_;
   String metadata_;
   Vector<Clip> clips_;
+  Vector<Error> damaged_units_;
   std::optional<UnitHeader> attribute_unit_;
   std::optional<UnitHeader> asset_unit_;
 
