@@ -4,6 +4,7 @@
     tools_attributes_test.py --bin BUILD/bin [unittest arguments, such as ObjAttributes]
 """
 
+import json
 import math
 import shutil
 import struct
@@ -16,6 +17,7 @@ sys.path.insert(0, str(ROOT / "conformance" / "specdec"))
 from specdec_testing import stream_of, units_of  # noqa: E402
 
 AROUND, ALONG = 16, 9  # a closed tube whose texture has a seam
+ATTRIBUTES, ASSET = 0x88, 0x89  # types of units
 HALF_STEP = 1 / 8192   # of texture coordinates
 ENCODE = ["--kg", 0.1, "--keep-order", "--quiet"]
 
@@ -178,11 +180,13 @@ class ObjAttributes(AttributesTest):
         marks = {0: "o side\nusemtl green\n", 64: "g upper\n", 128: "o caps\ng\nusemtl red skin\n"}
         text = obj_text(between=lambda f: marks.get(f, ""))
         self.path("in").mkdir()
-        (self.path("in") / "a.mtl").write_text("newmtl green\nmap_Kd leaf.png\nnewmtl red skin\nKd 1 0 0\n")
+        (self.path("in") / "a.mtl").write_text("newmtl green\nmap_Kd maps/leaf.png\nmap_Ks gloss.png\nnewmtl red skin\nKd 1 0 0\n")
+        (self.path("in") / "maps").mkdir()
+        leaf = b"\x89PNG of a leaf"
+        (self.path("in") / "maps/leaf.png").write_bytes(leaf)
         (self.path("in") / "a.obj").write_text("mtllib a.mtl\n" + text)
         result = self.ok("rlpcenc", self.path("in/a.obj"), "-o", self.path("a.rlpc"), "--keep-order")
-        self.assertIn("dropped: 2 materials, 1 texture; of materials, only their numbers at the triangles are",
-                      result.err)
+        self.assertIn("dropped: 1 texture (gloss.png); only those of map_Kd, map_Ke and norm are kept", result.err)
         self.fails(64, "a.mtl: is also an input", "rlpcenc", self.path("in/a.obj"), "-o",
                    self.path("in/a.mtl"))
         for output, mesh, library in (("b.obj", "b.obj", "b.mtl"), ("c.pc2", "c.obj", "c.mtl"),
@@ -191,16 +195,23 @@ class ObjAttributes(AttributesTest):
             found = Mesh(self.path(mesh))
             self.assertEqual(found.libraries, [library])
             lines = (self.path(mesh).parent / library).read_text()
-            self.assertIn("newmtl material_0\n", lines)
-            self.assertIn("newmtl material_1\n", lines)
+            image = library.replace(".mtl", "_0.png")
+            self.assertIn(f"newmtl green\nKd 1 1 1\nPm 0\nmap_Kd {image}\n", lines)
+            self.assertIn("newmtl red_skin\nKd 1 0 0\n", lines)
+            self.assertEqual((self.path(mesh).parent / image).read_bytes(), leaf)
             wanted = Mesh(self.path("in/a.obj"))
-            number = {"green": "material_0", "red": "material_1"}
             materials = {frozenset(v for v, _, _ in t): m for t, m in zip(wanted.triangles, wanted.materials)}
+            groups = set()
             for t, material, group in zip(found.triangles, found.materials, found.groups):
                 name = materials[frozenset(v for v, _, _ in t)]
-                self.assertEqual(material, number[name])
-                self.assertIn(group, {"green": ("part_0", "part_1"), "red": ("part_2",)}[name])
+                self.assertEqual(material, {"green": "green", "red": "red_skin"}[name])
+                groups.add((name, group))
+            self.assertEqual(len(groups), 3)
             self.expect_same_uv(found, wanted)
+        # Again an input, with its image.
+        self.ok("rlpcenc", self.path("b.obj"), "-o", self.path("e.rlpc"), "--keep-order")
+        self.ok("rlpcdec", self.path("e.rlpc"), "-o", self.path("e.obj"))
+        self.assertEqual(self.path("e_0.png").read_bytes(), leaf)
         # A file that rlpcdec has not written stays.
         self.path("d.mtl").write_text("newmtl mine\n")
         for output in ("d.obj", "d.pc2", "d%d.obj"):
@@ -214,8 +225,8 @@ class ObjAttributes(AttributesTest):
         for name in ("../secret.mtl", self.path("secret.mtl"), "-", "missing.mtl"):
             (self.path("in") / "a.obj").write_text(f"mtllib {name}\nusemtl m\n" + obj_text())
             result = self.ok("rlpcenc", self.path("in/a.obj"), "-o", self.path("a.rlpc"))
-            self.assertNotIn("1 texture", result.err)
-            self.assertIn("dropped: 1 material;", result.err)
+            self.assertNotIn("secret.png", result.err)
+            self.assertEqual([code for code, _ in units_of(self.path("a.rlpc").read_bytes()) if code == ASSET], [])
 
     def test_other_texture_coordinates_in_a_later_file_are_noted(self):
         source = self.sequence()
@@ -270,7 +281,6 @@ class ObjAttributes(AttributesTest):
     def test_damaged_attributes_leave_the_frames(self):
         stream = self.encode_to("a.rlpc", self.sequence())
         self.ok("rlpcdec", stream, "--no-attributes", "-o", self.path("plain"))
-        ATTRIBUTES = 0x88
         data = stream.read_bytes()
         units = [(code, payload[:-9] if code == ATTRIBUTES else payload) for code, payload in units_of(data)]
         stream.write_bytes(stream_of(data, units))
@@ -279,6 +289,39 @@ class ObjAttributes(AttributesTest):
         for f in range(6):
             name = f"frame_000{f}.obj"
             self.assertEqual((self.path("out") / name).read_bytes(), (self.path("plain") / name).read_bytes())
+
+    def test_a_damaged_unit_can_be_left_out(self):
+        self.path("a.obj").write_text(obj_text())
+        stream = self.encode_to("a.rlpc", self.path("a.obj"))
+        self.ok("rlpcdec", stream, "--no-attributes", "-o", self.path("plain.obj"))
+        data = bytearray(stream.read_bytes())
+        payload = next(payload for code, payload in units_of(data) if code == ATTRIBUTES)
+        data[data.index(payload) + 9] ^= 1
+        damaged = self.path("damaged.rlpc")
+        damaged.write_bytes(data)
+        self.fails(1, "R-UNT-03", "rlpcdec", damaged, "-o", self.path("b.obj"))
+        self.assertFalse(self.path("b.obj").exists())
+        self.fails(1, "the unit is left out, no frame needs it", "rlpcdec", damaged, "--conceal",
+                   "--quiet", "-o", self.path("b.obj"))
+        self.assertEqual(self.path("b.obj").read_bytes(), self.path("plain.obj").read_bytes())
+
+    def test_rlpcinfo_lists_them(self):
+        self.path("a.obj").write_text(obj_text())
+        stream = self.encode_to("a.rlpc", self.path("a.obj"))
+        table = self.ok("rlpcinfo", stream).out.decode()
+        self.assertRegex(table, r"\n    uv0: corners, 2 x \d+ bits, integers, \d+ values\n")
+        self.assertRegex(table, r"\n    normal: corners, smoothing\n")
+        report = json.loads(self.ok("rlpcinfo", stream, "--json").out)
+        self.assertEqual([(a["name"], a["domain"], a["kind"]) for a in report["attributes"]],
+                         [("normal", "corners", "smoothing"), ("uv0", "corners", "integers")])
+        size = sum(len(payload) for code, payload in units_of(stream.read_bytes()) if code == ATTRIBUTES)
+        self.assertEqual(report["bits"]["attributes"], 8 * size)
+        self.assertEqual(sum(report["bits"].values()), 8 * len(stream.read_bytes()))
+        # One of which only the frames can be decoded.
+        data = stream.read_bytes()
+        units = [(code, payload[:-9] if code == ATTRIBUTES else payload) for code, payload in units_of(data)]
+        stream.write_bytes(stream_of(data, units))
+        self.assertIn("cannot be decoded: ", self.ok("rlpcinfo", stream).out.decode())
 
 
 class PlyAttributes(AttributesTest):

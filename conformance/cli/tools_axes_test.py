@@ -3,7 +3,7 @@
 
 import re
 
-from tools_testing import (ToolsTest, main, read_obj, triangle_set, write_mdd, write_obj,
+from tools_testing import (ROOT, ToolsTest, main, read_obj, triangle_set, write_mdd, write_obj,
                            write_pc2)
 
 
@@ -79,6 +79,15 @@ class Axes(ToolsTest):
                                   (["--metadata", self.path("mine.json"), "--up-axis", "y"],
                                    {"take": 7, "upAxis": "Y"})):
             self.ok("rlpcenc", *clip, *options)
+            told = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
+            self.assertEqual(told.get("metadata"), expected)
+        # glTF says it.
+        glb = ROOT / "streams/inputs/tulip.glb"
+        for options, expected in (([], {"upAxis": "Y", "metersPerUnit": 1}), (["--axes", "x,z,-y"], None),
+                                  (["--metadata", self.path("list.json")], [1]),
+                                  (["--metadata", self.path("mine.json")],
+                                   {"take": 7, "upAxis": "?", "metersPerUnit": 1})):
+            self.ok("rlpcenc", glb, "--preset", "fast", "-o", self.path("a.rlpc"), *options)
             told = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
             self.assertEqual(told.get("metadata"), expected)
         self.fails(1, ["list.json", "a JSON object"], "rlpcenc", *clip, "--metadata",

@@ -72,7 +72,7 @@ struct SinkOptions {
   std::uint64_t max_skin_bytes = 1U << 30;       // memory for the frames of a skin, all at once
   // Of `triangles`, as the decoder gives them; OBJ and PLY files hold some of them.
   std::vector<AttributeSet> attributes{};
-  std::string asset{};  // .glb only: materials and textures, a GLB (7.16)
+  std::string asset{};  // materials and textures, a GLB (7.16); not of PLY files
   // On all bytes written, temporary files included; null: none. If more is certain to be
   // needed, opening the sink fails.
   std::shared_ptr<OutputLimit> limit{};

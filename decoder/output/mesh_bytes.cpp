@@ -113,17 +113,4 @@ std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions&
   return std::make_unique<PlyBytes>(options);
 }
 
-std::string mtl_text(const SinkOptions& options) {
-  const MeshAttributes attributes(options);
-  if (attributes.material == nullptr) return "";
-  std::vector<std::uint32_t> used = attributes.material->values;
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::string text = kMtlBegin;
-  for (const std::uint32_t m : used) {
-    text += "newmtl " + material_name(m) + "\nKd 0.8 0.8 0.8\n";
-  }
-  return text;
-}
-
 }  // namespace rlpc

@@ -64,14 +64,9 @@ class MeshBytes {
   virtual const std::string& frame(std::span<const std::int32_t> positions) = 0;
 };
 
-// kObj, or kPly as options.ascii says; options must outlive it. materials: the name of the file
-// with mtl_text(), empty if there is none.
+// kObj, or kPly as options.ascii says; options must outlive it. materials: the name of the .mtl
+// file beside OBJ files, empty if there is none.
 std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions& options,
                                            const std::string& materials);
-
-// The first line of mtl_text().
-inline constexpr const char* kMtlBegin = "# materials of rlpcdec\n";
-// A file with the materials that OBJ files of these attributes use; empty if they use none.
-std::string mtl_text(const SinkOptions& options);
 
 }  // namespace rlpc

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "decoder/output/obj_materials.h"
+
 namespace rlpc {
 namespace {
 
@@ -52,7 +54,10 @@ TEST(MeshBytes, ObjFilesHoldAttributes) {
             "vn 0 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n"
             "g part_0\nusemtl material_3\nf 1/1/1 2/2/2 3/3/3\n"
             "usemtl material_1\nf 1/4/1 3/3/3 4/5/4\n");
-  EXPECT_EQ(mtl_text(options),
+  const auto files = ObjMaterials(options).files("a");
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].name, "a.mtl");
+  EXPECT_EQ(files[0].bytes,
             "# materials of rlpcdec\nnewmtl material_1\nKd 0.8 0.8 0.8\n"
             "newmtl material_3\nKd 0.8 0.8 0.8\n");
 }
@@ -103,7 +108,7 @@ TEST(MeshBytes, SetsOfOtherShapesAreLeftOut) {
     EXPECT_EQ(make_mesh_bytes(format, options, "")->frame(kPositions),
               make_mesh_bytes(format, plain, "")->frame(kPositions));
   }
-  EXPECT_EQ(mtl_text(options), "");
+  EXPECT_TRUE(ObjMaterials(options).files("a").empty());
   EXPECT_EQ(MeshAttributes(square()).uv_numbers().size(), 10U);
 }
 

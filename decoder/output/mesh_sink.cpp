@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "common/io/interrupts.h"
 #include "common/io/numbered_name.h"
@@ -13,6 +14,7 @@
 #include "decoder/output/companion_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
+#include "decoder/output/obj_materials.h"
 
 namespace rlpc {
 
@@ -23,10 +25,11 @@ namespace {
 class MeshSink : public FrameSink {
  public:
   MeshSink(SinkFormat format, SinkOptions options, fs::path folder, NumberedName name,
-           TemporaryFolder temporary, std::string materials)
+           TemporaryFolder temporary, std::vector<CompanionFile> materials)
       : options_(std::move(options)),
         materials_(std::move(materials)),
-        mesh_(make_mesh_bytes(format, options_, materials_)),
+        mesh_(make_mesh_bytes(format, options_,
+                              materials_.empty() ? std::string() : materials_[0].name)),
         folder_(std::move(folder)),
         name_(std::move(name)),
         temporary_(std::move(temporary)) {}
@@ -53,8 +56,12 @@ class MeshSink : public FrameSink {
       const std::string name = file_name(i);
       if (auto error = temporary_.commit_file(name, (folder_ / name).string())) return error;
     }
-    if (materials_.empty()) return std::nullopt;
-    return temporary_.commit_file(materials_, (folder_ / materials_).string());
+    for (const CompanionFile& file : materials_) {
+      if (auto error = temporary_.commit_file(file.name, (folder_ / file.name).string())) {
+        return error;
+      }
+    }
+    return std::nullopt;
   }
 
  private:
@@ -63,16 +70,18 @@ class MeshSink : public FrameSink {
   }
 
   std::optional<OutputError> write_materials() const {
-    if (materials_.empty()) return std::nullopt;
-    const fs::path path = fs::path(temporary_.path()) / materials_;
-    auto file = OutputFile::create_within(path.string(), options_.limit);
-    if (!file) return file.error();
-    if (auto error = file->write(mtl_text(options_))) return error;
-    return file->close();
+    for (const CompanionFile& material : materials_) {
+      const fs::path path = fs::path(temporary_.path()) / material.name;
+      auto file = OutputFile::create_within(path.string(), options_.limit);
+      if (!file) return file.error();
+      if (auto error = file->write(material.bytes)) return error;
+      if (auto error = file->close()) return error;
+    }
+    return std::nullopt;
   }
 
   SinkOptions options_;
-  std::string materials_;  // name of the .mtl file; empty: none
+  std::vector<CompanionFile> materials_;  // the .mtl file first; empty: none
   std::unique_ptr<MeshBytes> mesh_;
   fs::path folder_;
   NumberedName name_;
@@ -83,13 +92,11 @@ class MeshSink : public FrameSink {
 // A single frame: one file, and perhaps its materials.
 class SingleMeshSink : public FrameSink {
  public:
-  // materials: the .mtl file, if there are any.
+  // library: the name of the .mtl file, the first of materials; empty: there are none.
   SingleMeshSink(SinkFormat format, SinkOptions options, OutputFile file,
-                 std::optional<OutputFile> materials)
+                 const std::string& library, CompanionFiles materials)
       : options_(std::move(options)),
-        mesh_(make_mesh_bytes(
-            format, options_,
-            materials ? fs::path(materials->path()).filename().string() : std::string())),
+        mesh_(make_mesh_bytes(format, options_, library)),
         file_(std::move(file)),
         materials_(std::move(materials)) {}
 
@@ -99,11 +106,9 @@ class SingleMeshSink : public FrameSink {
 
   std::optional<OutputError> finish() override {
     if (auto error = file_.close()) return error;
-    if (!materials_) return file_.commit();
-    if (auto error = materials_->write(mtl_text(options_))) return error;
-    if (auto error = materials_->close()) return error;
+    if (auto error = materials_.write()) return error;
     const HoldInterrupts hold;
-    if (auto error = materials_->commit()) return error;
+    if (auto error = materials_.commit()) return error;
     return file_.commit();
   }
 
@@ -111,19 +116,13 @@ class SingleMeshSink : public FrameSink {
   SinkOptions options_;
   std::unique_ptr<MeshBytes> mesh_;
   OutputFile file_;
-  std::optional<OutputFile> materials_;
+  CompanionFiles materials_;
 };
 
-// The name of the .mtl file of a sequence: "walk.mtl" for "walk_%04d.obj".
-std::string materials_of(const NumberedName& name) {
+// What the names of the materials of a sequence begin with: "walk" for "walk_%04d.obj".
+std::string stem_of(const NumberedName& name) {
   const std::size_t last = name.prefix.find_last_not_of("_-. ");
-  const std::string stem =
-      last == std::string::npos ? "materials" : name.prefix.substr(0, last + 1);
-  return stem + ".mtl";
-}
-
-bool needs_materials(SinkFormat format, const SinkOptions& options) {
-  return format == SinkFormat::kObj && !mtl_text(options).empty();
+  return last == std::string::npos ? "materials" : name.prefix.substr(0, last + 1);
 }
 
 }  // namespace
@@ -136,18 +135,17 @@ OutputResult<std::unique_ptr<FrameSink>> open_single_mesh_sink(const std::string
   if (!file) return file.error();
   std::error_code ec;
   const bool is_file = path != "-" && (!fs::exists(path, ec) || fs::is_regular_file(path, ec));
-  std::optional<OutputFile> materials;
-  if (is_file && needs_materials(format, options)) {
-    const std::string beside = fs::path(path).replace_extension(".mtl").string();
-    if (auto error = check_companion(beside, kMtlBegin, "the materials of " + path)) {
-      return *error;
-    }
-    auto created = OutputFile::create(beside, options.limit);
-    if (!created) return created.error();
-    materials.emplace(std::move(*created));
+  std::vector<CompanionFile> files;
+  if (is_file && format == SinkFormat::kObj) {
+    files = ObjMaterials(options).files(fs::path(path).stem().string());
   }
+  const std::string library = files.empty() ? std::string() : files[0].name;
+  auto materials =
+      CompanionFiles::create(fs::path(path).parent_path().string(), std::move(files),
+                             "the materials of " + path, options.limit);
+  if (!materials) return materials.error();
   return std::unique_ptr<FrameSink>(std::make_unique<SingleMeshSink>(
-      format, options, std::move(*file), std::move(materials)));
+      format, options, std::move(*file), library, std::move(*materials)));
 }
 
 OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& pattern,
@@ -166,10 +164,10 @@ OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& patte
   if (fs::exists(folder, ec) && !fs::is_directory(folder, ec)) {
     return OutputError{folder.string() + ": is a file; a folder of files cannot go there"};
   }
-  std::string materials;
-  if (needs_materials(format, options)) {
-    materials = materials_of(*name);
-    if (auto error = check_companion((folder / materials).string(), kMtlBegin,
+  std::vector<CompanionFile> materials;
+  if (format == SinkFormat::kObj) materials = ObjMaterials(options).files(stem_of(*name));
+  for (const CompanionFile& file : materials) {
+    if (auto error = check_companion((folder / file.name).string(), file.begin,
                                      "the materials of " + pattern)) {
       return *error;
     }

@@ -4,8 +4,6 @@
 
 namespace rlpc {
 
-std::string material_name(std::uint32_t number) { return "material_" + std::to_string(number); }
-
 ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
     : options_(options), attributes_(options), normals_(attributes_, options) {
   header_ = "# frame_rate " + frame_rate_text(options.frame_rate) + "\n";
@@ -17,7 +15,7 @@ ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
     colour_width_ = number_components(colour->header);
   }
   append_uv();
-  append_faces();
+  append_faces(ObjMaterials(options));
 }
 
 void ObjBytes::append_uv() {
@@ -32,7 +30,7 @@ void ObjBytes::append_uv() {
   }
 }
 
-void ObjBytes::append_faces() {
+void ObjBytes::append_faces(const ObjMaterials& materials) {
   const AttributeSet* const uv = attributes_.uv;
   const auto number_of = [](const AttributeSet* set, std::size_t triangle) {
     return set->values[triangle];
@@ -41,12 +39,13 @@ void ObjBytes::append_faces() {
     return set != nullptr &&
            (triangle == 0 || number_of(set, triangle) != number_of(set, triangle - 1));
   };
+  if (materials.has_one()) faces_ += "usemtl " + materials.material_name(0) + "\n";
   for (std::size_t t = 0; t < options_.triangles.size(); ++t) {
     if (changes(attributes_.part, t)) {
-      faces_ += "g part_" + std::to_string(number_of(attributes_.part, t)) + "\n";
+      faces_ += "g " + materials.part_name(number_of(attributes_.part, t)) + "\n";
     }
     if (changes(attributes_.material, t)) {
-      faces_ += "usemtl " + material_name(number_of(attributes_.material, t)) + "\n";
+      faces_ += "usemtl " + materials.material_name(number_of(attributes_.material, t)) + "\n";
     }
     faces_ += 'f';
     for (std::size_t k = 0; k < 3; ++k) {

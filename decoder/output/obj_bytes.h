@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "decoder/output/mesh_bytes.h"
+#include "decoder/output/obj_materials.h"
 
 namespace rlpc {
-
-std::string material_name(std::uint32_t number);
 
 class ObjBytes : public MeshBytes {
  public:
@@ -19,7 +18,7 @@ class ObjBytes : public MeshBytes {
 
  private:
   void append_uv();
-  void append_faces();
+  void append_faces(const ObjMaterials& materials);
   void append_vertices();
   void append_normals();
 

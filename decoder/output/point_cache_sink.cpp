@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/io/binary_numbers.h"
 #include "common/io/float_position.h"
@@ -12,6 +14,7 @@
 #include "decoder/output/companion_file.h"
 #include "decoder/output/frame_sink.h"
 #include "decoder/output/mesh_bytes.h"
+#include "decoder/output/obj_materials.h"
 
 namespace rlpc {
 
@@ -21,13 +24,15 @@ constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  /
 
 class PointCacheSink : public FrameSink {
  public:
-  // mesh: none in a live stream. materials: of the mesh, if it has any.
+  // mesh: none in a live stream. library: the name of the .mtl file, the first of materials;
+  // empty: there are none.
   PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points,
-                 std::optional<OutputFile> mesh, std::optional<OutputFile> materials)
+                 std::optional<OutputFile> mesh, std::string library, CompanionFiles materials)
       : mdd_(format == SinkFormat::kMdd),
         options_(std::move(options)),
         points_(std::move(points)),
         mesh_(std::move(mesh)),
+        library_(std::move(library)),
         materials_(std::move(materials)) {}
 
   std::optional<OutputError> write_header() {
@@ -61,25 +66,17 @@ class PointCacheSink : public FrameSink {
     if (auto error = points_.close()) return error;
     if (!mesh_) return points_.commit();
     if (auto error = mesh_->close()) return error;
-    if (materials_) {
-      if (auto error = materials_->close()) return error;
-    }
+    if (auto error = materials_.write()) return error;
     const HoldInterrupts hold;
-    if (materials_) {
-      if (auto error = materials_->commit()) return error;
-    }
+    if (auto error = materials_.commit()) return error;
     if (auto error = mesh_->commit()) return error;
     return points_.commit();
   }
 
  private:
   std::optional<OutputError> write_mesh(std::span<const std::int32_t> positions) {
-    std::string name;
-    if (materials_) {
-      name = std::filesystem::path(materials_->path()).filename().string();
-      if (auto error = materials_->write(mtl_text(options_))) return error;
-    }
-    return mesh_->write(make_mesh_bytes(SinkFormat::kObj, options_, name)->frame(positions));
+    return mesh_->write(
+        make_mesh_bytes(SinkFormat::kObj, options_, library_)->frame(positions));
   }
 
   // Frames, points, and the times of the frames in seconds.
@@ -97,7 +94,8 @@ class PointCacheSink : public FrameSink {
   SinkOptions options_;
   OutputFile points_;
   std::optional<OutputFile> mesh_;
-  std::optional<OutputFile> materials_;
+  std::string library_;
+  CompanionFiles materials_;
   std::string bytes_;
   std::uint32_t written_ = 0;
 };
@@ -114,7 +112,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
     auto points = OutputFile::create(path, options.limit);
     if (!points) return points.error();
     auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
-                                                 std::nullopt, std::nullopt);
+                                                 std::nullopt, "", CompanionFiles());
     if (auto error = sink->write_header()) return *error;
     return std::unique_ptr<FrameSink>(std::move(sink));
   }
@@ -130,18 +128,15 @@ OutputResult<std::unique_ptr<FrameSink>> open_point_cache_sink(const std::string
   if (!points) return points.error();
   auto mesh = OutputFile::create(mesh_path, options.limit);
   if (!mesh) return mesh.error();
-  std::optional<OutputFile> materials;
-  if (!mtl_text(options).empty()) {
-    const std::string beside = std::filesystem::path(path).replace_extension(".mtl").string();
-    if (auto error = check_companion(beside, kMtlBegin, "the materials of " + path)) {
-      return *error;
-    }
-    auto created = OutputFile::create(beside, options.limit);
-    if (!created) return created.error();
-    materials.emplace(std::move(*created));
-  }
+  const std::filesystem::path name(path);
+  std::vector<CompanionFile> files = ObjMaterials(options).files(name.stem().string());
+  std::string library = files.empty() ? std::string() : files[0].name;
+  auto materials = CompanionFiles::create(name.parent_path().string(), std::move(files),
+                                          "the materials of " + path, options.limit);
+  if (!materials) return materials.error();
   auto sink = std::make_unique<PointCacheSink>(format, std::move(options), std::move(*points),
-                                               std::move(*mesh), std::move(materials));
+                                               std::move(*mesh), std::move(library),
+                                               std::move(*materials));
   if (auto error = sink->write_header()) return *error;
   return std::unique_ptr<FrameSink>(std::move(sink));
 }

@@ -30,10 +30,10 @@ stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
 with --format pc2 -o -, without a mesh and with a frame count of 0.
 
 OBJ files hold texture coordinates, normals, colours of vertices, materials and
-parts; a .mtl file beside them has plain materials, which are numbered. PLY
-files hold texture coordinates, normals and colours, of vertices only: vertices
-become several, one for each distinct combination of these. Normals are those of
-each frame. With --coarse, there is none of this.
+parts; a .mtl file and images beside them have the materials. PLY files hold
+texture coordinates, normals and colours, of vertices only: vertices become
+several, one for each distinct combination of these. Normals are those of each
+frame. With --coarse, there is none of this.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
@@ -128,10 +128,9 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kOutput);
-  app.add_flag(
-         "--conceal", o.conceals,
-         "After damage, go on with the next intact group of frames; the last frame before "
-         "stands for those that are lost")
+  app.add_flag("--conceal", o.conceals,
+               "After damage, go on with the next intact group of frames, and leave damaged "
+               "attributes out; the last frame before stands for those that are lost")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")

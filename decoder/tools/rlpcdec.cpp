@@ -193,7 +193,7 @@ int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
       !(decoder.has_attributes() || decoder.has_asset())) {
     return rlpc::kExitDone;
   }
-  if (format == rlpc::SinkFormat::kGlb) {
+  if (format != rlpc::SinkFormat::kPly) {
     auto asset = decoder.asset();
     if (!asset) {
       return complain(rlpc::stream_message(o.input, asset.error(), o.decoder.limits) +
@@ -271,6 +271,11 @@ int decode(const Options& o) {
     }
   }
   report(o, *decoder, frames, sink.get());
+  for (const rlpc::Error& damage : decoder->damaged_units()) {
+    frames.loss_code = complain(rlpc::stream_message(o.input, damage, o.decoder.limits) +
+                                    "; the unit is left out, no frame needs it",
+                                rlpc::exit_code(damage.code));
+  }
   return frames.loss_code != rlpc::kExitDone ? frames.loss_code : attributes_code;
 }
 
@@ -288,6 +293,7 @@ int main(int argc, char** argv) try {
     return complain(wrong, rlpc::kExitUsage);
   }
   options.decoder.verify_hashes = !options.no_hashes;
+  options.decoder.skip_damaged_units = options.conceals;
   options.decoder.forward_only = options.frames.empty() && options.html.output.empty();
   return rlpc::after_standard_output("rlpcdec", decode(options), rlpc::kExitIo);
 } catch (const std::bad_alloc&) {

@@ -60,7 +60,7 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
 InputResult<std::unique_ptr<FrameSource>> open_listed(
     InputResult<std::vector<std::string>> paths, const InputOptions& options) {
   if (!paths) return paths.error();
-  return open_mesh_sequence(std::move(*paths), options.frame_rate, options.max_memory_bytes);
+  return open_mesh_sequence(std::move(*paths), options);
 }
 
 bool is_stream(const std::string& path) {
@@ -92,7 +92,7 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
                         ": a point cache has no triangles; give its mesh as the input and the "
                         "cache with --points"};
     default:
-      return open_mesh_sequence({path}, options.frame_rate, options.max_memory_bytes);
+      return open_mesh_sequence({path}, options);
   }
 }
 
@@ -103,8 +103,7 @@ InputResult<std::unique_ptr<FrameSource>> open_with_its_axes(const InputOptions&
   if (!options.points.empty()) {
     const InputFormat* const format = format_of(options.points);
     const bool known = format != nullptr && format->open_points != nullptr;
-    return (known ? format->open_points : open_point_cache)(
-        path, options.points, options.frame_rate, options.max_memory_bytes);
+    return (known ? format->open_points : open_point_cache)(options);
   }
   if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
   // A file with exactly this name takes precedence over a pattern.

@@ -127,7 +127,7 @@ struct InputOptions {
   std::optional<FrameRate> frame_rate;
   std::string animation{};     // glTF only: name, index from 0, or "all"; empty: the first
   bool weld = true;            // glTF only: merge vertices that coincide in every frame
-  bool textures = true;        // glTF only: include images in the asset
+  bool textures = true;        // glTF and OBJ: include images in the asset
   std::optional<Axes> axes{};  // to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;

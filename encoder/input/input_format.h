@@ -32,9 +32,8 @@ struct InputFormat {
   // name: for error messages.
   InputResult<SingleMesh> (*parse)(std::string_view text, const std::string& name,
                                    const MeshLimit& limit) = nullptr;
-  InputResult<std::unique_ptr<FrameSource>> (*open_points)(
-      const std::string& mesh_path, const std::string& points_path,
-      const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) = nullptr;
+  InputResult<std::unique_ptr<FrameSource>> (*open_points)(const InputOptions& options) =
+      nullptr;
 };
 
 // The most reliably recognised formats come first.

@@ -40,13 +40,14 @@ FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual) {
   FrameSource::Shape shape;
-  shape.memory_bytes =
-      12 * std::uint64_t{mesh.triangles.size()} + mesh.attributes.memory_bytes();
+  shape.memory_bytes = 12 * std::uint64_t{mesh.triangles.size()} +
+                       mesh.attributes.memory_bytes() + mesh.asset.size();
   shape.num_vertices = static_cast<std::uint32_t>(mesh.xyz.size() / 3);
   shape.num_frames = num_frames;
   shape.frame_rate = frame_rate.value_or(mesh.frame_rate.value_or(usual));
   shape.triangles = std::move(mesh.triangles);
   shape.attributes = std::move(mesh.attributes);
+  shape.asset = std::move(mesh.asset);
   shape.materials = std::move(mesh.materials);
   shape.notes = std::move(mesh.notes);
   shape.files = std::move(mesh.material_files);

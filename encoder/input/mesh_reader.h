@@ -16,8 +16,9 @@ struct SingleMesh {
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
   SourceAttributes attributes{};        // of the triangles
   SourceMaterials materials{};
+  std::string asset{};                        // as FrameSource::asset()
   std::string material_library{};             // as OBJ files name .mtl files
-  std::vector<std::string> material_files{};  // those that have been read
+  std::vector<std::string> material_files{};  // those that have been read, and their images
   std::vector<std::string> notes{};           // about dropped data
 
   // Of what grows while a file is read.

@@ -46,9 +46,10 @@ INPUT is one of
 
 The format is taken from the extension, otherwise detected from the contents.
 
-Texture coordinates, normals and colours of OBJ and PLY files are kept, and the
-number of the material of each triangle. A sequence has those of its first file,
-a point cache those of its mesh. Vertices are not split along seams.
+Texture coordinates, normals, colours and materials of OBJ and PLY files are
+kept, of .mtl files with their PNG and JPEG images (map_Kd, map_Ke, norm) if
+these are in the folder of the mesh or below. A sequence has those of its first
+file, a point cache those of its mesh. Vertices are not split along seams.
 
 Qualities
   word               KG error   mean normal deviation
@@ -88,7 +89,8 @@ N - 1 greatest depths, --layer-groups N of vertex layers: frames and details
 that rlpcinfo --extract can remove.
 
 --up-axis and --metres-per-unit become upAxis and metersPerUnit of the metadata,
-as USD names them. They say what the positions of OUT are; --axes turns them.
+as USD names them; from glTF they come by themselves: Y and 1. They say what the
+positions of OUT are; --axes turns them.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";

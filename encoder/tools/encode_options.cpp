@@ -154,15 +154,23 @@ std::optional<InputError> read_metadata(const EncodeCommandLine& line) {
 
 // What is noted of axes and unit, with the names that USD has for them, in the metadata.
 std::optional<InputError> note_units(const EncodeCommandLine& line) {
-  if (line.up_axis.empty() && !line.metres_per_unit) return std::nullopt;
+  const EncodeOptions& o = line.options;
+  const bool is_given = !line.up_axis.empty() || line.metres_per_unit.has_value();
+  // glTF is always in metres, with Y up. (A pipe must not be read to find out what it is.)
+  const bool is_known = o.input.path != "-" && has_clips(o.input) && !o.input.axes &&
+                        !o.settings.attributes.dropped;
+  if (!is_given && !is_known) return std::nullopt;
   std::string& metadata = line.options.settings.metadata;
   auto json = metadata.empty() ? nlohmann::ordered_json::object()
                                : nlohmann::ordered_json::parse(metadata);
   if (!json.is_object()) {
+    if (!is_given) return std::nullopt;
     return InputError{
         line.metadata_path +
         ": expected a JSON object, for --up-axis and --metres-per-unit to add to"};
   }
+  if (is_known && !json.contains("upAxis")) json["upAxis"] = "Y";
+  if (is_known && !json.contains("metersPerUnit")) json["metersPerUnit"] = 1;
   if (!line.up_axis.empty()) json["upAxis"] = line.up_axis == "y" ? "Y" : "Z";
   if (line.metres_per_unit) json["metersPerUnit"] = *line.metres_per_unit;
   metadata = json.dump();

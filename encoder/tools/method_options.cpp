@@ -10,7 +10,7 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   AttributeSettings& a = line.options.settings.attributes;
   app.add_flag("--no-attributes", a.dropped, "Positions and triangles alone")->group(group);
   add_off_switch(app, "--no-textures", line.options.input.textures,
-                 "glTF: leave images out of the materials")
+                 "Leave images out of the materials")
       ->group(group);
   app.add_option("--uv-bits", a.uv_bits,
                  "Texture coordinates in steps of 1/2^N of an image (default: 12)")

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,12 +11,9 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
+#include "decoder/output/stream_asset.h"
 
 namespace rlpc {
-
-// Members stay in order, and numbers are 32-bit floats, as short as they can be.
-using GltfJson = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool,
-                                      std::int64_t, std::uint64_t, float>;
 
 // The binary chunk, in an unnamed temporary file: the JSON chunk precedes it, but is known only
 // at the end.

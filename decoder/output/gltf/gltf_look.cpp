@@ -5,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "common/io/binary_numbers.h"
-
 namespace rlpc {
 namespace {
 
@@ -33,7 +31,8 @@ std::string semantic_of(const AttributeHeader& header) {
 }  // namespace
 
 GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles,
-                   std::uint32_t num_vertices, const std::string& asset) {
+                   std::uint32_t num_vertices, const std::string& asset)
+    : asset_(asset) {
   Vector<const AttributeSet*> split;
   std::vector<std::string> semantics;
   for (const AttributeSet& set : sets) {
@@ -51,7 +50,6 @@ GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triang
     const std::uint32_t width = number_components(drawn_->sets()[s]->header);
     values_.push_back({semantics[s], width, drawn_->numbers(s)});
   }
-  read_asset(asset);
   make_parts(sets, drawn_->vertices().triangles);
 }
 
@@ -67,7 +65,7 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   const AttributeSet* const material = of_triangles("material");
   const AttributeSet* const part = of_triangles("part");
   const std::size_t num_materials =
-      asset_.contains("materials") ? asset_["materials"].size() : 0;
+      asset_.root().contains("materials") ? asset_.root()["materials"].size() : 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> found;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t p = part != nullptr ? part->values[t] : 0;
@@ -80,42 +78,26 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
 }
 
-// The chunks of a GLB.
-void GltfLook::read_asset(const std::string& asset) {
-  constexpr std::size_t kHeaderBytes = 12;
-  constexpr std::size_t kChunkBytes = 8;
-  if (asset.empty()) return;
-  problem_ = "the stream's materials are not a GLB; they are left out";
-  if (!asset.starts_with("glTF") || asset.size() < kHeaderBytes + kChunkBytes) return;
-  std::string json;
-  for (std::size_t at = kHeaderBytes; at + kChunkBytes <= asset.size();) {
-    const std::uint64_t size = load_u32(asset, at);
-    if (size > asset.size() - at - kChunkBytes) return;
-    const std::string kind = asset.substr(at + 4, 4);
-    (kind == "JSON" ? json : asset_bytes_) = asset.substr(at + kChunkBytes, size);
-    at += kChunkBytes + size;
-  }
-  asset_ = GltfJson::parse(json, nullptr, false);
-  const auto is_array = [&](const char* key) {
-    return !asset_.contains(key) || asset_[key].is_array();
-  };
-  bool is_good = asset_.is_object() && !asset_.is_discarded();
-  for (const char* const key : {"materials", "textures", "samplers", "images", "bufferViews",
-                                "extensionsUsed", "extensionsRequired"}) {
-    is_good = is_good && is_array(key);
-  }
-  if (!is_good) {
-    asset_ = nullptr;
-    return;
-  }
-  problem_.clear();
-}
-
 void GltfLook::add_attributes(std::span<const float> xyz, GltfJson& attributes,
                               GltfBuffers& buffers) const {
   if (has_normals()) attributes["NORMAL"] = buffers.add_normals(normals(xyz));
   for (const Values& values : values_) {
     attributes[values.semantic] = buffers.add_vertex_values(values.numbers, values.width);
+  }
+}
+
+// Images of the same view share it here, too.
+void GltfLook::add_images(GltfJson& images, GltfBuffers& buffers) const {
+  std::map<std::uint64_t, std::uint32_t> added;
+  for (GltfJson& image : images) {
+    const auto view = asset_.view_of(image);
+    if (!view) {
+      if (image.is_object()) image.erase("bufferView");
+      continue;
+    }
+    const auto [place, is_new] = added.try_emplace(*view, 0);
+    if (is_new) place->second = buffers.add_image(asset_.view_bytes(*view));
+    image["bufferView"] = place->second;
   }
 }
 
@@ -133,43 +115,21 @@ std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
 
 void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
   root["materials"] = GltfJson::array();
-  if (asset_.is_object()) {
-    for (const char* const key : {"materials", "textures", "samplers", "images"}) {
-      if (asset_.contains(key)) root[key] = asset_[key];
-    }
-    for (const char* const key : {"extensionsUsed", "extensionsRequired"}) {
-      if (!asset_.contains(key)) continue;
-      for (const GltfJson& name : asset_[key]) root[key].push_back(name);
-    }
-    if (root.contains("images")) {
-      for (GltfJson& image : root["images"]) {
-        if (!image.is_object() || !image.contains("bufferView")) continue;
-        image["bufferView"] = buffers.add_image(image_bytes(image["bufferView"]));
-      }
-    }
+  const GltfJson& asset = asset_.root();
+  for (const char* const key : {"materials", "textures", "samplers", "images"}) {
+    if (asset.contains(key)) root[key] = asset[key];
   }
+  for (const char* const key : {"extensionsUsed", "extensionsRequired"}) {
+    if (!asset.contains(key)) continue;
+    for (const GltfJson& name : asset[key]) root[key].push_back(name);
+  }
+  if (root.contains("images")) add_images(root["images"], buffers);
   // Triangles without a material that is there have the last one.
   const std::size_t count = root["materials"].size();
   const bool needs_plain =
       std::any_of(mesh_.parts.begin(), mesh_.parts.end(),
                   [&](const GltfMesh::Part& part) { return part.material >= count; });
   if (needs_plain) root["materials"].push_back(plain_materials()[0]);
-}
-
-// The bytes of a view of the asset; empty if it has none.
-std::string GltfLook::image_bytes(const GltfJson& number) const {
-  const auto size_of = [](const GltfJson& view, const char* key) -> std::uint64_t {
-    return view.contains(key) && view[key].is_number_unsigned() ? view[key].get<std::uint64_t>()
-                                                                : 0;
-  };
-  if (!number.is_number_unsigned() || !asset_.contains("bufferViews")) return "";
-  const GltfJson& views = asset_["bufferViews"];
-  if (number.get<std::uint64_t>() >= views.size()) return "";
-  const GltfJson& view = views[number.get<std::uint64_t>()];
-  const std::uint64_t offset = size_of(view, "byteOffset");
-  const std::uint64_t size = size_of(view, "byteLength");
-  if (offset > asset_bytes_.size() || size > asset_bytes_.size() - offset) return "";
-  return asset_bytes_.substr(offset, size);
 }
 
 }  // namespace rlpc

@@ -34,7 +34,7 @@ class GltfLook {
   // Sets materials, textures and what they need.
   void add_materials(GltfJson& root, GltfBuffers& buffers) const;
   // Why the asset was left out; empty: it was not.
-  const std::string& problem() const { return problem_; }
+  const std::string& problem() const { return asset_.problem(); }
 
  private:
   struct Values {
@@ -43,16 +43,13 @@ class GltfLook {
     std::vector<float> numbers;  // of output vertices
   };
 
-  std::string image_bytes(const GltfJson& number) const;
-  void read_asset(const std::string& asset);
+  void add_images(GltfJson& images, GltfBuffers& buffers) const;
   void make_parts(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles);
 
+  StreamAsset asset_;
   std::unique_ptr<DrawnMesh> drawn_;
   GltfMesh mesh_;
   std::vector<Values> values_;
-  GltfJson asset_;           // null: none
-  std::string asset_bytes_;  // its binary chunk
-  std::string problem_;
 };
 
 }  // namespace rlpc

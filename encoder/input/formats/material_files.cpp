@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/messages.h"
+#include "encoder/input/formats/material_asset.h"
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/input_file.h"
 
@@ -15,16 +17,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whether a name leads to a place in or below the folder, also where it is a link.
-bool stays_below(const fs::path& folder, const fs::path& name) {
-  if (!name.is_relative() || std::find(name.begin(), name.end(), "..") != name.end()) {
-    return false;
+// Never empty, so that no file in it is "-", which is standard input.
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+// Whether the asset has a use for an image that an .mtl file names.
+bool is_kept_texture(std::string_view mtl, std::string_view name) {
+  for (TextWords words(mtl); !words.at_end(); words.next_line()) {
+    const std::string_view keyword = words.next();
+    if (keyword != "map_Kd" && keyword != "map_Ke" && keyword != "norm") continue;
+    std::string_view last;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) last = word;
+    if (last == name) return true;
   }
-  std::error_code missing;
-  const fs::path real = fs::canonical(folder / name, missing);
-  if (missing) return true;
-  const fs::path way = real.lexically_relative(fs::canonical(folder, missing));
-  return !way.empty() && *way.begin() != "..";
+  return false;
 }
 
 // "mtllib a.mtl b.mtl", or one name with blanks.
@@ -41,9 +49,7 @@ std::vector<std::string> library_names(const std::string& words, const fs::path&
 
 void read_libraries(const std::string& path, std::uint64_t max_memory_bytes, SingleMesh& mesh) {
   if (mesh.material_library.empty() || path == "-") return;
-  const fs::path of_mesh = fs::path(path).parent_path();
-  // With its folder, so that it is never "-", which is standard input.
-  const fs::path folder = of_mesh.empty() ? fs::path(".") : of_mesh;
+  const fs::path folder = folder_of(path);
   for (const std::string& name : library_names(mesh.material_library, folder)) {
     if (!stays_below(folder, name)) {
       mesh.notes.push_back("does not read " + rlpc::quoted(name) +
@@ -66,19 +72,30 @@ void read_libraries(const std::string& path, std::uint64_t max_memory_bytes, Sin
   }
 }
 
+// Images of other uses than the asset has.
 void note_what_is_dropped(SingleMesh& mesh) {
-  const SourceMaterials& materials = mesh.materials;
-  const auto count = [](std::size_t n, const std::string& what) {
-    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-  };
   std::string dropped;
-  if (!materials.names.empty()) dropped = count(materials.names.size(), "material");
-  if (!materials.textures.empty()) {
-    dropped += (dropped.empty() ? "" : ", ") + count(materials.textures.size(), "texture");
+  std::size_t count = 0;
+  for (const std::string& texture : mesh.materials.textures) {
+    if (is_kept_texture(mesh.materials.mtl, texture)) continue;
+    dropped += (dropped.empty() ? "" : ", ") + printable(texture);
+    ++count;
   }
-  if (dropped.empty()) return;
-  mesh.notes.push_back("dropped: " + dropped +
-                       "; of materials, only their numbers at the triangles are kept");
+  if (count == 0) return;
+  mesh.notes.push_back("dropped: " + std::to_string(count) +
+                       (count == 1 ? " texture (" : " textures (") + dropped +
+                       "); only those of map_Kd, map_Ke and norm are kept");
+}
+
+void make_asset(const std::string& path, bool textures, std::uint64_t max_memory_bytes,
+                SingleMesh& mesh) {
+  const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
+  // Images are held up to three times while the asset is made.
+  const std::uint64_t left = (max_memory_bytes - std::min(held, max_memory_bytes)) / 3;
+  MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), textures, left);
+  mesh.asset = std::move(made.glb);
+  for (std::string& file : made.files) mesh.material_files.push_back(std::move(file));
+  for (std::string& note : made.notes) mesh.notes.push_back(std::move(note));
 }
 
 }  // namespace
@@ -99,12 +116,25 @@ std::vector<std::string> textures_of(std::string_view mtl) {
   return textures;
 }
 
-InputResult<SingleMesh> read_mesh_and_materials(const std::string& path,
+// Whether a name leads to a place in or below the folder, also where it is a link.
+bool stays_below(const fs::path& folder, const fs::path& name) {
+  if (!name.is_relative() || std::find(name.begin(), name.end(), "..") != name.end()) {
+    return false;
+  }
+  std::error_code missing;
+  const fs::path real = fs::canonical(folder / name, missing);
+  if (missing) return true;
+  const fs::path way = real.lexically_relative(fs::canonical(folder, missing));
+  return !way.empty() && *way.begin() != "..";
+}
+
+InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
                                                 std::uint64_t max_memory_bytes) {
   auto mesh = read_mesh(path, max_memory_bytes);
   if (!mesh) return mesh;
   read_libraries(path, max_memory_bytes, *mesh);
-  note_what_is_dropped(*mesh);
+  make_asset(path, textures, max_memory_bytes, *mesh);
+  if (textures) note_what_is_dropped(*mesh);
   return mesh;
 }
 

@@ -287,18 +287,17 @@ InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& patte
   return paths;
 }
 
-InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
-    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
-    std::uint64_t max_memory_bytes) {
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(std::vector<std::string> paths,
+                                                             const InputOptions& options) {
   assert(!paths.empty());
-  auto first = read_mesh_and_materials(paths[0], max_memory_bytes);
+  auto first = read_mesh_and_materials(paths[0], options.textures, options.max_memory_bytes);
   if (!first) return first.error();
   auto shape =
-      shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), frame_rate);
+      shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), options.frame_rate);
   for (std::string& note : notes_on(paths)) shape.notes.push_back(std::move(note));
   shape.files.insert(shape.files.begin(), paths.begin(), paths.end());
-  return std::unique_ptr<FrameSource>(
-      std::make_unique<MeshSequence>(std::move(shape), std::move(paths), max_memory_bytes));
+  return std::unique_ptr<FrameSource>(std::make_unique<MeshSequence>(
+      std::move(shape), std::move(paths), options.max_memory_bytes));
 }
 
 }  // namespace rlpc

@@ -24,8 +24,7 @@ bool natural_less(std::string_view a, std::string_view b);
 // One file per frame, at least one. The first is read now, the others on demand; their vertex
 // counts and triangles must equal those of the first. Attributes are those of the first; a note
 // is added if others than normals differ in a later file.
-InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(
-    std::vector<std::string> paths, const std::optional<FrameRate>& frame_rate,
-    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(std::vector<std::string> paths,
+                                                             const InputOptions& options);
 
 }  // namespace rlpc

@@ -39,6 +39,15 @@ std::string_view TextWords::next_of_any_line() {
   return word;
 }
 
+std::string TextWords::rest_of_words() {
+  std::string text;
+  for (std::string_view word = next(); !word.empty(); word = next()) {
+    if (!text.empty()) text += ' ';
+    text += word;
+  }
+  return text;
+}
+
 std::string_view TextWords::rest() {
   const std::size_t first = pos_;
   while (pos_ < text_.size() && !is_line_end(text_[pos_])) ++pos_;

@@ -21,6 +21,8 @@ class TextWords {
   std::string_view next();
   // The next word of this or a later line; empty at the end.
   std::string_view next_of_any_line();
+  // The words that are left of this line, with a blank between them.
+  std::string rest_of_words();
   // The rest of this line, including any comment.
   std::string_view rest();
   void next_line();

@@ -144,24 +144,15 @@ class ObjParser {
         push(read_float("a normal needs three coordinates"), attributes_.normals());
       }
     } else if (keyword == "usemtl") {
-      attributes_.set_material(rest_of_words());
+      attributes_.set_material(words_.rest_of_words());
     } else if (keyword == "o") {
-      attributes_.set_object(rest_of_words());
+      attributes_.set_object(words_.rest_of_words());
     } else if (keyword == "g") {
-      attributes_.set_group(rest_of_words());
+      attributes_.set_group(words_.rest_of_words());
     } else if (keyword == "mtllib" && mesh_.material_library.empty()) {
-      mesh_.material_library = rest_of_words();
+      mesh_.material_library = words_.rest_of_words();
     }
     if (!limit_.leaves_room_for(*this, 0)) fail_for_memory();
-  }
-
-  std::string rest_of_words() {
-    std::string text;
-    for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
-      if (!text.empty()) text += ' ';
-      text += word;
-    }
-    return text;
   }
 
   // Reads "f a b c ..." as a fan from the first corner.

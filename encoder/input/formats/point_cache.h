@@ -21,10 +21,7 @@ namespace rlpc {
 
 // PC2 is recognised by its signature, MDD by its extension. Other files, and standard input,
 // are MDD if the header matches the mesh and the file size.
-InputResult<std::unique_ptr<FrameSource>> open_point_cache(
-    const std::string& mesh_path, const std::string& points_path,
-    const std::optional<FrameRate>& frame_rate,
-    std::uint64_t max_memory_bytes = kUsualEncoderBytes);
+InputResult<std::unique_ptr<FrameSource>> open_point_cache(const InputOptions& options);
 
 // From a pipe, frame by frame; see open_frame_stream().
 InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(

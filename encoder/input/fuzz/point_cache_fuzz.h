@@ -28,7 +28,10 @@ inline void read_point_cache(const std::uint8_t* data, std::size_t size,
   const std::string link = kLink + extension;
   std::filesystem::remove(link);
   std::filesystem::create_symlink(points.path(), link);
-  const auto source = open_point_cache(mesh.path(), link, std::nullopt);
+  InputOptions options;
+  options.path = mesh.path();
+  options.points = link;
+  const auto source = open_point_cache(options);
   if (source) read_all_frames(**source);
   std::filesystem::remove(link);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "common/io/binary_numbers.h"
+#include "encoder/input/glb_asset.h"
 
 namespace rlpc {
 namespace {
@@ -32,13 +32,6 @@ void find_extensions(const Json& value, std::vector<std::string>& found) {
     for (const auto& [name, unused] : value["extensions"].items()) found.push_back(name);
   }
   for (const Json& member : value) find_extensions(member, found);
-}
-
-std::string type_of_image(const std::string& bytes) {
-  if (bytes.starts_with("\x89PNG")) return "image/png";
-  if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
-  if (bytes.starts_with("\xABKTX 20")) return "image/ktx2";
-  return bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0 ? "image/webp" : "";
 }
 
 class AssetMaker {
@@ -71,17 +64,12 @@ class AssetMaker {
       auto bytes = read_image(image, "images[" + std::to_string(i) + "]");
       if (!bytes) continue;
       if (!memory_.take("images", 2 * bytes->size())) return;
-      binary_.resize((binary_.size() + 3) / 4 * 4);
-      out_["bufferViews"].push_back(
-          {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes->size()}});
       image.erase("uri");
-      image["bufferView"] = out_["bufferViews"].size() - 1;
+      image["bufferView"] = made_.add_view(*bytes);
       if (!image.contains("mimeType") && !type_of_image(*bytes).empty()) {
         image["mimeType"] = type_of_image(*bytes);
       }
-      binary_ += *bytes;
     }
-    if (!binary_.empty()) out_["buffers"] = {{{"byteLength", binary_.size()}}};
   }
 
   // None: it is left as it is, and a note says why.
@@ -164,33 +152,20 @@ class AssetMaker {
         }
       }
     }
-    out_["asset"] = {{"version", "2.0"}};
+    Json about = {{"version", "2.0"}};
     const Json& asset = root_["asset"];
     for (const char* const key : {"copyright", "generator"}) {
-      if (asset.contains(key)) out_["asset"][key] = asset[key];
+      if (asset.contains(key)) about[key] = asset[key];
     }
-    std::string text = out_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    binary_.resize((binary_.size() + 3) / 4 * 4);
-    const std::size_t size = 12 + 8 + text.size() + (binary_.empty() ? 0 : 8 + binary_.size());
-    std::string file = "glTF";
-    append_u32(file, 2);
-    append_u32(file, static_cast<std::uint32_t>(size));
-    append_u32(file, static_cast<std::uint32_t>(text.size()));
-    file += "JSON" + text;
-    if (!binary_.empty()) {
-      append_u32(file, static_cast<std::uint32_t>(binary_.size()));
-      file += std::string("BIN\0", 4) + binary_;
-    }
-    return file;
+    return made_.glb(std::move(about));
   }
 
   const Json& root_;
   const GltfModel& model_;
   GltfFile& file_;
   GltfMemory& memory_;
-  Json out_ = Json::object();
-  std::string binary_;
+  GlbAsset made_;
+  Json& out_ = made_.root;
   std::vector<std::string> notes_;
   std::vector<std::string> files_;
 };

@@ -1,0 +1,208 @@
+#include "encoder/input/formats/material_asset.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "common/io/messages.h"
+#include "encoder/input/formats/material_files.h"
+#include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/glb_asset.h"
+#include "encoder/input/input_file.h"
+
+namespace rlpc {
+namespace {
+
+using Json = nlohmann::json;
+using Colour = std::array<double, 3>;
+
+// What an .mtl file says of a material.
+struct Mtl {
+  std::optional<Colour> base;  // Kd, taken as linear
+  std::optional<Colour> emission;
+  std::optional<double> opacity;
+  std::optional<double> roughness;
+  std::optional<double> metalness;
+  std::string base_image;
+  std::string emission_image;
+  std::string normal_image;
+};
+
+std::optional<double> number_of(TextWords& words) {
+  const std::string word(words.next());
+  char* end = nullptr;
+  const double value = std::strtod(word.c_str(), &end);
+  if (word.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+double within_unit(double x) { return std::clamp(x, 0.0, 1.0); }
+
+std::optional<double> factor_of(TextWords& words) {
+  const auto value = number_of(words);
+  return value ? std::optional(within_unit(*value)) : std::nullopt;
+}
+
+// "Kd 0.8": the same for all three.
+std::optional<Colour> colour_of(TextWords& words) {
+  const auto red = factor_of(words);
+  if (!red) return std::nullopt;
+  const auto green = factor_of(words);
+  const auto blue = factor_of(words);
+  return Colour{*red, green.value_or(*red), blue.value_or(*red)};
+}
+
+// After the options. (Names with blanks are not distinguished from options.)
+std::string image_of(TextWords& words) {
+  std::string_view name;
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) name = word;
+  return std::string(name);
+}
+
+void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
+  if (keyword == "Kd") {
+    material.base = colour_of(words);
+  } else if (keyword == "Ke") {
+    material.emission = colour_of(words);
+  } else if (keyword == "d") {
+    material.opacity = factor_of(words);
+  } else if (keyword == "Tr") {
+    if (const auto clear = factor_of(words)) material.opacity = 1.0 - *clear;
+  } else if (keyword == "Pr") {
+    material.roughness = factor_of(words);
+  } else if (keyword == "Pm") {
+    material.metalness = factor_of(words);
+  } else if (keyword == "Ns" && !material.roughness) {
+    // Of a Blinn-Phong highlight that is as wide.
+    const auto exponent = number_of(words);
+    if (exponent) material.roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));
+  } else if (keyword == "map_Kd") {
+    material.base_image = image_of(words);
+  } else if (keyword == "map_Ke") {
+    material.emission_image = image_of(words);
+  } else if (keyword == "norm") {
+    material.normal_image = image_of(words);
+  }
+}
+
+std::map<std::string, Mtl, std::less<>> read_mtl(const std::string& text) {
+  std::map<std::string, Mtl, std::less<>> all;
+  Mtl* material = nullptr;
+  for (TextWords words(text); !words.at_end(); words.next_line()) {
+    const std::string_view keyword = words.next();
+    if (keyword == "newmtl") {
+      material = &all[words.rest_of_words()];
+    } else if (material != nullptr) {
+      read_line(keyword, words, *material);
+    }
+  }
+  return all;
+}
+
+class AssetMaker {
+ public:
+  AssetMaker(const std::string& folder, bool textures, std::uint64_t max_bytes)
+      : folder_(folder), textures_(textures), max_bytes_(max_bytes) {}
+
+  MaterialAsset make(const SourceMaterials& materials) {
+    const auto described = read_mtl(materials.mtl);
+    const bool describes = std::any_of(
+        materials.names.begin(), materials.names.end(),
+        [&](const std::string& name) { return described.find(name) != described.end(); });
+    // A name alone tells nothing apart.
+    if (!describes && materials.names.size() < 2 && materials.part_names.size() < 2) return {};
+    for (const std::string& name : materials.names) {
+      const auto found = described.find(name);
+      Json material = found == described.end() ? Json::object() : json_of(found->second);
+      material["name"] = name;
+      asset_.root["materials"].push_back(std::move(material));
+    }
+    for (const std::string& name : materials.part_names) {
+      asset_.root["nodes"].push_back({{"name", name}});
+    }
+    if (!asset_.root.empty()) made_.glb = asset_.glb({{"version", "2.0"}});
+    return std::move(made_);
+  }
+
+ private:
+  // OBJ files know no culling, and metals only by an extension.
+  Json json_of(const Mtl& mtl) {
+    Json pbr = {{"metallicFactor", mtl.metalness.value_or(0.0)}};
+    if (mtl.roughness) pbr["roughnessFactor"] = *mtl.roughness;
+    Json material = {{"doubleSided", true}};
+    if (const Json image = texture(mtl.base_image); !image.is_null()) {
+      pbr["baseColorTexture"] = image;
+    }
+    // Kd beside a texture is seldom meant as a factor.
+    const Colour white{1.0, 1.0, 1.0};
+    const Colour base = pbr.contains("baseColorTexture") ? white : mtl.base.value_or(white);
+    const double opacity = mtl.opacity.value_or(1.0);
+    if (base != white || opacity < 1.0) {
+      pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
+    }
+    if (opacity < 1.0) material["alphaMode"] = "BLEND";
+    const Json glow = texture(mtl.emission_image);
+    if (!glow.is_null()) material["emissiveTexture"] = glow;
+    const Colour black{};
+    const Colour emission = mtl.emission.value_or(glow.is_null() ? black : white);
+    if (emission != black) material["emissiveFactor"] = emission;
+    if (const Json image = texture(mtl.normal_image); !image.is_null()) {
+      material["normalTexture"] = image;
+    }
+    material["pbrMetallicRoughness"] = std::move(pbr);
+    return material;
+  }
+
+  // Null: there is no such image.
+  Json texture(const std::string& name) {
+    if (name.empty() || !textures_) return nullptr;
+    const auto [place, is_new] = textures_of_names_.try_emplace(name, nullptr);
+    if (is_new) place->second = add_texture(name);
+    return place->second;
+  }
+
+  Json add_texture(const std::string& name) {
+    const auto leave_out = [&](const std::string& why) {
+      made_.notes.push_back("texture " + rlpc::quoted(name) + " is not carried: " + why);
+      return Json();
+    };
+    // As Windows writes it.
+    std::string file = name;
+    std::replace(file.begin(), file.end(), '\\', '/');
+    if (!stays_below(folder_, file)) return leave_out("it is not in the folder of the mesh");
+    const std::string path = (std::filesystem::path(folder_) / file).string();
+    auto bytes = read_whole_file(path, max_bytes_);
+    if (!bytes) return leave_out(bytes.error().message);
+    const std::string type = type_of_image(*bytes);
+    if (type != "image/png" && type != "image/jpeg") {
+      return leave_out("it is neither PNG nor JPEG");
+    }
+    max_bytes_ -= bytes->size();
+    made_.files.push_back(path);
+    asset_.root["images"].push_back(
+        {{"bufferView", asset_.add_view(*bytes)}, {"mimeType", type}});
+    asset_.root["textures"].push_back({{"source", asset_.root["images"].size() - 1}});
+    return {{"index", asset_.root["textures"].size() - 1}};
+  }
+
+  std::string folder_;
+  bool textures_;
+  std::uint64_t max_bytes_;
+  GlbAsset asset_;
+  MaterialAsset made_;
+  std::map<std::string, Json, std::less<>> textures_of_names_;
+};
+
+}  // namespace
+
+MaterialAsset make_material_asset(const SourceMaterials& materials, const std::string& folder,
+                                  bool textures, std::uint64_t max_bytes) {
+  return AssetMaker(folder, textures, max_bytes).make(materials);
+}
+
+}  // namespace rlpc

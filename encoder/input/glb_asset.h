@@ -1,0 +1,29 @@
+// A GLB without geometry in the making: the asset of a stream (7.16).
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace rlpc {
+
+class GlbAsset {
+ public:
+  // Without asset, bufferViews and buffers.
+  nlohmann::json root = nlohmann::json::object();
+
+  // Adds bytes to the binary chunk; returns the number of their view.
+  std::size_t add_view(const std::string& bytes);
+  std::size_t binary_bytes() const { return binary_.size(); }
+  // The whole file; `asset` has at least a version.
+  std::string glb(nlohmann::json asset);
+
+ private:
+  nlohmann::json views_ = nlohmann::json::array();
+  std::string binary_;
+};
+
+// "image/png" and others of glTF and its extensions; empty: of another type.
+std::string type_of_image(const std::string& bytes);
+
+}  // namespace rlpc
