@@ -305,6 +305,28 @@ class ObjAttributes(AttributesTest):
                    "--quiet", "-o", self.path("b.obj"))
         self.assertEqual(self.path("b.obj").read_bytes(), self.path("plain.obj").read_bytes())
 
+    def test_cuts_keep_those_that_do_not_need_the_first_frame(self):
+        source, cut = self.sequence(), self.path("cut.rlpc")
+        for options, stay in (((), False), (("--component-groups", 2), True)):
+            stream = self.encode_to("a.rlpc", source, *options)
+            said = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", cut).out.decode()
+            self.assertEqual("attributes are dropped: " in said, not stay)
+            report = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", cut, "--json").json()
+            self.assertEqual(report["attributes_dropped"], not stay)
+            self.ok("rlpcval", cut)
+            self.ok("rlpcdec", cut, "-o", self.path("out/%04d.obj"))
+            found = Mesh(self.path("out/0000.obj"))
+            if stay:
+                self.expect_same_uv(found, Mesh(source / "tube_0.obj"))
+            else:
+                self.assertEqual({uv for uv, _ in found.corners().values()}, {None})
+            shutil.rmtree(self.path("out"))
+            # Nothing is cut.
+            self.ok("rlpcinfo", stream, "--extract", "components=9999", "-o", cut)
+            self.ok("rlpcdec", cut, "-o", self.path("out/%04d.obj"))
+            self.expect_same_uv(Mesh(self.path("out/0000.obj")), Mesh(source / "tube_0.obj"))
+            shutil.rmtree(self.path("out"))
+
     def test_rlpcinfo_lists_them(self):
         self.path("a.obj").write_text(obj_text())
         stream = self.encode_to("a.rlpc", self.path("a.obj"))

@@ -17,7 +17,7 @@ import spec_program  # noqa: E402
 import specdec  # noqa: E402
 
 STREAM_HEADER_BYTES, UNIT_BYTES = 10, 9  # header and CRC
-GOF, GOF_INDEX, GOF_HASH, END = 4, 129, 130, 5
+GOF, GOF_INDEX, GOF_HASH, ATTRIBUTES, END = 4, 129, 130, 136, 5
 SLICES = 6, 8  # slice and frame units
 
 
@@ -115,8 +115,12 @@ class Cutting(CutTest):
                              entry["bytes"] + sum(s["bytes"] for s in slices))
         before, after = units_of(path.read_bytes()), units_of(cut.read_bytes())
         self.assertEqual(sum(code in SLICES for code, _ in after), sum(map(len, stay)))
+        dropped = [ATTRIBUTES] if report["attributes_dropped"] else []
         self.assertEqual([code for code, _ in after if code not in SLICES],
-                         [code for code, _ in before if code not in SLICES])
+                         [code for code, _ in before if code not in (*SLICES, *dropped)])
+        if dropped:
+            self.assertIn(ATTRIBUTES, [code for code, _ in before])
+            self.assertTrue(report["cut"])
         left = iter(before)
         for unit in after:  # all others keep their order and their bytes
             if unit[0] not in (GOF_INDEX, GOF_HASH, END):

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/bitstream/crc32.h"
+#include "decoder/parse/attributes/parse_attributes.h"
 #include "decoder/parse/sequence/json_text.h"
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/recon/gof_recon.h"
@@ -132,6 +133,9 @@ Result<Bytes> SubStreamExtractor::next_unit() {
       return Bytes{};
     case UnitType::kEndOfSequence:
       return end_of_sequence();
+    case UnitType::kAttributes:
+      open_.reset();
+      return attributes(*unit);
     default:
       open_.reset();
       return copy(*unit);
@@ -142,6 +146,24 @@ Result<Bytes> SubStreamExtractor::copy(const UnitHeader& unit) {
   const auto payload = stream_->units().payload(unit);
   if (!payload) return payload.error();
   return write_unit(unit.type(), *payload);
+}
+
+Result<Bytes> SubStreamExtractor::attributes(const UnitHeader& unit) {
+  const auto payload = stream_->units().payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = stream_->units().bits(unit, *payload);
+  if (!cuts_first_frame() || !attributes_use_positions(r)) return copy(unit);
+  drops_attributes_ = true;
+  return Bytes{};
+}
+
+// In a GOF of frames, no frame depends on one of a deeper layer, and the first is in layer 0.
+bool SubStreamExtractor::cuts_first_frame() const {
+  if (summary_.gofs.empty()) return false;
+  const GofSummary& gof = summary_.gofs.front();
+  SliceCut cut = cut_;
+  if (gof.kind == GofKind::kFrames) cut.max_temporal_layers = SliceCut::kAll;
+  return gof.is_cut_by(cut) || (gof.model && gof.model->is_cut_by(cut));
 }
 
 Result<Bytes> SubStreamExtractor::gof(const UnitHeader& unit) {

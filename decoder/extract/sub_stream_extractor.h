@@ -24,7 +24,8 @@ namespace rlpc {
 // model are dropped, and the GOF index directly before the end of the sequence. Other units are
 // copied in their order, except hash units that follow no GOF (R-HSH-03) and GOF indices
 // elsewhere (R-IDX-04), which are dropped. If no slice is dropped, a conforming stream is
-// copied; only the last index_gof_bytes may grow, to reach the index.
+// copied; only the last index_gof_bytes may grow, to reach the index. Attributes that are
+// predicted from a first frame that the cut changes (R-ATT-08) are dropped.
 class SubStreamExtractor {
  public:
   // Checks the whole stream, including hashes and metadata: damaged streams yield no
@@ -43,6 +44,8 @@ class SubStreamExtractor {
     return summary.totals(summary.groups_that_stay(cut_));
   }
   bool cuts_any() const;
+  // Whether attributes have been dropped so far.
+  bool drops_attributes() const { return drops_attributes_; }
 
   // The next bytes of the output; empty at its end.
   Result<Bytes> next();
@@ -53,6 +56,8 @@ class SubStreamExtractor {
 
   Result<Bytes> next_unit();
   Result<Bytes> copy(const UnitHeader& unit);
+  Result<Bytes> attributes(const UnitHeader& unit);
+  bool cuts_first_frame() const;
   Result<Bytes> model(const UnitHeader& unit);
   Result<Bytes> gof(const UnitHeader& unit);
   Result<Bytes> slice(const UnitHeader& unit);
@@ -91,6 +96,7 @@ class SubStreamExtractor {
   std::size_t num_gofs_ = 0;
   std::size_t num_models_ = 0;
   bool has_index_ = false;
+  bool drops_attributes_ = false;
   std::uint64_t gof_offset_ = 0;
   GofIndexEntries index_;
 };

@@ -83,6 +83,7 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
   const nlohmann::ordered_json json = {{"output", o.output},
                                        {"cut", cutter.cuts_any()},
                                        {"request_met", met},
+                                       {"attributes_dropped", cutter.drops_attributes()},
                                        {"before", size_json(cutter, cutter.size())},
                                        {"after", size_json(cutter, bytes)},
                                        {"models", std::move(models)},
@@ -148,6 +149,11 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
     } else {
       print_cut(o, name, before, after);
     }
+  }
+  if (cutter.drops_attributes()) {
+    std::printf(
+        "  attributes are dropped: they are predicted from positions that the cut changes. "
+        "Streams that\n  rlpcenc --component-groups or --layer-groups has made keep them\n");
   }
   if (!cutter.cuts_any())
     std::printf("  nothing was dropped: no GOF has more than requested\n");

@@ -62,7 +62,7 @@ ROOMS = {
                         "common/parallel", "decoder/parse/attributes",
                         "decoder/parse/sequence/parse_asset.h", "decoder/stream",
                         "decoder/recon"},
-    "decoder/extract": _GOFS | _PARSE | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
+    "decoder/extract": _GOFS | _PARSE | {"decoder/parse/attributes"} | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.

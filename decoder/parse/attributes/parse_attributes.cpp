@@ -237,11 +237,7 @@ std::uint64_t memory_of_set(const AttributeHeader& header, std::uint32_t num_ver
   return (kPerCorner + kPerValue + 8 * header.num_components) * corners;
 }
 
-}  // namespace
-
-Result<CodedAttributes> parse_attributes(BitReader& r, std::uint32_t num_vertices,
-                                         std::span<const Triangle> triangles,
-                                         const MemoryLimit& memory) {
+CodedAttributes parse_headers(BitReader& r) {
   CodedAttributes coded;
   const std::uint32_t count =
       r.ue("num_attribute_sets_minus1", {0, std::int64_t{kMaxAttributeSets} - 1}, "R-ATT-02") +
@@ -249,6 +245,20 @@ Result<CodedAttributes> parse_attributes(BitReader& r, std::uint32_t num_vertice
   for (std::uint32_t s = 0; s < count && !r.error(); ++s) {
     coded.sets.push_back({parse_header(r), {}, {}, {}});
   }
+  return coded;
+}
+
+}  // namespace
+
+bool attributes_use_positions(BitReader& r) {
+  const CodedAttributes coded = parse_headers(r);
+  return !r.error() && coded.uses_positions();
+}
+
+Result<CodedAttributes> parse_attributes(BitReader& r, std::uint32_t num_vertices,
+                                         std::span<const Triangle> triangles,
+                                         const MemoryLimit& memory) {
+  CodedAttributes coded = parse_headers(r);
   if (coded.uses_positions()) coded.first_frame_crc = r.u(32, "first_frame_crc");
   r.byte_alignment();
   if (r.error()) return *r.error();
