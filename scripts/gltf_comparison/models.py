@@ -88,13 +88,13 @@ def kg_of(toolbox, *words):
 
 
 def measure_drawn(source, other):
-    found = soup.match(source, other)
+    found, alternatives = soup.match(source, other)
     return {"kg_error_percent": soup.kg_error_percent(source, other, found),
             "uv_error_steps": soup.uv_error_steps(source, other, found),
             "normals_first_frame": soup.normal_errors_degrees(source, other, found, 0),
             "normals_middle_frame": soup.normal_errors_degrees(source, other, found, 1),
             "same_clip_names": source.clips == other.clips,
-            **dataclasses.asdict(soup.cracks(source, other, found))}
+            **dataclasses.asdict(soup.cracks(source, other, found, alternatives))}
 
 
 class Bench:

@@ -3,7 +3,7 @@
 // What three.js draws of a .glb file: positions and normals of the corners of all triangles, at
 // SAMPLES, a JSON list of [clip, seconds from the first key of the clip]. Writes 64-bit floats:
 //   OUT.positions, OUT.normals   [samples][corners][3]
-//   OUT.uv                       [sets][corners][2]
+//   OUT.uv                       [sets][corners][2], NaN where a mesh has none
 // and to standard output, as JSON: the number of corners, their vertices and materials, whether
 // there are normals, the number of UV sets, the names of clips.
 
@@ -61,8 +61,8 @@ for (const mesh of meshes) {
     const {offset, scale} = uvTransform(material, set);
     const values = attributes[UV_NAMES[set]];
     for (const v of mesh.corners) {
-      uv[set].push(values ? offset[0] + scale[0] * values.getX(v) : 0,
-                   values ? offset[1] + scale[1] * values.getY(v) : 0);
+      uv[set].push(values ? offset[0] + scale[0] * values.getX(v) : NaN,
+                   values ? offset[1] + scale[1] * values.getY(v) : NaN);
     }
   }
   firstVertex += attributes.position.count;

@@ -14,8 +14,10 @@ import measure
 
 HERE = pathlib.Path(__file__).resolve().parent
 UV_STEP = 1 / 4096
-# Vertices nearer than this, in diagonals of the first frame, coincide: rounding of floats.
-COINCIDENT = 1e-6
+# Vertices nearer than this, in diagonals of the first frame, coincide: rounding of sums.
+COINCIDENT = 1e-9
+# RMS distances of triangles that differ by less, in diagonals, do not tell them apart.
+EQUAL = 1e-4
 MOST_CANDIDATES = 8
 
 
@@ -105,13 +107,19 @@ def _squares(a, corners_a, b, corners_b, samples):
 
 
 def _surface_distance(a, corners_a, b, corners_b):
-    """Of texture coordinates, and of normals in the first sample."""
-    pairs = [(p, q, 2) for p, q in zip(a.uv, b.uv)]
-    if a.normals and b.normals:
-        pairs.append((a.normals[0], b.normals[0], 3))
-    return sum(max(abs(p[width * i + c] - q[width * j + c])
-                   for i, j in zip(corners_a, corners_b) for c in range(width))
-               for p, q, width in pairs)
+    """Of texture coordinates, beyond what quantising them does, and then of normals in the first
+    sample."""
+    pairs = list(zip(corners_a, corners_b))
+    uv = max((_largest_difference(p, q, pairs, 2) for p, q in zip(a.uv, b.uv)), default=0.0)
+    normals = (_largest_difference(a.normals[0], b.normals[0], pairs, 3)
+               if a.normals and b.normals else 0.0)
+    return max(uv - 4 * UV_STEP, 0.0), normals
+
+
+def _largest_difference(p, q, pairs, width):
+    """Of values that both have; the others are NaN."""
+    differences = (abs(p[width * i + c] - q[width * j + c]) for i, j in pairs for c in range(width))
+    return max((x for x in differences if not math.isnan(x)), default=0.0)
 
 
 def is_degenerate(soup, triangle):
@@ -122,8 +130,9 @@ def is_degenerate(soup, triangle):
 
 
 def match(source, other):
-    """Per corner of the source, the corner of the other that draws it; -1 for corners of degenerate
-    triangles. Each triangle goes to the one whose corners move most alike; among those that move
+    """(`found`: per corner of the source, the corner of the other that draws it, -1 for corners of
+    degenerate triangles; `alternatives`: per triangle, all corners that may draw its own, where
+    triangles lie upon each other). Each triangle goes to the one whose corners move most alike; among those that move
     equally well, as where two lie upon each other, to that with the nearest texture coordinates
     and normals."""
     size = diagonal(source)
@@ -131,7 +140,7 @@ def match(source, other):
     for triangle in range(other.num_corners // 3):
         grid.add(_centre(other, triangle), triangle)
     everything = range(len(source.positions))
-    found = array.array("q", [-1]) * source.num_corners
+    found, alternatives = array.array("q", [-1]) * source.num_corners, {}
     for triangle in range(source.num_corners // 3):
         if is_degenerate(source, triangle):
             continue
@@ -144,12 +153,13 @@ def match(source, other):
                        for t in near for turn in range(3))
         ranked = [(_squares(source, own, other, _turned(t, turn), everything), t, turn)
                   for _, t, turn in first[:MOST_CANDIDATES]]
-        best = min(ranked)[0]
-        equal = [_turned(t, turn) for squares, t, turn in ranked
-                 if squares <= 1.1 * best + (COINCIDENT * size) ** 2]
+        most = 1.1 * math.sqrt(min(ranked)[0]) + EQUAL * size * math.sqrt(3 * len(everything))
+        equal = [_turned(t, turn) for squares, t, turn in ranked if math.sqrt(squares) <= most]
         chosen = min(equal, key=lambda turned: _surface_distance(source, own, other, turned))
         found[3 * triangle:3 * triangle + 3] = array.array("q", chosen)
-    return found
+        if len(equal) > 1:
+            alternatives[triangle] = equal
+    return found, alternatives
 
 
 def kg_error_percent(source, other, found):
@@ -166,11 +176,12 @@ def kg_error_percent(source, other, found):
 
 
 def uv_error_steps(source, other, found):
-    """The largest error of a texture coordinate, in steps of 1/4096; None: there are none."""
-    if not source.uv or len(other.uv) < len(source.uv):
+    """The largest error of a texture coordinate that both have, in steps of 1/4096; None: there
+    are none."""
+    if not source.uv or not other.uv:
         return None
-    return max(abs(p[2 * i + c] - q[2 * j + c]) for p, q in zip(source.uv, other.uv)
-               for i, j in enumerate(found) if j >= 0 for c in range(2)) / UV_STEP
+    pairs = [(i, j) for i, j in enumerate(found) if j >= 0]
+    return max(_largest_difference(p, q, pairs, 2) for p, q in zip(source.uv, other.uv)) / UV_STEP
 
 
 def normal_errors_degrees(source, other, found, sample_number):
@@ -227,7 +238,21 @@ class Cracks:
     largest_gap_percent: float  # of those, of the diagonal
 
 
-def cracks(source, other, found):
+def _meet(other, group, found, alternatives):
+    """Whether corners that may draw those of the group have one path."""
+    common = None
+    for corner in itertools.chain.from_iterable(group):
+        if found[corner] < 0:
+            continue
+        choices = alternatives.get(corner // 3)
+        places = {corners[corner % 3] for corners in choices} if choices else {found[corner]}
+        seen = {tuple(tuple(other.corner(s, place)) for s in range(len(other.positions)))
+                for place in places}
+        common = seen if common is None else common & seen
+    return common is None or bool(common)
+
+
+def cracks(source, other, found, alternatives):
     limit = COINCIDENT * diagonal(source)
     samples = range(len(source.positions))
     groups = _groups(source)
@@ -236,6 +261,7 @@ def cracks(source, other, found):
     gaps = []
     for group in together:
         drawn = [found[c] for corners in group for c in corners if found[c] >= 0]
-        gaps.append(_gap(other, drawn, samples) if drawn else 0.0)
+        gap = _gap(other, drawn, samples) if drawn else 0.0
+        gaps.append(0.0 if _meet(other, group, found, alternatives) else gap)
     return Cracks(len(groups), len(together), sum(gap <= limit for gap in gaps),
                   100 * max(gaps, default=0.0) / diagonal(source))

@@ -192,7 +192,7 @@ class Bench:
 def errors(drawn, path):
     """Largest error of texture coordinates and normals."""
     decoded = read_obj(path).soup()
-    found = soup.match(drawn, decoded)
+    found, _ = soup.match(drawn, decoded)
     angles = soup.normal_errors_degrees(drawn, decoded, found, 0)
     return soup.uv_error_steps(drawn, decoded, found), angles and angles[-1]
 
