@@ -30,9 +30,11 @@ class Packages:
                               check=False)
         if done.returncode != 0:
             have.unlink()
+            said = [line.removeprefix("npm error").strip() for line in done.stderr.splitlines()]
+            reason = next((line for line in said if "Error:" in line), "".join(said[:1]))
             raise measure.Failure(
                 f"npm could not fetch gltfpack and three.js into {folder}; the first run needs a "
-                f"network:\n{done.stderr.strip()}")
+                f"network ({reason})")
 
     @property
     def three(self):
