@@ -6,7 +6,6 @@ import base64
 import dataclasses
 import json
 import math
-import pathlib
 import struct
 import sys
 import urllib.parse

@@ -1,4 +1,4 @@
-"""glTF files beside gltfpack: bytes, errors of positions, texture coordinates and normals, seams."""
+"""glTF files beside gltfpack: bytes, errors of positions, texture coordinates, normals; seams."""
 
 import dataclasses
 import json

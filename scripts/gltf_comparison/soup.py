@@ -130,11 +130,12 @@ def is_degenerate(soup, triangle):
 
 
 def match(source, other):
-    """(`found`: per corner of the source, the corner of the other that draws it, -1 for corners of
-    degenerate triangles; `alternatives`: per triangle, all corners that may draw its own, where
-    triangles lie upon each other). Each triangle goes to the one whose corners move most alike; among those that move
-    equally well, as where two lie upon each other, to that with the nearest texture coordinates
-    and normals."""
+    """(found: per corner of the source, the corner of the other that draws it, -1 for corners of
+    degenerate triangles; alternatives: per triangle, all corners that may draw its own, where
+    triangles lie upon each other).
+
+    Each triangle goes to the one whose corners move most alike; among those that move equally
+    well, to that with the nearest texture coordinates and normals."""
     size = diagonal(source)
     grid = Grid(size / 100)
     for triangle in range(other.num_corners // 3):
@@ -145,8 +146,8 @@ def match(source, other):
         if is_degenerate(source, triangle):
             continue
         own = [3 * triangle + i for i in range(3)]
-        near = next((c for rings in (1, 2, 5) if (c := grid.near(_centre(source, triangle), rings))),
-                    None)
+        centre = _centre(source, triangle)
+        near = next((c for rings in (1, 2, 5) if (c := grid.near(centre, rings))), None)
         if near is None:
             raise measure.Failure("a triangle of the source is nowhere in the decoded file")
         first = sorted((_squares(source, own, other, _turned(t, turn), [0]), t, turn)

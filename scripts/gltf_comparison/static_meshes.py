@@ -17,16 +17,16 @@ POSITION_BITS, UV_BITS, NORMAL_BITS = 14, 12, 10
 DRACO = ("-cl", "10", "-qp", f"{POSITION_BITS}", "-qt", f"{UV_BITS}", "-qn", f"{NORMAL_BITS}")
 
 DEFINITIONS = (
-    "Input: the first frame as OBJ file, as three.js computes it: positions, normals, the first set "
-    "of texture coordinates; equal ones merged.",
+    "Input: the first frame as OBJ file, as three.js computes it: positions, normals, the first "
+    "set of texture coordinates; equal ones merged.",
     f"Draco: draco_encoder {' '.join(DRACO)}. Its connectivity: the file of the same mesh without "
     "attributes, shrunk so that all positions but one fall into one quantisation step. Its UV and "
-    "normals: what the file shrinks by without both (--skip).",
+    "normals: what the file shrinks by without both.",
     f"RLPC: rlpcenc --profile high --lossless {POSITION_BITS} --normals exact --normal-bits "
-    f"{NORMAL_BITS} --uv-bits N, N the fewest bits that make the step of UV at most a ninth larger than "
-    "that of Draco, which divides the range of the coordinates; connectivity and attributes with the "
-    "headers of their units. The grid of positions is that of --lossless: its step is a power of "
-    "two, up to twice that of Draco.",
+    f"{NORMAL_BITS} --uv-bits N, N the fewest bits that make the step of UV at most a ninth larger "
+    "than that of Draco, which divides the range of the coordinates; connectivity and attributes "
+    "with the headers of their units. The grid of positions is that of --lossless: its step is a "
+    "power of two, up to twice that of Draco.",
     "Errors, RLPC / Draco: the largest of texture coordinates, in steps of 1/4096 of an image; the "
     "largest angle between normals, in degrees, and what rlpcenc states of its own.")
 
