@@ -218,7 +218,7 @@ ABLATIONS = {"main": MAIN_ABLATIONS, "high": HIGH_ABLATIONS}
 class Toolbox:
     """The folder of the programs, and what they can do."""
 
-    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "peer_codec", "plot_svg", "make_tentacle")
+    OWN = ("rlpcenc", "rlpcdec", "rlpccmp", "rlpcinfo", "peer_codec", "plot_svg", "make_tentacle")
 
     def __init__(self, folder):
         self.folder = folder

@@ -33,6 +33,14 @@ class Table:
                  "|---" + "|---:" * (len(self.head) - 1) + "|"]
         return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in self.rows]) + "\n"
 
+    def text(self):
+        """For terminals: the first column to the left, the others to the right."""
+        widths = [max(map(len, column)) for column in zip(self.head, *self.rows)]
+        lines = ["  ".join(cell.ljust(width) if i == 0 else cell.rjust(width)
+                           for i, (cell, width) in enumerate(zip(row, widths)))
+                 for row in (self.head, *self.rows)]
+        return "\n".join(lines) + "\n"
+
     def html(self):
         def line(cells, tag):
             return "<tr>" + "".join(f"<{tag}>{html.escape(c)}</{tag}>" for c in cells) + "</tr>\n"
