@@ -84,6 +84,10 @@ Result<Vector<AttributeSet>> Decoder::Impl::attributes() {
   }
   auto sets = recon_attributes(*coded, num_vertices, triangles, positions);
   for (AttributeSet& set : sets) {
+    if (set.header.kind == ValueKind::kUnitVectors && set.header.has_faces()) {
+      set.first_positions.resize(positions.size());
+      to_output_order(positions, set.first_positions);
+    }
     if (set.header.domain != AttributeDomain::kVertex || order.empty()) continue;
     const Vector<std::uint32_t> values = set.values;
     const std::size_t n = set.header.num_components;

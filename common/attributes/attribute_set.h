@@ -65,6 +65,9 @@ struct AttributeSet {
   // Unsigned integers, points of an octahedron (F.8.4) or bits of floats. One for each vertex,
   // sector or triangle; none of smoothing.
   Vector<std::uint32_t> values;
+  // [vertex][3], of the first frame, if unit vectors have faces: in other frames they turn with
+  // the surface (F.8.5). Set by the decoder.
+  Vector<std::int32_t> first_positions{};
 
   std::size_t num_values() const {
     return header.num_components == 0 ? 0 : values.size() / header.num_components;

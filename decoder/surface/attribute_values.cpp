@@ -27,6 +27,16 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
 
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// False: it has no length.
+bool make_unit(Vec3& v) {
+  const double length = std::sqrt(dot(v, v));
+  if (!(length > 0.0)) return false;
+  for (double& x : v) x /= length;
+  return true;
+}
+
+constexpr std::uint32_t kNoCorner = 0xFFFFFFFF;
+
 // F.8.4: the vector of a point.
 std::array<float, 3> unit_vector(std::uint32_t u, std::uint32_t v, std::uint32_t bits) {
   const double h = std::ldexp(1.0, static_cast<int>(bits) - 1) - 1.0;
@@ -100,10 +110,15 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
     return;
   }
   faces_.resize(triangles.size());
-  if (set.header.weight == SmoothingWeight::kAngle) return;
-  terms_.reserve(3 * triangles.size());
-  for (std::size_t c = 0; c < 3 * triangles.size(); ++c) {
-    terms_.emplace_back(of_corner(c), set.face_of_triangle[c / 3]);
+  find_terms();
+  if (!set.first_positions.empty()) keep_deviations();
+}
+
+void FrameNormals::find_terms() {
+  if (set_.header.weight == SmoothingWeight::kAngle) return;
+  terms_.reserve(3 * triangles_.size());
+  for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
+    terms_.emplace_back(of_corner(c), set_.face_of_triangle[c / 3]);
   }
   std::sort(terms_.begin(), terms_.end());
   terms_.erase(std::unique(terms_.begin(), terms_.end()), terms_.end());
@@ -143,13 +158,73 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
   }
 }
 
+// The normal as computed, an edge at a right angle to it, and what is left. False: there are
+// none.
+template <class Coordinate>
+bool FrameNormals::find_axes(std::span<const Coordinate> xyz, std::uint32_t normal,
+                             std::array<Vec3, 3>& axes) const {
+  const std::uint32_t c = corner_of_[normal];
+  if (c == kNoCorner) return false;
+  auto& [n, edge, third] = axes;
+  std::copy_n(&sums_[3 * std::size_t{normal}], 3, n.begin());
+  const Triangle& t = triangles_[c / 3];
+  edge = difference(xyz, t[c % 3], t[(c + 1) % 3]);
+  if (!make_unit(n)) return false;
+  const double along = dot(edge, n);
+  for (std::size_t k = 0; k < 3; ++k) edge[k] -= along * n[k];
+  if (!make_unit(edge)) return false;
+  third = cross(n, edge);
+  return true;
+}
+
+void FrameNormals::keep_deviations() {
+  corner_of_.assign(count_, kNoCorner);
+  for (std::uint32_t c = 0; c < 3 * triangles_.size(); ++c) {
+    std::uint32_t& first = corner_of_[of_corner(c)];
+    if (first == kNoCorner) first = c;
+  }
+  const std::span<const std::int32_t> xyz = set_.first_positions;
+  add_up(xyz);
+  deviations_.resize(count_);
+  const Vector<float> numbers = attribute_numbers(set_);
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const float* const v = &numbers[3 * std::size_t{i}];
+    const Vec3 given{v[0], v[1], v[2]};
+    std::array<Vec3, 3> axes{};
+    if (find_axes(xyz, i, axes)) {
+      for (std::size_t k = 0; k < 3; ++k) deviations_[i][k] = dot(given, axes[k]);
+    } else {
+      deviations_[i] = given;
+      corner_of_[i] = kNoCorner;
+    }
+  }
+}
+
+template <class Coordinate>
+void FrameNormals::turn_deviations(std::span<const Coordinate> xyz) {
+  for (std::uint32_t i = 0; i < deviations_.size(); ++i) {
+    const Vec3& d = deviations_[i];
+    std::array<Vec3, 3> axes{};
+    double* const sum = &sums_[3 * std::size_t{i}];
+    if (find_axes(xyz, i, axes)) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        sum[k] = d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k];
+      }
+    } else if (corner_of_[i] == kNoCorner) {
+      std::copy(d.begin(), d.end(), sum);
+    }
+  }
+}
+
 std::span<const double> FrameNormals::sums(std::span<const float> xyz) {
   if (!faces_.empty()) add_up(xyz);
+  turn_deviations(xyz);
   return sums_;
 }
 
 std::span<const double> FrameNormals::sums(std::span<const std::int32_t> positions) {
   if (!faces_.empty()) add_up(positions);
+  turn_deviations(positions);
   return sums_;
 }
 

@@ -35,24 +35,37 @@ class FrameNormals {
   }
   // [count()][3], of any length, from the vertices of a frame, in units of the caller or of the
   // grid; valid until the next call, which allocates nothing. Time: in proportion to the
-  // corners. Unit vectors of the stream, which are those of the first frame, are given as they
-  // are unless the set has faces.
+  // corners. Unit vectors of the stream, which are those of the first frame, turn with the
+  // surface in others if the set has faces; without, they are given as they are.
   std::span<const double> sums(std::span<const float> xyz);
   std::span<const double> sums(std::span<const std::int32_t> positions);
   // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3].
   void compute(std::span<const float> xyz, std::span<float> normals);
 
  private:
+  using Vec3 = std::array<double, 3>;
+
   template <class Coordinate>
   void add_up(std::span<const Coordinate> xyz);
+  template <class Coordinate>
+  bool find_axes(std::span<const Coordinate> xyz, std::uint32_t normal,
+                 std::array<Vec3, 3>& axes) const;
+  void find_terms();
+  void keep_deviations();
+  template <class Coordinate>
+  void turn_deviations(std::span<const Coordinate> xyz);
 
   const AttributeSet& set_;
   std::span<const Triangle> triangles_;
   std::uint32_t count_ = 0;
   // Each face once at each of its normals, unless angles are the weights.
   Vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // normal, face
-  Vector<std::array<double, 3>> faces_;
+  Vector<Vec3> faces_;
   Vector<double> sums_;
+  // Of unit vectors with faces: a corner at each normal, and the vector of the first frame on
+  // the axes that the surface has there.
+  Vector<std::uint32_t> corner_of_;
+  Vector<Vec3> deviations_;
 };
 
 }  // namespace rlpc

@@ -14,7 +14,7 @@ struct AttributeSettings {
   bool exact = false;    // numbers as 32-bit floats, whatever the bits below
   // Bits of a texture coordinate after the point: 12 are 1/4096 of an image.
   int uv_bits = 12;      // 1 to 16
-  int normal_bits = 10;  // of a coordinate of a unit vector, 2 to 16
+  int normal_bits = 8;   // of a coordinate of a unit vector, 2 to 16
   int number_bits = 12;  // of other numbers, over their range, 1 to 16
   NormalChoice normals = NormalChoice::kAuto;
   // Whether values may be predicted from positions of the first frame. Streams that are to be

@@ -80,6 +80,7 @@ class AttributeEncoder {
   CodedAttributeSet code_with(const Draft& draft, AttributePrediction prediction,
                               const FaceView& faces) const;
   std::uint64_t bits_of(const CodedAttributeSet& set) const;
+  std::vector<Vec3d> first_normals(const Draft& draft, const std::vector<Vec3d>& at_rest) const;
   std::optional<RestShape> rest_shape() const;
   void set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const;
 
@@ -289,6 +290,23 @@ void AttributeEncoder::measure_normals(const Draft& draft, const std::vector<Vec
   report.rms_error = count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
+// Of the sectors, those without corners as they are at rest. Empty: the input does not tell
+// them.
+std::vector<Vec3d> AttributeEncoder::first_normals(const Draft& draft,
+                                                   const std::vector<Vec3d>& at_rest) const {
+  const std::vector<float>& given = input_.source.first_normals;
+  if (given.empty()) return {};
+  std::vector<Vec3d> normals = at_rest;
+  for (std::size_t x = 0; x < normals.size(); ++x) {
+    const std::uint32_t i = draft.value_of_sector[x];
+    if (i == kNoSector) continue;
+    const float* const v = &given[3 * std::size_t{i}];
+    if (v[0] != 0.0F || v[1] != 0.0F || v[2] != 0.0F)
+      normals[x] = normalised({v[0], v[1], v[2]});
+  }
+  return normals;
+}
+
 std::optional<RestShape> AttributeEncoder::rest_shape() const {
   const SourceAttributes& source = input_.source;
   if (source.rest_xyz.empty()) return std::nullopt;
@@ -336,6 +354,7 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
     const float* const v = i == kNoSector ? nullptr : &draft.source.values[3 * std::size_t{i}];
     normals.push_back(v == nullptr ? Vec3d{0.0, 0.0, 1.0} : normalised({v[0], v[1], v[2]}));
   }
+  const std::vector<Vec3d> of_first = first_normals(draft, normals);
   const std::optional<RestShape> rest = rest_shape();
   const CornerGeometry geometry =
       rest ? CornerGeometry(rest->triangles, rest->positions) : geometry_;
@@ -343,8 +362,15 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
       find_smoothing({geometry, edge_mates_, draft.seams, draft.sectors},
                      octahedron_points(normals, kSmoothingBits), kSmoothingBits);
   const ShapeNormals at_rest(geometry, draft.sectors, edge_mates_, draft.seams, smoothing);
+  // Where the input says what becomes of its normals in the first frame, they are compared
+  // there: at rest, those of joints that will bend look better than they are.
+  const CornerGeometry source_frame(geometry_.triangles(), input_.source_frame);
+  const ShapeNormals in_source(source_frame, draft.sectors, edge_mates_, draft.seams,
+                               smoothing);
+  const ShapeNormals& compared = of_first.empty() ? at_rest : in_source;
   measure_normals(
-      draft, normals, [&](std::uint32_t x) { return at_rest.normal(x); }, report);
+      draft, of_first.empty() ? normals : of_first,
+      [&](std::uint32_t x) { return compared.normal(x); }, report);
   report.is_smoothing =
       settings_.normals == NormalChoice::kSmoothing ||
       (settings_.normals == NormalChoice::kAuto && report.rms_error <= kSmoothingServes);
@@ -358,7 +384,9 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
     set.header.value_bits = 32;
     return set;
   }
-  if (rest) {
+  if (!of_first.empty()) {
+    normals = of_first;
+  } else if (rest) {
     const ShapeNormals at_first(geometry_, draft.sectors, edge_mates_, draft.seams, smoothing);
     for (std::uint32_t x = 0; x < normals.size(); ++x) {
       if (!draft.sectors.corners[x].empty())

@@ -35,6 +35,8 @@ struct AttributeInput {
   std::span<const std::uint32_t> corner_map;  // map_corners()
   // Decoded positions of the first frame, in decoded order.
   std::span<const std::int32_t> first_frame;
+  // The same before coding.
+  std::span<const std::int32_t> source_frame;
 };
 
 // Each set is coded in the ways that its kind and the settings allow, and the smallest is kept.

@@ -34,12 +34,15 @@ struct SourceAttributes {
   // each corner the index of its one.
   std::vector<float> rest_xyz{};
   std::vector<std::uint32_t> rest_of_corner{};
+  // [value of normal][3], those of the first frame, of length 1 or zero, if they are not those
+  // of the values and the input says what moves them; otherwise empty.
+  std::vector<float> first_normals{};
 
   std::uint64_t memory_bytes() const {
     const auto bytes = [](const auto& all) {
       return std::uint64_t{all.capacity()} * sizeof(all[0]);
     };
-    std::uint64_t sum = bytes(rest_xyz) + bytes(rest_of_corner);
+    std::uint64_t sum = bytes(rest_xyz) + bytes(rest_of_corner) + bytes(first_normals);
     for (const SourceAttribute& set : sets)
       sum += bytes(set.values) + bytes(set.value_of_corner);
     return sum;

@@ -18,8 +18,9 @@ AttributeStage::AttributeStage(const SourceAttributes& source,
 
 void AttributeStage::encode(std::span<const std::int32_t> first_frame, StreamAssembly& stream) {
   if (!has_sets()) return;
-  EncodedAttributes encoded =
-      encode_attributes({source_, connectivity_, corner_map_, first_frame}, settings_);
+  const auto source_frame = source_frame_.empty() ? first_frame : std::span(source_frame_);
+  EncodedAttributes encoded = encode_attributes(
+      {source_, connectivity_, corner_map_, first_frame, source_frame}, settings_);
   reports_ = std::move(encoded.sets);
   stream.set_attributes(encoded.payload);
 }

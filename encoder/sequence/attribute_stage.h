@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "encoder/attributes/encode_attributes.h"
@@ -18,6 +19,11 @@ class AttributeStage {
                  const EncoderSettings& settings, const ConnectivityCode& connectivity);
 
   bool has_sets() const { return !source_.sets.empty() && !settings_.dropped; }
+  // Positions of the first frame of the source, nearest on the grid, in decoded order: what the
+  // ways to code normals are judged by. Before encode(), or those of encode() count.
+  void set_source_frame(std::vector<std::int32_t> positions) {
+    source_frame_ = std::move(positions);
+  }
   // Replaces the attribute unit of the stream. first_frame: positions on the grid, in decoded
   // order; to be called again if they have changed.
   void encode(std::span<const std::int32_t> first_frame, StreamAssembly& stream);
@@ -29,6 +35,7 @@ class AttributeStage {
   AttributeSettings settings_;
   const ConnectivityCode& connectivity_;
   std::vector<std::uint32_t> corner_map_;
+  std::vector<std::int32_t> source_frame_;
   std::vector<AttributeReport> reports_;
 };
 

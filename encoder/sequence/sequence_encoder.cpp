@@ -100,11 +100,12 @@ std::optional<InputError> SequenceEncoder::prepare() {
   stream_.emplace(header, settings_, coding_->connectivity());
   attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
                       coding_->connectivity());
-  if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
-    // Their size is part of the rate; it hardly depends on the error of the first frame.
-    const auto first_frame = coding_->nearest_first_frame(source_);
+  if (attributes_->has_sets()) {
+    auto first_frame = coding_->nearest_first_frame(source_);
     if (!first_frame) return first_frame.error();
-    attributes_->encode(*first_frame, *stream_);
+    attributes_->set_source_frame(*first_frame);
+    // Their size is part of the rate; it hardly depends on the error of the first frame.
+    if (settings_.target.kind == Target::kBpvf) attributes_->encode(*first_frame, *stream_);
   }
   return std::nullopt;
 }

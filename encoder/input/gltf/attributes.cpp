@@ -28,8 +28,13 @@ const Attribute* find(const GltfGeometry& geometry, const std::string& semantic)
 class AttributeCollector {
  public:
   AttributeCollector(const GltfModel& model, std::span<const Triangle> triangles,
-                     const std::vector<bool>& is_mirrored, std::vector<std::string>& notes)
-      : model_(model), triangles_(triangles), is_mirrored_(is_mirrored), notes_(notes) {}
+                     const std::vector<bool>& is_mirrored, const GltfPose& first,
+                     std::vector<std::string>& notes)
+      : model_(model),
+        triangles_(triangles),
+        is_mirrored_(is_mirrored),
+        first_(first),
+        notes_(notes) {}
 
   SourceAttributes collect() {
     SourceAttributes all;
@@ -142,20 +147,22 @@ class AttributeCollector {
     for (const Triangle& t : triangles_) {
       all.rest_of_corner.insert(all.rest_of_corner.end(), t.begin(), t.end());
     }
+    all.first_normals = posed_normals(model_, first_);
   }
 
   const GltfModel& model_;
   std::span<const Triangle> triangles_;
   const std::vector<bool>& is_mirrored_;
+  const GltfPose& first_;
   std::vector<std::string>& notes_;
 };
 
 }  // namespace
 
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored,
+                                 const std::vector<bool>& is_mirrored, const GltfPose& first,
                                  std::vector<std::string>& notes) {
-  return AttributeCollector(model, triangles, is_mirrored, notes).collect();
+  return AttributeCollector(model, triangles, is_mirrored, first, notes).collect();
 }
 
 }  // namespace rlpc

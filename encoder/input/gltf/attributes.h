@@ -1,16 +1,17 @@
 // Attributes of the primitives of a scene as those of one mesh.
 #pragma once
 
-#include "encoder/input/gltf/model.h"
+#include "encoder/input/gltf/model_pose.h"
 #include "encoder/input/source_attribute.h"
 
 namespace rlpc {
 
 // triangles: of the scene, as in FrameSource::Shape before welding, in the order of instances,
 // those of mirrored instances turned. Sets that only some primitives have get usual values
-// elsewhere; normals are left out then, and a note is added about it.
+// elsewhere; normals are left out then, and a note is added about it. first: the pose of the
+// first frame.
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored,
+                                 const std::vector<bool>& is_mirrored, const GltfPose& first,
                                  std::vector<std::string>& notes);
 
 }  // namespace rlpc

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "encoder/input/gltf/attributes.h"
-#include "encoder/input/gltf/pose.h"
+#include "encoder/input/gltf/model_pose.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/weld.h"
 
@@ -110,10 +110,10 @@ class GltfSource : public FrameSource {
       const GltfGeometry& geometry = model_.geometries[instance.geometry];
       const auto out = xyz.subspan(3 * static_cast<std::size_t>(instance.first_vertex),
                                    geometry.base.size());
-      morph(geometry, weights_of(instance.node, pose), positions_);
+      morph(geometry, target_weights(model_, instance.node, pose), positions_);
       if (instance.skin) {
         const auto [maps, is_new] = joints.try_emplace(*instance.skin);
-        if (is_new) maps->second = joints_of(*instance.skin, pose);
+        if (is_new) maps->second = joint_maps(model_, *instance.skin, pose);
         place_by_joints(geometry, positions_, maps->second, out);
       } else {
         place(positions_, pose.to_scene[instance.node], out);
@@ -125,22 +125,6 @@ class GltfSource : public FrameSource {
   std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
 
  private:
-  const std::vector<double>& weights_of(std::uint32_t node, const GltfPose& pose) const {
-    const auto moved = pose.weights.find(node);
-    if (moved != pose.weights.end()) return moved->second;
-    const GltfNode& n = model_.nodes[node];
-    return n.weights ? *n.weights : model_.weights[*n.mesh];
-  }
-
-  std::vector<Affine> joints_of(std::uint32_t skin, const GltfPose& pose) const {
-    const GltfModel::Skin& s = model_.skins[skin];
-    std::vector<Affine> joints;
-    for (std::size_t j = 0; j < s.joints.size(); ++j) {
-      joints.push_back(pose.to_scene[s.joints[j]] * s.inverse_bind[j]);
-    }
-    return joints;
-  }
-
   std::string path_;
   GltfModel model_;
   std::vector<std::uint32_t> first_frame_;  // [clip], then the total number of frames
@@ -161,12 +145,12 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
   shape.num_frames = first_frame->back();
   const GltfClip* const clip = model->clips.empty() ? nullptr : &model->clips[0];
-  const std::vector<bool> is_mirrored = mirrored_instances(
-      *model, pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0));
+  const GltfPose first = pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0);
+  const std::vector<bool> is_mirrored = mirrored_instances(*model, first);
   shape.triangles = triangles_of(*model, is_mirrored);
   shape.notes = model->notes;
   shape.asset = std::move(model->asset);
-  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, shape.notes);
+  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first, shape.notes);
   shape.files = model->files;
   if (model->clips.size() > 1) shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;

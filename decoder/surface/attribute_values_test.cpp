@@ -1,0 +1,117 @@
+#include "decoder/surface/attribute_values.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace rlpc {
+namespace {
+
+// A square of two triangles in the plane z = 0, one face each.
+const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
+const Vector<std::int32_t> kFlat{0, 0, 0, 100, 0, 0, 100, 100, 0, 0, 100, 0};
+
+// Turned by an angle about the x axis, moved and larger.
+std::vector<float> turned(double angle) {
+  std::vector<float> xyz;
+  for (std::size_t i = 0; i < kFlat.size(); i += 3) {
+    const double y = 3.0 * kFlat[i + 1];
+    for (const double x : {3.0 * kFlat[i] + 7.0, std::cos(angle) * y, std::sin(angle) * y}) {
+      xyz.push_back(static_cast<float>(x));
+    }
+  }
+  return xyz;
+}
+
+AttributeSet unit_vectors(Vector<std::uint32_t> values) {
+  AttributeSet set;
+  set.header.name = "normal";
+  set.header.kind = ValueKind::kUnitVectors;
+  set.header.prediction = AttributePrediction::kPositions;
+  set.header.num_components = 2;
+  set.header.value_bits = 10;
+  set.face_of_triangle = {0, 1};
+  set.values = std::move(values);
+  set.first_positions = kFlat;
+  return set;
+}
+
+std::array<float, 3> normal_at(FrameNormals& normals, std::span<const float> xyz,
+                               std::size_t i) {
+  std::vector<float> all(3 * std::size_t{normals.count()});
+  normals.compute(xyz, all);
+  return {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
+}
+
+void expect_near(const std::array<float, 3>& found, const std::array<double, 3>& wanted) {
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[c], wanted[c], 1e-5) << c;
+}
+
+TEST(FrameNormals, UnitVectorsAreThoseOfTheFirstFrameThere) {
+  // Straight up, towards x, and two more.
+  const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  FrameNormals normals(set, kSquare, 4);
+  const std::vector<float> flat = turned(0.0);
+  const Vector<float> stored = attribute_numbers(set);
+  for (std::size_t i = 0; i < 4; ++i) {
+    expect_near(normal_at(normals, flat, i),
+                {stored[3 * i], stored[3 * i + 1], stored[3 * i + 2]});
+  }
+  expect_near(normal_at(normals, flat, 1), {1.0, 0.0, 0.0});
+}
+
+TEST(FrameNormals, UnitVectorsTurnWithTheSurface) {
+  const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  FrameNormals normals(set, kSquare, 4);
+  const double angle = std::numbers::pi / 3;
+  const std::vector<float> xyz = turned(angle);
+  const Vector<float> stored = attribute_numbers(set);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double y = stored[3 * i + 1];
+    const double z = stored[3 * i + 2];
+    expect_near(normal_at(normals, xyz, i),
+                {stored[3 * i], std::cos(angle) * y - std::sin(angle) * z,
+                 std::sin(angle) * y + std::cos(angle) * z});
+  }
+}
+
+TEST(FrameNormals, IntegersAndFloatsOfAFrameGiveTheSame) {
+  const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  FrameNormals a(set, kSquare, 4);
+  FrameNormals b(set, kSquare, 4);
+  const std::vector<float> flat(kFlat.begin(), kFlat.end());
+  const auto of_floats = a.sums(std::span<const float>(flat));
+  const auto of_integers = b.sums(std::span<const std::int32_t>(kFlat));
+  for (std::size_t i = 0; i < of_floats.size(); ++i) {
+    EXPECT_NEAR(of_floats[i], of_integers[i], 1e-9);
+  }
+}
+
+// Where the surface has no axes, in the first frame or in another.
+TEST(FrameNormals, WithoutASurfaceThereIsStillANormal) {
+  AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  FrameNormals collapses(set, kSquare, 4);
+  const std::vector<float> nothing(12, 5.0F);
+  expect_near(normal_at(collapses, nothing, 1), {0.0, 0.0, 1.0});
+  set.first_positions.assign(12, 5);
+  FrameNormals begins_so(set, kSquare, 4);
+  expect_near(normal_at(begins_so, turned(0.5), 1), {1.0, 0.0, 0.0});
+}
+
+TEST(FrameNormals, SmoothingFollowsFromPositions) {
+  AttributeSet set = unit_vectors({});
+  set.header.kind = ValueKind::kSmoothing;
+  set.header.num_components = 0;
+  set.first_positions.clear();
+  const double angle = 0.7;
+  for (const SmoothingWeight weight :
+       {SmoothingWeight::kAngle, SmoothingWeight::kArea, SmoothingWeight::kEqual}) {
+    set.header.weight = weight;
+    FrameNormals normals(set, kSquare, 4);
+    expect_near(normal_at(normals, turned(angle), 2), {0.0, -std::sin(angle), std::cos(angle)});
+  }
+}
+
+}  // namespace
+}  // namespace rlpc

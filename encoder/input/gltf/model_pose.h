@@ -1,0 +1,25 @@
+// What a pose means for the meshes of a model: weights of morph targets, maps of joints.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "encoder/input/gltf/model.h"
+#include "encoder/input/gltf/pose.h"
+
+namespace rlpc {
+
+// Of the targets of the mesh of a node.
+const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t node,
+                                          const GltfPose& pose);
+// [joint of the skin], maps from the mesh to scene coordinates.
+std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
+                               const GltfPose& pose);
+
+// The normals of all vertices, in the order of instances, as viewers make them in a pose: those
+// of skins by the linear part of the weighted joints, others by the inverse transpose of their
+// node's map; of length 1, or zero. Empty if a primitive has no normals, or if morph targets
+// move one.
+std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose);
+
+}  // namespace rlpc
