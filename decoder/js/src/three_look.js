@@ -1,0 +1,156 @@
+// What a mesh in three.js looks like: attributes of its vertices, and materials from the asset.
+import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
+
+const kUsualColour = 0xb4bcc4;
+const kGltfMagic = 0x46546c67; // "glTF"
+const kJsonChunk = 0x4e4f534a;
+const kHeaderBytes = 12;
+const kChunkBytes = 8;
+
+const warnings = new Set();
+
+/** Once for all meshes. */
+function warn(text) {
+  if (!warnings.has(text)) console.warn(`RLPCLoader: ${text}`);
+  warnings.add(text);
+}
+
+/** Where nothing tells another: grey, or white under colours of vertices. */
+export function usualMaterial({ vertexColors = false, flatShading = false } = {}) {
+  const color = vertexColors ? 0xffffff : kUsualColour;
+  return new MeshStandardMaterial({ color, roughness: 0.6, vertexColors, flatShading });
+}
+
+function hasNormals(sets) {
+  return ["unitVectors", "smoothing"].includes(sets.get("normal")?.kind);
+}
+
+/** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
+ * or they have an error. isFlat: in glTF, meshes without normals are. */
+export async function loadLook(decoder, { attributes = true, textures = true, material, gltfLoader }) {
+  const { hasAttributes, hasAsset } = decoder.info;
+  if (!attributes || !hasAttributes && !hasAsset || decoder.coarseVertices) return undefined;
+  const wantsMaterials = hasAsset && !material;
+  try {
+    const [drawn, sets, gltf] = await Promise.all([decoder.drawn(), decoder.attributes(),
+      wantsMaterials ? loadMaterials(decoder, textures, gltfLoader) : undefined]);
+    return { drawn, materialOf: sets.get("material"), gltf, isFlat: gltf && !hasNormals(sets) };
+  } catch (error) {
+    if (error.name === "AbortError" || ["network", "closed"].includes(error.kind)) throw error;
+    warn(`attributes are left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+/** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
+async function loadMaterials(decoder, textures, gltfLoader) {
+  const asset = await decoder.asset();
+  let loader = gltfLoader;
+  if (!loader) {
+    try {
+      const { GLTFLoader } = await import("three/addons/loaders/GLTFLoader.js");
+      loader = new GLTFLoader();
+    } catch (error) {
+      warn("materials are left out, because three's GLTFLoader cannot be imported. Add " +
+        '"three/addons/" to the import map, or pass a loader as the option gltfLoader, or a ' +
+        `material (${error.message})`);
+      return undefined;
+    }
+  }
+  try {
+    const glb = textures ? asset.slice() : withoutTextures(asset);
+    return await loader.parseAsync(glb.buffer, "");
+  } catch (error) {
+    warn(`materials are left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+/** A GLB with the same materials. */
+function withoutTextures(asset) {
+  const view = new DataView(asset.buffer, asset.byteOffset, asset.byteLength);
+  const size = view.getUint32(kHeaderBytes, true);
+  const json = JSON.parse(new TextDecoder().decode(
+    asset.subarray(kHeaderBytes + kChunkBytes, kHeaderBytes + kChunkBytes + size)));
+  const { asset: about, materials, extensionsUsed } = json;
+  const kept = JSON.stringify({ asset: about, materials, extensionsUsed },
+    (key, value) => (key.endsWith("Texture") ? undefined : value));
+  const text = new TextEncoder().encode(kept.padEnd(Math.ceil(kept.length / 4) * 4));
+  const glb = new Uint8Array(kHeaderBytes + kChunkBytes + text.length);
+  const out = new DataView(glb.buffer);
+  [kGltfMagic, 2, glb.length, text.length, kJsonChunk].forEach((number, i) =>
+    out.setUint32(4 * i, number, true));
+  glb.set(text, kHeaderBytes + kChunkBytes);
+  return glb;
+}
+
+/** As three.js names them: uv, uv1, uv2, uv3, color; undefined if it has no place for them. */
+function nameInThree({ name, components }) {
+  const uv = /^uv([0-3])$/.exec(name)?.[1];
+  if (uv && components === 2) return uv === "0" ? "uv" : `uv${uv}`;
+  return name === "colour0" && components >= 3 ? "color" : undefined;
+}
+
+export function setAttributes(geometry, { attributes }) {
+  for (const set of attributes.values()) {
+    const name = nameInThree(set);
+    if (name) geometry.setAttribute(name, new BufferAttribute(set.values, set.components));
+  }
+}
+
+/** Triangles by their material, ascending: { indices, groups }, groups with start, count and the
+ * material. Numbers of `most` and more mean none: `most`. */
+function byMaterial({ indices }, materialOf, most) {
+  const count = indices.length / 3;
+  const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;
+  const numberOf = (t) => Math.min(hasMaterials ? materialOf.integers[t] : 0, most);
+  const starts = new Uint32Array(most + 2);
+  for (let t = 0; t < count; ++t) starts[numberOf(t) + 1] += 3;
+  for (let m = 0; m <= most; ++m) starts[m + 1] += starts[m];
+  const groups = Array.from({ length: most + 1 }, (_, material) =>
+    ({ start: starts[material], count: starts[material + 1] - starts[material], material }))
+    .filter((group) => group.count > 0);
+  const sorted = new Uint32Array(indices.length);
+  for (let t = 0; t < count; ++t) {
+    const number = numberOf(t);
+    sorted.set(indices.subarray(3 * t, 3 * t + 3), starts[number]);
+    starts[number] += 3;
+  }
+  return { indices: sorted, groups };
+}
+
+/** Sets the index and its groups, and returns the material or materials. `material`: of the caller. */
+export async function dress(geometry, { drawn, materialOf, gltf }, material) {
+  const look = { vertexColors: "color" in geometry.attributes,
+    flatShading: !("normal" in geometry.attributes) };
+  const isList = Array.isArray(material);
+  const numbers = gltf?.parser.json.materials?.length ?? (isList ? material.length - 1 : 0);
+  const { indices, groups } = byMaterial(drawn, materialOf, numbers);
+  geometry.setIndex(new BufferAttribute(indices, 1));
+  if (material && !isList) return material;
+  const materials = isList ? material : await Promise.all(groups.map(async (group) =>
+    (group.material < numbers ? await finalMaterial(geometry, gltf.parser, group.material)
+      : undefined) ?? usualMaterial(look)));
+  if (!isList && materials.length <= 1) return materials[0] ?? usualMaterial(look);
+  groups.forEach((group, i) => geometry.addGroup(group.start, group.count, isList ? group.material : i));
+  return materials;
+}
+
+/** As GLTFLoader would give it to a mesh with this geometry; undefined if it cannot. */
+async function finalMaterial(geometry, parser, number) {
+  try {
+    const mesh = new Mesh(geometry, await parser.getDependency("material", number));
+    parser.assignFinalMaterial(mesh);
+    return mesh.material;
+  } catch (error) {
+    warn(`material ${number} is left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+export function dispose(material, withTextures) {
+  if (withTextures) {
+    for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+  }
+  material.dispose();
+}
