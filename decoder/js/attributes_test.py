@@ -122,13 +122,6 @@ class Attributes(InFolder):
         self.assertTrue(rlpa.is_whole)
         return rlpa.sets
 
-    def box(self, name, **options):
-        glb, stream = (self.folder / f"{name}.{kind}" for kind in ("glb", "rlpc"))
-        glb.write_bytes(textured_box.box(**options))
-        done = run("rlpcenc", "-q", glb, "-o", stream, "--preset", "fast")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return stream
-
     def test_the_streams_of_the_suite(self):
         streams = sorted((SUITE / "accept" / "ATT").glob("*.rlpc"))
         self.assertGreater(len(streams), 30)
@@ -157,7 +150,7 @@ class Attributes(InFolder):
         self.assertGreater(errors, 10)
 
     def test_the_asset_is_that_of_the_encoder(self):
-        told, = self.in_node([self.box("box")])
+        told, = self.in_node([self.encode_box("box")])
         asset = base64.b64decode(told["asset"])
         self.assertTrue(asset.startswith(b"glTF"))
         self.assertIn(textured_box.png(textured_box.ROWS), asset)
@@ -165,7 +158,7 @@ class Attributes(InFolder):
         self.assertEqual([one["name"] for one in told["sets"]], ["material", "normal", "uv0"])
 
     def test_normals_of_a_frame_are_those_of_rlpcdec(self):
-        stream = self.box("leans")
+        stream = self.encode_box("leans")
         told, = self.in_node([stream])
         done = run("rlpcdec", "-q", stream, "-o", self.folder / "leans-%d.ply", "--ascii")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -1,6 +1,8 @@
 // What a mesh in three.js looks like: attributes of its vertices, and materials from the asset.
 import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 
+import { byMaterial, hasNormals } from "./sets.js";
+
 const kUsualColour = 0xb4bcc4;
 const kGltfMagic = 0x46546c67; // "glTF"
 const kJsonChunk = 0x4e4f534a;
@@ -19,10 +21,6 @@ function warn(text) {
 export function usualMaterial({ vertexColors = false, flatShading = false } = {}) {
   const color = vertexColors ? 0xffffff : kUsualColour;
   return new MeshStandardMaterial({ color, roughness: 0.6, vertexColors, flatShading });
-}
-
-function hasNormals(sets) {
-  return ["unitVectors", "smoothing"].includes(sets.get("normal")?.kind);
 }
 
 /** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
@@ -98,34 +96,13 @@ export function setAttributes(geometry, { attributes }) {
   }
 }
 
-/** Triangles by their material, ascending: { indices, groups }, groups with start, count and the
- * material. Numbers of `most` and more mean none: `most`. */
-function byMaterial({ indices }, materialOf, most) {
-  const count = indices.length / 3;
-  const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;
-  const numberOf = (t) => Math.min(hasMaterials ? materialOf.integers[t] : 0, most);
-  const starts = new Uint32Array(most + 2);
-  for (let t = 0; t < count; ++t) starts[numberOf(t) + 1] += 3;
-  for (let m = 0; m <= most; ++m) starts[m + 1] += starts[m];
-  const groups = Array.from({ length: most + 1 }, (_, material) =>
-    ({ start: starts[material], count: starts[material + 1] - starts[material], material }))
-    .filter((group) => group.count > 0);
-  const sorted = new Uint32Array(indices.length);
-  for (let t = 0; t < count; ++t) {
-    const number = numberOf(t);
-    sorted.set(indices.subarray(3 * t, 3 * t + 3), starts[number]);
-    starts[number] += 3;
-  }
-  return { indices: sorted, groups };
-}
-
 /** Sets the index and its groups, and returns the material or materials. `material`: of the caller. */
 export async function dress(geometry, { drawn, materialOf, gltf }, material) {
   const look = { vertexColors: "color" in geometry.attributes,
     flatShading: !("normal" in geometry.attributes) };
   const isList = Array.isArray(material);
   const numbers = gltf?.parser.json.materials?.length ?? (isList ? material.length - 1 : 0);
-  const { indices, groups } = byMaterial(drawn, materialOf, numbers);
+  const { indices, groups } = byMaterial(drawn.indices, materialOf, numbers);
   geometry.setIndex(new BufferAttribute(indices, 1));
   if (material && !isList) return material;
   const materials = isList ? material : await Promise.all(groups.map(async (group) =>

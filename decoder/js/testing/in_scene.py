@@ -11,9 +11,8 @@ import unittest
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "player"))
 import chromium  # noqa: E402
-import textured_box  # noqa: E402
 from player_testing import (MODULES, PLAYER, InFolder, float_frames, need_node,  # noqa: E402
-                            need_player, run)
+                            need_player)
 from stream_server import StreamServer  # noqa: E402
 
 
@@ -40,23 +39,14 @@ class InScene(InFolder):
         cls.stream = cls.encode("walk.rlpc", "--gof", "3", "--kg", "0.003", "--clip", "Walk:4-15",
                                 "--clip", "Wave \"again\":20-59")
         cls.frames = float_frames(cls.stream, cls.folder)
-        cls.encode_boxes()
+        cls.encode_box("box")
+        cls.encode_box("colours", [0, 0.5, 0])
         server = StreamServer(cls.folder)
         cls.server = server.__enter__()
         cls.addClassCleanup(server.__exit__)
         browser = chromium.Chromium(path)
         cls.browser = browser.__enter__()
         cls.addClassCleanup(browser.__exit__)
-
-    @classmethod
-    def encode_boxes(cls):
-        """box.rlpc with a texture, colours.rlpc with colours of vertices."""
-        for name, colour in (("box", None), ("colours", [0, 0.5, 0])):
-            glb = cls.folder / f"{name}.glb"
-            glb.write_bytes(textured_box.box(colour))
-            done = run("rlpcenc", "-q", glb, "-o", glb.with_suffix(".rlpc"), "--preset", "fast")
-            if done.returncode != 0:
-                raise AssertionError(done.stderr.decode())
 
     def setUp(self):
         for name, value in vars(StreamServer(self.folder)).items():
