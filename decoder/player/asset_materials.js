@@ -19,7 +19,8 @@ function chunksOf(bytes) {
     const size = view.getUint32(at, true);
     const chunk = bytes.subarray(at + kChunkBytes, at + kChunkBytes + size);
     if (chunk.length < size) throw new Error("its GLB is cut off");
-    if (view.getUint32(at + 4, true) === kJsonChunk) json = JSON.parse(new TextDecoder().decode(chunk));
+    const isJson = view.getUint32(at + 4, true) === kJsonChunk;
+    if (isJson) json = JSON.parse(new TextDecoder().decode(chunk));
     else binary = chunk;
     at += kChunkBytes + size;
   }
@@ -74,7 +75,7 @@ export async function readMaterials(bytes) {
     return pictures.get(number);
   };
   const read = async ({ pbrMetallicRoughness: { baseColorFactor, baseColorTexture } = {},
-    alphaMode, alphaCutoff }) => {
+    alphaMode, alphaCutoff, doubleSided = false }) => {
     const { index, texCoord, extensions } = baseColorTexture ?? {};
     const transform = extensions?.KHR_texture_transform;
     const { source, sampler, extensions: others } = textures[index] ?? {};
@@ -86,6 +87,7 @@ export async function readMaterials(bytes) {
       uv: `uv${transform?.texCoord ?? texCoord ?? 0}`,
       rows: rowsOf(transform),
       blends: alphaMode === "BLEND",
+      doubleSided,
       cutoff: alphaMode === "MASK" ? alphaCutoff ?? 0.5 : 0,
     };
   };

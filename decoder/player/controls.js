@@ -34,8 +34,8 @@ export function addControls(player) {
 
 function addKeys(player, actions, changeSpeed) {
   const keys = {
-    " ": actions.play, k: actions.play, w: actions.wire, n: actions.flat, t: actions.plain, e: actions.errors,
-    u: actions.up, h: actions.home, c: actions.check, o: actions.open,
+    " ": actions.play, k: actions.play, w: actions.wire, n: actions.flat, t: actions.plain,
+    e: actions.errors, u: actions.up, h: actions.home, c: actions.check, o: actions.open,
     ArrowLeft: () => player.step(-1), ArrowRight: () => player.step(1),
     ArrowDown: () => player.step(-10), ArrowUp: () => player.step(10),
     Home: () => player.seek(player.playback.first),

@@ -18,7 +18,8 @@ export function vertexDistances(frame, decoder, reference, referenceDecoder, ver
     for (let c = 0; c < 3; ++c) {
       const i = 3 * v + c;
       // Powers of two: nothing is rounded.
-      const d = (a[i] + origin[c]) * scale - (b[3 * other + c] + referenceOrigin[c]) * referenceScale;
+      const wanted = (b[3 * other + c] + referenceOrigin[c]) * referenceScale;
+      const d = (a[i] + origin[c]) * scale - wanted;
       square += d * d;
     }
     if (!vertices || other !== vertices[v - 1]) {

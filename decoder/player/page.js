@@ -122,6 +122,8 @@ class Player {
   }
 
   async request(index, signal) {
+    await undefined; // what a seek replaces at once is not loaded
+    signal.throwIfAborted();
     const frame = await this.session.frame(index, { normals: !this.flat, signal });
     this.keepResult(index, frame);
     return frame;

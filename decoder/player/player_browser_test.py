@@ -302,8 +302,8 @@ class Browser(InBrowser):
             viewer.isDrawn = false;
             viewer.draw();
             const out = new Uint8Array(4);
-            gl.readPixels(width / 2 + 0.06 * x * height, height / 2 + 0.06 * y * height, 1, 1, gl.RGBA,
-              gl.UNSIGNED_BYTE, out);
+            gl.readPixels(width / 2 + 0.06 * x * height, height / 2 + 0.06 * y * height, 1, 1,
+              gl.RGBA, gl.UNSIGNED_BYTE, out);
             return [...out].slice(0, 3);
           });
         })()""")

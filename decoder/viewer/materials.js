@@ -3,23 +3,29 @@
 export const kPictureUnit = 1; // of textures; the shadow has the first
 
 /** Where no material tells another. */
-const kPlain = { base: [0.491, 0.451, 0.392, 1], rows: [[1, 0, 0], [0, 1, 0]], uv: "uv0", cutoff: 0 };
+const kPlain =
+  { base: [0.491, 0.451, 0.392, 1], rows: [[1, 0, 0], [0, 1, 0]], uv: "uv0", cutoff: 0 };
+
+function haveSame(sampler, other) {
+  return Object.keys({ ...sampler, ...other }).every((key) => sampler[key] === other[key]);
+}
 
 export class Materials {
   constructor(gl) {
     this.gl = gl;
-    this.white = this.texture({ width: 1, height: 1, pixels: Uint8Array.of(255, 255, 255, 255) }, {});
+    const pixels = Uint8Array.of(255, 255, 255, 255);
+    this.white = this.texture({ width: 1, height: 1, pixels }, {});
     this.list = [];
   }
 
-  /** materials: { base, picture, sampler, uv, rows, blends, cutoff }; pictures are images or
-   * undefined, samplers as in glTF, rows those of a matrix for texture coordinates. */
+  /** materials: { base, picture, sampler, uv, rows, blends, doubleSided, cutoff }; pictures are
+   * images or undefined, samplers as in glTF, rows those of a matrix for texture coordinates. */
   set(materials) {
     this.clear();
     for (const material of materials) {
-      const { picture, sampler = {} } = material;
-      const same = this.list.find((other) => other.picture === picture &&
-        Object.keys({ ...sampler, ...other.sampler }).every((key) => sampler[key] === other.sampler?.[key]));
+      const { picture, sampler } = material;
+      const same = this.list.find((other) =>
+        other.picture === picture && haveSame(sampler, other.sampler));
       const texture = picture && (same?.texture ?? this.texture(picture, sampler));
       this.list.push({ ...material, texture });
     }

@@ -49,7 +49,8 @@ export const kSurface = {
   vertex: `${kVersion}
   in vec3 position; in vec3 normal; in float deviation; in vec2 uv; in vec4 tint;
   uniform mat4 model; uniform mat4 camera; uniform mat4 light; uniform vec3 row0; uniform vec3 row1;
-  out vec3 world; out vec3 turned; out vec4 lightPlace; out float distant; out vec2 at; out vec4 tinted;
+  out vec3 world; out vec3 turned; out vec4 lightPlace; out float distant;
+  out vec2 at; out vec4 tinted;
   void main() {
     at = vec2(dot(row0, vec3(uv, 1.0)), dot(row1, vec3(uv, 1.0)));
     tinted = tint;

@@ -113,8 +113,8 @@ export class Viewer {
   }
 
   /** The first frame follows with showFrame(), materials perhaps with setMaterials(). look: { uvs,
-   * tints, parts }: texture coordinates by name ("uv0"), colours of vertices { values, components } or
-   * undefined, and for each material its triangles: { start, count, material }. */
+   * tints, parts }: texture coordinates, [name, values]; colours of vertices { values, components }
+   * or undefined; for each material its triangles: { start, count, material }. */
   setMesh(numVertices, triangles, look) {
     for (const buffer of this.buffers.values()) this.gl.deleteBuffer(buffer);
     this.buffers.clear();
@@ -316,6 +316,8 @@ export class Viewer {
       const { base, rows, uv, cutoff } = chosen;
       this.programs.surface.use({ base, row0: rows[0], row1: rows[1], cutoff, blends });
       this.materials.bind(chosen);
+      if (blends && !chosen.doubleSided) gl.enable(gl.CULL_FACE);
+      else gl.disable(gl.CULL_FACE);
       this.point("uv", this.buffers.has(uv) ? 2 : undefined, uv);
       if (this.numCorners > 0) {
         gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.get("triangles"));
@@ -325,6 +327,7 @@ export class Viewer {
       }
     }
     gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
   }
 
   /** Lets an attribute have the floats of a buffer; without components, none: then it is white, or
