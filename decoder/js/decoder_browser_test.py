@@ -274,7 +274,8 @@ class Decoder(InScene):
         self.server.cut_at = 0
         self.assertEqual(self.error_of("await decoder.attributes();")["kind"], "network")
         self.server.cut_at = None
-        self.assertEqual(self.run_script("return [...(await decoder.attributes()).keys()];"), ["uv0"])
+        self.assertEqual(self.run_script("return [...(await decoder.attributes()).keys()];"),
+                         ["uv0"])
 
     def test_a_coarse_mesh_of_an_open_stream(self):
         result = self.run_script("""

@@ -102,7 +102,8 @@ export class RlpcDecoder {
     const wants = kArrays.filter((name) => wanted[name]);
     const spare = Object.fromEntries(kArrays.filter((name) => into?.[name]).map(
       (name) => [name, into[name]]));
-    const result = await this.#request({ type: "frame", frame: index, wants, spare, drawn, tolerant },
+    const result = await this.#request(
+      { type: "frame", frame: index, wants, spare, drawn, tolerant },
       { signal: replace ? this.#replacing(signal) : signal,
         transfer: Object.values(spare).map((array) => array.buffer) });
     if (result.error && !tolerant) throw unpacked(result.error);

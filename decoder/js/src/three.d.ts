@@ -5,8 +5,9 @@ import {
 import { Clip, OpenOptions, RlpcDecoder, RlpcError, Source } from "./index.js";
 
 export interface RLPCMeshOptions {
-  /** Instead of those of the stream: a material, or a function that makes one; or a list, in which
-   * the attribute "material" of triangles is an index. Without both, a grey MeshStandardMaterial. */
+  /** Instead of those of the stream: a material, or a function that makes one; or a list, in
+   * which the attribute "material" of triangles is an index. Without both, a grey
+   * MeshStandardMaterial. */
   material?: Material | Material[] | ((decoder: RlpcDecoder) => Material | Material[]);
   /** Whether each frame has normals. Usually true, unless there are materials and no normals in the
    * stream: then shading is flat, as in glTF. */
@@ -22,7 +23,7 @@ export interface RLPCMeshOptions {
 
 /** What is used of a GLTFLoader. */
 export interface MaterialsLoader {
-  parseAsync(data: ArrayBuffer, path: string): Promise<unknown>;
+  parseAsync(data: ArrayBuffer | string, path: string): Promise<unknown>;
 }
 
 export interface RLPCMeshEventMap extends Object3DEventMap {
@@ -35,13 +36,13 @@ export interface RLPCMeshEventMap extends Object3DEventMap {
 }
 
 /** A mesh that plays a stream. Its geometry has positions, normals and bounds of the frame that is
- * shown, and texture coordinates (uv, uv1, uv2, uv3) and colours (color) of the stream, with a group
- * for each material. Errors of attributes and materials are told with console.warn. */
+ * shown, and texture coordinates (uv, uv1, uv2, uv3) and colours (color) of the stream, with a
+ * group for each material. Errors of attributes and materials are told with console.warn. */
 export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMeshEventMap> {
   /** Without attributes of the stream. */
   constructor(decoder: RlpcDecoder, options?: Pick<RLPCMeshOptions, "material" | "normals">);
-  /** With attributes, materials and its first frame. The mesh closes the decoder when it is disposed
-   * of. */
+  /** With attributes, materials and its first frame. The mesh closes the decoder when it is
+   * disposed of. */
   static create(decoder: RlpcDecoder, options?: RLPCMeshOptions): Promise<RLPCMesh>;
 
   readonly decoder: RlpcDecoder;

@@ -4,10 +4,8 @@ import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 import { byMaterial, hasNormals } from "./sets.js";
 
 const kUsualColour = 0xb4bcc4;
-const kGltfMagic = 0x46546c67; // "glTF"
-const kJsonChunk = 0x4e4f534a;
-const kHeaderBytes = 12;
-const kChunkBytes = 8;
+const kHeaderBytes = 12; // of a GLB
+const kChunkBytes = 8; // before the contents of each chunk; the first is JSON
 
 const warnings = new Set();
 
@@ -25,7 +23,8 @@ export function usualMaterial({ vertexColors = false, flatShading = false } = {}
 
 /** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
  * or they have an error. isFlat: in glTF, meshes without normals are. */
-export async function loadLook(decoder, { attributes = true, textures = true, material, gltfLoader }) {
+export async function loadLook(decoder,
+  { attributes = true, textures = true, material, gltfLoader }) {
   const { hasAttributes, hasAsset } = decoder.info;
   if (!attributes || !hasAttributes && !hasAsset || decoder.coarseVertices) return undefined;
   const wantsMaterials = hasAsset && !material;
@@ -56,30 +55,21 @@ async function loadMaterials(decoder, textures, gltfLoader) {
     }
   }
   try {
-    const glb = textures ? asset.slice() : withoutTextures(asset);
-    return await loader.parseAsync(glb.buffer, "");
+    return await loader.parseAsync(textures ? asset.slice().buffer : withoutTextures(asset), "");
   } catch (error) {
     warn(`materials are left out: ${error.message}`);
     return undefined;
   }
 }
 
-/** A GLB with the same materials. */
-function withoutTextures(asset) {
-  const view = new DataView(asset.buffer, asset.byteOffset, asset.byteLength);
-  const size = view.getUint32(kHeaderBytes, true);
-  const json = JSON.parse(new TextDecoder().decode(
-    asset.subarray(kHeaderBytes + kChunkBytes, kHeaderBytes + kChunkBytes + size)));
-  const { asset: about, materials, extensionsUsed } = json;
-  const kept = JSON.stringify({ asset: about, materials, extensionsUsed },
+/** The same materials, as the text of a glTF file. */
+function withoutTextures(glb) {
+  const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kHeaderBytes, true);
+  const start = kHeaderBytes + kChunkBytes;
+  const { asset, materials, extensionsUsed } =
+    JSON.parse(new TextDecoder().decode(glb.subarray(start, start + size)));
+  return JSON.stringify({ asset, materials, extensionsUsed },
     (key, value) => (key.endsWith("Texture") ? undefined : value));
-  const text = new TextEncoder().encode(kept.padEnd(Math.ceil(kept.length / 4) * 4));
-  const glb = new Uint8Array(kHeaderBytes + kChunkBytes + text.length);
-  const out = new DataView(glb.buffer);
-  [kGltfMagic, 2, glb.length, text.length, kJsonChunk].forEach((number, i) =>
-    out.setUint32(4 * i, number, true));
-  glb.set(text, kHeaderBytes + kChunkBytes);
-  return glb;
 }
 
 /** As three.js names them: uv, uv1, uv2, uv3, color; undefined if it has no place for them. */
@@ -96,7 +86,8 @@ export function setAttributes(geometry, { attributes }) {
   }
 }
 
-/** Sets the index and its groups, and returns the material or materials. `material`: of the caller. */
+/** Sets the index and its groups, and returns the material or materials. `material`: of the
+ * caller. */
 export async function dress(geometry, { drawn, materialOf, gltf }, material) {
   const look = { vertexColors: "color" in geometry.attributes,
     flatShading: !("normal" in geometry.attributes) };
@@ -109,7 +100,8 @@ export async function dress(geometry, { drawn, materialOf, gltf }, material) {
     (group.material < numbers ? await finalMaterial(geometry, gltf.parser, group.material)
       : undefined) ?? usualMaterial(look)));
   if (!isList && materials.length <= 1) return materials[0] ?? usualMaterial(look);
-  groups.forEach((group, i) => geometry.addGroup(group.start, group.count, isList ? group.material : i));
+  groups.forEach(({ start, count, material: number }, i) =>
+    geometry.addGroup(start, count, isList ? number : i));
   return materials;
 }
 
