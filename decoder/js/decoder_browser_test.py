@@ -13,7 +13,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
 from in_scene import InScene  # noqa: E402
-from player_testing import STREAMS, float_frames, main  # noqa: E402
+from player_testing import ELEPHANT, STREAMS, float_frames, main, run  # noqa: E402
 from stream_server import StreamServer  # noqa: E402
 
 HEAD, TAIL = 16384, 4096  # what open() loads first
@@ -222,6 +222,60 @@ class Decoder(InScene):
         self.assertEqual(result["name"], "AbortError")
         self.assertEqual(result["near"], self.hash_of(0))
         self.assertLess(result["ms"], 5000)
+
+    def textured(self, name, *arguments):
+        """The elephant with texture coordinates."""
+        lines = pathlib.Path(f"{ELEPHANT}.obj").read_text().splitlines()
+        points = [line.split()[1:3] for line in lines if line.startswith("v ")]
+        source = self.folder / "textured.obj"
+        source.write_text("\n".join(
+            [line for line in lines if line.startswith("v ")] +
+            [f"vt {x} {y}" for x, y in points] +
+            ["f " + " ".join(f"{corner.split('/')[0]}/{corner.split('/')[0]}"
+                             for corner in line.split()[1:])
+             for line in lines if line.startswith("f ")]))
+        stream = self.folder / name
+        done = run("rlpcenc", "-q", source, "--points", f"{ELEPHANT}.pc2", "--preset", "fast",
+                   "-o", stream, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return stream
+
+    def test_attributes_load_the_first_gof_only(self):
+        stream = self.textured("textured.rlpc", "--gof", "3", "--profile", "high", "--lossless",
+                               "22")
+        frames = float_frames(stream, self.folder)
+        self.assertGreater(stream.stat().st_size, 100_000)
+        told = self.run_script("""
+            globalThis.decoder = await RlpcDecoder.open('textured.rlpc');
+            const { components, count } = (await decoder.attributes()).get('uv0');
+            return [decoder.info.hasAttributes, components, count];""")
+        self.assertEqual(told[:2], [True, 2])
+        self.assertLess(self.server.sent(), stream.stat().st_size / 2)
+        self.assertTrue(self.run_script("""
+            const { vertices } = await decoder.drawn();
+            const [drawn, whole] = await Promise.all(
+              [{ drawn: true }, {}].map((options) => decoder.frame(45, options)));
+            return vertices.every((vertex, i) => [0, 1, 2].every((c) =>
+              drawn.positions[3 * i + c] === whole.positions[3 * vertex + c]));"""))
+        self.assertEqual(self.run_script("return sha256((await decoder.frame(45)).positions);"),
+                         hashlib.sha256(frames[45]).hexdigest())
+        self.assertLess(self.server.sent(), stream.stat().st_size / 2)
+
+    def test_a_coarse_mesh_has_no_attributes(self):
+        self.assertEqual(self.run_script("""
+            const coarse = await RlpcDecoder.open('box.rlpc', { coarseLayers: 1 });
+            const { vertices, attributes } = await coarse.drawn();
+            return [coarse.info.vertices === vertices.length, attributes.size,
+                    (await coarse.attributes()).size];"""), [True, 0, 0])
+
+    def test_attributes_that_could_not_be_loaded_are_asked_for_again(self):
+        self.textured("again.rlpc", "--gof", "10", "--profile", "high", "--lossless", "22")
+        self.run_script("globalThis.decoder = await RlpcDecoder.open('again.rlpc'); return null;")
+        self.server.cut_at = 0
+        self.assertEqual(self.error_of("await decoder.attributes();")["kind"], "network")
+        self.server.cut_at = None
+        self.assertEqual(self.run_script("return [...(await decoder.attributes()).keys()];"),
+                         ["uv0"])
 
     def test_a_coarse_mesh_of_an_open_stream(self):
         result = self.run_script("""

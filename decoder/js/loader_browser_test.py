@@ -7,11 +7,16 @@ Exit code: 0 passed, 1 failed, 77 if all was skipped.
 """
 
 import pathlib
+import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
 from in_scene import InScene  # noqa: E402
-from player_testing import main  # noqa: E402
+from player_testing import STREAMS, main  # noqa: E402
+
+
+COLOURS = {(True, False, False): "red", (False, True, False): "green",
+           (False, False, True): "blue", (True, True, True): "white"}
 
 
 class Loader(InScene):
@@ -123,6 +128,155 @@ class Loader(InScene):
             await show('walk.rlpc', { material, normals: false });
             return [made, pixel(-0.2, 0.03)];"""), [[538], [255, 0, 0, 255]])
 
+    def colours(self, script):
+        """Of four places on the front of a mesh, from the upper left; "other" if it is not one of
+        those of the texture."""
+        places = "[[-0.1, 0.1], [0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]]"
+        pixels = self.run_script(f"""
+            {script}
+            lookAtFront();
+            return {places}.map(([x, y]) => pixel(x, y));""")
+        return [COLOURS.get(tuple(value > 90 for value in pixel[:3]), "other") for pixel in pixels]
+
+    def test_a_texture_is_the_right_way_up(self):
+        self.assertEqual(self.colours("await show('box.rlpc');"),
+                         ["red", "green", "blue", "white"])
+        self.browser.screenshot(self.folder / "texture.png")
+
+    def test_it_looks_as_gltf_loader_shows_the_source(self):
+        pixels = self.run_script("""
+            const hemisphere = Array.from({ length: 400 }, (_, i) =>
+              [(i % 20) / 40 - 0.25, Math.floor(i / 20) / 40 - 0.25]);
+            const all = [];
+            const mesh = await show('box.rlpc');
+            const gltf = (await new GLTFLoader().loadAsync('box.glb')).scene;
+            for (const one of [gltf, mesh]) {
+              one.scale.copy(mesh.scale);
+              one.position.copy(mesh.position);
+              scene.remove(mesh, gltf);
+              scene.add(one);
+              camera.position.set(1, 2, 4);
+              camera.lookAt(0, 0, 0);
+              all.push(hemisphere.map(([x, y]) => pixel(x, y)));
+            }
+            return all;""")
+        differing = [a for a, b in zip(*pixels) if max(abs(x - y) for x, y in zip(a, b)) > 4]
+        self.assertLess(len(differing), 16)  # at edges: positions are not exact
+        self.assertGreater(len({tuple(pixel) for pixel in pixels[0]}), 5)
+
+    def test_colours_of_vertices(self):
+        colours, look = self.run_script("""
+            const mesh = await show('colours.rlpc');
+            lookAtFront();
+            const { attributes, groups } = mesh.geometry;
+            return [pixel(0.1, 0.1), [mesh.material.map(({ vertexColors }) => vertexColors),
+              Object.keys(attributes).sort(), groups.map(({ count }) => count)]];""")
+        self.assertGreater(colours[1], colours[0] + 80)
+        self.assertEqual(look, [[True, True], ["color", "normal", "position"], [30, 6]])
+
+    def test_materials_and_what_they_need(self):
+        told = self.run_script("""
+            const { geometry, material } = await show('box.rlpc');
+            const { attributes, groups } = geometry;
+            return { names: Object.keys(attributes).sort(), groups,
+              vertices: attributes.position.count,
+              colours: material.map(({ color }) => color.toArray()),
+              maps: material.map(({ map }) => map && [map.flipY, map.colorSpace]),
+              vertexColors: material.some(({ vertexColors }) => vertexColors) };""")
+        self.assertEqual(told["names"], ["normal", "position", "uv"])
+        self.assertEqual(told["vertices"], 24)
+        self.assertEqual(told["groups"], [{"start": 0, "count": 30, "materialIndex": 0},
+                                          {"start": 30, "count": 6, "materialIndex": 1}])
+        self.assertEqual(told["colours"], [[1, 1, 1], [1, 0, 1]])
+        self.assertEqual(told["maps"], [[False, "srgb"], None])
+        self.assertFalse(told["vertexColors"])
+
+    def test_normals_are_those_of_the_frame(self):
+        self.assertTrue(self.run_script("""
+            const mesh = await show('box.rlpc');
+            mesh.time = 4 / 30;
+            while (!mesh.update(0)) await new Promise((next) => setTimeout(next, 5));
+            const { normals } = await mesh.decoder.frame(4, { drawn: true, normals: true });
+            return normals.every((x, i) => x === mesh.geometry.attributes.normal.array[i]);"""))
+
+    def test_less_than_the_stream_has(self):
+        plain = self.run_script("""
+            const told = ({ geometry, material }) => [Object.keys(geometry.attributes).sort(),
+              geometry.groups.length, [material].flat().map(({ map }) => map !== null)];
+            return [told(await show('box.rlpc', { attributes: false })),
+                    told(await show('box.rlpc', { textures: false })),
+                    told(await show('walk.rlpc'))];""")
+        self.assertEqual(plain, [[["normal", "position"], 0, [False]],
+                                 [["normal", "position", "uv"], 2, [False, False]],
+                                 [["normal", "position"], 0, [False]]])
+        self.assertEqual(self.run_script("return warnings;"), [])
+
+    def test_materials_and_loaders_of_ones_own(self):
+        self.assertEqual(self.run_script("""
+            const own = (color) => new THREE.MeshBasicMaterial({ color });
+            const one = await show('box.rlpc', { material: own(0xff0000) });
+            lookAtFront();
+            const first = pixel(0.1, 0.1);
+            one.removeFromParent();
+            const two = await show('box.rlpc', { material: [own(0x00ff00), own(0x0000ff)] });
+            lookAtFront();
+            const numbers = two.geometry.groups.map(({ materialIndex }) => materialIndex);
+            two.removeFromParent();
+            let parsed = 0;
+            const gltfLoader = new GLTFLoader();
+            gltfLoader.register((parser) => ({ name: "COUNTS", beforeRoot: () => void ++parsed }));
+            await show('box.rlpc', { gltfLoader });
+            return [first, numbers, parsed, "uv" in one.geometry.attributes];"""),
+            [[255, 0, 0, 255], [0, 1], 1, True])
+
+    def test_without_gltf_loader_it_says_what_to_do(self):
+        page = (self.folder / "scene.html").read_text()
+        lines = [line for line in page.splitlines() if "three/addons" not in line]
+        (self.folder / "bare.html").write_text("\n".join(lines).replace("GLTFLoader, Rlpc", "Rlpc"))
+        self.browser.open(f"{self.server.address}/bare.html")
+        self.browser.wait_for("globalThis.isReady")
+        told = self.run_script("""
+            const meshes = [await show('box.rlpc'), await show('box.rlpc')];
+            return [warnings, meshes[0].material.isMeshStandardMaterial,
+                    "uv" in meshes[0].geometry.attributes];""")
+        self.assertEqual((len(told[0]), told[1], told[2]), (1, True, True))
+        self.assertIn('"three/addons/" to the import map', told[0][0])
+
+    def test_damaged_attributes_and_assets_leave_a_plain_mesh(self):
+        suite = STREAMS / "v1.2" / "either"
+        for name, source, text in (("attributes", "ATT/ATT-0001x2", "R-ATT-03"),
+                                   ("asset", "AST/AST-0001x1", "R-AST-01")):
+            shutil.copy(suite / f"{source}.rlpc", self.folder / f"{name}.rlpc")
+            told = self.run_script(f"""
+                const mesh = await show('{name}.rlpc');
+                return [mesh.frame, mesh.material.isMeshStandardMaterial, warnings.splice(0)];""")
+            self.assertEqual((told[0], told[1], len(told[2])), (0, True, 1))
+            self.assertIn(text, told[2][0])
+
+    def test_an_asset_that_is_no_glb(self):
+        told = self.run_script("""
+            const { constructor: RLPCMesh } = await show('box.rlpc');
+            const all = [];
+            for (const options of [{}, { textures: false }]) {
+              const decoder = await RlpcDecoder.open('box.rlpc');
+              decoder.asset = async () => new Uint8Array(40);
+              const mesh = await RLPCMesh.create(decoder, options);
+              all.push([mesh.frame, mesh.material.isMeshStandardMaterial, warnings.splice(0)]);
+            }
+            return all;""")
+        for frame, is_plain, warnings in told:
+            self.assertEqual((frame, is_plain), (0, True))
+            self.assertIn("materials are left out", warnings[0])
+
+    def test_textures_are_disposed_of(self):
+        self.assertEqual(self.run_script("""
+            const mesh = await show('box.rlpc');
+            renderer.render(scene, camera);
+            const { textures } = renderer.info.memory;
+            mesh.removeFromParent();
+            mesh.dispose();
+            return textures - renderer.info.memory.textures;"""), 1)
+
     def test_a_ray_hits_what_is_shown(self):
         self.assertTrue(self.run_script("""
             const mesh = await show('walk.rlpc');
@@ -170,7 +324,7 @@ class Loader(InScene):
 
     def test_the_example(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/index.html"
-                          "?src=/walk.rlpc")
+                          "?src=/box.rlpc")
         self.browser.wait_for("document.querySelector('canvas') !== null")
         middle = """(() => {
           const canvas = document.querySelector('canvas');
@@ -179,8 +333,9 @@ class Loader(InScene):
           const context = copy.getContext('2d');
           return new Promise((done) => requestAnimationFrame(() => {
             context.drawImage(canvas, 0, 0);
-            done(Math.max(...context.getImageData(copy.width / 2, copy.height / 2, 1, 1).data
-              .slice(0, 3)));
+            const [red, green, blue] =
+              context.getImageData(0.48 * copy.width, 0.45 * copy.height, 1, 1).data;
+            done(Math.max(red, green, blue) - Math.min(red, green, blue)); // of the texture
           }));
         })()"""
         self.browser.wait_for(f"(async () => await {middle} > 80)()")

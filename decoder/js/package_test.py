@@ -73,6 +73,12 @@ class Node(InFolder):
     def test_the_streams_of_version_1_1(self):
         self.check_suite("v1.1")
 
+    def test_the_streams_of_version_1_2(self):
+        """But those that are rejected: of a stream with an open end, nothing tells the number of
+        frames if its end is damaged."""
+        for result in self.compare(self.of_suite("v1.2")["accept"]):
+            self.assertNotIn("error", result, result["path"])
+
     def test_streams_of_the_encoder(self):
         streams = [self.encode(f"{profile}-{order}.rlpc", "--profile", profile, "--gof", "20",
                                *(["--keep-order"] if order == "kept" else []))

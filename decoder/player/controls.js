@@ -14,6 +14,7 @@ export function addControls(player) {
     play: () => player.setPlaying(!player.playback.playing),
     wire: () => player.setWire((player.wire + 1) % kWireModes.length),
     flat: () => player.setFlat(!player.flat),
+    plain: () => player.setPlain(!player.viewer.plain),
     errors: () => player.setPaintsErrors(!player.deviation.isShown),
     up: () => player.setUp(player.up === "y" ? "z" : "y"),
     home: () => player.viewer.lookAtAll(),
@@ -33,8 +34,8 @@ export function addControls(player) {
 
 function addKeys(player, actions, changeSpeed) {
   const keys = {
-    " ": actions.play, k: actions.play, w: actions.wire, n: actions.flat, e: actions.errors,
-    u: actions.up, h: actions.home, c: actions.check, o: actions.open,
+    " ": actions.play, k: actions.play, w: actions.wire, n: actions.flat, t: actions.plain,
+    e: actions.errors, u: actions.up, h: actions.home, c: actions.check, o: actions.open,
     ArrowLeft: () => player.step(-1), ArrowRight: () => player.step(1),
     ArrowDown: () => player.step(-10), ArrowUp: () => player.step(10),
     Home: () => player.seek(player.playback.first),
@@ -71,9 +72,10 @@ export function showClips(clips) {
     ...clips.map(({ name }) => new Option(name, name)));
 }
 
-export function showToggles({ wire, flat, deviation, isChecking, up }) {
+export function showToggles({ wire, flat, viewer, deviation, isChecking, up }) {
   $("wire").setAttribute("aria-pressed", wire > 0);
   $("flat").setAttribute("aria-pressed", flat);
+  $("plain").setAttribute("aria-pressed", !viewer.plain);
   $("errors").setAttribute("aria-pressed", Boolean(deviation?.isShown));
   $("check").setAttribute("aria-pressed", isChecking);
   $("up").textContent = `${up.toUpperCase()} up`;

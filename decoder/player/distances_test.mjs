@@ -18,6 +18,15 @@ test("DistancesAreEuclidean", () => {
   assert.ok(Math.abs(rms - Math.sqrt(12.5) / 8) < 1e-12);
 });
 
+test("DrawnVerticesOfAVertexCountOnce", () => {
+  const grid = decoder(4, 0.25, [0, 0, 0]);
+  const reference = { integers: Int32Array.of(3, 0, 4, 1, 1, 1) };
+  const { distances, rms } = vertexDistances(
+    { integers: Int32Array.of(0, 0, 0, 1, 1, 1, 1, 1, 1) }, grid, reference, grid, [0, 1, 1]);
+  assert.deepEqual([...distances], [5 / 8, 0, 0]);
+  assert.ok(Math.abs(rms - Math.sqrt(12.5) / 8) < 1e-12);
+});
+
 test("TheSamePositionOnAFinerGridIsAtDistance0", () => {
   const grid = decoder(16, 2 ** -9, [1000, -5, 0]);
   const fine = decoder(24, 2 ** -15, [63000, 7, -100]);

@@ -23,7 +23,8 @@ class Player {
     document.querySelector(".ramp").style.background = kRampCss;
     this.wire = 0;
     this.up = wanted.get("up") === "z" ? "z" : "y";
-    this.flat = wanted.has("flat");
+    this.flat = this.wantsFlat = wanted.has("flat");
+    this.viewer.set({ plain: wanted.has("plain") });
     addControls(this);
     this.resize();
   }
@@ -35,6 +36,7 @@ class Player {
     $("name").textContent = name;
     this.say("Decoding …");
     this.showProgress();
+    this.sayProblems([]);
     this.playback?.cancel();
     this.session?.close();
     Object.assign(this, { playback: null, session: null, edges: null, errors: new Map(),
@@ -55,23 +57,24 @@ class Player {
   async opened(session) {
     this.session = session;
     this.info = session.decoder.info;
-    const { frames, vertices, frameRate } = this.info;
+    const { frames, frameRate } = this.info;
     this.ms = { sum: 0, frames: 0 };
     this.deviation = new DeviationCard(session.decoder);
     this.deviation.isShown = session.hasReference && wanted.get("errors") !== "off";
     this.states = new FrameStates(frames, $("strip"));
     this.viewer.setUp(this.up);
-    this.viewer.set({ flat: this.flat });
     this.showFacts();
     showClips(session.decoder.clips);
     $("errors").hidden = !session.hasReference;
     const first = Number(wanted.get("frame") ?? 0);
     await this.showCoarse(Number.isInteger(first) && first >= 0 && first < frames ? first : 0);
     if (session !== this.session) return;
-    this.isCoarse = true;
+    const mesh = await session.mesh();
+    if (session !== this.session) return;
+    this.prepare(mesh);
     this.playback = new Playback({
       frames, frameRate,
-      ahead: Math.min(8, Math.max(1, Math.floor(kBytesAhead / (24 * vertices)))),
+      ahead: Math.min(8, Math.max(1, Math.floor(kBytesAhead / (24 * mesh.numVertices)))),
       request: (index, signal) => this.request(index, signal),
       discard: (frame) => session.recycle(frame),
       failed: (error, index) => this.keepResult(index, { error }),
@@ -96,6 +99,16 @@ class Player {
     this.say("");
   }
 
+  /** For the first frame of the whole mesh. */
+  prepare(mesh) {
+    this.mesh = mesh;
+    this.isPrepared = true;
+    this.flat = this.wantsFlat || Boolean(mesh.isFlat); // in glTF, meshes without normals are
+    this.viewer.set({ flat: this.flat });
+    this.sayProblems(mesh.problems);
+    $("plain").hidden = !mesh.look;
+  }
+
   /** What is not needed for the first frames, and the check of all. */
   async loadRest(session) {
     try {
@@ -109,6 +122,8 @@ class Player {
   }
 
   async request(index, signal) {
+    await undefined; // what a seek replaces at once is not loaded
+    signal.throwIfAborted();
     const frame = await this.session.frame(index, { normals: !this.flat, signal });
     this.keepResult(index, frame);
     return frame;
@@ -125,11 +140,7 @@ class Player {
   /** What Playback says is to be shown now. */
   show({ index, frame }) {
     if (frame) {
-      if (this.isCoarse) {
-        this.viewer.setMesh(this.info.vertices, this.session.decoder.indices);
-        if (this.edges) this.viewer.setEdges(this.edges);
-        this.isCoarse = false;
-      }
+      if (this.isPrepared) this.showMesh();
       this.viewer.showFrame(frame);
       if (this.session.hasReference) this.deviation.show(frame, this.viewer);
       this.session.recycle(frame);
@@ -137,6 +148,14 @@ class Player {
     this.say(frame ? "" : `Frame ${index} cannot be decoded`);
     $("view").toggleAttribute("data-stale", !frame);
     this.shownFrame = index;
+  }
+
+  showMesh() {
+    const { numVertices, triangles, look, materials } = this.mesh;
+    this.viewer.setMesh(numVertices, triangles, look);
+    if (materials) this.viewer.setMaterials(materials);
+    if (this.edges) this.viewer.setEdges(this.edges);
+    this.isPrepared = false;
   }
 
   showFacts() {
@@ -172,6 +191,11 @@ class Player {
   say(text) {
     $("message").textContent = text;
     $("message").hidden = text === "";
+  }
+
+  /** What of the stream is not shown. */
+  sayProblems(problems) {
+    $("problems").textContent = problems.join("\n");
   }
 
   fail(text) {
@@ -219,12 +243,19 @@ class Player {
     this.showToggles();
     const { session } = this;
     if (mode === 0 || this.edges) return;
-    this.edges = await session.decoder.edges();
-    if (session === this.session && !this.isCoarse) this.viewer.setEdges(this.edges);
+    const edges = await session.edges();
+    if (session !== this.session) return;
+    this.edges = edges;
+    if (!this.isPrepared) this.viewer.setEdges(edges);
+  }
+
+  setPlain(plain) {
+    this.viewer.set({ plain });
+    this.showToggles();
   }
 
   setFlat(flat) {
-    this.flat = flat;
+    this.flat = this.wantsFlat = flat;
     this.viewer.set({ flat });
     this.seek(this.playback.frame); // with normals, or without
     this.showToggles();

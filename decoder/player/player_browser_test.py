@@ -187,8 +187,13 @@ class Browser(InBrowser):
         self.assertIn("largest 0, RMS 0", self.text("deviation"))
 
     def test_cards_leave_each_other_room(self):
-        self.open(self.stream, "frame=0", "--reference", self.stream)
-        self.wait_for_frame(0)
+        box = self.encode_box("box")
+        for stream in (self.stream, box):
+            self.open(stream, "frame=0", "--reference", stream)
+            self.wait_for_frame(0)
+            self.check_cards()
+
+    def check_cards(self):
         overlaps = """(() => {
           const boxes = [...document.querySelectorAll('.card')].map((card) =>
             card.getBoundingClientRect());
@@ -224,14 +229,14 @@ class Browser(InBrowser):
         for shown, native in zip((largest, rms), self.native_deviation(coarse, self.stream, 7)):
             self.assertAlmostEqual(shown / native, 1, delta=0.006)  # of three digits
 
-    def native_deviation(self, stream, reference, frame):
+    def native_deviation(self, stream, reference, frame, num_frames=60):
         """Largest and root mean square distance."""
         frames = []
         for source in (stream, reference):
             out = self.folder / "frame.f32"
             run("rlpcdec", "decode", source, out)
             values = struct.unpack(f"<{out.stat().st_size // 4}f", out.read_bytes())
-            size = len(values) // 60
+            size = len(values) // num_frames
             frames.append(values[size * frame:size * (frame + 1)])
         squares = [(a - b) ** 2 for a, b in zip(*frames)]
         distances = [sum(squares[i:i + 3]) for i in range(0, len(squares), 3)]
@@ -285,6 +290,96 @@ class Browser(InBrowser):
         self.assertIn("R-STR-01", self.text("message"))
         self.browser.choose_file("file", self.stream)
         self.browser.wait_for("document.body.dataset.state === 'ready' && player.shownFrame === 0")
+
+    def front(self):
+        """Colours of four places on the front of a box, from the upper left."""
+        return self.browser.evaluate("""(() => {
+          const { viewer } = player;
+          Object.assign(viewer.camera, { yaw: 0, pitch: 0, offset: [0, 0, 0] });
+          const { gl } = viewer;
+          const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+          return [[-1, 1], [1, 1], [-1, -1], [1, -1]].map(([x, y]) => {
+            viewer.isDrawn = false;
+            viewer.draw();
+            const out = new Uint8Array(4);
+            gl.readPixels(width / 2 + 0.06 * x * height, height / 2 + 0.06 * y * height, 1, 1,
+              gl.RGBA, gl.UNSIGNED_BYTE, out);
+            return [...out].slice(0, 3);
+          });
+        })()""")
+
+    @staticmethod
+    def hue(colour):
+        """red, green, blue, or grey."""
+        most, least = max(colour), min(colour)
+        return "grey" if most - least < 50 else ("red", "green", "blue")[colour.index(most)]
+
+    def test_a_texture_and_without_it(self):
+        self.open(self.encode_box("box"), "frame=0")
+        self.wait_for_frame(0)
+        self.assertEqual([*map(self.hue, self.front())], ["red", "green", "blue", "grey"])
+        self.browser.screenshot(self.folder / "textured.png")
+        self.assertEqual(self.browser.evaluate("player.viewer.numVertices"), 24)
+        self.browser.press("t")
+        self.assertEqual({*map(self.hue, self.front())}, {"grey"})
+        self.assertEqual(self.browser.evaluate("plain.ariaPressed"), "false")
+        self.browser.press("t")
+        self.assertEqual(self.hue(self.front()[0]), "red")
+        self.assertEqual(self.text("problems"), "")
+
+    def test_colours_of_vertices(self):
+        self.open(self.encode_box("colours", [0, 0.5, 0]), "frame=0")
+        self.wait_for_frame(0)
+        self.assertEqual({*map(self.hue, self.front())}, {"green"})
+
+    def test_a_stream_without_attributes_takes_the_place_of_a_textured_one(self):
+        self.open(self.encode_box("box"), "frame=0")
+        self.wait_for_frame(0)
+        self.browser.choose_file("file", self.stream)
+        self.browser.wait_for("player.shownFrame === 0 && player.viewer.numVertices === 538")
+        self.assertEqual({*map(self.hue, self.front())}, {"grey"})
+        self.assertTrue(self.browser.evaluate("plain.hidden"))
+
+    def test_edges_of_drawn_vertices(self):
+        self.open(self.encode_box("box"), "frame=0&wire=over")
+        self.browser.wait_for("player.viewer.numEdges > 0 && player.shownFrame === 0")
+        self.assertEqual(self.browser.evaluate("player.viewer.numEdges"), 18)
+        self.assertTrue(self.browser.evaluate("""(async () => {
+          const edges = await player.session.decoder.edges();
+          const { vertices } = player.session.drawn;
+          return player.edges.every((drawn, i) => vertices[drawn] === edges[i]);
+        })()"""))
+
+    def test_distances_at_drawn_vertices(self):
+        fine = self.encode_box("fine")
+        coarse = self.folder / "coarse-box.rlpc"
+        done = run("rlpcenc", "-q", self.folder / "fine.glb", "-o", coarse, "--preset", "fast",
+                   "--kg", "5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.open(coarse, "frame=4", "--reference", fine)
+        self.wait_for_frame(4)
+        largest, rms = (float(word) for word in
+                        re.search(r"largest ([\d.e-]+), RMS ([\d.e-]+)",
+                                  self.text("deviation")).groups())
+        native = self.native_deviation(coarse, fine, 4, 5)
+        self.assertGreater(largest, 0)
+        for shown, value in zip((largest, rms), native):
+            self.assertAlmostEqual(shown / value, 1, delta=0.006)
+
+    def test_damaged_attributes_and_assets_are_told_and_left_out(self):
+        suite = STREAMS / "v1.2" / "either"
+        for name, text in (("ATT/ATT-0001x2", r"attributes cannot be decoded: .*R-ATT-03"),
+                           ("AST/AST-0001x1", r"materials cannot be read: .*R-AST-01"),
+                           ("AST/AST-0001x2", r"materials cannot be read: .*no GLB")):
+            stream = suite / f"{name}.rlpc"
+            self.browser.open("about:blank")
+            self.browser.open(PLAYER.as_uri())
+            self.browser.wait_for("document.body?.dataset.state === 'empty'")
+            self.browser.choose_file("file", stream)
+            self.browser.wait_for("player.shownFrame >= 0")
+            self.assertRegex(self.text("problems"), text)
+            self.wait_for_check()
+            self.assertEqual(self.browser.evaluate("player.states.counts[4]"), 0)
 
     def test_clips(self):
         stream = self.encode("clips.rlpc", "--gof", "20", "--clip", "Walk:10-19", "--clip",

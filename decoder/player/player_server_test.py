@@ -60,6 +60,14 @@ class Server(InBrowser):
         self.assertLess(coarse, 0.7 * 538)
         self.assertEqual(self.browser.evaluate("player.viewer.numVertices"), 538)
 
+    def test_textures_from_the_server(self):
+        self.encode_box("box")
+        for self.server.ranges in (True, False):
+            self.open("src=box.rlpc#frame=2")
+            self.wait_for_frame(2)
+            self.assertEqual(self.browser.evaluate(
+                "[player.viewer.materials.list.length, player.viewer.look.uvs.length]"), [2, 1])
+
     def test_a_reference_from_the_server(self):
         self.encode("fine.rlpc", "--gof", "20", "--kg", "0.01")
         self.open("src=big.rlpc#frame=5&reference=fine.rlpc")

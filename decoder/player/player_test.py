@@ -155,6 +155,9 @@ class Playing(unittest.TestCase):
     def test_distances(self):
         self.run_in_node("distances_test.mjs")
 
+    def test_materials_of_an_asset(self):
+        self.run_in_node("asset_materials_test.mjs")
+
     def test_camera(self):
         self.run_in_node(HERE.parent / "viewer" / "camera_test.mjs")
 

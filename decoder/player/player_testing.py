@@ -13,6 +13,8 @@ import tempfile
 import unittest
 import zlib
 
+import textured_box
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STREAMS = ROOT / "streams"
@@ -98,6 +100,17 @@ class InFolder(unittest.TestCase):
         stream = cls.folder / name
         done = run("rlpcenc", "-q", f"{ELEPHANT}.obj", "--points", f"{ELEPHANT}.pc2", "--preset",
                    "fast", "-o", stream, *arguments)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr.decode())
+        return stream
+
+    @classmethod
+    def encode_box(cls, name, colour=None):
+        """The box of textured_box.py, as name.glb and name.rlpc; the path of the latter."""
+        glb = cls.folder / f"{name}.glb"
+        glb.write_bytes(textured_box.box(colour))
+        stream = glb.with_suffix(".rlpc")
+        done = run("rlpcenc", "-q", glb, "-o", stream, "--preset", "fast")
         if done.returncode != 0:
             raise AssertionError(done.stderr.decode())
         return stream

@@ -1,10 +1,20 @@
 // A stream that is shown, with its reference and the check of all its frames: what the page asks
 // of the package.
 import { RlpcDecoder } from "../js/src/index.js";
+import { byMaterial, hasNormals } from "../js/src/sets.js";
+import { readMaterials } from "./asset_materials.js";
 import { vertexDistances } from "./distances.js";
 
 /** At most so many arrays of frames that are not shown any more are kept. */
 const kMostSpare = 4;
+
+/** Of the names of attributes: see Viewer.setMesh(). */
+function lookOf({ attributes }, parts) {
+  const uvs = [...attributes.values()].filter(({ name, components }) =>
+    /^uv\d+$/.test(name) && components === 2).map(({ name, values }) => [name, values]);
+  const tints = attributes.get("colour0");
+  return { uvs, tints: tints?.components >= 3 ? tints : undefined, parts };
+}
 
 export class StreamSession {
   /** stream: a blob or a URL; options: of RlpcDecoder.open(). */
@@ -46,11 +56,53 @@ export class StreamSession {
     }
   }
 
+  /** Vertices that are drawn with what the stream has of them: { numVertices, triangles, look,
+   * isFlat } for the viewer, without a look if there is none; problems are what cannot be shown. */
+  async mesh() {
+    const { decoder } = this;
+    const { vertices, hasAttributes, hasAsset } = decoder.info;
+    const plain = { numVertices: vertices, triangles: decoder.indices, problems: [] };
+    if (!hasAttributes && !hasAsset) return plain;
+    try {
+      const [drawn, sets, told] =
+        await Promise.all([decoder.drawn(), decoder.attributes(), this.readAsset()]);
+      const { materials, problems } = told;
+      this.drawn = drawn;
+      const { indices, groups } =
+        byMaterial(drawn.indices, sets.get("material"), materials.length);
+      return { numVertices: drawn.vertices.length, triangles: indices, problems, materials,
+        isFlat: materials.length > 0 && !hasNormals(sets), look: lookOf(drawn, groups) };
+    } catch (error) {
+      if (error.kind === "closed") throw error;
+      return { ...plain, problems: [`The attributes cannot be decoded: ${error.message}`] };
+    }
+  }
+
+  /** What is wrong with it is no fault of the mesh. */
+  async readAsset() {
+    try {
+      const asset = await this.decoder.asset();
+      return asset ? await readMaterials(asset) : { materials: [], problems: [] };
+    } catch (error) {
+      if (error.kind === "closed") throw error;
+      return { materials: [], problems: [`The materials cannot be read: ${error.message}`] };
+    }
+  }
+
+  /** Pairs of drawn vertices. */
+  async edges() {
+    const edges = await this.decoder.edges();
+    if (!this.drawn) return edges;
+    const place = new Uint32Array(this.decoder.info.vertices);
+    this.drawn.vertices.forEach((vertex, drawn) => (place[vertex] = drawn));
+    return edges.map((vertex) => place[vertex]);
+  }
+
   /** A frame to draw, with distances from the reference. */
   async frame(index, { normals, signal }) {
     const frame = await this.decoder.frame(index, {
       positions: false, coordinates: true, integers: this.hasReference, normals, tolerant: true,
-      signal, into: this.spare.pop() });
+      drawn: Boolean(this.drawn), signal, into: this.spare.pop() });
     if (this.hasReference) await this.compare(frame, signal);
     const { min, max } = this.boxOf(frame);
     return Object.assign(frame, { box: [...min, ...max] });
@@ -71,7 +123,8 @@ export class StreamSession {
       const other = await this.reference.frame(frame.index, {
         positions: false, integers: true, tolerant: true, signal });
       if (other.error?.rule === "R-HSH-02") frame.referenceError = other.error;
-      Object.assign(frame, vertexDistances(frame, this.decoder, other, this.reference));
+      Object.assign(frame, vertexDistances(frame, this.decoder, other, this.reference,
+        this.drawn?.vertices));
     } catch (error) {
       if (error.name === "AbortError") throw error;
       frame.referenceError = error;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace rlpc {
@@ -52,7 +52,11 @@ std::array<float, 3> unit_vector(std::uint32_t u, std::uint32_t v, std::uint32_t
 }
 
 float number_of(const AttributeHeader& header, std::uint32_t value, std::uint32_t c) {
-  if (header.kind == ValueKind::kFloats) return std::bit_cast<float>(value);
+  if (header.kind == ValueKind::kFloats) {
+    float number = 0;
+    std::memcpy(&number, &value, sizeof number);  // std::bit_cast, which Emscripten lacks
+    return number;
+  }
   switch (header.scale) {
     case ValueScale::kNone:
       break;

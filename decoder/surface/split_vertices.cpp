@@ -16,13 +16,13 @@ Indices first_equals(const AttributeSet& set) {
   if (set.header.has_faces()) return first;
   const std::size_t n = set.header.num_components;
   const auto compare = [&](std::uint32_t a, std::uint32_t b) {
-    const auto* const values = set.values.data();
-    return std::lexicographical_compare_three_way(values + a * n, values + (a + 1) * n,
-                                                  values + b * n, values + (b + 1) * n);
+    const auto* const end = set.values.data() + (a + 1) * n;
+    const auto [x, y] = std::mismatch(end - n, end, set.values.data() + b * n);
+    return x == end ? 0 : (*x < *y ? -1 : 1);
   };
   Indices sorted = first;
   std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const auto order = compare(a, b);
+    const int order = compare(a, b);
     return order == 0 ? a < b : order < 0;
   });
   for (std::size_t i = 1; i < sorted.size(); ++i) {

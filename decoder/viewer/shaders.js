@@ -47,10 +47,13 @@ const kToneMap = `
 
 export const kSurface = {
   vertex: `${kVersion}
-  in vec3 position; in vec3 normal; in float deviation;
-  uniform mat4 model; uniform mat4 camera; uniform mat4 light;
+  in vec3 position; in vec3 normal; in float deviation; in vec2 uv; in vec4 tint;
+  uniform mat4 model; uniform mat4 camera; uniform mat4 light; uniform vec3 row0; uniform vec3 row1;
   out vec3 world; out vec3 turned; out vec4 lightPlace; out float distant;
+  out vec2 at; out vec4 tinted;
   void main() {
+    at = vec2(dot(row0, vec3(uv, 1.0)), dot(row1, vec3(uv, 1.0)));
+    tinted = tint;
     vec4 place = model * vec4(position, 1.0);
     world = place.xyz;
     turned = mat3(model) * normal;
@@ -60,12 +63,15 @@ export const kSurface = {
     gl_PointSize = 4.0;
   }`,
   fragment: `${kVersion}
-  in vec3 world; in vec3 turned; in vec4 lightPlace; in float distant;
+  in vec3 world; in vec3 turned; in vec4 lightPlace; in float distant; in vec2 at; in vec4 tinted;
+  uniform sampler2D picture; uniform vec4 base; uniform float cutoff; uniform bool blends;
   uniform vec3 eye; uniform vec3 keyDirection; uniform vec3 rimDirection;
   uniform bool flatShading; uniform bool isPoint; uniform float deviationScale;
   out vec4 colour;
   ${kRampColour} ${kLit} ${kToneMap}
   void main() {
+    vec4 own = base * tinted * texture(picture, at);
+    if (own.a < cutoff) discard;
     vec3 towards = normalize(eye - world);
     vec3 n = gl_FrontFacing ? turned : -turned;
     if (flatShading || dot(n, n) == 0.0) {
@@ -73,8 +79,7 @@ export const kSurface = {
       if (dot(n, towards) < 0.0) n = -n;
     }
     n = isPoint ? towards : normalize(n);
-    vec3 albedo = deviationScale > 0.0 ? rampColour(distant / deviationScale)
-                                       : vec3(0.491, 0.451, 0.392);
+    vec3 albedo = deviationScale > 0.0 ? rampColour(distant / deviationScale) : own.rgb;
     vec4 biased = vec4(lightPlace.xyz - vec3(0.0, 0.0, 0.004), 1.0);
     float key = max(dot(n, keyDirection), 0.0);
     if (key > 0.0) key *= lit(biased);
@@ -82,7 +87,8 @@ export const kSurface = {
     vec3 sky = mix(vec3(0.038, 0.029, 0.022), vec3(0.24, 0.28, 0.33), 0.5 + 0.5 * n.y);
     vec3 light = sky + 0.99 * key * vec3(1.0, 0.87, 0.70) + 0.5 * rim * vec3(0.35, 0.55, 1.0);
     float shine = pow(max(dot(n, normalize(towards + keyDirection)), 0.0), 24.0);
-    colour = vec4(toneMapped(albedo * light + 0.03 * shine * key), 1.0);
+    float opacity = blends ? own.a : 1.0;
+    colour = vec4(toneMapped(albedo * light + 0.03 * shine * key) * opacity, opacity);
   }`,
 };
 

@@ -1,5 +1,6 @@
 // Draws an animated mesh on a floor, in light, with WebGL 2 and nothing else.
 import { Camera } from "./camera.js";
+import { Materials, kPictureUnit } from "./materials.js";
 import { multiply, orthographic, viewAxes, viewMatrix } from "./matrices.js";
 import { kDepth, kEdges, kFloor, kSurface } from "./shaders.js";
 
@@ -8,7 +9,7 @@ export { kRampCss } from "./shaders.js";
 
 const kShadowPixels = 2048;
 const kMostShadowTriangles = 2e6; // beyond, a second drawing for the shadow costs too much
-const kAttributes = ["position", "normal", "deviation"];
+const kAttributes = ["position", "normal", "deviation", "uv", "tint"];
 const kKey = viewAxes(0.755, 0.876); // axes of the lights; the last is where they come from
 const kRim = viewAxes(-2.455, 0.38);
 
@@ -68,11 +69,15 @@ export class Viewer {
       edges: kEdges, floor: kFloor }).map(([name, text]) => [name, new Program(gl, text)]));
     this.makeShadowMap();
     this.makeFloor();
+    this.materials = new Materials(gl);
+    this.programs.surface.use({});
+    gl.uniform1i(gl.getUniformLocation(this.programs.surface.program, "picture"), kPictureUnit);
     this.vertices = gl.createVertexArray();
     this.buffers = new Map(); // by name, of the mesh
     this.flat = false;
     this.wire = "off"; // or "over" the surface, or "alone"
     this.deviationScale = 0; // distance of the last colour of the ramp; 0: no colours
+    this.plain = false; // without texture, colours and materials
     this.up = "y";
     this.numEdges = 0;
     camera.attach(canvas);
@@ -107,8 +112,10 @@ export class Viewer {
     gl.vertexAttribPointer(place, 2, gl.FLOAT, false, 0, 0);
   }
 
-  /** The first frame follows with showFrame(). */
-  setMesh(numVertices, triangles) {
+  /** The first frame follows with showFrame(), materials perhaps with setMaterials(). look: { uvs,
+   * tints, parts }: texture coordinates, [name, values]; colours of vertices { values, components }
+   * or undefined; for each material its triangles: { start, count, material }. */
+  setMesh(numVertices, triangles, look) {
     for (const buffer of this.buffers.values()) this.gl.deleteBuffer(buffer);
     this.buffers.clear();
     this.gl.deleteVertexArray(this.vertices);
@@ -118,6 +125,16 @@ export class Viewer {
     this.numEdges = 0;
     this.frame = null;
     this.store("triangles", this.gl.ELEMENT_ARRAY_BUFFER, triangles);
+    this.look = look;
+    this.materials.clear();
+    for (const [name, values] of look?.uvs ?? []) this.store(name, this.gl.ARRAY_BUFFER, values);
+    if (look?.tints) this.store("tint", this.gl.ARRAY_BUFFER, look.tints.values);
+    this.isDrawn = false;
+  }
+
+  /** As of Materials.set(); for the numbers in the parts of the mesh. */
+  setMaterials(materials) {
+    this.materials.set(materials);
     this.isDrawn = false;
   }
 
@@ -202,7 +219,7 @@ export class Viewer {
     this.isDrawn = false;
   }
 
-  /** Of flat, wire, deviationScale. */
+  /** Of flat, wire, plain, deviationScale. */
   set(settings) {
     Object.assign(this, settings);
     this.isDrawn = false;
@@ -280,12 +297,52 @@ export class Viewer {
     this.programs.surface.use({
       ...common, keyDirection: kKey[2], rimDirection: kRim[2], isPoint: this.numCorners === 0,
       flatShading: this.flat || !this.buffers.has("normal"), deviationScale: this.deviationScale });
-    if (this.numCorners > 0) {
-      this.drawTriangles();
-    } else {
-      gl.bindVertexArray(this.vertices);
-      gl.drawArrays(gl.POINTS, 0, this.numVertices);
+    gl.bindVertexArray(this.vertices);
+    const parts = this.plain ? undefined : this.look?.parts;
+    this.point("tint", this.plain ? undefined : this.look?.tints?.components);
+    for (const blends of [false, true]) this.drawParts(parts ?? [{ material: -1 }], blends);
+  }
+
+  /** Those that are seen through after the others. */
+  drawParts(parts, blends) {
+    const { gl, look } = this;
+    if (blends) {
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     }
+    for (const { start = 0, count = this.numCorners, material } of parts) {
+      const chosen = this.materials.at(material, !this.plain && Boolean(look?.tints));
+      if (Boolean(chosen.blends) !== blends) continue;
+      const { base, rows, uv, cutoff } = chosen;
+      this.programs.surface.use({ base, row0: rows[0], row1: rows[1], cutoff, blends });
+      this.materials.bind(chosen);
+      if (blends && !chosen.doubleSided) gl.enable(gl.CULL_FACE);
+      else gl.disable(gl.CULL_FACE);
+      this.point("uv", this.buffers.has(uv) ? 2 : undefined, uv);
+      if (this.numCorners > 0) {
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.get("triangles"));
+        gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * start);
+      } else {
+        gl.drawArrays(gl.POINTS, 0, this.numVertices);
+      }
+    }
+    gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
+  }
+
+  /** Lets an attribute have the floats of a buffer; without components, none: then it is white, or
+   * 0. */
+  point(name, components, buffer = name) {
+    const { gl } = this;
+    const place = kAttributes.indexOf(name);
+    if (!components) {
+      gl.disableVertexAttribArray(place);
+      gl.vertexAttrib4fv(place, name === "tint" ? [1, 1, 1, 1] : [0, 0, 0, 1]);
+      return;
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.get(buffer));
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, components, gl.FLOAT, false, 0, 0);
   }
 
   drawEdges(common) {

@@ -75,8 +75,9 @@ ROOMS = {
     "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/mesh",
                             "decoder/output", "decoder/surface"},
     # The decoder for JavaScript.
-    "decoder/js/wasm": {"common/bitstream", "common/io", "common/mesh", "decoder/stream",
-                        "decoder/recon/prefetch.h", "decoder/surface"} | _PUBLIC_DECODER,
+    "decoder/js/wasm": {"common", "common/attributes", "common/bitstream", "common/io",
+                        "common/mesh", "decoder/stream", "decoder/recon/prefetch.h",
+                        "decoder/surface"} | _PUBLIC_DECODER,
     "decoder/player": {"common/io", "decoder/output", "decoder/stream", "decoder/tools"}
                       | _PUBLIC_DECODER,
     "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",

@@ -21,11 +21,16 @@ function parsedMetadata(text) {
   return text === "" ? null : JSON.parse(text);
 }
 
+function byName(sets) {
+  return new Map(sets.map((set) => [set.name, set]));
+}
+
 export class RlpcDecoder {
   #link;
   #stream;
   #latest; // of the frames asked for with `replace`
   #isClosed = false;
+  #known = new Map(); // promises of what is asked for once
 
   static async open(source, options = {}) {
     const { signal, onProgress, maxMemory = kUsualMemory, coarseLayers = 0, verifyHashes = true,
@@ -68,6 +73,8 @@ export class RlpcDecoder {
       layers: header.num_layers,
       positionBits: header.position_bits,
       bytes: size,
+      hasAttributes: Boolean(header.has_attributes),
+      hasAsset: Boolean(header.has_asset),
     });
     this.gridOrigin = header.grid_origin;
     this.gridStep = 2 ** header.grid_log2_step;
@@ -75,7 +82,6 @@ export class RlpcDecoder {
     this.coarseVertices = coarseVertices;
     this.clips = header.clips;
     this.metadata = parsedMetadata(header.metadata);
-    this.attributes = new Map();
     const half = 2 ** (header.position_bits - 1);
     this.bounds = this.#box([-half, -half, -half, half - 1, half - 1, half - 1]);
   }
@@ -88,7 +94,7 @@ export class RlpcDecoder {
   }
 
   async frame(index, { positions = true, integers = false, coordinates = false, normals = false,
-    replace = false, tolerant = false, signal, into } = {}) {
+    drawn = false, replace = false, tolerant = false, signal, into } = {}) {
     if (!Number.isInteger(index) || index < 0 || index >= this.info.frames) {
       throw new RangeError(`frame ${index} is not one of 0 to ${this.info.frames - 1}`);
     }
@@ -96,7 +102,8 @@ export class RlpcDecoder {
     const wants = kArrays.filter((name) => wanted[name]);
     const spare = Object.fromEntries(kArrays.filter((name) => into?.[name]).map(
       (name) => [name, into[name]]));
-    const result = await this.#request({ type: "frame", frame: index, wants, spare, tolerant },
+    const result = await this.#request(
+      { type: "frame", frame: index, wants, spare, drawn, tolerant },
       { signal: replace ? this.#replacing(signal) : signal,
         transfer: Object.values(spare).map((array) => array.buffer) });
     if (result.error && !tolerant) throw unpacked(result.error);
@@ -137,6 +144,29 @@ export class RlpcDecoder {
     } finally {
       stop.abort(aborted());
     }
+  }
+
+  attributes() {
+    return this.#once("attributes", ({ sets }) => byName(sets));
+  }
+
+  drawn() {
+    return this.#once("drawn", (drawn) => ({ ...drawn, attributes: byName(drawn.attributes) }));
+  }
+
+  asset() {
+    return this.#once("asset", ({ bytes }) => bytes);
+  }
+
+  /** What failed can be asked for again. */
+  #once(type, made) {
+    if (!this.#known.has(type)) {
+      this.#known.set(type, this.#request({ type }).then(made).catch((error) => {
+        this.#known.delete(type);
+        throw error;
+      }));
+    }
+    return this.#known.get(type);
   }
 
   async edges() {

@@ -1,17 +1,21 @@
 // Decodes streams, one request after the other: in a worker, or beside its caller.
 //
-//   request                                       result
-//   open    module, source or shared, options     stream  and its description
-//   frame   stream, frame, wants, spare,          arrays, extent, crc, compared, ms, error
-//           tolerant
-//   edges   stream                                edges
-//   load    stream                                bytes   of the whole stream
-//   close   stream
+//   request                                         result
+//   open        module, source or shared, options   stream  and its description
+//   frame       stream, frame, wants, spare,        arrays, extent, crc, compared, ms, error
+//               drawn, tolerant
+//   edges       stream                              edges
+//   attributes  stream                              sets
+//   drawn       stream                              vertices, indices, attributes
+//   asset       stream                              bytes
+//   load        stream                              bytes   of the whole stream
+//   close       stream
 //
 // Each has an id, which its reply has, too: { id, result } or { id, error }. { cancel: id } ends a
 // request early. Messages without an id say what has been loaded: { stream, loaded, size }.
 import { aborted, packed } from "./error.js";
 import { openSource } from "./sources.js";
+import { WasmAttributes } from "./wasm_attributes.js";
 import { MissingBytes, WasmDecoder } from "./wasm_decoder.js";
 
 const kTailBytes = 4096; // usually holds the GOF index
@@ -52,6 +56,7 @@ class OpenStream {
     // A server that sends the stream from its start to its end sends the index last.
     if (!source.whole) await this.findIndex(signal);
     this.header = await this.complete(() => this.decoder.describe(), signal);
+    this.look = new WasmAttributes(this.decoder, this.header);
     return this.describe();
   }
 
@@ -135,13 +140,17 @@ class OpenStream {
   }
 
   /** tolerant: also checks the rest of the stream after the last frame. */
-  async frame({ frame, wants, spare, tolerant }, signal) {
-    const { decoder, header: { num_vertices: numVertices, num_frames: numFrames } } = this;
+  async frame({ frame, wants, spare, drawn, tolerant }, signal) {
+    const { decoder, look, header: { num_vertices: numVertices, num_frames: numFrames } } = this;
+    if (drawn) await this.complete(() => look.decode(), signal);
     const start = performance.now();
     await this.complete(() => decoder.decode(frame), signal);
     const result = { ms: performance.now() - start, error: decoder.hashError(),
       compared: decoder.comparedFrames(), crc: decoder.crc(), extent: decoder.extent() };
-    for (const name of wants) result[name] = decoder[name](numVertices, spare[name]);
+    for (const name of wants) {
+      result[name] = drawn ? look.ofFrame(name, spare[name])
+        : decoder.ofFrame(name, numVertices, undefined, spare[name]);
+    }
     if (tolerant && frame + 1 === numFrames && !this.endIsChecked && !result.error) {
       try {
         await this.complete(() => decoder.finish(), signal);
@@ -155,6 +164,27 @@ class OpenStream {
     this.lastFrame = frame;
     return result;
   }
+
+  async attributes(signal) {
+    await this.complete(() => this.look.decode(), signal);
+    return { sets: this.look.sets() };
+  }
+
+  async drawn(signal) {
+    await this.complete(() => this.look.decode(), signal);
+    return this.look.drawn();
+  }
+
+  async asset(signal) {
+    return { bytes: await this.complete(() => this.look.asset(), signal) };
+  }
+}
+
+/** The memory of the arrays in a result. */
+function buffersIn(result) {
+  if (ArrayBuffer.isView(result)) return [result.buffer];
+  if (result === null || typeof result !== "object") return [];
+  return Object.values(result).flatMap(buffersIn);
 }
 
 export class Engine {
@@ -196,8 +226,7 @@ export class Engine {
     try {
       signal.throwIfAborted();
       const result = await this[type](message, signal);
-      const arrays = Object.values(result ?? {}).filter((value) => ArrayBuffer.isView(value));
-      this.post({ id, result }, arrays.map((array) => array.buffer));
+      this.post({ id, result }, buffersIn(result));
     } catch (error) {
       this.post({ id, error: packed(error) });
     }
@@ -217,6 +246,18 @@ export class Engine {
 
   frame(message, signal) {
     return this.streams.get(message.stream).frame(message, signal);
+  }
+
+  attributes({ stream }, signal) {
+    return this.streams.get(stream).attributes(signal);
+  }
+
+  drawn({ stream }, signal) {
+    return this.streams.get(stream).drawn(signal);
+  }
+
+  asset({ stream }, signal) {
+    return this.streams.get(stream).asset(signal);
   }
 
   edges({ stream }) {

@@ -30,6 +30,46 @@ export interface StreamInfo {
   readonly positionBits: number;
   /** Size of the stream. */
   readonly bytes: number;
+  /** Whether there is anything in attributes(); a mesh of fewer layers has none all the same. */
+  readonly hasAttributes: boolean;
+  /** Whether there is an asset(). */
+  readonly hasAsset: boolean;
+}
+
+/** Whose values they are. */
+export type AttributeDomain = "vertex" | "corner" | "triangle";
+/** Of "smoothing", there are no values: corners with the same number share a normal, which follows
+ * from the positions of each frame. */
+export type AttributeKind = "integers" | "unitVectors" | "floats" | "smoothing";
+
+/** A set of values, the same in all frames. */
+export interface Attribute {
+  /** "uv0", "normal", "colour0", "material", "part" and others (F.4 of the specification). */
+  name: string;
+  domain: AttributeDomain;
+  kind: AttributeKind;
+  /** Of a value: 1 to 4; 0 of smoothing. */
+  components: number;
+  /** How many values there are; 0 of smoothing. */
+  count: number;
+  /** Texture coordinates with (0, 0) in the upper left corner of an image, linear colours from 0 to
+   * 1, unit vectors as x, y, z, indices of materials, or what else the encoder was given. */
+  values: Float32Array;
+  /** As in the stream, without scale and offset; unit vectors as points of an octahedron. */
+  integers: Uint32Array;
+  /** With the domain "corner": the index of the value of each corner, three for each triangle. */
+  corners?: Uint32Array;
+}
+
+/** A mesh as graphics cards take it: vertices of the stream, each as often as it has different
+ * combinations of values at its corners. */
+export interface DrawnMesh {
+  /** The vertex of the stream of each drawn vertex, ascending. */
+  vertices: Uint32Array;
+  /** Drawn vertices of each triangle, in the order of `indices` of the decoder. */
+  indices: Uint32Array;
+  /** Values at the drawn vertices, of the sets of vertices and corners, but smoothing. */
+  attributes: ReadonlyMap<string, { name: string; components: number; values: Float32Array }>;
 }
 
 export interface Progress {
@@ -72,6 +112,9 @@ export interface FrameOptions {
   integers?: boolean;
   normals?: boolean;
   coordinates?: boolean;
+  /** Arrays have the vertices of drawn() instead of those of the stream. Normals are then those of
+   * the set "normal", computed for this frame, if there is one. */
+  drawn?: boolean;
   /** Cancels the request before that also had `replace`, if it still waits: for scrubbing. */
   replace?: boolean;
   /** A frame that does not fit its hash is given all the same, with `error`. With the last frame,
@@ -92,7 +135,8 @@ export interface Frame {
   positions: Float32Array;
   /** x, y, z of each vertex on the grid; plus gridOrigin, times gridStep: in units. */
   integers?: Int32Array;
-  /** x, y, z of each vertex: the mean of the normals of its triangles, weighted by area. */
+  /** x, y, z of each vertex: the mean of the normals of its triangles, weighted by area. With
+   * `drawn`, as the stream has them. */
   normals?: Float32Array;
   /** x, y, z of each vertex from `centre`, in a cube from -1 to 1 that holds all positions: these
    * keep their precision where the mesh is small and far from the origin. */
@@ -131,8 +175,6 @@ export class RlpcDecoder {
   readonly clips: readonly Clip[];
   /** What the encoder noted, from JSON; null if it noted nothing. */
   readonly metadata: unknown;
-  /** Other data of vertices and triangles, by name. Streams of version 1.2 have none. */
-  readonly attributes: ReadonlyMap<string, ArrayBufferView>;
   /** A box that holds all frames, and may be larger. */
   readonly bounds: Bounds;
   /** Added to integer positions. */
@@ -146,6 +188,14 @@ export class RlpcDecoder {
     Promise<Omit<Frame, "positions">>;
   /** Frames in order, decoded ahead. */
   frames(options?: FramesOptions): AsyncGenerator<Frame, void, undefined>;
+  /** Texture coordinates, normals, colours, materials and others, by name; empty if the stream has
+   * none. Loads the first frame. Frames can be decoded even if it rejects. */
+  attributes(): Promise<ReadonlyMap<string, Attribute>>;
+  /** The vertices to draw with attributes; see `drawn` of frame(). */
+  drawn(): Promise<DrawnMesh>;
+  /** Materials, textures and names, as a GLB without geometry; null if the stream has none. It is
+   * as the encoder was given it: a reader of glTF has to check it. */
+  asset(): Promise<Uint8Array | null>;
   /** Pairs of vertices: each edge of the triangles once, for a wireframe. */
   edges(): Promise<Uint32Array>;
   /** Loads the rest of the stream, while frames are decoded. */

@@ -5,10 +5,25 @@ import {
 import { Clip, OpenOptions, RlpcDecoder, RlpcError, Source } from "./index.js";
 
 export interface RLPCMeshOptions {
-  /** A material, or a function that makes one; usually a grey MeshStandardMaterial. */
+  /** Instead of those of the stream: a material, or a function that makes one; or a list, in
+   * which the attribute "material" of triangles is an index. Without both, a grey
+   * MeshStandardMaterial. */
   material?: Material | Material[] | ((decoder: RlpcDecoder) => Material | Material[]);
-  /** Whether each frame has normals; usually true. Not needed for flat shading. */
+  /** Whether each frame has normals. Usually true, unless there are materials and no normals in the
+   * stream: then shading is flat, as in glTF. */
   normals?: boolean;
+  /** false: positions and triangles only, without texture coordinates, colours and materials. */
+  attributes?: boolean;
+  /** false: materials without their textures, whose images are then not decoded. */
+  textures?: boolean;
+  /** Reads materials and textures: a GLTFLoader, if it needs decoders of its own (KTX 2), or
+   * "three/addons/" cannot be imported. */
+  gltfLoader?: MaterialsLoader;
+}
+
+/** What is used of a GLTFLoader. */
+export interface MaterialsLoader {
+  parseAsync(data: ArrayBuffer | string, path: string): Promise<unknown>;
 }
 
 export interface RLPCMeshEventMap extends Object3DEventMap {
@@ -21,10 +36,13 @@ export interface RLPCMeshEventMap extends Object3DEventMap {
 }
 
 /** A mesh that plays a stream. Its geometry has positions, normals and bounds of the frame that is
- * shown. */
+ * shown, and texture coordinates (uv, uv1, uv2, uv3) and colours (color) of the stream, with a
+ * group for each material. Errors of attributes and materials are told with console.warn. */
 export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMeshEventMap> {
-  constructor(decoder: RlpcDecoder, options?: RLPCMeshOptions);
-  /** With its first frame. The mesh closes the decoder when it is disposed of. */
+  /** Without attributes of the stream. */
+  constructor(decoder: RlpcDecoder, options?: Pick<RLPCMeshOptions, "material" | "normals">);
+  /** With attributes, materials and its first frame. The mesh closes the decoder when it is
+   * disposed of. */
   static create(decoder: RlpcDecoder, options?: RLPCMeshOptions): Promise<RLPCMesh>;
 
   readonly decoder: RlpcDecoder;

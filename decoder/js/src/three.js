@@ -1,54 +1,64 @@
 // three.js: RLPCLoader loads a stream as an RLPCMesh, which plays it. three.d.ts describes both.
 import {
   Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Loader, LoopOnce, LoopPingPong,
-  LoopRepeat, Mesh, MeshStandardMaterial, Sphere, Vector3,
+  LoopRepeat, Mesh, Sphere, Vector3,
 } from "three";
 
 import { Playback, RlpcDecoder } from "./index.js";
+import { dispose, dress, loadLook, setAttributes, usualMaterial } from "./three_look.js";
 
 const kLoopNames = new Map([[LoopRepeat, "repeat"], [LoopOnce, "once"], [LoopPingPong, "pingpong"]]);
 const kMostSpare = 4;
 const kBytesAhead = 64e6;
-
-function usualMaterial() {
-  return new MeshStandardMaterial({ color: 0xb4bcc4, roughness: 0.6 });
-}
 
 export class RLPCMesh extends Mesh {
   #decoder;
   #playback;
   #spare = []; // frames whose arrays are not in use any more
   #withNormals;
+  #isDrawn; // frames have drawn vertices
   #ownMaterial;
+  #ownTextures;
   #loop = LoopRepeat;
   #clip = null;
 
-  /** Its first frame is there. */
+  /** Its first frame is there, with attributes, materials and textures. */
   static async create(decoder, options = {}) {
-    const mesh = new RLPCMesh(decoder, options);
+    let mesh;
     try {
-      mesh.#show(await mesh.#first);
+      const look = await loadLook(decoder, options);
+      mesh = new RLPCMesh(decoder, { normals: !look?.isFlat, ...options }, look);
+      const [frame, material] = await Promise.all([mesh.#first,
+        look && dress(mesh.geometry, look, mesh.#given(options.material))]);
+      if (look) mesh.material = material;
+      mesh.#show(frame);
+      return mesh;
     } catch (error) {
-      mesh.dispose();
+      if (mesh) mesh.dispose();
+      else decoder.close();
       throw error;
     }
-    return mesh;
   }
 
   #first;
 
-  constructor(decoder, { material, normals = true } = {}) {
-    super(new BufferGeometry(), material?.isMaterial ? material : (material ?? usualMaterial)(decoder));
+  constructor(decoder, { material, normals = true } = {}, look = undefined) {
+    super(new BufferGeometry());
     this.type = "RLPCMesh";
     this.#decoder = decoder;
     this.#withNormals = normals;
-    this.#ownMaterial = !material?.isMaterial;
-    const { vertices, frames, frameRate } = decoder.info;
-    this.geometry.setIndex(new BufferAttribute(decoder.indices, 1));
+    this.#isDrawn = look !== undefined;
+    this.#ownMaterial = !material?.isMaterial && !Array.isArray(material);
+    this.#ownTextures = look?.gltf !== undefined;
+    const { frames, frameRate } = decoder.info;
+    const vertices = look?.drawn.vertices.length ?? decoder.info.vertices;
     for (const name of normals ? ["position", "normal"] : ["position"]) {
       const attribute = new BufferAttribute(new Float32Array(3 * vertices), 3);
       this.geometry.setAttribute(name, attribute.setUsage(DynamicDrawUsage));
     }
+    if (look) setAttributes(this.geometry, look.drawn);
+    else this.geometry.setIndex(new BufferAttribute(decoder.indices, 1));
+    this.material = this.#given(material) ?? usualMaterial({ flatShading: !normals });
     this.geometry.boundingBox = new Box3();
     this.geometry.boundingSphere = new Sphere();
     this.#playback = new Playback({
@@ -60,6 +70,13 @@ export class RLPCMesh extends Mesh {
     });
     this.#playback.finished = () => this.dispatchEvent({ type: "finished", clip: this.#clip });
   }
+
+  /** The material of the caller, made once. */
+  #given(material) {
+    return typeof material === "function" ? (this.#made ??= material(this.#decoder)) : material;
+  }
+
+  #made;
 
   get decoder() {
     return this.#decoder;
@@ -149,7 +166,7 @@ export class RLPCMesh extends Mesh {
 
   #request(index, signal) {
     const frame = this.#decoder.frame(index, {
-      normals: this.#withNormals, signal, into: this.#spare.pop() });
+      normals: this.#withNormals, drawn: this.#isDrawn, signal, into: this.#spare.pop() });
     this.#first ??= frame;
     return frame;
   }
@@ -188,7 +205,8 @@ export class RLPCMesh extends Mesh {
     this.#playback.cancel();
     this.#decoder.close();
     this.geometry.dispose();
-    if (this.#ownMaterial) [this.material].flat().forEach((material) => material.dispose());
+    if (!this.#ownMaterial) return;
+    for (const material of [this.material].flat()) dispose(material, this.#ownTextures);
   }
 }
 
@@ -198,7 +216,7 @@ export class RLPCLoader extends Loader {
     this.options = {};
   }
 
-  /** Of RlpcDecoder.open() and of RLPCMesh: material, normals. */
+  /** Of RlpcDecoder.open() and of RLPCMesh. */
   setOptions(options) {
     this.options = { ...this.options, ...options };
     return this;
@@ -218,7 +236,7 @@ export class RLPCLoader extends Loader {
 
   /** As loadAsync(), of any source that RlpcDecoder.open() takes. */
   async open(source, onProgress) {
-    const { material, normals, ...options } = this.options;
+    const { material, normals, attributes, textures, gltfLoader, ...options } = this.options;
     const decoder = await RlpcDecoder.open(source, {
       headers: this.requestHeader,
       credentials: this.withCredentials ? "include" : "same-origin",
@@ -226,6 +244,7 @@ export class RLPCLoader extends Loader {
         onProgress({ lengthComputable: progress.total !== undefined, ...progress })),
       ...options,
     });
-    return RLPCMesh.create(decoder, { material, normals });
+    return RLPCMesh.create(decoder, { material, attributes, textures, gltfLoader,
+      ...(normals === undefined ? {} : { normals }) });
   }
 }

@@ -1,6 +1,15 @@
 // The decoder of wasm/exports.cpp, as JavaScript sees it. Nothing here waits: a call that needs
 // bytes which are not loaded throws MissingBytes, and can be made again once they are.
 import { RlpcError, kKinds } from "./error.js";
+import { gathered } from "./gathered.js";
+
+/** What frames have of each vertex, three numbers: its type, and the function that gives it. */
+const kFrameArrays = {
+  integers: [Int32Array, "stream_positions"],
+  positions: [Float32Array, "stream_floats"],
+  coordinates: [Float32Array, "stream_coordinates"],
+  normals: [Float32Array, "stream_normals"],
+};
 
 export class MissingBytes extends Error {
   constructor(start, end) {
@@ -116,22 +125,12 @@ class WasmStream {
     this.check("stream_finish");
   }
 
-  // Of the frame that was decoded last; `into` may be an array to fill.
-
-  integers(numVertices, into) {
-    return this.copy(Int32Array, "stream_positions", 3 * numVertices, into);
-  }
-
-  positions(numVertices, into) {
-    return this.copy(Float32Array, "stream_floats", 3 * numVertices, into);
-  }
-
-  coordinates(numVertices, into) {
-    return this.copy(Float32Array, "stream_coordinates", 3 * numVertices, into);
-  }
-
-  normals(numVertices, into) {
-    return this.copy(Float32Array, "stream_normals", 3 * numVertices, into);
+  /** Of the frame that was decoded last. places: the vertex of each one that is wanted, or
+   * undefined; `into` may be an array to fill. */
+  ofFrame(name, numVertices, places, into) {
+    const [Type, source] = kFrameArrays[name];
+    if (!places) return this.copy(Type, source, 3 * numVertices, into);
+    return gathered(this.view(Type, source, 3 * numVertices), places, 3, into);
   }
 
   /** On the grid: least and most x, y, z. */
@@ -152,11 +151,16 @@ class WasmStream {
     return this.exports.stream_hash_differs(this.stream) ? this.error() : undefined;
   }
 
-  copy(Type, name, length, into) {
-    const address = this.exports[name](this.stream) >>> 0;
+  copy(Type, name, length, into, ...args) {
     const array = into?.length === length && into instanceof Type ? into : new Type(length);
-    if (length > 0) array.set(new Type(this.exports.memory.buffer, address, length));
+    array.set(this.view(Type, name, length, ...args));
     return array;
+  }
+
+  /** Until the next call of the decoder. */
+  view(Type, name, length, ...args) {
+    const address = this.exports[name](this.stream, ...args) >>> 0;
+    return length > 0 ? new Type(this.exports.memory.buffer, address, length) : new Type();
   }
 
   text(address) {

@@ -39,6 +39,8 @@ class InScene(InFolder):
         cls.stream = cls.encode("walk.rlpc", "--gof", "3", "--kg", "0.003", "--clip", "Walk:4-15",
                                 "--clip", "Wave \"again\":20-59")
         cls.frames = float_frames(cls.stream, cls.folder)
+        cls.encode_box("box")
+        cls.encode_box("colours", [0, 0.5, 0])
         server = StreamServer(cls.folder)
         cls.server = server.__enter__()
         cls.addClassCleanup(server.__exit__)

@@ -1,6 +1,7 @@
 // Compiled by package_test.py, not run: all of the package, with its types.
 import { LoopOnce, MeshBasicMaterial, Scene } from "three";
-import { Playback, RlpcDecoder, RlpcError, type Frame } from "rlpc";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { Playback, RlpcDecoder, RlpcError, type Attribute, type DrawnMesh, type Frame } from "rlpc";
 import { RLPCLoader, RLPCMesh } from "rlpc/three";
 
 export async function decode(url: string): Promise<number> {
@@ -19,6 +20,17 @@ export async function decode(url: string): Promise<number> {
   return first + blob.size + profile.length + (clip?.length ?? 0);
 }
 
+export async function attributes(decoder: RlpcDecoder): Promise<number> {
+  const sets: ReadonlyMap<string, Attribute> = await decoder.attributes();
+  const uv = sets.get("uv0");
+  const corners: Uint32Array | undefined = uv?.domain === "corner" ? uv.corners : undefined;
+  const { vertices, indices, attributes: values }: DrawnMesh = await decoder.drawn();
+  const frame = await decoder.frame(3, { drawn: true, normals: true });
+  const glb: Uint8Array | null = decoder.info.hasAsset ? await decoder.asset() : null;
+  return (corners?.length ?? 0) + vertices.length + indices.length + frame.positions.length +
+    (values.get("uv0")?.values[0] ?? 0) + (glb?.length ?? 0) + (uv?.kind === "smoothing" ? 1 : 0);
+}
+
 export function explain(error: unknown): string {
   if (!(error instanceof RlpcError)) return "";
   return error.kind === "network" ? error.message : `${error.rule} at bit ${error.bitOffset}`;
@@ -26,6 +38,7 @@ export function explain(error: unknown): string {
 
 export async function show(scene: Scene, file: File): Promise<RLPCMesh> {
   const loader = new RLPCLoader().setOptions({ material: () => new MeshBasicMaterial() });
+  loader.setOptions({ attributes: true, textures: false, gltfLoader: new GLTFLoader() });
   const mesh = await loader.loadAsync("walk.rlpc");
   mesh.loop = LoopOnce;
   mesh.speed = -1;

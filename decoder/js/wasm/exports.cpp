@@ -1,38 +1,18 @@
-// The functions called from JavaScript (src/wasm_decoder.js): a SeekingDecoder behind a
-// pointer. There is one for each instance of the module. Memory returned by a function belongs
-// to the decoder and is valid until the next call of that function.
-#include <array>
+// The functions called from JavaScript (src/wasm_decoder.js), but those of attributes.
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "common/bitstream/crc32.h"
 #include "common/io/float_position.h"
 #include "decoder/describe_error.h"
 #include "decoder/js/wasm/frame_surface.h"
 #include "decoder/js/wasm/script_source.h"
-#include "decoder/js/wasm/seeking_decoder.h"
-
-#define RLPC_EXPORT(name) extern "C" [[clang::export_name(#name)]]
+#include "decoder/js/wasm/stream.h"
 
 namespace rlpc {
 namespace {
-
-// A decoder, and the last results computed for JavaScript.
-struct Stream {
-  explicit Stream(SeekingDecoder seeking) : decoder(std::move(seeking)) {}
-
-  SeekingDecoder decoder;
-  std::string text;
-  std::vector<double> landmarks;
-  std::vector<float> floats;
-  std::vector<float> coordinates;
-  std::vector<Vec3f> normals;
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  Extent extent;
-};
 
 std::string member(const char* name, std::int64_t value) {
   return "\"" + std::string(name) + "\":" + std::to_string(value);
@@ -54,7 +34,9 @@ std::string describe(const Decoder& decoder) {
            {"frame_rate_denominator", h.frame_rate.denominator},
            {"grid_log2_step", h.grid.log2_step},
            {"num_layers", decoder.num_layers()},
-           {"num_clips", static_cast<std::int64_t>(decoder.clips().size())}}) {
+           {"num_clips", static_cast<std::int64_t>(decoder.clips().size())},
+           {"has_attributes", decoder.has_attributes() ? 1 : 0},
+           {"has_asset", decoder.has_asset() ? 1 : 0}}) {
     text += member(name, value) + ",";
   }
   return text + "\"grid_origin\":[" + std::to_string(origin[0]) + "," +

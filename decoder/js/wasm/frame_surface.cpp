@@ -74,6 +74,15 @@ void vertex_normals(std::span<const float> coordinates, std::span<const Triangle
   std::transform(normals.begin(), normals.end(), normals.begin(), unit);
 }
 
+void unit_normals(std::span<const double> sums, std::vector<Vec3f>& normals) {
+  normals.resize(sums.size() / 3);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    Vec3f& n = normals[i];
+    for (std::size_t c = 0; c < 3; ++c) n[c] = static_cast<float>(sums[3 * i + c]);
+    n = unit(n);
+  }
+}
+
 std::vector<std::array<std::uint32_t, 2>> drawn_edges(std::span<const Triangle> triangles) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * triangles.size());

@@ -31,6 +31,9 @@ using Vec3f = std::array<float, 3>;
 void vertex_normals(std::span<const float> coordinates, std::span<const Triangle> triangles,
                     std::vector<Vec3f>& normals);
 
+// Vectors of length 1; the z axis for those without a direction. sums: [n][3].
+void unit_normals(std::span<const double> sums, std::vector<Vec3f>& normals);
+
 // The edges of the triangles, without duplicates.
 std::vector<std::array<std::uint32_t, 2>> drawn_edges(std::span<const Triangle> triangles);
 

@@ -41,6 +41,15 @@ TEST(VertexNormals, AreUnitVectorsWithoutAreaAndForTinyTriangles) {
   EXPECT_EQ(normals[3], (Vec3f{0, 0, 1}));
 }
 
+TEST(UnitNormals, AreTheZAxisWithoutADirection) {
+  std::vector<Vec3f> normals;
+  unit_normals(std::vector<double>{0, -3e11, 0, 0, 0, 0, 0, 3e-11, 4e-11}, normals);
+  ASSERT_EQ(normals.size(), 3U);
+  EXPECT_EQ(normals[0], (Vec3f{0, -1, 0}));
+  EXPECT_EQ(normals[1], (Vec3f{0, 0, 1}));
+  EXPECT_NEAR(normals[2][1], 0.6, 1e-6);
+}
+
 TEST(EdgesOf, ListsEachEdgeOnce) {
   const std::vector<Triangle> tetrahedron{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
   EXPECT_EQ(drawn_edges(tetrahedron),

@@ -78,4 +78,35 @@ bool SeekingDecoder::finish() {
   return !failed_;
 }
 
+bool SeekingDecoder::decode_attributes() {
+  if (sets_) return true;
+  failed_ = true;  // decode() needs a seek
+  // The place that the decoder returns to: errors of other frames do not count.
+  static_cast<void>(decoder_->seek(0));
+  auto sets = decoder_->attributes();
+  if (!sets) {
+    error_ = sets.error();
+    return false;
+  }
+  sets_ = std::move(*sets);
+  const auto triangles = decoder_->triangles();
+  Vector<const AttributeSet*> drawable;
+  for (const AttributeSet& set : *sets_) {
+    if (is_drawable(set.header, triangles)) drawable.push_back(&set);
+  }
+  drawn_.emplace(std::move(drawable), triangles, decoder_->num_vertices());
+  return true;
+}
+
+bool SeekingDecoder::read_asset() {
+  if (asset_) return true;
+  auto asset = decoder_->asset();
+  if (asset) {
+    asset_ = std::move(*asset);
+  } else {
+    error_ = asset.error();
+  }
+  return asset_.has_value();
+}
+
 }  // namespace rlpc

@@ -11,8 +11,11 @@
 #include <span>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
+#include "common/owned.h"
 #include "decoder/rlpc_decoder.h"
+#include "decoder/surface/drawn_mesh.h"
 
 namespace rlpc {
 
@@ -32,6 +35,11 @@ class SeekingDecoder {
   bool decode(std::uint32_t frame);
   // Checks the rest of the stream; to be called after the last frame.
   bool finish();
+  // Decodes the attributes, once, from the first frame: drawn() and sets(). The frame that was
+  // decoded last stays; the next one needs a seek.
+  bool decode_attributes();
+  // Reads the asset, once: asset().
+  bool read_asset();
   const Error& error() const { return error_; }
 
   // Valid after open().
@@ -44,6 +52,13 @@ class SeekingDecoder {
   std::span<const std::int32_t> positions() const { return positions_; }
   bool hash_differs() const { return hash_differs_; }
   std::uint32_t compared_frames() const { return decoder_->compared_frames(); }
+
+  // Valid after decode_attributes(); none in a coarse mesh.
+  const Vector<AttributeSet>& sets() const { return *sets_; }
+  // With the values of all sets that vertices can have.
+  DrawnMesh& drawn() { return *drawn_; }
+  // Valid after read_asset(); empty: none.
+  const String& asset() const { return *asset_; }
 
  private:
   std::optional<Decoder> open_decoder(bool verify_hashes);
@@ -59,6 +74,9 @@ class SeekingDecoder {
   Error error_;
   std::vector<std::uint64_t> landmarks_;
   std::vector<std::int32_t> positions_;
+  std::optional<Vector<AttributeSet>> sets_;
+  std::optional<DrawnMesh> drawn_;
+  std::optional<String> asset_;
 };
 
 }  // namespace rlpc

@@ -128,6 +128,80 @@ TEST(SeekingDecoder, DecodesFramesInAnyOrderWhileTheStreamIsBeingLoaded) {
   }
 }
 
+bool same_sets(const Vector<AttributeSet>& a, const Vector<AttributeSet>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.header == y.header && x.values == y.values &&
+           x.value_of_corner == y.value_of_corner && x.face_of_triangle == y.face_of_triangle;
+  });
+}
+
+TEST(SeekingDecoder, DecodesAttributesBetweenFramesWhileTheStreamIsBeingLoaded) {
+  std::size_t num_sets = 0;
+  for (const fs::path& path : accepted_streams()) {
+    const Bytes bytes = contents(path);
+    auto whole = Decoder::open(memory_source(bytes));
+    ASSERT_TRUE(whole) << path;
+    if (!whole->has_attributes()) continue;
+    SCOPED_TRACE(path);
+    const auto wanted = whole->attributes();
+    ASSERT_TRUE(wanted);
+    num_sets += wanted->size();
+    const auto frames = decoded_in_order(bytes);
+    const auto last = static_cast<std::uint32_t>(frames.size() - 1);
+    for (const bool comes_first : {true, false}) {
+      Loaded loaded{bytes, {}, 0, 0};
+      SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
+      ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.open(); }));
+      const auto decode_last = [&] {
+        return completed(loaded, decoder, [&] { return decoder.decode(last); });
+      };
+      ASSERT_TRUE(comes_first || decode_last());
+      ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.decode_attributes(); }));
+      EXPECT_TRUE(same_sets(decoder.sets(), *wanted));
+      EXPECT_EQ(decoder.drawn().vertices().triangles.size(), whole->triangles().size());
+      ASSERT_TRUE(!comes_first || decode_last());
+      EXPECT_EQ(Positions(decoder.positions().begin(), decoder.positions().end()),
+                frames[last]);
+      EXPECT_TRUE(completed(loaded, decoder, [&] { return decoder.finish(); }));
+    }
+  }
+  EXPECT_GT(num_sets, 50U);
+}
+
+TEST(SeekingDecoder, ReadsAnAssetWhileTheStreamIsBeingLoaded) {
+  const Bytes bytes =
+      contents(fs::path(RLPC_STREAMS) / "v1.2" / "accept" / "AST" / "AST-0001a.rlpc");
+  Loaded loaded{bytes, {}, 0, 0};
+  SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
+  ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.open(); }));
+  ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.read_asset(); }));
+  auto whole = Decoder::open(memory_source(bytes));
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(decoder.asset(), *whole->asset());
+  EXPECT_FALSE(decoder.asset().empty());
+}
+
+TEST(SeekingDecoder, FramesAreDecodedAfterAnErrorOfAttributes) {
+  const fs::path folder = fs::path(RLPC_STREAMS) / "v1.2" / "either";
+  std::size_t num_errors = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".rlpc") continue;
+    SCOPED_TRACE(entry.path());
+    Loaded loaded{contents(entry.path()), {}, 0, 0};
+    const auto frames = decoded_in_order(loaded.bytes);
+    if (frames.empty()) continue;
+    SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
+    ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.open(); }));
+    if (completed(loaded, decoder, [&] { return decoder.decode_attributes(); })) continue;
+    ++num_errors;
+    for (std::uint32_t f = 0; f < frames.size(); ++f) {
+      ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.decode(f); })) << f;
+      EXPECT_EQ(Positions(decoder.positions().begin(), decoder.positions().end()), frames[f]);
+    }
+  }
+  EXPECT_GT(num_errors, 0U);
+}
+
 TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
   const Bytes bytes =
       contents(fs::path(RLPC_STREAMS) / "v1.0" / "accept" / "IDX" / "IDX-0001a.rlpc");

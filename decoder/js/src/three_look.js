@@ -1,0 +1,125 @@
+// What a mesh in three.js looks like: attributes of its vertices, and materials from the asset.
+import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
+
+import { byMaterial, hasNormals } from "./sets.js";
+
+const kUsualColour = 0xb4bcc4;
+const kHeaderBytes = 12; // of a GLB
+const kChunkBytes = 8; // before the contents of each chunk; the first is JSON
+
+const warnings = new Set();
+
+/** Once for all meshes. */
+function warn(text) {
+  if (!warnings.has(text)) console.warn(`RLPCLoader: ${text}`);
+  warnings.add(text);
+}
+
+/** Where nothing tells another: grey, or white under colours of vertices. */
+export function usualMaterial({ vertexColors = false, flatShading = false } = {}) {
+  const color = vertexColors ? 0xffffff : kUsualColour;
+  return new MeshStandardMaterial({ color, roughness: 0.6, vertexColors, flatShading });
+}
+
+/** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
+ * or they have an error. isFlat: in glTF, meshes without normals are. */
+export async function loadLook(decoder,
+  { attributes = true, textures = true, material, gltfLoader }) {
+  const { hasAttributes, hasAsset } = decoder.info;
+  if (!attributes || !hasAttributes && !hasAsset || decoder.coarseVertices) return undefined;
+  const wantsMaterials = hasAsset && !material;
+  try {
+    const [drawn, sets, gltf] = await Promise.all([decoder.drawn(), decoder.attributes(),
+      wantsMaterials ? loadMaterials(decoder, textures, gltfLoader) : undefined]);
+    return { drawn, materialOf: sets.get("material"), gltf, isFlat: gltf && !hasNormals(sets) };
+  } catch (error) {
+    if (error.name === "AbortError" || ["network", "closed"].includes(error.kind)) throw error;
+    warn(`attributes are left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+/** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
+async function loadMaterials(decoder, textures, gltfLoader) {
+  const asset = await decoder.asset();
+  let loader = gltfLoader;
+  if (!loader) {
+    try {
+      const { GLTFLoader } = await import("three/addons/loaders/GLTFLoader.js");
+      loader = new GLTFLoader();
+    } catch (error) {
+      warn("materials are left out, because three's GLTFLoader cannot be imported. Add " +
+        '"three/addons/" to the import map, or pass a loader as the option gltfLoader, or a ' +
+        `material (${error.message})`);
+      return undefined;
+    }
+  }
+  try {
+    return await loader.parseAsync(textures ? asset.slice().buffer : withoutTextures(asset), "");
+  } catch (error) {
+    warn(`materials are left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+/** The same materials, as the text of a glTF file. */
+function withoutTextures(glb) {
+  const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kHeaderBytes, true);
+  const start = kHeaderBytes + kChunkBytes;
+  const { asset, materials, extensionsUsed } =
+    JSON.parse(new TextDecoder().decode(glb.subarray(start, start + size)));
+  return JSON.stringify({ asset, materials, extensionsUsed },
+    (key, value) => (key.endsWith("Texture") ? undefined : value));
+}
+
+/** As three.js names them: uv, uv1, uv2, uv3, color; undefined if it has no place for them. */
+function nameInThree({ name, components }) {
+  const uv = /^uv([0-3])$/.exec(name)?.[1];
+  if (uv && components === 2) return uv === "0" ? "uv" : `uv${uv}`;
+  return name === "colour0" && components >= 3 ? "color" : undefined;
+}
+
+export function setAttributes(geometry, { attributes }) {
+  for (const set of attributes.values()) {
+    const name = nameInThree(set);
+    if (name) geometry.setAttribute(name, new BufferAttribute(set.values, set.components));
+  }
+}
+
+/** Sets the index and its groups, and returns the material or materials. `material`: of the
+ * caller. */
+export async function dress(geometry, { drawn, materialOf, gltf }, material) {
+  const look = { vertexColors: "color" in geometry.attributes,
+    flatShading: !("normal" in geometry.attributes) };
+  const isList = Array.isArray(material);
+  const numbers = gltf?.parser.json.materials?.length ?? (isList ? material.length - 1 : 0);
+  const { indices, groups } = byMaterial(drawn.indices, materialOf, numbers);
+  geometry.setIndex(new BufferAttribute(indices, 1));
+  if (material && !isList) return material;
+  const materials = isList ? material : await Promise.all(groups.map(async (group) =>
+    (group.material < numbers ? await finalMaterial(geometry, gltf.parser, group.material)
+      : undefined) ?? usualMaterial(look)));
+  if (!isList && materials.length <= 1) return materials[0] ?? usualMaterial(look);
+  groups.forEach(({ start, count, material: number }, i) =>
+    geometry.addGroup(start, count, isList ? number : i));
+  return materials;
+}
+
+/** As GLTFLoader would give it to a mesh with this geometry; undefined if it cannot. */
+async function finalMaterial(geometry, parser, number) {
+  try {
+    const mesh = new Mesh(geometry, await parser.getDependency("material", number));
+    parser.assignFinalMaterial(mesh);
+    return mesh.material;
+  } catch (error) {
+    warn(`material ${number} is left out: ${error.message}`);
+    return undefined;
+  }
+}
+
+export function dispose(material, withTextures) {
+  if (withTextures) {
+    for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+  }
+  material.dispose();
+}

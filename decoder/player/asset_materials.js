@@ -1,0 +1,95 @@
+// Base colours and their textures, from the asset of a stream: a GLB without geometry. It is from
+// anybody: what does not fit is left out, and nothing is fetched.
+
+const kMagic = 0x46546c67; // "glTF"
+const kJsonChunk = 0x4e4f534a;
+const kHeaderBytes = 12;
+const kChunkBytes = 8;
+const kMostPixels = 4096; // of a side of a texture; larger ones are scaled down
+const kWhite = [1, 1, 1, 1];
+
+/** The JSON and the bytes of a GLB. */
+function chunksOf(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (bytes.length < kHeaderBytes + kChunkBytes || view.getUint32(0, true) !== kMagic) {
+    throw new Error("it is no GLB");
+  }
+  let json, binary = new Uint8Array();
+  for (let at = kHeaderBytes; at + kChunkBytes <= bytes.length; ) {
+    const size = view.getUint32(at, true);
+    const chunk = bytes.subarray(at + kChunkBytes, at + kChunkBytes + size);
+    if (chunk.length < size) throw new Error("its GLB is cut off");
+    const isJson = view.getUint32(at + 4, true) === kJsonChunk;
+    if (isJson) json = JSON.parse(new TextDecoder().decode(chunk));
+    else binary = chunk;
+    at += kChunkBytes + size;
+  }
+  return { json: json ?? {}, binary };
+}
+
+function numbers(value, count, usual) {
+  const fits = Array.isArray(value) && value.length === count && value.every(Number.isFinite);
+  return fits ? value : usual;
+}
+
+/** Rows of a matrix from texture coordinates to those of the image (KHR_texture_transform). */
+function rowsOf({ offset, rotation, scale } = {}) {
+  const [x, y] = numbers(offset, 2, [0, 0]);
+  const [u, v] = numbers(scale, 2, [1, 1]);
+  const angle = Number.isFinite(rotation) ? rotation : 0;
+  const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
+  return [[cos * u, sin * v, x], [-sin * u, cos * v, y]];
+}
+
+function blobOf({ json, binary }, image) {
+  if (/^data:/.test(image?.uri ?? "")) {
+    const [type, text] = image.uri.slice(5).split(";base64,");
+    return new Blob([Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))], { type });
+  }
+  const { byteOffset = 0, byteLength = 0 } = json.bufferViews?.[image?.bufferView] ?? {};
+  return new Blob([binary.slice(byteOffset, byteOffset + byteLength)], { type: image?.mimeType });
+}
+
+async function pictureOf(blob) {
+  const options = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
+  const picture = await createImageBitmap(blob, options);
+  const { width, height } = picture;
+  const scale = kMostPixels / Math.max(width, height);
+  if (scale >= 1) return picture;
+  return createImageBitmap(picture, { ...options, resizeWidth: Math.ceil(scale * width),
+    resizeHeight: Math.ceil(scale * height), resizeQuality: "medium" });
+}
+
+/** Materials for Viewer.setMaterials(), and what is wrong with them: { materials, problems }.
+ * Throws if the asset is not one. */
+export async function readMaterials(bytes) {
+  const glb = chunksOf(bytes);
+  const { materials = [], textures = [], images = [], samplers = [] } = glb.json;
+  const problems = [];
+  const pictures = new Map(); // promises, by number of the image
+  const pictureAt = (number) => {
+    if (!pictures.has(number)) {
+      pictures.set(number, Promise.resolve(images[number]).then((image) => blobOf(glb, image))
+        .then(pictureOf).catch(() => void problems.push(`texture ${number} cannot be shown`)));
+    }
+    return pictures.get(number);
+  };
+  const read = async ({ pbrMetallicRoughness: { baseColorFactor, baseColorTexture } = {},
+    alphaMode, alphaCutoff, doubleSided = false }) => {
+    const { index, texCoord, extensions } = baseColorTexture ?? {};
+    const transform = extensions?.KHR_texture_transform;
+    const { source, sampler, extensions: others } = textures[index] ?? {};
+    const image = source ?? others?.EXT_texture_webp?.source;
+    return {
+      base: numbers(baseColorFactor, 4, kWhite),
+      picture: index === undefined ? undefined : await pictureAt(image),
+      sampler: samplers[sampler] ?? {},
+      uv: `uv${transform?.texCoord ?? texCoord ?? 0}`,
+      rows: rowsOf(transform),
+      blends: alphaMode === "BLEND",
+      doubleSided,
+      cutoff: alphaMode === "MASK" ? alphaCutoff ?? 0.5 : 0,
+    };
+  };
+  return { materials: await Promise.all(materials.map(read)), problems };
+}
