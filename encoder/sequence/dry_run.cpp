@@ -63,7 +63,7 @@ std::uint64_t stretch_frames(std::uint64_t gof_frames) {
 InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress) {
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
-  const std::uint64_t stretch = stretch_frames(longest_gof(settings));
+  const std::uint64_t stretch = stretch_frames(longest_gof(settings, source.num_vertices()));
   if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
     auto report = encode(source, settings, discard, progress);
     if (!report) return report.error();

@@ -36,7 +36,8 @@ LowDelayEncoder::LowDelayEncoder(FrameFormat format, EncoderSettings settings, B
 
 std::optional<InputError> LowDelayEncoder::prepare() {
   SequenceHeader header = header_of(format_, settings_);
-  const std::uint32_t longest = std::min(longest_gof(settings_), header.num_frames);
+  const std::uint32_t longest =
+      std::min(longest_gof(settings_, format_.num_vertices), header.num_frames);
   // Of a GOF, one frame is held.
   const auto threads = check_memory(settings_, header, 1, 0, 0);
   if (!threads) return threads.error();
@@ -71,7 +72,7 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
 
 std::uint32_t LowDelayEncoder::frames_of_gof() const {
   const std::uint32_t left = coding_->header().num_frames - num_added_;
-  const std::uint32_t longest = std::min(longest_gof(settings_), left);
+  const std::uint32_t longest = std::min(longest_gof(settings_, format_.num_vertices), left);
   // GOFs of about the same length, if the number of frames is known.
   if (coding_->header().open_end_flag) return longest;
   const std::uint32_t gofs = (left + longest - 1) / longest;

@@ -39,15 +39,20 @@ std::vector<Triangle> renumber(std::span<const Triangle> triangles,
 
 }  // namespace
 
-std::uint32_t longest_gof(const EncoderSettings& settings) {
+std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices) {
   if (settings.gof_frames > 0) return settings.gof_frames;
-  return settings.profile == Profile::kHigh ? kDefaultTrackFrames : kDefaultGofFrames;
+  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
+  if (settings.profile != Profile::kMain || settings.clips.size() < 2) return kDefaultGofFrames;
+  // Within level 1, unless 128 are beyond it anyway.
+  const std::uint64_t most = kLevels[0].max_gof_values / num_vertices;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(most, kDefaultGofFrames, kClipFrames));
 }
 
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
   constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 24;  // fixed: memory
   constexpr std::uint64_t kPart = 2;  // fixed: a span takes at most half of the limit
-  const std::uint32_t longest = longest_gof(settings);
+  const std::uint32_t longest = longest_gof(settings, header.num_vertices);
   if (settings.profile != Profile::kHigh) return longest;
   const auto frames = [&](std::uint64_t bytes_of_position) {
     const std::uint64_t positions =

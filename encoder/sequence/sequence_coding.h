@@ -28,8 +28,14 @@ inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a see
 // at a KG error of 0.1 %; sequences of twice the length were not at hand.
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
+// Several clips of one character: each GOF of the Main profile repeats its shape, and a seek
+// goes to the start of a clip at most. Compared with 128 frames, this length takes 22 %
+// (q-spider) to 47 % (knight) fewer bytes at a KG error of 0.1 %, with one GOF of all frames at
+// best 61 %.
+inline constexpr std::uint32_t kClipFrames = kLevels[0].max_gof_frames;  // fixed: level 1
+
 // Maximum frames per GOF under the settings.
-std::uint32_t longest_gof(const EncoderSettings& settings);
+std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices);
 // Maximum frames per span: in the High profile, those of GOFs that share a skinned model, as
 // many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header);

@@ -151,14 +151,14 @@ std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header
   if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast ||
       settings_.usable_kinds() == KindChoice::kFrames) {
     spans_ = equal_gofs(header.num_frames, longest);
-    divide_spans(spans_, longest_gof(settings_));
+    divide_spans(spans_, longest_gof(settings_, header.num_vertices));
     return std::nullopt;
   }
   const double step = search_for(settings_, header, extent_.rms_spread).step();
   auto spans = cheapest_gofs(source_, longest, step * exact_exp2(header.grid.log2_step));
   if (!spans) return spans.error();
   spans_ = std::move(*spans);
-  divide_spans(spans_, longest_gof(settings_));
+  divide_spans(spans_, longest_gof(settings_, header.num_vertices));
   return std::nullopt;
 }
 
@@ -281,12 +281,14 @@ bool is_as_good(const TargetResult& result, const TargetResult& other, Target::K
 // The searches of preset slow. Its own choices, which are better for each GOF, may by chance be
 // worse at the target than those of preset medium; and one GOF worse than several.
 std::vector<EncoderSettings> slow_searches(const EncoderSettings& settings,
+                                           std::uint32_t num_vertices,
                                            std::uint32_t num_frames) {
   std::vector<EncoderSettings> searches{settings};
   if (settings.gof_frames >= num_frames && num_frames > 1) {
     EncoderSettings& several = searches.emplace_back(settings);
     several.gof_frames = 0;
-    several.gof_frames = std::min(longest_gof(several), num_frames - num_frames / 2);
+    several.gof_frames =
+        std::min(longest_gof(several, num_vertices), num_frames - num_frames / 2);
   }
   std::vector<EncoderSettings> usual = searches;
   for (EncoderSettings& search : usual) search.preset = Preset::kMedium;
@@ -297,7 +299,8 @@ std::vector<EncoderSettings> slow_searches(const EncoderSettings& settings,
 // Preset slow keeps the best result of several searches.
 InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettings& settings,
                                         const ByteSink& sink, const Progress& progress) {
-  const std::vector<EncoderSettings> searches = slow_searches(settings, source.num_frames());
+  const std::vector<EncoderSettings> searches =
+      slow_searches(settings, source.num_vertices(), source.num_frames());
   constexpr double kSlowPart = 3.0;  // fixed: of the time, about, in usual searches
   const auto part_of = [](const EncoderSettings& search) {
     return search.preset == Preset::kSlow ? kSlowPart : 1.0;

@@ -16,7 +16,7 @@ namespace rlpc {
 
 // Spans of as many GOFs as may be held, all of about the same length.
 void SpanEncoder::make_spans(const SequenceHeader& header) {
-  const std::uint32_t of_gof = longest_gof(settings_);
+  const std::uint32_t of_gof = longest_gof(settings_, header.num_vertices);
   std::uint32_t longest = longest_span(settings_, header);
   if (format_.max_held_frames > 0) {
     longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
@@ -31,7 +31,7 @@ GofSpan SpanEncoder::current() const {
   // All have the same length but the last.
   const std::uint32_t held = buffer_ ? buffer_->num_frames() : spans_.front().count;
   std::vector<GofSpan> span{{num_added_ - num_held_, held, 1}};
-  divide_spans(span, longest_gof(settings_));
+  divide_spans(span, longest_gof(settings_, format_.num_vertices));
   return span.front();
 }
 

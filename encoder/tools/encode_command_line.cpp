@@ -208,8 +208,8 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       "Search effort: fast, medium (default), slow")
       ->group(kOutput);
   app.add_option("--gof", line.gof,
-                 "Maximum frames per group (default: 128; 256 with --profile high), or `all`: "
-                 "smallest file, slow seeking")
+                 "Maximum frames per group, or `all` (default: 128, of several clips 512, with "
+                 "--profile high 256)")
       ->option_text("FRAMES")
       ->group(kOutput);
   app.add_flag("--low-delay", o.settings.low_delay,
