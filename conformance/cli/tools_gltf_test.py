@@ -68,11 +68,34 @@ class GltfInput(ToolsTest):
             self.assertEqual(report["num_frames"], count, options)
             self.assertEqual(report["num_vertices"], 172)
 
+    def test_names_of_animations_become_clips(self):
+        document, data = parts(TULIP.read_bytes())
+        document["animations"] = document["animations"][:1]
+        document["buffers"][0]["uri"] = "tulip.bin"
+        self.path("tulip.bin").write_bytes(data)
+        self.path("sway.gltf").write_text(json.dumps(document))
+        del document["animations"][0]["name"]
+        self.path("nameless.gltf").write_text(json.dumps(document))
+        sway, visit = (dict(name=name, first_frame=0, num_frames=n) for name, n in FRAMES.items())
+        cases = [(TULIP, [], [sway]), (TULIP, ["--animation", "Visit"], [visit]),
+                 (TULIP, ["--animation", 1], [visit]),
+                 (TULIP, ["--animation", "all"], [sway, {**visit, "first_frame": 61}]),
+                 (TULIP, ["--clip", "Bees:3-9"],
+                  [{"name": "Bees", "first_frame": 3, "num_frames": 7}]),
+                 (self.path("sway.gltf"), ["--animation", "all"], [sway]),
+                 (self.path("nameless.gltf"), ["--animation", "all"], [])]
+        for source, options, clips in cases:
+            said = self.ok("rlpcenc", source, "-o", self.path("a.rlpc"), "--kg", 1, "--preset",
+                           "fast", *options).err
+            self.assertNotIn("name of", said)
+            info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
+            self.assertEqual(info.get("clips", []), clips, (source, options))
+
     def test_what_is_merged_and_dropped_is_reported(self):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
         for words in ("dropped 2 point or line primitives", "dropped 8 degenerate triangles",
                       "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
-                      "dropped: skeleton, name of the animation"):
+                      "dropped: skeleton\n"):
             self.assertIn(f"{TULIP}: {words}", result.err)
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--no-weld",
                          "--json")

@@ -257,7 +257,7 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(kMore);
   app.add_option("--clip", line.clips,
                  "Name a part of the animation, frames A to B counted from 0; may be repeated "
-                 "(default: those that --animation all joins)")
+                 "(default: the animations of glTF)")
       ->option_text("NAME:A-B")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
