@@ -156,6 +156,19 @@ class GltfInput(ToolsTest):
 
 
 class GltfErrors(ToolsTest):
+    def test_a_point_cache_is_not_for_gltf(self):
+        cache = INPUTS / "elephant.pc2"
+        words = [f"{TULIP}: a glTF file brings its own animation and takes no --points; leave it "
+                 f"out, or replace this file by the mesh (.obj, .off or .ply) of {cache}"]
+        output = ["-o", self.path("a.rlpc")]
+        self.fails(1, words, "rlpcenc", TULIP, "--points", cache, *output)
+        self.fails(1, words, "rlpcenc", TULIP, "--points", cache, "--animation", "all", *output)
+        self.path("tulip").write_bytes(TULIP.read_bytes())  # known by its contents
+        self.fails(1, "takes no --points", "rlpcenc", self.path("tulip"), "--points", cache, *output)
+        self.fails(1, "takes no --points", "rlpcenc", TULIP, "--points", "-", "--low-delay",
+                   "--profile", "high", *output)
+        self.fails(2, words, "rlpccmp", TULIP, TULIP, "--points-b", cache)
+
     def refused(self, words, data, *options):
         self.path("bad.glb").write_bytes(data)
         self.fails(1, ["bad.glb", *words], "rlpcenc", self.path("bad.glb"), "-o",
