@@ -80,7 +80,9 @@ class Help(ToolsTest):
     def test_what_was_meant(self):
         for tool, words, said in (
                 ("rlpcenc", ["cow.obj", "cow.pc2", "-o", "x.rlpc"], "did you mean --points cow.pc2?"),
-                ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points a.mdd?"),
+                ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points-a a.mdd?"),
+                ("rlpccmp", ["cow.obj", "cow.pc2", "fox.rlpc"],
+                 "unexpected argument cow.pc2; did you mean --points-a cow.pc2?"),
                 ("rlpcenc", ["a.obj", "b.obj", "-o", "x"], "put patterns in quotes"),
                 ("rlpcdec", ["a.rlpc", "--verfy"], "unknown option --verfy; did you mean --verify?"),
                 ("rlpcinfo", ["a.rlpc", "b.rlpc"], "unexpected argument b.rlpc")):
