@@ -16,6 +16,7 @@ class Messages(ToolsTest):
 
     def test_limits_are_named_with_what_is_needed(self):
         stream = self.stream()
+        trace = self.ok("rlpcinfo", stream, "--trace").out.decode()
         for limits, words in (
                 (["--max-memory", "50KB"], r"needs at least \d+ KiB of memory, more than the "
                                            r"limit \(--max-memory, 50 KiB\)"),
@@ -25,6 +26,8 @@ class Messages(ToolsTest):
                                        r"\(--max-frames 59\)")):
             result = self.fails(3, "", "rlpcdec", stream, "--verify", *limits)
             self.assertRegex(result.err, words)
+            place, element = re.search(r"bit (\d+): (\w+): ", result.err).groups()
+            self.assertRegex(trace, rf"(?m)^ *{place}    {element} = ")
         needed = re.search(r"(\d+) KiB of", self.fails(
             3, "", "rlpcinfo", stream, "--max-memory", "50KB").err).group(1)
         # With one KiB less the mesh does not fit; with that limit it does.
