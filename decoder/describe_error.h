@@ -17,7 +17,8 @@ inline ExceededLimit exceeded_limit(const Error& error) {
   if (error.needed_bytes > 0) return ExceededLimit::kMemory;
   if (element == "num_vertices_minus1") return ExceededLimit::kVertices;
   if (element == "num_triangles") return ExceededLimit::kTriangles;
-  if (element == "num_frames_minus1") return ExceededLimit::kFrames;
+  if (element == "num_frames_minus1" || element == "open_end_flag")
+    return ExceededLimit::kFrames;
   return ExceededLimit::kMemory;
 }
 

@@ -65,15 +65,31 @@ std::string printable(std::string_view text) { return escaped(text, ""); }
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
 
 std::string size_text(std::uint64_t bytes) {
-  constexpr std::array<const char*, 3> kUnits{" KiB", " MiB", " GiB"};
-  std::uint64_t count = bytes;
+  struct Units {
+    std::uint64_t factor;
+    std::array<const char*, 3> names;
+  };
+  constexpr std::array<Units, 2> kUnits{
+      {{1024, {" KiB", " MiB", " GiB"}}, {1000, {" kB", " MB", " GB"}}}};
+  std::uint64_t least = bytes;
   const char* unit = " bytes";
-  for (const char* larger : kUnits) {
-    if (count == 0 || count % 1024 != 0) break;
-    count /= 1024;
-    unit = larger;
+  for (const Units& units : kUnits) {
+    std::uint64_t count = bytes;
+    for (const char* name : units.names) {
+      if (count == 0 || count % units.factor != 0) break;
+      count /= units.factor;
+      if (count >= least) continue;
+      least = count;
+      unit = name;
+    }
   }
-  return std::to_string(count) + unit;
+  return std::to_string(least) + unit;
+}
+
+std::string count_text(std::uint64_t count, std::string_view one, std::string_view many) {
+  std::string text = std::to_string(count) + " ";
+  if (count != 1 && !many.empty()) return text.append(many);
+  return text.append(one).append(count == 1 ? "" : "s");
 }
 
 void print_message(std::string_view tool, std::string_view message) {

@@ -18,8 +18,12 @@ std::string printable(std::string_view text);
 // The same, but keeps line ends and tabs.
 std::string printable_lines(std::string_view text);
 
-// A number of bytes: "500 MiB" if exact, otherwise "123456 bytes".
+// A number of bytes, exactly, in the unit that takes the fewest digits: "500 MiB" (1024 *
+// 1024), "500 MB" (1000 * 1000) or "123456 bytes".
 std::string size_text(std::uint64_t bytes);
+
+// "1 frame", "2 frames". many: of a noun that does not just take an s.
+std::string count_text(std::uint64_t count, std::string_view one, std::string_view many = "");
 
 // Prints "TOOL: MESSAGE", escaped, as a line of standard error.
 void print_message(std::string_view tool, std::string_view message);

@@ -42,13 +42,24 @@ TEST(Messages, KeepsLineEndsOnRequest) {
   EXPECT_EQ(printable_lines("a\n\tb\r\n"), "a\n\tb\\x0D\n");
 }
 
-TEST(Messages, SizesAreInMiBIfExact) {
+TEST(Messages, SizesAreInTheUnitOfTheFewestDigits) {
   EXPECT_EQ(size_text(0), "0 bytes");
   EXPECT_EQ(size_text(1023), "1023 bytes");
   EXPECT_EQ(size_text(1024), "1 KiB");
   EXPECT_EQ(size_text(500 << 20), "500 MiB");
   EXPECT_EQ(size_text((500 << 20) + 1), "524288001 bytes");
   EXPECT_EQ(size_text(std::uint64_t{5} << 40), "5120 GiB");
+  EXPECT_EQ(size_text(200'000), "200 kB");
+  EXPECT_EQ(size_text(2'000'000), "2 MB");
+  EXPECT_EQ(size_text(128'000'000), "128 MB");  // 125000 KiB
+  EXPECT_EQ(size_text(std::uint64_t{5'000'000'000'000}), "5000 GB");
+}
+
+TEST(Messages, CountsAreInTheSingularOrPlural) {
+  EXPECT_EQ(count_text(1, "frame"), "1 frame");
+  EXPECT_EQ(count_text(0, "frame"), "0 frames");
+  EXPECT_EQ(count_text(1, "vertex", "vertices"), "1 vertex");
+  EXPECT_EQ(count_text(2, "vertex", "vertices"), "2 vertices");
 }
 
 }  // namespace

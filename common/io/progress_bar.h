@@ -1,18 +1,24 @@
-// A progress bar: only on a terminal, erased when the work is done.
+// A progress bar, after some seconds with the time left: only on a terminal, erased when the
+// work is done.
 #pragma once
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <string>
 #include <string_view>
+
+#include "common/io/time_left.h"
 
 namespace rlpc {
 
 class ProgressBar {
  public:
   ProgressBar(std::string_view what, bool wanted)
-      : what_(what), shown_(wanted && isatty(fileno(stderr)) != 0) {}
+      : what_(what), shown_(wanted && isatty(fileno(stderr)) != 0) {
+    show(0.0);
+  }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() {
@@ -21,20 +27,25 @@ class ProgressBar {
 
   // fraction: 0 to 1
   void show(double fraction) {
-    const int percent = static_cast<int>(fraction * 100.0);
-    if (!shown_ || percent == percent_) return;
-    percent_ = percent;
+    if (!shown_) return;
+    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start_;
+    const std::string text = progress_text(fraction, left_.update(past.count(), fraction));
+    if (text == text_) return;
+    text_ = text;
     constexpr int kWidth = 30;
-    const auto full = static_cast<std::size_t>(percent * kWidth / 100);
+    const auto full =
+        static_cast<std::size_t>(static_cast<int>(fraction * 100.0) * kWidth / 100);
     const std::string bar = std::string(full, '#') + std::string(kWidth - full, '.');
-    std::fprintf(stderr, "\r%s [%s] %3d %%", what_.c_str(), bar.c_str(), percent);
+    std::fprintf(stderr, "\r%s [%s] %s\033[K", what_.c_str(), bar.c_str(), text.c_str());
     std::fflush(stderr);
   }
 
  private:
   std::string what_;
   bool shown_;
-  int percent_ = -1;
+  TimeLeft left_;
+  std::string text_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace rlpc

@@ -109,6 +109,51 @@ std::string similar_option(const CLI::App& app, const std::string& word) {
   return nearest;
 }
 
+// The arguments that are no options, in their order.
+std::vector<std::string> plain_words(const CLI::App& app) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_positional()) continue;
+    words.insert(words.end(), option->results().begin(), option->results().end());
+  }
+  const std::vector<std::string> surplus = app.remaining();
+  words.insert(words.end(), surplus.begin(), surplus.end());
+  return words;
+}
+
+// Which of the meshes a point cache is for: the one that is named like it, otherwise the one
+// before it; a stream has none.
+std::size_t mesh_of_cache(const std::vector<std::string>& meshes, const std::string& cache) {
+  const auto begins_like_cache = [&](const std::string& mesh) {
+    return mesh.substr(0, mesh.rfind('.')) == cache.substr(0, cache.rfind('.'));
+  };
+  const auto named = std::find_if(meshes.begin(), meshes.end(), begins_like_cache);
+  if (named != meshes.end()) return static_cast<std::size_t>(named - meshes.begin());
+  return meshes.back().ends_with(".rlpc") ? 0 : meshes.size() - 1;
+}
+
+// Complains of point caches that stand after a mesh, without their option; "": there are none.
+std::string point_cache_text(const CLI::App& app) {
+  if (app.get_option_no_throw("--points") == nullptr) return "";
+  std::vector<std::string> options{"--points"};
+  if (app.get_option_no_throw("--points-b") != nullptr) options = {"--points-a", "--points-b"};
+  std::vector<std::string> meshes;
+  std::vector<std::string> caches;
+  std::string meant;
+  for (const std::string& word : plain_words(app)) {
+    if (meshes.empty() || !(word.ends_with(".pc2") || word.ends_with(".mdd"))) {
+      meshes.push_back(word);
+      continue;
+    }
+    caches.push_back(word);
+    const std::size_t number = std::min(mesh_of_cache(meshes, word), options.size() - 1);
+    meant += " " + options[number] + " " + word;
+  }
+  if (caches.empty()) return "";
+  return "unexpected argument" + std::string(caches.size() == 1 ? " " : "s ") +
+         CLI::detail::join(caches, " ") + "; did you mean" + meant + "?";
+}
+
 std::string surplus_text(const CLI::App& app, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (!word.starts_with("-")) continue;
@@ -116,12 +161,9 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
     return "unknown option " + word +
            (similar.empty() ? "" : "; did you mean " + similar + "?");
   }
+  const std::string of_caches = point_cache_text(app);
+  if (!of_caches.empty()) return of_caches;
   const bool has_points = app.get_option_no_throw("--points") != nullptr;
-  for (const std::string& word : words) {
-    if (has_points && (word.ends_with(".pc2") || word.ends_with(".mdd"))) {
-      return "unexpected argument " + word + "; did you mean --points " + word + "?";
-    }
-  }
   return "unexpected argument" + std::string(words.size() == 1 ? " " : "s ") +
          CLI::detail::join(words, " ") +
          (has_points ? "; put patterns in quotes, as in 'walk_*.obj'" : "");

@@ -112,5 +112,34 @@ TEST(CommandLine, SuggestsSimilarOptions) {
   EXPECT_EQ(complaint({}), "program: IN is required");
 }
 
+TEST(CommandLine, KnowsWhichMeshAPointCacheIsFor) {
+  const auto complaint = [&](const std::vector<std::string>& words) {
+    Program p;
+    std::string second;
+    std::string points;
+    p.app.add_option("SECOND", second, "What else to read");
+    p.app.add_option("--points-b", points, "Points");
+    EXPECT_EQ(p.run(words), 64);
+    return p.said.substr(0, p.said.find('\n'));
+  };
+  const std::string begin = "program: unexpected argument";
+  EXPECT_EQ(complaint({"a.obj", "a.pc2", "b.rlpc"}),
+            begin + " a.pc2; did you mean --points-a a.pc2?");
+  EXPECT_EQ(complaint({"a.rlpc", "b.obj", "b.mdd"}),
+            begin + " b.mdd; did you mean --points-b b.mdd?");
+  EXPECT_EQ(complaint({"a.obj", "a.pc2", "b.obj", "b.pc2"}),
+            begin + "s a.pc2 b.pc2; did you mean --points-a a.pc2 --points-b b.pc2?");
+  EXPECT_EQ(complaint({"a.obj", "a.rlpc", "a.pc2"}),
+            begin + " a.pc2; did you mean --points-a a.pc2?");
+  EXPECT_EQ(complaint({"a.obj", "out/a.obj", "out/a.pc2"}),
+            begin + " out/a.pc2; did you mean --points-b out/a.pc2?");
+  EXPECT_EQ(complaint({"a.obj", "b.rlpc", "c.pc2"}),
+            begin + " c.pc2; did you mean --points-a c.pc2?");
+  EXPECT_EQ(complaint({"a.obj", "b.obj", "c.pc2"}),
+            begin + " c.pc2; did you mean --points-b c.pc2?");
+  EXPECT_EQ(complaint({"a.pc2", "b.obj", "c.obj"}),
+            begin + " c.obj; put patterns in quotes, as in 'walk_*.obj'");
+}
+
 }  // namespace
 }  // namespace rlpc

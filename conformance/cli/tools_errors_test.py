@@ -311,12 +311,12 @@ class BadStreams(ToolsTest):
             self.assertNotIn(b"\x1b", self.ok("rlpcinfo", self.path("m.rlpc")).out)
 
     def test_limits(self):
-        for option in (["--max-vertices", 500], ["--max-memory", "50KB"]):
+        for option in (["--max-vertices", 500], ["--max-memory", "50KiB"]):
             self.fails(3, "than the limit (--max-", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
                        *option)
         self.assertEqual(self.files(), ["a.rlpc"])
         self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--max-vertices", 538, "--max-memory",
-                "100MB")
+                "100MiB")
 
     def test_missing(self):
         for tool, arguments in (("rlpcdec", ["--verify"]), ("rlpcinfo", [])):

@@ -162,7 +162,7 @@ class SkinChoice(SkinTest):
 
     def test_a_skin_needs_memory_for_all_frames(self):
         self.encode(self.path("a.rlpc"), "--kg", 0.2, name="robot_arm")
-        limit = ["--max-memory", "1300KB", "--threads", 1]
+        limit = ["--max-memory", "1300KiB", "--threads", 1]
         self.fails(3, ["--as skin", "--max-memory"], "rlpcdec", self.path("a.rlpc"), "-o",
                    self.path("a.glb"), "--as", "skin", *limit)
         self.assertFalse(self.targets(self.path("a.rlpc"), *limit)[0])

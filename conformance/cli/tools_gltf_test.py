@@ -68,11 +68,34 @@ class GltfInput(ToolsTest):
             self.assertEqual(report["num_frames"], count, options)
             self.assertEqual(report["num_vertices"], 172)
 
+    def test_names_of_animations_become_clips(self):
+        document, data = parts(TULIP.read_bytes())
+        document["animations"] = document["animations"][:1]
+        document["buffers"][0]["uri"] = "tulip.bin"
+        self.path("tulip.bin").write_bytes(data)
+        self.path("sway.gltf").write_text(json.dumps(document))
+        del document["animations"][0]["name"]
+        self.path("nameless.gltf").write_text(json.dumps(document))
+        sway, visit = (dict(name=name, first_frame=0, num_frames=n) for name, n in FRAMES.items())
+        cases = [(TULIP, [], [sway]), (TULIP, ["--animation", "Visit"], [visit]),
+                 (TULIP, ["--animation", 1], [visit]),
+                 (TULIP, ["--animation", "all"], [sway, {**visit, "first_frame": 61}]),
+                 (TULIP, ["--clip", "Bees:3-9"],
+                  [{"name": "Bees", "first_frame": 3, "num_frames": 7}]),
+                 (self.path("sway.gltf"), ["--animation", "all"], [sway]),
+                 (self.path("nameless.gltf"), ["--animation", "all"], [])]
+        for source, options, clips in cases:
+            said = self.ok("rlpcenc", source, "-o", self.path("a.rlpc"), "--kg", 1, "--preset",
+                           "fast", *options).err
+            self.assertNotIn("name of", said)
+            info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
+            self.assertEqual(info.get("clips", []), clips, (source, options))
+
     def test_what_is_merged_and_dropped_is_reported(self):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
         for words in ("dropped 2 point or line primitives", "dropped 8 degenerate triangles",
                       "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
-                      "dropped: skeleton, name of the animation"):
+                      "dropped: skeleton\n"):
             self.assertIn(f"{TULIP}: {words}", result.err)
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--no-weld",
                          "--json")
@@ -133,6 +156,19 @@ class GltfInput(ToolsTest):
 
 
 class GltfErrors(ToolsTest):
+    def test_a_point_cache_is_not_for_gltf(self):
+        cache = INPUTS / "elephant.pc2"
+        words = [f"{TULIP}: a glTF file brings its own animation and takes no --points; leave it "
+                 f"out, or replace this file by the mesh (.obj, .off or .ply) of {cache}"]
+        output = ["-o", self.path("a.rlpc")]
+        self.fails(1, words, "rlpcenc", TULIP, "--points", cache, *output)
+        self.fails(1, words, "rlpcenc", TULIP, "--points", cache, "--animation", "all", *output)
+        self.path("tulip").write_bytes(TULIP.read_bytes())  # known by its contents
+        self.fails(1, "takes no --points", "rlpcenc", self.path("tulip"), "--points", cache, *output)
+        self.fails(1, "takes no --points", "rlpcenc", TULIP, "--points", "-", "--low-delay",
+                   "--profile", "high", *output)
+        self.fails(2, words, "rlpccmp", TULIP, TULIP, "--points-b", cache)
+
     def refused(self, words, data, *options):
         self.path("bad.glb").write_bytes(data)
         self.fails(1, ["bad.glb", *words], "rlpcenc", self.path("bad.glb"), "-o",

@@ -77,10 +77,27 @@ class Help(ToolsTest):
         self.assertIn("--max-mem BYTES", page)
         self.assertIsNone(NOISE.search(page))
 
+    def test_the_other_codecs(self):
+        verbs = ("list", "encode", "decode", "order", "convert")
+        for words in ((), *((verb,) for verb in verbs)):
+            for option in ("--help", "--help-all"):
+                page = self.ok("peer_codec", *words, option).out.decode()
+                self.assertIsNone(NOISE.search(page), (words, NOISE.findall(page)))
+                for line in page.splitlines():
+                    self.assertLessEqual(len(line), COLUMNS, (words, line))
+                for verb in verbs:
+                    self.assertRegex(page, rf"(?m)^  {verb} +[A-Z]")
+        self.assertIn(b"lorenzo", self.ok("peer_codec", "list").out)
+        self.fails(64, "unknown verb encod", "peer_codec", "encod", "lorenzo", "a.obj")
+        self.fails(64, "CODEC", "peer_codec", "encode", "none", "a.obj", "a.pc2", "-o", "x")
+        self.fails(64, "VERB is required", "peer_codec")
+
     def test_what_was_meant(self):
         for tool, words, said in (
                 ("rlpcenc", ["cow.obj", "cow.pc2", "-o", "x.rlpc"], "did you mean --points cow.pc2?"),
-                ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points a.mdd?"),
+                ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points-a a.mdd?"),
+                ("rlpccmp", ["cow.obj", "cow.pc2", "fox.rlpc"],
+                 "unexpected argument cow.pc2; did you mean --points-a cow.pc2?"),
                 ("rlpcenc", ["a.obj", "b.obj", "-o", "x"], "put patterns in quotes"),
                 ("rlpcdec", ["a.rlpc", "--verfy"], "unknown option --verfy; did you mean --verify?"),
                 ("rlpcinfo", ["a.rlpc", "b.rlpc"], "unexpected argument b.rlpc")):

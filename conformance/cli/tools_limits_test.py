@@ -97,7 +97,7 @@ class Endless(MeasuredTest):
 
     def test_that_begins_like_a_stream(self):
         for command in self.decoders("-"):
-            self.takes(20 * MIB, 3, "limit", *command, "--max-memory", "20MB",
+            self.takes(20 * MIB, 3, "limit", *command, "--max-memory", "20MiB",
                        feed=endless(SIGNATURE))
 
     def test_what_is_kept_of_a_pipe_counts(self):
@@ -128,11 +128,11 @@ class Endless(MeasuredTest):
         for begin in (b"ply\n", b"OFF\n", b"# \n", b"glTF", b"{", b"RLPD", b"v 0 0 0\n"):
             for tool, code, last in (("rlpcenc", 1, ["-o", self.out]), ("rlpccmp", 2, [mesh])):
                 self.takes(40 * MIB, code, ["standard input", "limit of 20 MiB (--max-memory)"],
-                           tool, "-", *last, "--max-memory", "20MB",
+                           tool, "-", *last, "--max-memory", "20MiB",
                            feed=endless(begin, b" " * MIB))
         for begin in (b"POINTCACHE2\0", struct.pack(">2i", 1000000000, 3)):
             self.takes(40 * MIB, 1, ["standard input", "limit of 20 MiB (--max-memory)"],
-                       "rlpcenc", mesh, "--points", "-", "-o", self.out, "--max-memory", "20MB",
+                       "rlpcenc", mesh, "--points", "-", "-o", self.out, "--max-memory", "20MiB",
                        feed=endless(begin))
 
     def test_small_files_that_are_not(self):
@@ -172,11 +172,11 @@ class Expansion(ToolsTest):
         self.assertLess(self.stream.stat().st_size, 400)
         for output in ("out.rlpd", "out.pc2", "out.mdd", "out", "f_%d.obj", "f_%d.ply"):
             self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", self.path(output),
-                       "--max-output", "100KB")
+                       "--max-output", "100KiB")
             self.assertEqual(self.files(), self.before)
         for name in ("rlpd", "glb"):
             done = self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", "-", "--format",
-                              name, "--max-output", "1KB")
+                              name, "--max-output", "1KiB")
             self.assertLessEqual(len(done.out), 1024)
         self.ok("rlpcdec", self.stream, "-o", self.path("out.rlpd"), "--max-output", 1200044)
         self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", self.path("out.rlpd"),
@@ -277,7 +277,7 @@ class Threads(MeasuredTest):
         write_pc2(cache, [[(v * f % 71) * 0.1 for v in range(3000)] for f in range(400)])
         inputs = mesh, "--points", cache, "--gof", 50, "--preset", "fast"
         self.assertEqual(len(self.streams((1, 8), *inputs)), 1)
-        self.takes(60 * MIB, 0, "", "rlpcenc", *inputs, "--max-memory", "60MB", "--threads", 8,
+        self.takes(60 * MIB, 0, "", "rlpcenc", *inputs, "--max-memory", "60MiB", "--threads", 8,
                    "-o", self.path("8.rlpc"))
         self.assertEqual(self.path("8.rlpc").read_bytes(), self.path("1.rlpc").read_bytes())
 
@@ -309,35 +309,35 @@ class EncoderMemory(MeasuredTest):
         document = self.gltf(scenes=[{"nodes": list(range(3000))}], nodes=[{"mesh": 0}] * 3000,
                              meshes=[{"primitives": [primitive] * 3000}])
         self.assertLess(document.stat().st_size, 200000)
-        self.refused(200 * MIB, ["a.gltf"], document, "--max-memory", "200MB")
+        self.refused(200 * MIB, ["a.gltf"], document, "--max-memory", "200MiB")
 
     def test_json(self):
         """Each JSON bracket becomes an object of many bytes."""
         document = self.gltf(extras=[{}] * 2000000)
-        self.refused(20 * MIB, ["a.gltf"], document, "--max-memory", "100MB")
+        self.refused(20 * MIB, ["a.gltf"], document, "--max-memory", "100MiB")
 
     def test_text(self):
         """Polygons with one character per corner."""
         mesh = self.path("fan.obj")
         mesh.write_text("v 0 0 0\n" * 3 + "f" + " 1" * 10000000 + "\n")
-        self.refused(100 * MIB, ["fan.obj:4"], mesh, "--max-memory", "100MB")
-        self.refused(0, ["fan.obj"], mesh, "--max-memory", "10MB")
+        self.refused(100 * MIB, ["fan.obj:4"], mesh, "--max-memory", "100MiB")
+        self.refused(0, ["fan.obj"], mesh, "--max-memory", "10MiB")
 
     def test_frames(self):
         mesh, cache = self.path("m.obj"), self.path("m.pc2")
         mesh.write_text("".join(f"v {v} 0 0\n" for v in range(1000)))
         write_pc2(cache, [[0.0] * 3000] * 1000)
         self.refused(0, ["a shorter --gof needs less".capitalize()], mesh, "--points", cache,
-                     "--gof", "all", "--max-memory", "150MB")
+                     "--gof", "all", "--max-memory", "150MiB")
         self.takes(150 * MIB, 0, "", "rlpcenc", mesh, "--points", cache, "--gof", 20,
-                   "--preset", "fast", "--max-memory", "150MB", "-o", self.path("out.rlpc"))
+                   "--preset", "fast", "--max-memory", "150MiB", "-o", self.path("out.rlpc"))
 
     def test_default(self):
         self.clip(2)
         self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path("out.rlpc"))
         for tool in ("rlpcenc", "rlpccmp", "rlpcdec", "rlpcinfo", "rlpcval"):
             self.assertIn(b"--max-memory", self.ok(tool, "--help-all").out)
-        self.assertIn(b"32GB", self.ok("rlpcenc", "--help-all").out)
+        self.assertIn(b"32GiB", self.ok("rlpcenc", "--help-all").out)
 
 
 if __name__ == "__main__":

@@ -85,6 +85,8 @@ class Live(ToolsTest):
             part = self.path(f"{frame}.pc2")
             self.ok("rlpcdec", stream, "-o", part, "--frames", f"{frame}-{frame}")
             self.assertEqual(read_pc2(part), every[frame:frame + 1])
+        self.fails(3, "open_end_flag: more frames than the limit (--max-frames 100)", "rlpcdec",
+                   stream, "--verify", "--max-frames", 100)
         self.fails(64, "within 0-24", "rlpcdec", stream, "-o", self.path("x.pc2"), "--frames", "25-")
 
     def test_a_known_number_of_frames_gives_no_open_end(self):

@@ -16,8 +16,9 @@ class Messages(ToolsTest):
 
     def test_limits_are_named_with_what_is_needed(self):
         stream = self.stream()
+        trace = self.ok("rlpcinfo", stream, "--trace").out.decode()
         for limits, words in (
-                (["--max-memory", "50KB"], r"needs at least \d+ KiB of memory, more than the "
+                (["--max-memory", "50KiB"], r"needs at least \d+ KiB of memory, more than the "
                                            r"limit \(--max-memory, 50 KiB\)"),
                 (["--max-vertices", 500], r"num_vertices_minus1: more vertices than the limit "
                                           r"\(--max-vertices 500\)"),
@@ -25,15 +26,30 @@ class Messages(ToolsTest):
                                        r"\(--max-frames 59\)")):
             result = self.fails(3, "", "rlpcdec", stream, "--verify", *limits)
             self.assertRegex(result.err, words)
+            place, element = re.search(r"bit (\d+): (\w+): ", result.err).groups()
+            self.assertRegex(trace, rf"(?m)^ *{place}    {element} = ")
+        for size, said in (("50kB", "50 kB"), ("50000", "50 kB"), ("48828KiB", ""), ("50MB", ""),
+                           ("40Ki", "40 KiB"), ("40KB", "40 kB"), ("40k", "40 kB")):
+            result = run("rlpcdec", stream, "--verify", "--max-memory", size)
+            self.assertEqual(result.code, 3 if said else 0)
+            self.assertIn(f"(--max-memory, {said})" if said else "decoded", result.err)
         needed = re.search(r"(\d+) KiB of", self.fails(
-            3, "", "rlpcinfo", stream, "--max-memory", "50KB").err).group(1)
+            3, "", "rlpcinfo", stream, "--max-memory", "50KiB").err).group(1)
         # With one KiB less the mesh does not fit; with that limit it does.
         less = run("rlpcinfo", stream, "--max-memory", 1024 * (int(needed) - 1))
         self.assertIn(f"at least {needed} KiB", less.err)
         enough = run("rlpcinfo", stream, "--max-memory", 1024 * int(needed))
         self.assertNotIn(f"at least {needed} KiB", enough.err)
-        result = run("rlpcval", stream, "--max-memory", "50KB")
+        result = run("rlpcval", stream, "--max-memory", "50KiB")
         self.assertIn(b"of memory, more than the limit", result.out)
+
+    def test_one_frame_is_no_plural(self):
+        self.clip(2)
+        self.path("one.obj").write_bytes(self.path("clip.obj").read_bytes())
+        self.fails(2, "one.obj has 1 frame, but ", "rlpccmp", self.path("one.obj"),
+                   self.path("clip.obj"), "--points-b", self.path("clip.pc2"))
+        said = self.ok("rlpccmp", self.path("one.obj"), self.path("one.obj")).out.decode()
+        self.assertIn(" vertices, 1 frame\n", said)
 
     def test_what_is_no_stream_is_recognised(self):
         stream = self.stream().read_bytes()

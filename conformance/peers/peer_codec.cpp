@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -12,8 +13,11 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/io/messages.h"
+#include "common/tools/command_line.h"
 #include "conformance/peers/byte_stream.h"
 #include "conformance/peers/peer_codecs.h"
 #include "encoder/input/frame_source.h"
@@ -183,65 +187,121 @@ void write_order(const Options& o) {
   write_file(o.output, text);
 }
 
-CLI::App* add_verb(CLI::App& app, Options& o, const std::string& name,
-                   const std::string& what) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->add_option("codec", o.codec)->required()->check(CLI::IsMember(kCodecs));
-  if (name == "decode") {
-    verb->add_option("input", o.input, "Encoded file")->required();
-    verb->add_option("--order-map", o.order_map, "Restore the order of the input by this file");
-  } else {
-    verb->add_option("mesh", o.mesh, "Triangles, as OBJ")->required();
-    verb->add_option("points", o.points, "Positions, as PC2")->required();
-  }
-  if (name == "encode") {
-    verb->add_option("--bits", o.bits, "Bits of a coordinate")->check(CLI::Range(2, 16));
-  }
-  verb->add_option("-o,--output", o.output)->required();
-  return verb;
+constexpr const char* kMain = "Options";
+
+void add_output(CLI::App& app, Options& o, const char* what) {
+  app.add_option("-o,--output", o.output, what)->required()->option_text("FILE")->group(kMain);
 }
 
-CLI::App* add_convert(CLI::App& app, Options& o) {
-  CLI::App* verb = app.add_subcommand(
-      "convert", "Write any input of rlpcenc as OUT.pc2, with OUT.obj beside it");
-  verb->add_option("input", o.source.path)->required();
-  verb->add_option("--points", o.source.points, "Point cache with the frames");
-  verb->add_option("--animation", o.source.animation,
-                   "If the input is glTF: name, index or `all`");
-  verb->add_option("--fps", o.frame_rate, "Frame rate of glTF files");
-  verb->add_flag("!--no-weld", o.source.weld,
-                 "If the input is glTF: keep coincident vertices apart");
-  verb->add_option("-o,--output", o.output)->required();
-  return verb;
+void add_codec(CLI::App& app, Options& o) {
+  app.add_option("CODEC", o.codec, CLI::detail::join(kCodecs, ", "))
+      ->required()
+      ->check(CLI::IsMember(kCodecs).description(""));
 }
+
+void add_animation(CLI::App& app, Options& o) {
+  app.add_option("MESH", o.mesh, "Triangles, as OBJ")->required();
+  app.add_option("POINTS", o.points, "Positions, as PC2")->required();
+}
+
+void add_encode(CLI::App& app, Options& o) {
+  add_codec(app, o);
+  add_animation(app, o);
+  app.add_option("--bits", o.bits, "Bits of a coordinate, 2 to 16 (default: 12)")
+      ->check(CLI::Range(2, 16))
+      ->option_text("N")
+      ->group(kMain);
+  add_output(app, o, "Encoded file to write");
+}
+
+void add_decode(CLI::App& app, Options& o) {
+  add_codec(app, o);
+  app.add_option("INPUT", o.input, "Encoded file")->required();
+  app.add_option("--order-map", o.order_map, "Restore the order of the input by this file")
+      ->option_text("FILE")
+      ->group(kMain);
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+}
+
+void add_order(CLI::App& app, Options& o) {
+  add_codec(app, o);
+  add_animation(app, o);
+  add_output(app, o, "Text to write");
+}
+
+void add_convert(CLI::App& app, Options& o) {
+  app.add_option("INPUT", o.source.path, "Any input of rlpcenc")->required();
+  app.add_option("--points", o.source.points, "Point cache with the frames")
+      ->option_text("FILE")
+      ->group(kMain);
+  app.add_option("--animation", o.source.animation,
+                 "If the input is glTF: name, index or `all`")
+      ->option_text("NAME")
+      ->group(kMain);
+  app.add_option("--fps", o.frame_rate, "Frame rate of glTF files")
+      ->option_text("RATE")
+      ->group(kMain);
+  app.add_flag_callback(
+         "--no-weld", [&o] { o.source.weld = false; },
+         "If the input is glTF: keep coincident vertices apart")
+      ->group(kMain);
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+}
+
+void list(const Options& /*o*/) {
+  for (const std::string& codec : kCodecs) std::cout << codec << "\n";
+}
+
+struct Verb {
+  const char* name;
+  const char* usage;
+  const char* what;
+  void (*add)(CLI::App& app, Options& o);
+  void (*run)(const Options& o);
+};
+constexpr std::array<Verb, 5> kVerbs{{
+    {"list", "", "Lists the codecs.", [](CLI::App&, Options&) {}, list},
+    {"encode", "CODEC MESH POINTS -o FILE [OPTIONS]", "Encodes an animation.", add_encode,
+     encode},
+    {"decode", "CODEC INPUT -o OUT.pc2 [OPTIONS]", "Writes OUT.pc2 and OUT.obj.", add_decode,
+     decode},
+    {"order", "CODEC MESH POINTS -o FILE",
+     "Writes, per decoded vertex, its index in the input.", add_order, write_order},
+    {"convert", "INPUT -o OUT.pc2 [OPTIONS]",
+     "Writes any input of rlpcenc as OUT.pc2 and OUT.obj.", add_convert, convert},
+}};
+
+std::string verb_list() {
+  std::string text = "Verbs (peer_codec VERB --help)";
+  for (const Verb& verb : kVerbs) {
+    text += "\n  " + (verb.name + std::string(24, ' ')).substr(0, 24) + verb.what;
+  }
+  return text;
+}
+
+constexpr const char* kDetails = "Exit code: 0 done; 2 input or output failed; 64 wrong usage.";
 
 int run(int argc, char** argv) {
-  CLI::App app(
-      "Other codecs for comparisons, as far as their libraries were found at build time.",
-      "peer_codec");
+  const std::string_view word = argc > 1 ? argv[1] : "";
+  const auto verb =
+      std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& v) { return v.name == word; });
+  if (verb == kVerbs.end()) {
+    CLI::App app(
+        "Other codecs, for comparisons; those whose libraries were found at build time.",
+        "peer_codec");
+    std::vector<std::string> words;
+    app.add_option("VERB", words, "What to do")->required();
+    add_help(app, {"VERB ...", {}, verb_list(), kDetails}, RLPC_VERSION);
+    if (const auto code = parse_command_line(app, argc, argv)) return *code;
+    print_message("peer_codec", "unknown verb " + words[0] + "; --help lists them");
+    return 64;
+  }
   Options o;
-  const auto* list = app.add_subcommand("list", "List the codecs");
-  const auto* encoding = add_verb(app, o, "encode", "Encode an animation");
-  const auto* decoding = add_verb(app, o, "decode", "Write OUT.pc2, and OUT.obj beside it");
-  const auto* converting = add_convert(app, o);
-  add_verb(app, o, "order", "Write, per decoded vertex, its index in the input");
-  app.require_subcommand(1);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 64;
-  }
-  if (list->parsed()) {
-    for (const std::string& codec : kCodecs) std::cout << codec << "\n";
-  } else if (encoding->parsed()) {
-    encode(o);
-  } else if (decoding->parsed()) {
-    decode(o);
-  } else if (converting->parsed()) {
-    convert(o);
-  } else {
-    write_order(o);
-  }
+  CLI::App app(verb->what, "peer_codec " + std::string(verb->name));
+  verb->add(app, o);
+  add_help(app, {verb->usage, {kMain}, verb_list(), kDetails}, RLPC_VERSION);
+  if (const auto code = parse_command_line(app, argc - 1, argv + 1)) return *code;
+  verb->run(o);
   return 0;
 }
 

@@ -63,9 +63,11 @@ void add_options(CLI::App& app, Options& o) {
       ->group(options);
   app.add_flag("--strict-warnings", o.strict_warnings, "Exit code 1 for warnings too")
       ->group(options);
-  app.add_option("--max-memory", o.validation.limits.max_memory_bytes,
-                 "Refuse streams that need more, for example 500MB")
-      ->transform(CLI::AsSizeValue(false))
+  app.add_option(
+         "--max-memory", o.validation.limits.max_memory_bytes,
+         "Refuse streams that need more, for example 500MB (1 MB: 1000 * 1000 bytes; 1 MiB: "
+         "1024 * 1024; default: 4GiB)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(options);
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(options);

@@ -100,10 +100,10 @@ class Validation(ToolsTest):
         self.assertIn(b"unsupported R-STR-03", result.out)
 
     def test_limits(self):
-        result = run("rlpcval", self.path("a.rlpc"), "--max-memory", "1KB")
+        result = run("rlpcval", self.path("a.rlpc"), "--max-memory", "1KiB")
         self.assertEqual(result.code, 3)
         self.assertIn(b"raise --max-memory", result.out)
-        code, (stream,) = self.json(self.path("a.rlpc"), "--max-memory", "1KB")
+        code, (stream,) = self.json(self.path("a.rlpc"), "--max-memory", "1KiB")
         self.assertEqual((code, stream["stopped"]["reason"]), (3, "limit"))
 
     def test_files_that_cannot_be_read(self):
@@ -207,7 +207,7 @@ class Suite(ToolsTest):
         paths = [path.with_suffix(".rlpc") for path in sidecars]
         self.assertTrue(paths, "streams/ has no streams")
         # Limits of the highest levels are above the default of --max-memory.
-        found = run("rlpcval", "--json", "--max-memory", "64GB", *paths).json()
+        found = run("rlpcval", "--json", "--max-memory", "64GiB", *paths).json()
         schema.check(found, schema.load("findings"))
         for path, entry in zip(sidecars, found["streams"], strict=True):
             yield json.loads(path.read_text(encoding="utf-8")), entry

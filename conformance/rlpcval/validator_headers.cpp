@@ -52,13 +52,17 @@ HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor)
   if (!r.readable() || !check.supported) return check;
   const Level& level = h.level();
   const Level& highest = kLevels.back();
+  check.places.num_vertices_minus1 = r.bit_pos();
   const std::int64_t vertices = r.ue("num_vertices_minus1");
   r.require(vertices < level.max_vertices, "R-LVL-01",
             level_allows(h.level_idc, level.max_vertices, " vertices"));
+  check.places.num_triangles = r.bit_pos();
   const std::int64_t triangles = r.ue("num_triangles");
   r.require(triangles <= level.max_triangles, "R-LVL-02",
             level_allows(h.level_idc, level.max_triangles, " triangles"));
+  check.places.open_end_flag = r.bit_pos();
   if (h.profile_idc >= kProfileHigh) h.open_end_flag = r.u(1, "open_end_flag") != 0;
+  check.places.num_frames_minus1 = r.bit_pos();
   std::int64_t frames = kMaxFrames - 1;
   if (!h.open_end_flag) {
     frames = r.ue("num_frames_minus1");
@@ -67,6 +71,7 @@ HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor)
   }
   check.usable = r.readable() && vertices < highest.max_vertices &&
                  triangles <= highest.max_triangles && frames < kMaxFrames;
+  check.places.frame_rate_numerator_minus1 = r.bit_pos();
   check_rate_and_grid(r, h);
   const std::int64_t bits = r.u(5, "position_bits");
   check.positions = r.require(bits >= kMinPositionBits && bits <= kMaxPositionBits, "R-HDR-06",

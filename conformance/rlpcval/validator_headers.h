@@ -11,11 +11,13 @@
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_models.h"
 #include "decoder/parse/sequence/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
 
 namespace rlpc {
 
 struct HeaderCheck {
   SequenceHeader header;
+  SequenceHeaderPlaces places;
   bool supported = true;   // profile and level are known
   bool usable = false;     // sizes are known and within a level: units can be read with them
   bool positions = false;  // position_bits is legal: positions can be computed

@@ -18,6 +18,7 @@
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/parse/sequence/parse_vertex_order.h"
 #include "decoder/recon/gof_recon.h"
+#include "decoder/stream/exceeded_limit.h"
 #include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
@@ -104,21 +105,11 @@ void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& pay
 }
 
 void StreamValidator::check_limits() {
-  const DecodeLimits& limits = options_.limits;
-  const SequenceHeader& h = lead_.header->header;
-  const char* element = nullptr;
-  std::uint64_t needed_bytes = 0;
-  if (const std::uint64_t bytes = memory_of_stream(h, kFramesHeld);
-      bytes > limits.max_memory_bytes) {
-    element = "num_vertices_minus1";
-    needed_bytes = bytes;
-  }
-  if (h.num_frames > limits.max_frames) element = "num_frames_minus1";
-  if (h.num_triangles > limits.max_triangles) element = "num_triangles";
-  if (h.num_vertices > limits.max_vertices) element = "num_vertices_minus1";
-  lead_.within_limits = element == nullptr;
-  if (lead_.within_limits) return;
-  findings_.error({Errc::kLimitExceeded, "", element, lead_.header_bit_pos, needed_bytes});
+  const SequenceHeader& header = lead_.header->header;
+  const auto error = find_exceeded_limit(header, lead_.header->places, options_.limits,
+                                         memory_of_stream(header, kFramesHeld));
+  lead_.within_limits = !error;
+  if (error) findings_.error(*error);
 }
 
 MemoryLimit StreamValidator::memory_limit() const {
@@ -375,7 +366,8 @@ void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) 
   index_.checks.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
   index_.checks.back().suspect = findings_.suspect();
   if (index_.checks.back().too_large) {
-    findings_.error({Errc::kLimitExceeded, "", "num_index_gofs_minus1", r.bit_pos()});
+    findings_.error(
+        {Errc::kLimitExceeded, "", "num_index_gofs_minus1", unit.payload_offset() * 8});
   }
 }
 

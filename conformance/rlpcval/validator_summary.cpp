@@ -114,7 +114,8 @@ void StreamValidator::warn_of_stream() {
   const std::uint64_t denominator = rate.denominator;
   if (kMinFrameSeconds * numerator < denominator || numerator > kMaxFrameRate * denominator) {
     findings_.warning(
-        "W-HDR-01", "frame_rate_numerator_minus1", lead_.header_bit_pos,
+        "W-HDR-01", "frame_rate_numerator_minus1",
+        lead_.header->places.frame_rate_numerator_minus1,
         std::to_string(numerator) + "/" + std::to_string(denominator) + " frames per second");
   }
   warn_of_level();

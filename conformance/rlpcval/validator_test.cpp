@@ -13,6 +13,7 @@
 #include "common/bitstream/bit_writer.h"
 #include "conformance/rlpcval/validator_testing.h"
 #include "conformance/roundtrip/model_animation.h"
+#include "decoder/rlpc_decoder.h"
 #include "encoder/write/write_cluster_gof.h"
 #include "encoder/write/write_connectivity.h"
 #include "encoder/write/write_stream.h"
@@ -436,6 +437,11 @@ TEST(Validator, KeepsToItsLimits) {
   ASSERT_TRUE(report.stopped);
   EXPECT_EQ(report.stopped->code, Errc::kLimitExceeded);
   EXPECT_STREQ(report.stopped->element, "num_vertices_minus1");
+  DecoderOptions same;
+  same.limits = options.limits;
+  const auto decoder = Decoder::open(memory_source(StreamBytes(good)), same);
+  ASSERT_FALSE(decoder);
+  EXPECT_EQ(report.stopped->bit_pos, decoder.error().bit_pos);
   EXPECT_EQ(ids(report), Ids{});
   EXPECT_FALSE(report.complete);
   options = {};

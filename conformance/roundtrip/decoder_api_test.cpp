@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <random>
@@ -255,14 +256,29 @@ TEST(Decoder, ReportsABadIndexAgain) {
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(decoder->seek(decoder->header().num_frames - 1));
 }
 
+// Where each element was seen first.
+class FirstPlaces final : public Trace {
+ public:
+  void begin(const char* /*structure*/, std::uint64_t /*bit_pos*/) override {}
+  void element(const char* name, std::int64_t /*value*/, std::uint64_t bit_pos) override {
+    place.try_emplace(name, bit_pos);
+  }
+  std::map<std::string, std::uint64_t, std::less<>> place;
+};
+
 TEST(DecodeLimits, NameTheElementThatGoesBeyond) {
   const StreamBytes stream = rich_stream();
+  FirstPlaces trace;
+  DecoderOptions traced;
+  traced.trace = &trace;
+  ASSERT_TRUE(open(stream, traced));
   const auto expect = [&](const DecodeLimits& limits, std::string_view element) {
     DecoderOptions options;
     options.limits = limits;
     const Error error = open_error(stream, options);
     EXPECT_EQ(error.code, Errc::kLimitExceeded) << element;
     EXPECT_EQ(error.element, element);
+    EXPECT_EQ(error.bit_pos, trace.place.find(element)->second) << element;
   };
   expect({.max_vertices = 29}, "num_vertices_minus1");
   expect({.max_triangles = 49}, "num_triangles");

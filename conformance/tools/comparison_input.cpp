@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/io/float_position.h"
+#include "common/io/messages.h"
 #include "decoder/describe_error.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/input/input_file.h"
@@ -128,15 +129,16 @@ InputResult<ComparisonPair> open_comparison_pair(const InputOptions& options_a,
   b = add_cache(std::move(*b), options_b, a->frames->num_frames());
   if (!b) return b.error();
 
-  const auto differ = [&](std::uint32_t na, std::uint32_t nb, const std::string& what) {
-    return InputError{a->name + " has " + std::to_string(na) + " " + what + ", but " + b->name +
-                      " has " + std::to_string(nb)};
+  const auto differ = [&](const std::string& of_a, std::uint32_t of_b) {
+    return InputError{a->name + " has " + of_a + ", but " + b->name + " has " +
+                      std::to_string(of_b)};
   };
   if (a->frames->num_vertices() != b->frames->num_vertices()) {
-    return differ(a->frames->num_vertices(), b->frames->num_vertices(), "vertices");
+    return differ(count_text(a->frames->num_vertices(), "vertex", "vertices"),
+                  b->frames->num_vertices());
   }
   if (a->frames->num_frames() != b->frames->num_frames()) {
-    return differ(a->frames->num_frames(), b->frames->num_frames(), "frames");
+    return differ(count_text(a->frames->num_frames(), "frame"), b->frames->num_frames());
   }
   return ComparisonPair{std::move(*a), std::move(*b)};
 }

@@ -160,8 +160,9 @@ void add_options(CLI::App& app, Options& o) {
       ->group(more);
   app.add_option(
          "--max-memory", o.a.max_memory_bytes,
-         "Refuse input that needs more, for example 500MB (default: 32GB; streams: 4GB)")
-      ->transform(CLI::AsSizeValue(false))
+         "Refuse input that needs more, for example 500MB (1 MB: 1000 * 1000 bytes; 1 MiB: "
+         "1024 * 1024; default: 32GiB; streams: 4GiB)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(more);
   rlpc::add_help(app, {"A B [OPTIONS]", {input, output}, kExamples, kDetails}, RLPC_VERSION);
@@ -250,9 +251,11 @@ void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::
 void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
                   const rlpc::Distortion& d) {
   const rlpc::Metrics& m = d.metrics;
-  std::printf("A  %s\nB  %s\n   %u vertices, %u frames\n", rlpc::printable(pair.a.name).c_str(),
-              rlpc::printable(pair.b.name).c_str(), pair.a.frames->num_vertices(),
-              pair.a.frames->num_frames());
+  const rlpc::FrameSource& a = *pair.a.frames;
+  std::printf("A  %s\nB  %s\n   %s, %s\n", rlpc::printable(pair.a.name).c_str(),
+              rlpc::printable(pair.b.name).c_str(),
+              rlpc::count_text(a.num_vertices(), "vertex", "vertices").c_str(),
+              rlpc::count_text(a.num_frames(), "frame").c_str());
   if (rate.bytes > 0) {
     std::printf("  rate      %.4f bits per vertex and frame (%llu bytes)\n", rate.bpvf,
                 static_cast<unsigned long long>(rate.bytes));

@@ -16,10 +16,11 @@
 
 namespace rlpc {
 
-bool FrameGofParser::has_memory(BitReader& r, std::uint64_t more, const char* element) {
+bool FrameGofParser::has_memory(BitReader& r, std::uint64_t more, const char* structure,
+                                std::uint64_t at) {
   const std::uint64_t needed_bytes = memory_.bytes_in_use + memory_bytes_ + more;
   if (needed_bytes <= memory_.max_bytes) return true;
-  r.fail(Errc::kLimitExceeded, "", element, r.bit_pos(), needed_bytes);
+  r.fail(Errc::kLimitExceeded, "", structure, at, needed_bytes);
   return false;
 }
 
@@ -41,6 +42,7 @@ void FrameGofParser::weights(BitReader& r) {
 
 // 6.14 frames_of_gof( )
 Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
+  const std::uint64_t at = r.bit_pos();
   static_cast<GofHeader&>(gof_) = gof_header;
   gof_.pattern = parse_frame_pattern(r);
   if (r.error()) return *r.error();
@@ -66,7 +68,7 @@ Result<bool> FrameGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   if (gof_.num_patches == 0) r.expect_end();
   if (r.error()) return *r.error();
   memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
-  if (!has_memory(r, 0, "frames_of_gof")) return *r.error();
+  if (!has_memory(r, 0, "frames_of_gof", at)) return *r.error();
   if (gof_.num_patches > 0) patch_map(r);
   if (r.error()) return *r.error();
   frames_.resize(gof_.num_frames);
@@ -322,6 +324,7 @@ void FrameGofParser::patch_motions(SectionReader& section, CodedFrame& frame) {
 void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
                                    std::span<const std::uint32_t> places) {
   const std::uint64_t num_vertices = header_.num_vertices;
+  const std::uint64_t at = r.bit_pos();
   SectionReader section(r, "frame_section");
   contexts_->start_group(unit.layer_group_idx);
   for (const std::uint32_t place : places) {
@@ -329,7 +332,7 @@ void FrameGofParser::frame_section(BitReader& r, const SliceEntry& unit,
     const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
     if (unit.layer_group_idx == 0) {
       const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
-      if (!has_memory(r, most + r.remaining_bytes().size(), "frame_unit")) return;
+      if (!has_memory(r, most + r.remaining_bytes().size(), "frame_section", at)) return;
       frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
       frame.expected.assign(header_.num_vertices, 0);
       contexts_->start_frame(place, (*order_)[place].depth);

@@ -77,7 +77,7 @@ class FrameGofParser {
   void positions_in_order(SectionReader& section, CodedFrame& frame);
   void frame_residuals(SectionReader& section, const SliceEntry& unit, std::uint32_t place);
   CodedFrame& frame_at(std::uint32_t place) { return frames_[(*order_)[place].frame]; }
-  bool has_memory(BitReader& r, std::uint64_t more, const char* element);
+  bool has_memory(BitReader& r, std::uint64_t more, const char* structure, std::uint64_t at);
 
   const SequenceHeader& header_;
   const CodedMesh& mesh_;

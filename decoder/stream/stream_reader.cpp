@@ -13,6 +13,7 @@
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/parse/sequence/parse_sequence_header.h"
 #include "decoder/parse/sequence/parse_vertex_order.h"
+#include "decoder/stream/exceeded_limit.h"
 #include "decoder/stream/find_gof_index.h"
 
 namespace rlpc {
@@ -63,25 +64,20 @@ Result<bool> StreamReader::read_sequence_header() {
   const auto payload = units_.payload(*unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(*unit, *payload);
-  const auto header = parse_sequence_header(r, units_.version_minor());
+  SequenceHeaderPlaces places;
+  const auto header = parse_sequence_header(r, units_.version_minor(), &places);
   if (!header) return header.error();
   context_.header = *header;
   units_.set_max_unit_bytes(context_.header.level().max_unit_bytes);
   offset_ = unit->end();
-  return check_limits();
+  return check_limits(places);
 }
 
-Result<bool> StreamReader::check_limits() {
+Result<bool> StreamReader::check_limits(const SequenceHeaderPlaces& places) {
   const SequenceHeader& header = context_.header;
-  const auto exceeded = [](const char* element, std::uint64_t needed_bytes = 0) {
-    return Error{Errc::kLimitExceeded, "", element, kStreamHeaderBytes * 8, needed_bytes};
-  };
-  if (header.num_vertices > limits_.max_vertices) return exceeded("num_vertices_minus1");
-  if (header.num_triangles > limits_.max_triangles) return exceeded("num_triangles");
-  if (header.num_frames > limits_.max_frames) return exceeded("num_frames_minus1");
   const std::uint64_t bytes =
       memory_of_stream(header, kFramesHeld) + (is_coarse_ ? memory_of_coarse_mesh(header) : 0);
-  if (bytes > limits_.max_memory_bytes) return exceeded("num_vertices_minus1", bytes);
+  if (const auto error = find_exceeded_limit(header, places, limits_, bytes)) return *error;
   bytes_in_use_ = bytes;
   units_.set_bytes_in_use(bytes);
   access_units_.set_bytes_in_use(bytes);

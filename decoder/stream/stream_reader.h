@@ -12,6 +12,7 @@
 #include "common/syntax/access_unit.h"
 #include "common/syntax/stream_context.h"
 #include "decoder/parse/sequence/parse_gof_index.h"
+#include "decoder/parse/sequence/parse_sequence_header.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/stream/access_unit_reader.h"
 #include "decoder/stream/stream_models.h"
@@ -105,7 +106,7 @@ class StreamReader {
   Result<bool> parse_ancillary(const UnitHeader& unit);
   Result<bool> read_metadata(const UnitHeader& unit);
   Result<bool> read_clip_table(const UnitHeader& unit);
-  Result<bool> check_limits();
+  Result<bool> check_limits(const SequenceHeaderPlaces& places);
   Result<bool> check_end(const UnitHeader& unit);
   Result<GofPlace> pass_gofs_to(std::uint32_t frame);
   Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);

@@ -206,9 +206,11 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
       ->excludes(outputs.page)
       ->group(kCoarse);
 
-  app.add_option("--max-memory", o.decoder.limits.max_memory_bytes,
-                 "Refuse streams that need more, for example 500MB")
-      ->transform(CLI::AsSizeValue(false))
+  app.add_option(
+         "--max-memory", o.decoder.limits.max_memory_bytes,
+         "Refuse streams that need more, for example 500MB (1 MB: 1000 * 1000 bytes; 1 MiB: "
+         "1024 * 1024; default: 4GiB)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(kLimits);
   app.add_option("--max-vertices", o.decoder.limits.max_vertices,
@@ -221,8 +223,8 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
   app.add_option_function<std::uint64_t>(
          "--max-output",
          [&o](std::uint64_t bytes) { o.limit = std::make_shared<OutputLimit>(bytes); },
-         "Refuse to write more, for example 2GB (default: no limit)")
-      ->transform(CLI::AsSizeValue(false))
+         "Refuse to write more, for example 2GB (units as above; default: no limit)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->excludes(outputs.verify)
       ->group(kLimits);

@@ -237,9 +237,11 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
           ->group(report);
   auto* trace =
       app.add_flag("--trace", o.trace, "List every syntax element instead")->group(report);
-  app.add_option("--max-memory", o.max_memory_bytes,
-                 "Refuse streams that need more to decode, for example 500MB")
-      ->transform(CLI::AsSizeValue(false))
+  app.add_option(
+         "--max-memory", o.max_memory_bytes,
+         "Refuse streams that need more to decode, for example 500MB (1 MB: 1000 * 1000 "
+         "bytes; 1 MiB: 1024 * 1024; default: 4GiB)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(report);
   auto* extract = app.add_option("--extract", o.extract, "Keep only coarser slices")

@@ -117,14 +117,25 @@ InputResult<std::unique_ptr<FrameSource>> open_with_its_axes(const InputOptions&
   return open_file(options, exists);
 }
 
+bool is_gltf(const std::string& path) {
+  const InputFormat* const format = format_of(path);
+  return format != nullptr && format->has_clips;
+}
+
 }  // namespace
 
 bool has_clips(const InputOptions& options) {
-  const InputFormat* const format = format_of(options.path);
-  return options.points.empty() && format != nullptr && format->has_clips;
+  return options.points.empty() && is_gltf(options.path);
 }
 
 std::optional<InputError> check_gltf_options(const InputOptions& options) {
+  if (!options.points.empty() && is_gltf(options.path)) {
+    return InputError{name_of_input(options.path) +
+                      ": a glTF file brings its own animation and takes no --points; leave it "
+                      "out, or replace this file by the mesh (" +
+                      extensions_text({InputFormat::Holds::kMesh}) + ") of " +
+                      name_of_input(options.points)};
+  }
   if ((options.animation.empty() && options.weld) || has_clips(options)) return std::nullopt;
   return InputError{name_of_input(options.path) +
                     (options.weld

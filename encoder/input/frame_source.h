@@ -139,7 +139,8 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
 
 // Whether the format may contain several animations, and vertices to weld.
 bool has_clips(const InputOptions& options);
-// An error if glTF options (animation, no welding) are set for other input.
+// An error if glTF options (animation, no welding) are set for other input, or if points are
+// given for glTF.
 std::optional<InputError> check_gltf_options(const InputOptions& options);
 
 // "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).

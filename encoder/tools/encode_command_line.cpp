@@ -257,14 +257,16 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(kMore);
   app.add_option("--clip", line.clips,
                  "Name a part of the animation, frames A to B counted from 0; may be repeated "
-                 "(default: those that --animation all joins)")
+                 "(default: the animations of glTF)")
       ->option_text("NAME:A-B")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(kMore);
-  app.add_option("--max-memory", o.settings.max_memory_bytes,
-                 "Refuse input that may need more, for example 500MB (default: 32GB)")
-      ->transform(CLI::AsSizeValue(false))
+  app.add_option(
+         "--max-memory", o.settings.max_memory_bytes,
+         "Refuse input that may need more, for example 500MB (1 MB: 1000 * 1000 bytes; 1 MiB: "
+         "1024 * 1024; default: 32GiB)")
+      ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(kMore);
   o.settings.threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxEncoderThreads);

@@ -268,6 +268,9 @@ InputResult<EncodeReport> encode_source(FrameSource& source, const EncodeOptions
 // stays.
 int run_live(const EncodeOptions& o) {
   const std::string mesh = o.input.points.empty() ? std::string() : o.input.path;
+  if (!mesh.empty()) {
+    if (const auto wrong = check_gltf_options(o.input)) return complain(wrong->message);
+  }
   auto frames = open_frame_stream(stdin, mesh, o.input.frame_rate, o.input.max_memory_bytes);
   if (!frames) return complain(frames.error().message);
   if (o.input.axes) *frames = turn_stream(std::move(*frames), *o.input.axes);

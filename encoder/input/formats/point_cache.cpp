@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/io/binary_numbers.h"
+#include "common/io/messages.h"
 #include "encoder/input/axes_fit.h"
 #include "encoder/input/formats/material_files.h"
 #include "encoder/input/input_file.h"
@@ -109,8 +110,9 @@ std::optional<InputError> check_layout(const InputFile& file, const Layout& layo
       std::uint64_t{num_vertices} * 12 * static_cast<std::uint64_t>(layout.frames);
   if (file.size() != expected) {
     return InputError{path + ": " + to_string(file.size()) + " bytes; expected " +
-                      to_string(expected) + " for " + to_string(layout.frames) + " frames of " +
-                      to_string(layout.points) + " points; the file is " +
+                      to_string(expected) + " for " +
+                      count_text(static_cast<std::uint64_t>(layout.frames), "frame") + " of " +
+                      count_text(num_vertices, "point") + "; the file is " +
                       (file.size() < expected ? "truncated" : "too long")};
   }
   return std::nullopt;

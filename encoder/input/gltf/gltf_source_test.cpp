@@ -165,7 +165,7 @@ TEST_F(GltfSourceTest, ChoosesAnimations) {
   EXPECT_EQ(first_vertex, (std::vector<float>{0, 7, 0, 0, 2, 0, 0, 7}));
 }
 
-TEST_F(GltfSourceTest, NamesTheClipsThatItJoins) {
+TEST_F(GltfSourceTest, NamesTheClips) {
   GltfBuilder builder = moving_triangle();
   for (const char* const name : {"L\u00e4ufe\n2", ""}) {
     builder.push("animations", {{"name", name}});
@@ -179,7 +179,22 @@ TEST_F(GltfSourceTest, NamesTheClipsThatItJoins) {
         open(builder, "all", weld, one)->clips(),
         (std::vector<Clip>{{"Move", 0, 3}, {"L\u00e4ufe 2", 3, 2}, {"animation 2", 5, 2}}));
   }
-  EXPECT_TRUE(open(builder, "Move", false, one)->clips().empty());
+  EXPECT_EQ(open(builder, "1", false, one)->clips(),
+            (std::vector<Clip>{{"L\u00e4ufe 2", 0, 2}}));
+  EXPECT_TRUE(open(builder, "2", false, one)->clips().empty());
+}
+
+TEST_F(GltfSourceTest, NamesASingleClip) {
+  const std::vector<Clip> clips{{"Move", 0, 61}};
+  for (const char* const choice : {"", "Move", "0", "all"}) {
+    const auto source = open(moving_triangle(), choice);
+    EXPECT_EQ(source->clips(), clips) << choice;
+    EXPECT_TRUE(source->notes().empty()) << choice;
+  }
+  GltfBuilder nameless = moving_triangle();
+  nameless.json["animations"][0].erase("name");
+  EXPECT_TRUE(open(nameless, "all")->clips().empty());
+  EXPECT_TRUE(open(one_triangle())->clips().empty());
 }
 
 TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
@@ -217,8 +232,7 @@ TEST_F(GltfSourceTest, IgnoresAnimationByExtensionsWithANote) {
                         {"extensions", {{"KHR_animation_pointer", {{"pointer", "/x"}}}}}}}});
   const auto source = open(builder);
   EXPECT_EQ(source->num_frames(), 61U);
-  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped: name of the animation",
-                                                       "dropped 1 extension channel"}));
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{"dropped 1 extension channel"}));
 }
 
 TEST_F(GltfSourceTest, NotesOtherOmissions) {
@@ -227,12 +241,11 @@ TEST_F(GltfSourceTest, NotesOtherOmissions) {
   builder.json["animations"][1]["name"] = "Run";
   builder.json["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"};
   const auto source = open(builder);
-  ASSERT_EQ(source->notes().size(), 3U);
+  ASSERT_EQ(source->notes().size(), 2U);
   EXPECT_EQ(source->notes()[0],
             "EXT_mesh_gpu_instancing is ignored: the animation may show more or less");
-  EXPECT_EQ(source->notes()[1], "dropped: name of the animation");
-  EXPECT_TRUE(source->notes()[2].starts_with("reading the first of 2 animations ("));
-  EXPECT_NE(source->notes()[2].find("\"Run\""), std::string::npos);
+  EXPECT_TRUE(source->notes()[1].starts_with("reading the first of 2 animations ("));
+  EXPECT_NE(source->notes()[1].find("\"Run\""), std::string::npos);
   EXPECT_EQ(open(builder, "all")->notes().size(), 1U);
 }
 

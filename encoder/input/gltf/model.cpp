@@ -31,10 +31,6 @@ class ModelReader {
     }
     const std::vector<std::uint32_t> chosen = choose_animations(document_, animation, errors_);
     if (errors_) return {};
-    // Several are named in the clip table.
-    if (chosen.size() == 1 && !document_.animations[chosen[0]].name.empty()) {
-      document_.dropped.emplace_back("name of the animation");
-    }
     if (!document_.dropped.empty()) {
       std::string list;
       for (const std::string& what : document_.dropped)

@@ -81,8 +81,10 @@ std::string clip_name(const std::string& name, std::size_t number) {
   return text.empty() ? "animation " + to_string(number) : text;
 }
 
+// None of a single animation without a name: all frames need no name.
 std::vector<Clip> clips_of(const GltfModel& model, const std::vector<std::uint32_t>& first) {
   std::vector<Clip> clips;
+  if (model.clips.size() == 1 && model.clips[0].name.empty()) return clips;
   for (std::size_t i = 0; i < model.clips.size(); ++i) {
     clips.push_back({clip_name(model.clips[i].name, i), first[i], first[i + 1] - first[i]});
   }
@@ -152,7 +154,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.asset = std::move(model->asset);
   shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first, shape.notes);
   shape.files = model->files;
-  if (model->clips.size() > 1) shape.clips = clips_of(*model, *first_frame);
+  shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
