@@ -134,6 +134,8 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path,
 
 OutputResult<OutputFile> OutputFile::create_within(const std::string& path,
                                                    std::shared_ptr<OutputLimit> limit) {
+  // While a signal removes the folder, nothing may be added to it.
+  const HoldInterrupts hold;
   std::FILE* const file = std::fopen(path.c_str(), "wbx");
   if (file == nullptr) return output_error(path, "create", errno);
   return OutputFile(path, path, "", file, std::move(limit));
