@@ -78,9 +78,7 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
 }
 
-void GltfLook::add_attributes(std::span<const float> xyz, GltfJson& attributes,
-                              GltfBuffers& buffers) const {
-  if (has_normals()) attributes["NORMAL"] = buffers.add_normals(normals(xyz));
+void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
   for (const Values& values : values_) {
     attributes[values.semantic] = buffers.add_vertex_values(values.numbers, values.width);
   }

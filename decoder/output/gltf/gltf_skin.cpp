@@ -7,6 +7,8 @@
 
 #include "decoder/output/gltf/gltf_animation.h"
 #include "decoder/output/gltf/skin_fit.h"
+#include "decoder/output/gltf/skin_normals.h"
+#include "decoder/output/gltf/skin_targets.h"
 
 namespace rlpc {
 namespace {
@@ -102,39 +104,9 @@ GltfJson skin_of(const JointMotion& motion, GltfBuffers& buffers) {
           {"joints", std::move(joints)}};
 }
 
-// The targets' weights in a clip, without keys between which they change linearly.
-void add_weights(GltfAnimation& animation, const PrincipalShapes& shapes, double tolerance,
-                 GltfBuffers& buffers) {
-  const Clip& clip = animation.clip();
-  const Eigen::VectorXf lengths =
-      shapes.targets.colwise().norm() /
-      std::sqrt(static_cast<float>(shapes.targets.rows()) / 3);  // RMS of a vertex
-  const auto column = [&](std::uint32_t f) {
-    return shapes.weights.col(static_cast<Eigen::Index>(clip.first_frame + f));
-  };
-  const std::vector<std::uint32_t> keys =
-      needed_keys(clip.num_frames, [&](std::uint32_t a, std::uint32_t b) {
-        for (std::uint32_t f = a + 1; f < b; ++f) {
-          const float t = static_cast<float>(f - a) / static_cast<float>(b - a);
-          const Eigen::VectorXf apart = column(a) + t * (column(b) - column(a)) - column(f);
-          if (static_cast<double>(apart.cwiseProduct(lengths).norm()) > tolerance) return false;
-        }
-        return true;
-      });
-  std::vector<float> values;
-  for (const std::uint32_t key : keys) {
-    const Eigen::VectorXf weights = column(key);
-    values.insert(values.end(), weights.begin(), weights.end());
-  }
-  const std::uint32_t output = shapes.has_short_weights
-                                   ? buffers.add_short_values(values, kWeightUnit)
-                                   : buffers.add_values(values, "SCALAR");
-  animation.add_channel(kMeshNode, "weights", keys, output);
-}
-
 GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
-                      std::span<const JointMotion::OfClip> joints,
-                      const PrincipalShapes& shapes, double tolerance, GltfBuffers& buffers) {
+                      std::span<const JointMotion::OfClip> joints, const SkinTargets& targets,
+                      const TargetTrack& weights, GltfBuffers& buffers) {
   GltfAnimation animation(buffers, clip, frame_rate);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const auto node = static_cast<std::uint32_t>(j + kFirstJoint);
@@ -147,7 +119,7 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
                             buffers.add_values(track.values, "VEC3"));
     }
   }
-  if (shapes.targets.cols() > 0) add_weights(animation, shapes, tolerance, buffers);
+  if (targets.count() > 0) add_weights(animation, kMeshNode, targets, weights, buffers);
   if (!animation.spans_clip()) {
     // An animation without motion still has a duration.
     const std::vector<std::uint32_t> ends{0, clip.num_frames - 1};
@@ -161,8 +133,8 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
 
 // The attributes and morph targets of the mesh.
 GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const float> rest,
-                 const SkinInfluences& influences, const PrincipalShapes& shapes,
-                 GltfBuffers& buffers) {
+                 const SkinInfluences& influences, std::span<const float> normals,
+                 const SkinTargets& targets, GltfBuffers& buffers) {
   const GltfMesh& mesh = look.mesh();
   const auto joints =
       of_output_vertices<std::uint16_t>(mesh, influences.joints, kJointsOfVertex);
@@ -172,27 +144,18 @@ GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const f
       {"POSITION", buffers.add_vectors(of_output_vertices(mesh, rest, 3))},
       {"JOINTS_0", buffers.add_joints(joints, static_cast<std::uint32_t>(num_joints))},
       {"WEIGHTS_0", buffers.add_joint_weights(weights)}};
-  look.add_attributes(rest, attributes, buffers);
-  GltfJson targets = GltfJson::array();
-  GltfJson first_weights = GltfJson::array();
-  for (Eigen::Index k = 0; k < shapes.targets.cols(); ++k) {
-    std::vector<std::int8_t> bytes;
-    for (const float x : shapes.targets.col(k)) {
-      bytes.push_back(static_cast<std::int8_t>(std::lround(x / shapes.unit)));
-    }
-    const auto expanded = of_output_vertices<std::int8_t>(mesh, bytes, 3);
-    targets.push_back({{"POSITION", buffers.add_byte_vectors(expanded, shapes.unit < 1)}});
-    first_weights.push_back(shapes.weights(k, 0));
-  }
-  GltfJson json = {{"primitives", primitives_of(mesh, attributes, targets, buffers)}};
-  if (!targets.empty()) json["weights"] = std::move(first_weights);
+  if (!normals.empty()) attributes["NORMAL"] = buffers.add_normals(normals);
+  look.add_values(attributes, buffers);
+  const GltfJson of_primitive = targets_of(targets, mesh, buffers);
+  GltfJson json = {{"primitives", primitives_of(mesh, attributes, of_primitive, buffers)}};
+  if (targets.count() > 0) json["weights"] = first_weights(targets);
   return json;
 }
 
 }  // namespace
 
 GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
-                  std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets) {
+                  std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits) {
   GltfBuffers& buffers = document.buffers;
   const Skeleton& skeleton = *source.skeleton;
   GltfSkin skin;
@@ -205,10 +168,21 @@ GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& sour
                                           reach_of(source), spans, key_tolerance);
   const std::vector<JointMaps> maps = maps_of_frames(motion, spans, source.frames.size());
   const std::vector<float> rest = best_rest(influences, maps, source.frames);
-  const PrincipalShapes shapes = principal_shapes(
-      missing_moves(influences, maps, rest, source.frames), skin.tolerated_rms, max_targets);
-  skin.num_targets = static_cast<std::size_t>(shapes.targets.cols());
-  skin.error = skin_error(influences, maps, rest, shapes, source.frames);
+  SkinTargets targets;
+  targets.places = principal_shapes(missing_moves(influences, maps, rest, source.frames),
+                                    skin.tolerated_rms, limits.max_targets);
+  SkinNormals normals;
+  if (look.has_normals()) {
+    normals = skin_normals(look, influences, maps, rest, source.frames,
+                           limits.max_targets - targets.count(), limits.max_normal_bytes);
+    targets.normals = std::move(normals.moves);
+    skin.lacks_normals = normals.lacks_moves;
+  }
+  std::vector<TargetTrack> weights;
+  for (const Clip& clip : spans) weights.push_back(target_track(targets, clip, key_tolerance));
+  skin.num_targets = targets.count();
+  targets.places.weights = shown_weights(targets, weights, spans);
+  skin.error = skin_error(influences, maps, rest, targets.places, source.frames);
 
   GltfJson& root = document.root;
   root["scene"] = 0;
@@ -219,14 +193,14 @@ GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& sour
     root["extensionsUsed"].push_back(kQuantization);
     root["extensionsRequired"].push_back(kQuantization);
   }
-  root["meshes"] =
-      GltfJson::array({mesh_of(look, skin.num_joints, rest, influences, shapes, buffers)});
+  root["meshes"] = GltfJson::array(
+      {mesh_of(look, skin.num_joints, rest, influences, normals.rest, targets, buffers)});
   root["skins"] = GltfJson::array({skin_of(motion, buffers)});
   if (source.frames.size() > 1) {
     GltfJson animations = GltfJson::array();
     for (std::size_t i = 0; i < spans.size(); ++i) {
       animations.push_back(
-          animation_of(spans[i], frame_rate, motion.clips[i], shapes, key_tolerance, buffers));
+          animation_of(spans[i], frame_rate, motion.clips[i], targets, weights[i], buffers));
     }
     root["animations"] = std::move(animations);
   }

@@ -105,8 +105,8 @@ class GltfSkinSink final : public GltfSink {
     }
     poses_.take(source_);
     GltfDocument document(options().frame_rate);
-    const GltfSkin skin = add_skin(document, look(), source_, spans(), options().frame_rate,
-                                   options().max_targets);
+    const GltfSkin skin =
+        add_skin(document, look(), source_, spans(), options().frame_rate, limits());
     const std::string means =
         plural(skin.num_joints, "bone") + " and " + plural(skin.num_targets, "morph target");
     if (!is_required) {
@@ -118,6 +118,11 @@ class GltfSkinSink final : public GltfSink {
       if (document.buffers.chunk().size() >= morph_bytes_) return finish_as_morph();
     }
     remark(means + "; differs from the stream by " + text_of(skin.error));
+    if (skin.lacks_normals) {
+      remark(
+          "normals move with the bones alone: those of all frames need more memory than is "
+          "allowed (--max-memory)");
+    }
     warn_of_targets(skin.num_targets, "fewer (--max-targets)");
     if (skin.num_joints > kMostJointsShown) {
       remark("more than the 256 bones that some viewers can hold; write --as morph");
@@ -131,6 +136,12 @@ class GltfSkinSink final : public GltfSink {
     source_.frames.push_back(std::move(xyz));
     poses_.add(pose_);
     return std::nullopt;
+  }
+
+  SkinLimits limits() const {
+    const std::uint64_t bytes_of_frames =
+        3 * sizeof(float) * options().num_vertices * std::uint64_t{options().num_frames};
+    return {options().max_targets, options().max_skin_bytes - bytes_of_frames};
   }
 
   // Of a frame as a morph target, nearly.

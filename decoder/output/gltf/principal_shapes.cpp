@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rlpc {
 namespace {
@@ -78,16 +79,20 @@ bool round_to_bytes(Eigen::Ref<Eigen::VectorXf> column, float unit) {
 }  // namespace
 
 PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
+  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
+  return principal_shapes(std::move(moves), rms, max_targets, unit_of(farthest));
+}
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
+                                 float unit) {
   const double places =
       static_cast<double>(moves.rows()) / 3 * static_cast<double>(moves.cols());
   const double wanted = rms * rms * places;
   PrincipalShapes shapes;
   shapes.targets.resize(moves.rows(), 0);
   shapes.weights.resize(0, moves.cols());
-  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
-  shapes.unit = unit_of(farthest);
-  const float unit = shapes.unit;
-  shapes.has_short_weights = farthest < 127 * unit && rms > 2 * 127 * unit * kWeightUnit;
+  shapes.unit = unit;
+  shapes.has_short_weights = rms > 2 * 127 * unit * kWeightUnit;
   double left = moves.cast<double>().squaredNorm();
   const auto most = static_cast<Index>(max_targets);
   while (left > wanted && shapes.targets.cols() < most) {
@@ -109,8 +114,9 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
     }
     block.conservativeResize(Eigen::NoChange, count);
     MatrixXf rounded = weights.cast<float>();
+    shapes.has_short_weights = shapes.has_short_weights && rounded.cwiseAbs().maxCoeff() <= 1;
     if (shapes.has_short_weights) {
-      rounded = (rounded / kWeightUnit).array().round().max(-32767).min(32767) * kWeightUnit;
+      rounded = (rounded / kWeightUnit).array().round() * kWeightUnit;
     }
     moves.noalias() -= block * rounded;
     const double before = left;
