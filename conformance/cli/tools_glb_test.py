@@ -153,6 +153,24 @@ class SkinChoice(SkinTest):
         self.assertIn("would leave an error", said)
         self.assertNotIn("skins", document(self.path("a.glb")))
 
+    def test_auto_writes_no_frames_that_viewers_cannot_hold(self):
+        self.ok("make_tentacle", 40, 2100, self.path("t"))
+        self.ok("rlpcenc", self.path("t.obj"), "--points", self.path("t.pc2"), "-o",
+                self.path("a.rlpc"), "--kg", 0.1, "--preset", "fast")
+        said = self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.glb"), "--max-targets",
+                       0).err
+        self.assertRegex(said, r"0 morph targets; differs from the stream by KG error [\d.]+ %")
+        self.assertIn("--as morph is exact, but takes 2099 morph targets", said)
+        self.assertIn("skins", document(self.path("a.glb")))
+
+    def test_auto_weighs_the_error_against_the_bytes(self):
+        self.ok("make_tentacle", 400, 600, self.path("t"))
+        self.ok("rlpcenc", self.path("t.obj"), "--points", self.path("t.pc2"), "-o",
+                self.path("a.rlpc"), "--kg", 0.1, "--preset", "fast")
+        # A small error does not outweigh 50 times the bytes; a large one does.
+        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 8), (True, 8))
+        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 1), (False, 599))
+
     def test_frames_predicted_from_frames_have_no_bones(self):
         self.encode(self.path("a.rlpc"), "--profile", "high", "--low-delay", "--kg", 0.5)
         self.fails(64, ["--as skin", "no bones", "--as morph"], "rlpcdec", self.path("a.rlpc"),

@@ -160,17 +160,18 @@ GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& sour
   const Skeleton& skeleton = *source.skeleton;
   GltfSkin skin;
   skin.num_joints = skeleton.bones.size();
-  skin.tolerated_rms = likely_rms(source) * kToleratedPart;
+  skin.stream_rms = likely_rms(source);
+  const double tolerated_rms = skin.stream_rms * kToleratedPart;
   const SkinInfluences influences = written_influences(skeleton);
   fit_places(skeleton, source.grid, influences, source.frames, source.places);
-  const double key_tolerance = skin.tolerated_rms * kKeyTolerance;
+  const double key_tolerance = tolerated_rms * kKeyTolerance;
   const JointMotion motion = joint_motion(skeleton, source.grid, source.places,
                                           reach_of(source), spans, key_tolerance);
   const std::vector<JointMaps> maps = maps_of_frames(motion, spans, source.frames.size());
   const std::vector<float> rest = best_rest(influences, maps, source.frames);
   SkinTargets targets;
   targets.places = principal_shapes(missing_moves(influences, maps, rest, source.frames),
-                                    skin.tolerated_rms, limits.max_targets);
+                                    tolerated_rms, limits.max_targets);
   SkinNormals normals;
   if (look.has_normals()) {
     normals = skin_normals(look, influences, maps, rest, source.frames,

@@ -21,7 +21,7 @@ struct GltfSkin {
   std::size_t num_joints = 0;
   std::size_t num_targets = 0;  // of positions and of normals
   SkinError error;              // against the frames
-  double tolerated_rms = 0;     // the RMS that was aimed at
+  double stream_rms = 0;        // the error that the stream is likely to have itself
   bool lacks_normals = false;   // targets for them were left out, for their memory
 };
 
