@@ -43,8 +43,8 @@ class FrameSink {
 enum class SinkFormat : std::uint8_t { kByName, kRlpd, kPc2, kMdd, kGlb, kObj, kPly };
 
 // What moves the vertices in a .glb file. kSkin: bones, and morph targets for what they leave;
-// kMorph: a morph target for each frame; kAuto: bones where these move every vertex nearly as
-// the stream does, in fewer bytes.
+// kMorph: a morph target for each frame; kAuto: bones, unless frames take fewer bytes, or bones
+// leave more than the error of the stream and frames remain viewable.
 enum class GltfMotion : std::uint8_t { kAuto, kSkin, kMorph };
 
 inline constexpr std::uint32_t kUsualMaxTargets = 256;

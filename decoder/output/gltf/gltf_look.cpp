@@ -66,23 +66,24 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   const AttributeSet* const part = of_triangles("part");
   const std::size_t num_materials =
       asset_.root().contains("materials") ? asset_.root()["materials"].size() : 0;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> found;
+  std::map<std::pair<std::uint32_t, std::optional<std::uint32_t>>, std::size_t> found;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t p = part != nullptr ? part->values[t] : 0;
     const std::uint32_t m = material != nullptr ? material->values[t] : 0;
-    const auto number = static_cast<std::uint32_t>(std::min<std::size_t>(m, num_materials));
+    const std::optional<std::uint32_t> number =
+        m < num_materials ? std::optional(m) : std::nullopt;
     const auto [place, is_new] = found.try_emplace({p, number}, mesh_.parts.size());
     if (is_new) mesh_.parts.push_back({{}, number});
     mesh_.parts[place->second].triangles.push_back(triangles[t]);
   }
-  if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
+  if (mesh_.parts.empty()) mesh_.parts.emplace_back();
 }
 
-void GltfLook::add_attributes(std::span<const float> xyz, GltfJson& attributes,
-                              GltfBuffers& buffers) const {
-  if (has_normals()) attributes["NORMAL"] = buffers.add_normals(normals(xyz));
+void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
   for (const Values& values : values_) {
-    attributes[values.semantic] = buffers.add_vertex_values(values.numbers, values.width);
+    attributes[values.semantic] = values.semantic.starts_with("TEXCOORD")
+                                      ? buffers.add_texture_coordinates(values.numbers)
+                                      : buffers.add_vertex_values(values.numbers, values.width);
   }
 }
 
@@ -114,7 +115,6 @@ std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
 }
 
 void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
-  root["materials"] = GltfJson::array();
   const GltfJson& asset = asset_.root();
   for (const char* const key : {"materials", "textures", "samplers", "images"}) {
     if (asset.contains(key)) root[key] = asset[key];
@@ -124,12 +124,6 @@ void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
     for (const GltfJson& name : asset[key]) root[key].push_back(name);
   }
   if (root.contains("images")) add_images(root["images"], buffers);
-  // Triangles without a material that is there have the last one.
-  const std::size_t count = root["materials"].size();
-  const bool needs_plain =
-      std::any_of(mesh_.parts.begin(), mesh_.parts.end(),
-                  [&](const GltfMesh::Part& part) { return part.material >= count; });
-  if (needs_plain) root["materials"].push_back(plain_materials()[0]);
 }
 
 }  // namespace rlpc

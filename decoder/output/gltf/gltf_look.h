@@ -24,12 +24,10 @@ class GltfLook {
   // Vertices are split where their values differ; there is a part for each material and part of
   // the stream.
   const GltfMesh& mesh() const { return mesh_; }
-  // Adds texture coordinates, colours and normals to the attributes of the primitives. xyz: of
-  // the vertices of the stream, for normals.
-  void add_attributes(std::span<const float> xyz, GltfJson& attributes,
-                      GltfBuffers& buffers) const;
+  // Adds texture coordinates and colours to the attributes of the primitives.
+  void add_values(GltfJson& attributes, GltfBuffers& buffers) const;
   bool has_normals() const { return drawn_->has_normals(); }
-  // Of output vertices.
+  // Of output vertices, if has_normals(). xyz: of the vertices of the stream.
   std::vector<float> normals(std::span<const float> xyz) const;
   // Sets materials, textures and what they need.
   void add_materials(GltfJson& root, GltfBuffers& buffers) const;

@@ -15,7 +15,7 @@ GltfMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles)
   GltfMesh mesh;
   mesh.vertex.resize(num_vertices);
   std::iota(mesh.vertex.begin(), mesh.vertex.end(), 0U);
-  mesh.parts.push_back({std::move(triangles), 0});
+  mesh.parts.push_back({std::move(triangles), std::nullopt});
   return mesh;
 }
 
@@ -30,15 +30,10 @@ GltfJson primitives_of(const GltfMesh& mesh, const GltfJson& attributes,
           buffers.add_indices(part.triangles, static_cast<std::uint32_t>(mesh.vertex.size()));
     }
     if (!targets.empty()) primitive["targets"] = targets;
-    primitive["material"] = part.material;
+    if (part.material) primitive["material"] = *part.material;
     primitives.push_back(std::move(primitive));
   }
   return primitives;
-}
-
-GltfJson plain_materials() {
-  return GltfJson::array(
-      {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
 }
 
 }  // namespace rlpc

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,9 @@ namespace rlpc {
 // A mesh in glTF has one list of vertices for all attributes. Where an attribute differs
 // between the triangles at a vertex of the stream, that vertex is there several times.
 struct GltfMesh {
-  struct Part {                       // a primitive
-    std::vector<Triangle> triangles;  // of output vertices; none: the vertices as points
-    std::uint32_t material = 0;
+  struct Part {                             // a primitive
+    std::vector<Triangle> triangles;        // of output vertices; none: the vertices as points
+    std::optional<std::uint32_t> material;  // none: the default one of glTF
   };
 
   std::vector<std::uint32_t> vertex;  // [output vertex]: its vertex in the stream
@@ -43,8 +44,5 @@ std::vector<T> of_output_vertices(const GltfMesh& mesh, std::span<const T> value
 // same.
 GltfJson primitives_of(const GltfMesh& mesh, const GltfJson& attributes,
                        const GltfJson& targets, GltfBuffers& buffers);
-
-// The materials that its parts name.
-GltfJson plain_materials();
 
 }  // namespace rlpc

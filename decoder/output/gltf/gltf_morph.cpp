@@ -29,8 +29,11 @@ void GltfMorph::add_frame(std::span<const float> xyz) {
   if (num_frames_ == 0) {
     base_ = std::move(places);
     attributes_["POSITION"] = buffers.add_vectors(base_);
-    look_.add_attributes(xyz, attributes_, buffers);
-    if (look_.has_normals()) base_normals_ = look_.normals(xyz);
+    if (look_.has_normals()) {
+      base_normals_ = look_.normals(xyz);
+      attributes_["NORMAL"] = buffers.add_normals(base_normals_);
+    }
+    look_.add_values(attributes_, buffers);
   } else if (const auto moves = exact_moves(base_, places)) {
     if (const auto accessor = buffers.add_moves(*moves)) {
       weights_.push_back({num_frames_, add_target(*accessor)});

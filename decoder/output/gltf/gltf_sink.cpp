@@ -13,9 +13,6 @@ namespace {
 
 using std::to_string;
 
-// Beyond about so many targets, three.js shows none: graphics cards have 2,048 layers.
-constexpr std::size_t kMostTargetsShown = 2000;
-
 // A skin is made from all frames at once, which are there twice as floats.
 constexpr std::uint64_t kSkinBytesOfPosition = 24;
 

@@ -18,6 +18,9 @@
 
 namespace rlpc {
 
+// Beyond about so many targets, three.js shows none: graphics cards have 2,048 layers.
+inline constexpr std::size_t kMostTargetsShown = 2000;
+
 class GltfSink : public FrameSink {
  public:
   GltfSink(SinkOptions options, OutputFile file);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,9 +19,10 @@ namespace rlpc {
 
 struct GltfSkin {
   std::size_t num_joints = 0;
-  std::size_t num_targets = 0;
-  SkinError error;           // against the frames
-  double tolerated_rms = 0;  // the RMS that was aimed at
+  std::size_t num_targets = 0;  // of positions and of normals
+  SkinError error;              // against the frames
+  double stream_rms = 0;        // the error that the stream is likely to have itself
+  bool lacks_normals = false;   // targets for them were left out, for their memory
 };
 
 // What a skin is made of.
@@ -32,9 +34,14 @@ struct SkinSource {
   std::size_t num_values = 0;              // coded for frames whose places are known
 };
 
+struct SkinLimits {
+  std::size_t max_targets = 0;
+  std::uint64_t max_normal_bytes = 0;  // memory for normals of all frames
+};
+
 // Fills the document. source: places that are not known are fitted. spans: of
 // animation_spans().
 GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
-                  std::span<const Clip> spans, FrameRate frame_rate, std::size_t max_targets);
+                  std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits);
 
 }  // namespace rlpc

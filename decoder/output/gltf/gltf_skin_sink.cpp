@@ -15,8 +15,9 @@ using std::to_string;
 // Places, keys and maps of a bone in a frame.
 constexpr std::uint64_t kSkinBytesOfBone = 512;
 constexpr std::size_t kMostJointsShown = 256;
-// Of the RMS that is aimed at: as much as bones may leave before frames are written instead.
-constexpr double kMostLeft = 2;
+// Where bones leave N times the error of the stream, N > 1, frames may take N times as many
+// times their bytes.
+constexpr double kMostTimes = 4;
 
 // The poses of the frames so far.
 class Poses {
@@ -105,19 +106,31 @@ class GltfSkinSink final : public GltfSink {
     }
     poses_.take(source_);
     GltfDocument document(options().frame_rate);
-    const GltfSkin skin = add_skin(document, look(), source_, spans(), options().frame_rate,
-                                   options().max_targets);
+    const GltfSkin skin =
+        add_skin(document, look(), source_, spans(), options().frame_rate, limits());
     const std::string means =
         plural(skin.num_joints, "bone") + " and " + plural(skin.num_targets, "morph target");
-    if (!is_required) {
-      if (skin.error.rms > kMostLeft * skin.tolerated_rms) {
+    const bool is_near = skin.error.rms <= skin.stream_rms;
+    if (!is_required && frames_are_better(document, skin)) {
+      if (!is_near) {
         remark(means + " would leave an error (" + text_of(skin.error) +
                "); written as a morph target for each frame");
-        return finish_as_morph();
       }
-      if (document.buffers.chunk().size() >= morph_bytes_) return finish_as_morph();
+      return finish_as_morph();
     }
     remark(means + "; differs from the stream by " + text_of(skin.error));
+    if (!is_required && !is_near) {
+      remark(
+          "this is more than the stream is likely to differ from its source; --as morph is "
+          "exact, but takes " +
+          to_string(num_moving_) + " morph targets, about " +
+          to_string((morph_bytes_ + 999'999) / 1'000'000) + " MB");
+    }
+    if (skin.lacks_normals) {
+      remark(
+          "normals move with the bones alone: those of all frames need more memory than is "
+          "allowed (--max-memory)");
+    }
     warn_of_targets(skin.num_targets, "fewer (--max-targets)");
     if (skin.num_joints > kMostJointsShown) {
       remark("more than the 256 bones that some viewers can hold; write --as morph");
@@ -127,20 +140,42 @@ class GltfSkinSink final : public GltfSink {
 
  private:
   std::optional<OutputError> add_frame(std::vector<float> xyz) override {
-    if (!source_.frames.empty()) morph_bytes_ += target_bytes(xyz);
+    if (const std::uint64_t bytes = source_.frames.empty() ? 0 : target_bytes(xyz)) {
+      morph_bytes_ += bytes;
+      ++num_moving_;
+    }
     source_.frames.push_back(std::move(xyz));
     poses_.add(pose_);
     return std::nullopt;
   }
 
-  // Of a frame as a morph target, nearly.
+  SkinLimits limits() const {
+    const std::uint64_t bytes_of_frames =
+        3 * sizeof(float) * options().num_vertices * std::uint64_t{options().num_frames};
+    return {options().max_targets, options().max_skin_bytes - bytes_of_frames};
+  }
+
+  // Whether to write a morph target for each frame instead of bones. Never more of them than
+  // viewers hold, however few bytes these take.
+  bool frames_are_better(const GltfDocument& document, const GltfSkin& skin) const {
+    if (num_moving_ > kMostTargetsShown) return false;
+    const double times = static_cast<double>(morph_bytes_) /
+                         static_cast<double>(document.buffers.chunk().size());
+    return times <= 1 || (skin.error.rms > skin.stream_rms &&
+                          times <= kMostTimes * skin.error.rms / skin.stream_rms);
+  }
+
+  // Of a frame as a morph target, nearly; 0: it is equal to the first.
   std::uint64_t target_bytes(const std::vector<float>& xyz) const {
     const std::vector<float>& base = source_.frames[0];
     std::uint64_t moving = 0;
-    for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    for (const std::uint32_t v : look().mesh().vertex) {
+      const std::size_t i = 3 * std::size_t{v};
       moving += !std::equal(&xyz[i], &xyz[i] + 3, &base[i]);
     }
-    return std::min<std::uint64_t>(14 * moving, 4 * xyz.size());
+    if (moving == 0) return 0;
+    const std::uint64_t all = 12 * std::uint64_t{look().mesh().vertex.size()};
+    return std::min(14 * moving, all) + (look().has_normals() ? all : 0);
   }
 
   std::optional<OutputError> finish_as_morph() {
@@ -157,7 +192,8 @@ class GltfSkinSink final : public GltfSink {
   std::optional<SkeletonPose> pose_;  // of the next frame
   Poses poses_;
   SkinSource source_;
-  std::uint64_t morph_bytes_ = 0;
+  std::uint64_t morph_bytes_ = 0;  // of a morph target for each frame
+  std::size_t num_moving_ = 0;     // frames that need one
 };
 
 }  // namespace

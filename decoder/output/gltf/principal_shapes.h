@@ -20,5 +20,8 @@ struct PrincipalShapes {
 // About as few targets as possible with which the RMS of what remains of the moves of a vertex
 // is at most `rms`; no more than max_targets. moves: [3 * num_vertices][frame].
 PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets);
+// With that unit.
+PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets,
+                                 float unit);
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "decoder/output/gltf/bending_test.h"
 #include "decoder/output/gltf/skin_fit.h"
 
 namespace rlpc {
@@ -15,7 +16,7 @@ TEST(WrittenInfluences, AreTheFourLargestInProportion) {
   Skeleton skeleton;
   skeleton.influences = {
       {{7, 128}}, {{0, 1}, {1, 2}}, {{0, 1}, {1, 30}, {2, 20}, {3, 10}, {4, 60}, {5, 7}}};
-  const SkinInfluences written = written_influences(skeleton);
+  const SkinInfluences written = written_influences(skeleton, kShortWhole);
   EXPECT_EQ(written.joints, (std::vector<std::uint16_t>{7, 0, 0, 0, 1, 0, 0, 0, 4, 1, 2, 3}));
   for (std::size_t v = 0; v < 3; ++v) {
     const auto first = written.weights.begin() + static_cast<std::ptrdiff_t>(4 * v);
@@ -25,69 +26,23 @@ TEST(WrittenInfluences, AreTheFourLargestInProportion) {
   EXPECT_NEAR(written.weights[9], 65535.0 * 30 / 120, 1);
 }
 
-constexpr std::size_t kVertices = 60;
-constexpr std::size_t kFrames = 50;
-
-// A tube around two bones that bends, and moves as a whole.
-struct Bending {
-  Skeleton skeleton;
-  std::vector<JointPlaces> places;
-  std::vector<std::vector<float>> frames;
-
-  Bending() {
-    constexpr std::int64_t kOne = std::int64_t{1} << 30;
-    const std::array<Vec3l, 3> axes{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}};
-    skeleton.bones = {{-1, {axes, {0, 0, 0}}}, {0, {axes, {80, 0, 0}}}};
-    std::vector<Eigen::Vector3d> rest;
-    for (std::size_t v = 0; v < kVertices; ++v) {
-      const double x = static_cast<double>(v) / 6;
-      rest.emplace_back(x, std::cos(2.1 * static_cast<double>(v)),
-                        std::sin(2.1 * static_cast<double>(v)));
-      const auto second = static_cast<std::uint16_t>(std::clamp(8 * (x - 4), 0.0, 16.0));
-      std::vector<SkeletonInfluence> list;
-      if (second < 16) list.push_back({0, static_cast<std::uint16_t>(16 - second)});
-      if (second > 0) list.push_back({1, second});
-      skeleton.influences.push_back(list);
-    }
-    const SkinInfluences influences = written_influences(skeleton);
-    for (std::size_t f = 0; f < kFrames; ++f) {
-      const double t = static_cast<double>(f);
-      const JointPlace first{turn(0.03 * t), {0.1 * t, 1, 0}};
-      places.push_back({first, first.after({turn(0.02 * t), {5, 0, 0}})});
-      const JointMaps maps = maps_of(f);
-      std::vector<float>& xyz = frames.emplace_back();
-      for (std::size_t v = 0; v < kVertices; ++v) {
-        const Eigen::Vector3d p = map_of(influences, v, maps) * rest[v].homogeneous();
-        for (Eigen::Index c = 0; c < 3; ++c) xyz.push_back(static_cast<float>(p[c]));
-      }
-    }
+TEST(WrittenInfluences, OfEightBitsAreNear) {
+  const Bending b;
+  const SkinInfluences exact = written_influences(b.skeleton, kShortWhole);
+  const SkinInfluences small = written_influences(b.skeleton, kByteWhole);
+  for (std::size_t v = 0; v < kVertices; ++v) {
+    const auto first = small.weights.begin() + static_cast<std::ptrdiff_t>(4 * v);
+    EXPECT_EQ(std::accumulate(first, first + 4, 0), 255) << v;
   }
-
-  JointMaps maps_of(std::size_t f) const {
-    JointMaps maps;
-    for (std::size_t j = 0; j < 2; ++j) {
-      const JointPlace bind = joint_place(skeleton.bones[j].bind, {});
-      const JointPlace moved = places[f][j].after(bind.inverse());
-      JointMap map;
-      map.leftCols<3>() = moved.rotation.toRotationMatrix();
-      map.col(3) = moved.origin;
-      maps.push_back(map);
-    }
-    return maps;
-  }
-  std::vector<JointMaps> maps() const {
-    std::vector<JointMaps> all;
-    for (std::size_t f = 0; f < kFrames; ++f) all.push_back(maps_of(f));
-    return all;
-  }
-  static Eigen::Quaterniond turn(double angle) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d(0, 0.6, 0.8)));
-  }
-};
+  const double rms = rms_between(exact, small, b.maps_of(kFrames - 1), b.frames[0]);
+  EXPECT_GT(rms, 0);
+  EXPECT_LT(rms, 0.01);
+  EXPECT_EQ(rms_between(exact, exact, b.maps_of(1), b.frames[0]), 0);
+}
 
 TEST(SkinShape, NeedsNoTargetsForWhatBonesMove) {
   const Bending b;
-  const SkinInfluences influences = written_influences(b.skeleton);
+  const SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   const auto rest = best_rest(influences, b.maps(), b.frames);
   const PrincipalShapes shapes =
       principal_shapes(missing_moves(influences, b.maps(), rest, b.frames), 1e-4, 10);
@@ -105,7 +60,7 @@ TEST(SkinShape, AddsTargetsForTheRest) {
                                            0.1 * std::cos(0.9 * t) * std::sin(0.3 * x));
     }
   }
-  const SkinInfluences influences = written_influences(b.skeleton);
+  const SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   const auto maps = b.maps();
   const auto rest = best_rest(influences, maps, b.frames);
   const auto moves = missing_moves(influences, maps, rest, b.frames);
@@ -126,7 +81,7 @@ TEST(FitPlaces, FindsThoseOfOtherFrames) {
   const Bending b;
   std::vector<JointPlaces> places = b.places;
   for (std::size_t f = 20; f < kFrames; ++f) places[f].clear();
-  fit_places(b.skeleton, {}, written_influences(b.skeleton), b.frames, places);
+  fit_places(b.skeleton, {}, written_influences(b.skeleton, kShortWhole), b.frames, places);
   for (std::size_t f = 0; f < kFrames; ++f) {
     ASSERT_EQ(places[f].size(), 2U) << f;
     for (std::size_t j = 0; j < 2; ++j) {
@@ -156,6 +111,20 @@ TEST(PrincipalShapes, HaveBytesAsValues) {
     const Eigen::MatrixXf left = moves - shapes.targets * shapes.weights;
     EXPECT_LT(left.norm() / std::sqrt(30.0F * 30), 0.051F * size);
   }
+}
+
+TEST(PrincipalShapes, LeaveOutVerticesThatHardlyMove) {
+  Eigen::MatrixXf moves(90, 40);
+  for (Eigen::Index f = 0; f < 40; ++f) {
+    for (Eigen::Index i = 0; i < 90; ++i) {
+      moves(i, f) = (i < 15 ? 1.0F : 0.01F) * std::sin(0.3F * static_cast<float>(f)) *
+                    std::cos(static_cast<float>(i));
+    }
+  }
+  const PrincipalShapes shapes = principal_shapes(moves, 0.1, 10);
+  ASSERT_EQ(shapes.targets.cols(), 1);
+  EXPECT_FALSE(shapes.targets.topRows(15).isZero(0));
+  EXPECT_TRUE(shapes.targets.bottomRows(75).isZero(0));
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+#include "decoder/output/gltf/gltf_look.h"
+
+#include <gtest/gtest.h>
+
+#include "common/io/binary_numbers.h"
+
+namespace rlpc {
+namespace {
+
+const std::vector<Triangle> kTriangles{{0, 1, 2}, {0, 2, 3}};
+
+// Of the two triangles.
+std::vector<AttributeSet> materials(std::uint32_t first, std::uint32_t second) {
+  std::vector<AttributeSet> sets(1);
+  sets[0].header.name = "material";
+  sets[0].header.domain = AttributeDomain::kTriangle;
+  sets[0].values = {first, second};
+  return sets;
+}
+
+std::string asset_of(std::string json) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string glb = "glTF";
+  append_u32(glb, 2);
+  append_u32(glb, static_cast<std::uint32_t>(20 + json.size()));
+  append_u32(glb, static_cast<std::uint32_t>(json.size()));
+  return glb + "JSON" + json;
+}
+
+struct Written {
+  GltfJson root = GltfJson::object();
+  GltfJson primitives;
+};
+
+Written write(const std::vector<AttributeSet>& sets, const std::string& asset) {
+  const GltfLook look(sets, kTriangles, 4, asset);
+  EXPECT_EQ(look.problem(), "");
+  GltfBuffers buffers;
+  Written written;
+  look.add_materials(written.root, buffers);
+  written.primitives =
+      primitives_of(look.mesh(), GltfJson::object(), GltfJson::array(), buffers);
+  return written;
+}
+
+TEST(GltfLook, HasTheMaterialsOfTheAsset) {
+  const Written written = write(
+      materials(0, 1), asset_of(R"({"asset":{"version":"2.0"},"materials":[{"name":"a"}]})"));
+  EXPECT_EQ(written.root["materials"], GltfJson::parse(R"([{"name":"a"}])"));
+  ASSERT_EQ(written.primitives.size(), 2U);
+  EXPECT_EQ(written.primitives[0]["material"], 0);
+  EXPECT_FALSE(written.primitives[1].contains("material"));  // there is no other
+}
+
+TEST(GltfLook, LeavesTheDefaultMaterialToGltf) {
+  for (const auto& sets : {materials(0, 0), std::vector<AttributeSet>{}}) {
+    const Written written = write(sets, "");
+    EXPECT_FALSE(written.root.contains("materials"));
+    ASSERT_EQ(written.primitives.size(), 1U);
+    EXPECT_FALSE(written.primitives[0].contains("material"));
+  }
+}
+
+}  // namespace
+}  // namespace rlpc
