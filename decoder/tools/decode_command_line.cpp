@@ -44,16 +44,17 @@ Cluster GOFs have no slices: they are decoded whole.
 
 In a .glb file, each clip is an animation. --as skin makes the bones of the
 stream, or its clusters, joints of a skin; what these leave becomes morph
-targets, as many as it takes to differ from the stream by about a quarter of its
-own error, which rlpcdec estimates from its quantiser steps. It reports the
+targets, as many as it takes to differ from the stream by about half of its own
+error, which rlpcdec estimates from its quantiser steps. It reports the
 difference. A vertex keeps its four largest influences. Where groups of frames
 have bones of their own, those of most frames are fitted to the others. A stream
 whose frames are predicted from frames has no bones.
 --as auto writes a morph target for each frame instead where there are no bones;
-and, as long as viewers can hold these, up to 2,000, where they take fewer bytes,
-or where bones would leave more than the error of the stream itself: N times that
-error is worth 4 * N times the bytes. Otherwise it writes bones. The decoded
-frames are exact with --as morph only; all frames of a skin are held in memory.
+and, as long as these are at most the 2,000 that viewers hold, where they take
+fewer bytes, or where bones would leave more than the stream's own error: N
+times that error is worth 4 * N times the bytes. Otherwise it writes bones. The
+decoded frames are exact with --as morph only; all frames of a skin are held in
+memory.
 
 With --coarse, vertex layers are removed from the mesh, the finest first: each
 vertex leaves a hole, which larger triangles fill. The other vertices keep their

@@ -37,7 +37,7 @@ struct Bending {
       if (second > 0) list.push_back({1, second});
       skeleton.influences.push_back(list);
     }
-    const SkinInfluences influences = written_influences(skeleton);
+    const SkinInfluences influences = written_influences(skeleton, kShortWhole);
     for (std::size_t f = 0; f < kFrames; ++f) {
       const double t = static_cast<double>(f);
       const JointPlace first{turn(0.03 * t), {0.1 * t, 1, 0}};

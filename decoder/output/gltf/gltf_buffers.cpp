@@ -45,16 +45,39 @@ void set_bounds(GltfJson& accessor, std::span<const T> xyz) {
   accessor["max"] = std::move(max);
 }
 
-// Whether a sparse accessor is smaller.
-bool is_sparse(std::uint64_t places, std::uint64_t count, std::uint64_t value_bytes) {
+// Bytes of the two views of a sparse accessor, which are JSON.
+constexpr std::uint64_t kSparseJsonBytes = 240;
+
+// Whether a sparse accessor is smaller. value_bytes: of a value, padded or not.
+bool is_sparse(std::uint64_t places, std::uint64_t count, std::uint64_t padded_bytes,
+               std::uint64_t value_bytes) {
   const std::uint64_t index_bytes = count <= kMaxShortVertices ? 2 : 4;
-  return places > 0 && places * (index_bytes + value_bytes) < count * value_bytes;
+  return places > 0 &&
+         places * (index_bytes + value_bytes) + kSparseJsonBytes < count * padded_bytes;
+}
+
+std::string bytes_of_floats(std::span<const float> values) {
+  std::string bytes;
+  for (const float x : values) append_f32(bytes, x);
+  return bytes;
 }
 
 // The lowest `bytes` bytes of a number.
 void append_unsigned(std::string& text, std::uint32_t value, std::size_t bytes) {
   append_u32(text, value);
   text.resize(text.size() - (4 - bytes));
+}
+
+std::string bytes_of_shorts(std::span<const float> values) {
+  std::string bytes;
+  for (const float x : values) {
+    append_unsigned(bytes, static_cast<std::uint32_t>(std::lround(x / kShortUnit)), 2);
+  }
+  return bytes;
+}
+
+std::size_t width_of(std::string_view type) {
+  return type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 4;
 }
 
 }  // namespace
@@ -83,9 +106,7 @@ std::uint32_t GltfBuffers::add_view(std::string_view bytes, int target) {
 }
 
 std::uint32_t GltfBuffers::add_floats(std::span<const float> values, int target) {
-  std::string bytes;
-  for (const float x : values) append_f32(bytes, x);
-  return add_view(bytes, target);
+  return add_view(bytes_of_floats(values), target);
 }
 
 std::uint32_t GltfBuffers::add_accessor(GltfJson accessor) {
@@ -95,7 +116,7 @@ std::uint32_t GltfBuffers::add_accessor(GltfJson accessor) {
 
 // The sparse part of an accessor that is zero except for `values` at `places`.
 GltfJson GltfBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
-                             std::span<const float> values) {
+                             std::string_view values) {
   const bool is_short = count <= kMaxShortVertices;
   std::string bytes;
   for (const std::uint32_t place : places) append_unsigned(bytes, place, is_short ? 2 : 4);
@@ -104,7 +125,7 @@ GltfJson GltfBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint
       {"count", places.size()},
       {"indices",
        {{"bufferView", indices}, {"componentType", is_short ? kUnsignedShort : kUnsignedInt}}},
-      {"values", {{"bufferView", add_floats(values, 0)}}}};
+      {"values", {{"bufferView", add_view(values, 0)}}}};
 }
 
 std::uint32_t GltfBuffers::add_vectors(std::span<const float> xyz) {
@@ -126,6 +147,19 @@ std::uint32_t GltfBuffers::add_vertex_values(std::span<const float> values,
   return add_accessor(std::move(accessor));
 }
 
+std::uint32_t GltfBuffers::add_texture_coordinates(std::span<const float> uv) {
+  const auto is_outside = [](float x) { return !(x >= 0 && x <= 1); };
+  if (std::ranges::any_of(uv, is_outside)) return add_vertex_values(uv, 2);
+  std::string bytes;
+  for (const float x : uv) {
+    append_unsigned(bytes, static_cast<std::uint32_t>(std::lround(x * 65535)), 2);
+  }
+  GltfJson accessor = accessor_of(kUnsignedShort, uv.size() / 2, "VEC2");
+  accessor["normalized"] = true;
+  accessor["bufferView"] = add_view(bytes, kVertexTarget);
+  return add_accessor(std::move(accessor));
+}
+
 std::optional<std::uint32_t> GltfBuffers::add_moves(std::span<const float> moves) {
   const std::uint64_t count = moves.size() / 3;
   std::vector<std::uint32_t> moving;
@@ -137,25 +171,37 @@ std::optional<std::uint32_t> GltfBuffers::add_moves(std::span<const float> moves
     values.insert(values.end(), move.begin(), move.end());
   }
   if (moving.empty()) return std::nullopt;
-  if (!is_sparse(moving.size(), count, 12)) return add_vectors(moves);
+  if (!is_sparse(moving.size(), count, 12, 12)) return add_vectors(moves);
   GltfJson accessor = accessor_of(kFloat, count, "VEC3");
   set_bounds<float>(accessor, moves);
-  accessor["sparse"] = sparse(moving, count, values);
+  accessor["sparse"] = sparse(moving, count, bytes_of_floats(values));
   return add_accessor(std::move(accessor));
 }
 
 std::uint32_t GltfBuffers::add_byte_vectors(std::span<const std::int8_t> xyz,
                                             bool in_parts_of_127) {
-  std::string bytes;
-  for (std::size_t i = 0; i < xyz.size(); ++i) {
-    bytes += static_cast<char>(xyz[i]);
-    if (i % 3 == 2) bytes += '\0';  // each vertex begins at a multiple of 4
+  const std::uint64_t count = xyz.size() / 3;
+  std::vector<std::uint32_t> places;
+  std::string values;
+  std::string padded;  // each vertex begins at a multiple of 4
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const auto of_vertex = xyz.subspan(3 * std::size_t{v}, 3);
+    const std::string bytes(of_vertex.begin(), of_vertex.end());
+    padded += bytes;
+    padded += '\0';
+    if (std::ranges::count(of_vertex, 0) == 3) continue;
+    places.push_back(v);
+    values += bytes;
   }
-  GltfJson accessor = accessor_of(kByte, xyz.size() / 3, "VEC3");
+  GltfJson accessor = accessor_of(kByte, count, "VEC3");
   if (in_parts_of_127) accessor["normalized"] = true;
-  const std::uint32_t view = add_view(bytes, kVertexTarget);
-  views_[view]["byteStride"] = 4;
-  accessor["bufferView"] = view;
+  if (is_sparse(places.size(), count, 4, 3)) {
+    accessor["sparse"] = sparse(places, count, values);
+  } else {
+    const std::uint32_t view = add_view(padded, kVertexTarget);
+    views_[view]["byteStride"] = 4;
+    accessor["bufferView"] = view;
+  }
   set_bounds(accessor, xyz);
   return add_accessor(std::move(accessor));
 }
@@ -191,19 +237,21 @@ std::uint32_t GltfBuffers::add_joints(std::span<const std::uint16_t> joints,
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_joint_weights(std::span<const std::uint16_t> weights) {
+std::uint32_t GltfBuffers::add_joint_weights(std::span<const std::uint16_t> weights,
+                                             int whole) {
+  const bool is_byte = whole <= 255;
   std::string bytes;
-  for (const std::uint16_t weight : weights) append_unsigned(bytes, weight, 2);
-  GltfJson accessor = accessor_of(kUnsignedShort, weights.size() / 4, "VEC4");
+  for (const std::uint16_t weight : weights) append_unsigned(bytes, weight, is_byte ? 1 : 2);
+  GltfJson accessor =
+      accessor_of(is_byte ? kUnsignedByte : kUnsignedShort, weights.size() / 4, "VEC4");
   accessor["normalized"] = true;
   accessor["bufferView"] = add_view(bytes, kVertexTarget);
   return add_accessor(std::move(accessor));
 }
 
-// The values of animations follow each other in one view.
-std::uint32_t GltfBuffers::add_packed(GltfJson accessor, std::span<const float> values) {
-  std::string bytes;
-  for (const float x : values) append_f32(bytes, x);
+// The values of animations follow each other in one view, each at a multiple of 4.
+std::uint32_t GltfBuffers::add_packed(GltfJson accessor, std::string bytes) {
+  bytes.resize((bytes.size() + 3) / 4 * 4);
   if (packed_view_) {
     GltfJson& length = views_[*packed_view_]["byteLength"];
     accessor["bufferView"] = *packed_view_;
@@ -222,24 +270,18 @@ std::uint32_t GltfBuffers::add_times(std::span<const float> times) {
   GltfJson accessor = accessor_of(kFloat, times.size(), "SCALAR");
   accessor["min"] = {times.front()};
   accessor["max"] = {times.back()};
-  return add_packed(std::move(accessor), times);
+  return add_packed(std::move(accessor), bytes_of_floats(times));
 }
 
 std::uint32_t GltfBuffers::add_values(std::span<const float> values, const char* type) {
-  const std::string_view name = type;
-  const std::size_t width = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : 4;
-  return add_packed(accessor_of(kFloat, values.size() / width, type), values);
+  return add_packed(accessor_of(kFloat, values.size() / width_of(type), type),
+                    bytes_of_floats(values));
 }
 
-std::uint32_t GltfBuffers::add_short_values(std::span<const float> values, float unit) {
-  std::string bytes;
-  for (const float x : values) {
-    append_unsigned(bytes, static_cast<std::uint32_t>(std::lround(x / unit)), 2);
-  }
-  GltfJson accessor = accessor_of(kShort, values.size(), "SCALAR");
+std::uint32_t GltfBuffers::add_short_values(std::span<const float> values, const char* type) {
+  GltfJson accessor = accessor_of(kShort, values.size() / width_of(type), type);
   accessor["normalized"] = true;
-  accessor["bufferView"] = add_view(bytes, 0);
-  return add_accessor(std::move(accessor));
+  return add_packed(std::move(accessor), bytes_of_shorts(values));
 }
 
 std::uint32_t GltfBuffers::add_matrices(std::span<const float> values) {
@@ -251,8 +293,9 @@ std::uint32_t GltfBuffers::add_matrices(std::span<const float> values) {
 std::uint32_t GltfBuffers::add_ones(const std::vector<std::uint32_t>& places,
                                     std::uint64_t count) {
   GltfJson accessor = accessor_of(kFloat, count, "SCALAR");
-  if (is_sparse(places.size(), count, 4)) {
-    accessor["sparse"] = sparse(places, count, std::vector<float>(places.size(), 1));
+  if (is_sparse(places.size(), count, 4, 4)) {
+    accessor["sparse"] =
+        sparse(places, count, bytes_of_floats(std::vector<float>(places.size(), 1)));
   } else {
     std::vector<float> values(static_cast<std::size_t>(count));
     for (const std::uint32_t place : places) values[place] = 1;

@@ -81,7 +81,9 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
 
 void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
   for (const Values& values : values_) {
-    attributes[values.semantic] = buffers.add_vertex_values(values.numbers, values.width);
+    attributes[values.semantic] = values.semantic.starts_with("TEXCOORD")
+                                      ? buffers.add_texture_coordinates(values.numbers)
+                                      : buffers.add_vertex_values(values.numbers, values.width);
   }
 }
 

@@ -21,13 +21,6 @@ struct Member {
   double weight;
 };
 
-JointMap map_of_place(const JointPlace& place) {
-  JointMap map;
-  map.leftCols<3>() = place.rotation.toRotationMatrix();
-  map.col(3) = place.origin;
-  return map;
-}
-
 Vector3d moved(const JointMap& map, const Vector3d& p) {
   return map.leftCols<3>() * p + map.col(3);
 }
@@ -78,7 +71,8 @@ class PoseFit {
       rest_.emplace_back(rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]);
       for (std::size_t k = kJointsOfVertex * v; k < kJointsOfVertex * (v + 1); ++k) {
         if (influences.weights[k] == 0) continue;
-        members_[influences.joints[k]].push_back({v, influences.weights[k] / 65535.0});
+        members_[influences.joints[k]].push_back(
+            {v, influences.weights[k] * (1.0 / influences.whole)});
       }
     }
   }

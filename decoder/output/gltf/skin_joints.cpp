@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace rlpc {
 namespace {
@@ -24,6 +26,9 @@ Quaterniond between(const Quaterniond& a, const Quaterniond& b, double t) {
 }
 Vector3d between(const Vector3d& a, const Vector3d& b, double t) { return a + t * (b - a); }
 
+std::size_t width_of(const Quaterniond&) { return 4; }
+std::size_t width_of(const Vector3d&) { return 3; }
+
 void append(std::vector<float>& values, const Quaterniond& q) {
   for (Eigen::Index c = 0; c < 4; ++c) values.push_back(static_cast<float>(q.coeffs()[c]));
 }
@@ -35,6 +40,16 @@ void read(const float* values, Quaterniond& q) {
   q = Quaterniond(values[3], values[0], values[1], values[2]).normalized();
 }
 void read(const float* values, Vector3d& p) { p = {values[0], values[1], values[2]}; }
+
+// Rotations as 16-bit integers: how far they may turn from what they are, at most.
+constexpr double kShortUnit = 1.0 / 32767;
+constexpr double kShortAngle = 2 * kShortUnit;
+
+bool fits_shorts(const Quaterniond&, double tolerance) { return tolerance >= kShortAngle; }
+bool fits_shorts(const Vector3d&, double) { return false; }
+
+// JSON of an accessor of times.
+constexpr std::size_t kTimesJsonBytes = 130;
 
 template <class T>
 bool is_still(std::span<const T> series, const T& value, double tolerance) {
@@ -52,15 +67,24 @@ JointTrack keys_of(std::span<const T> series, double tolerance) {
     append(track.values, middle);
     return track;
   }
-  track.keys = needed_keys(
-      static_cast<std::uint32_t>(series.size()), [&](std::uint32_t a, std::uint32_t b) {
-        for (std::uint32_t f = a + 1; f < b; ++f) {
-          const double t = static_cast<double>(f - a) / (b - a);
-          if (distance(between(series[a], series[b], t), series[f]) > tolerance) return false;
-        }
-        return true;
-      });
+  const auto num_frames = static_cast<std::uint32_t>(series.size());
+  track.has_short_values = fits_shorts(middle, tolerance);
+  track.keys = needed_keys(num_frames, [&](std::uint32_t a, std::uint32_t b) {
+    for (std::uint32_t f = a + 1; f < b; ++f) {
+      const double t = static_cast<double>(f - a) / (b - a);
+      if (distance(between(series[a], series[b], t), series[f]) > tolerance) return false;
+    }
+    return true;
+  });
+  const std::size_t bytes_of_key =
+      track.has_short_values ? 8 : sizeof(float) * width_of(middle);
+  track.keys = keys_to_write(std::move(track.keys), num_frames, bytes_of_key);
   for (const std::uint32_t key : track.keys) append(track.values, series[key]);
+  if (track.has_short_values) {
+    for (float& x : track.values) {
+      x = static_cast<float>(std::round(x / kShortUnit) * kShortUnit);
+    }
+  }
   return track;
 }
 
@@ -128,6 +152,25 @@ JointPlace joint_place(const BonePlace& place, const Grid& grid) {
   }
   joint.rotation = Quaterniond(axes).normalized();
   return joint;
+}
+
+JointMap map_of_place(const JointPlace& place) {
+  JointMap map;
+  map.leftCols<3>() = place.rotation.toRotationMatrix();
+  map.col(3) = place.origin;
+  return map;
+}
+
+std::vector<std::uint32_t> keys_to_write(std::vector<std::uint32_t> keys,
+                                         std::uint32_t num_frames, std::size_t bytes_of_key) {
+  const bool is_smaller =
+      keys.size() <= 2 || keys.size() * (bytes_of_key + sizeof(float)) + kTimesJsonBytes <
+                              num_frames * bytes_of_key;
+  if (!is_smaller) {
+    keys.resize(num_frames);
+    std::iota(keys.begin(), keys.end(), 0U);
+  }
+  return keys;
 }
 
 JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,

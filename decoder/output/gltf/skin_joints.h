@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <Eigen/StdVector>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,12 +37,14 @@ using JointMap = Eigen::Matrix<double, 3, 4>;
 using JointMaps = std::vector<JointMap>;  // [joint]
 
 JointPlace joint_place(const BonePlace& place, const Grid& grid);
+JointMap map_of_place(const JointPlace& place);
 
 // Keys of a track within a clip: frames of the clip, and `width` numbers for each. No keys: the
 // value of the node throughout.
 struct JointTrack {
   std::vector<std::uint32_t> keys;
   std::vector<float> values;
+  bool has_short_values = false;  // values are multiples of 1/32767
 };
 
 struct JointMotion {
@@ -75,6 +78,10 @@ std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& i
   }
   return keys;
 }
+
+// The keys, or all frames where these take fewer bytes: tracks with the same keys share times.
+std::vector<std::uint32_t> keys_to_write(std::vector<std::uint32_t> keys,
+                                         std::uint32_t num_frames, std::size_t bytes_of_key);
 
 // places [frame][joint]; reach [joint]: how far from its origin a joint moves vertices;
 // tolerance: of the motion at that distance, in units.

@@ -28,6 +28,17 @@ TEST(NeededKeys, AreTheCornersOfALine) {
   EXPECT_EQ(keys_of_line({0, 1, 2.4, 3}, 0.1), (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }
 
+TEST(KeysToWrite, AreAllFramesWhereTheseAreSmaller) {
+  const auto keys = [](std::size_t count, std::uint32_t num_frames) {
+    return keys_to_write(std::vector<std::uint32_t>(count), num_frames, 8).size();
+  };
+  EXPECT_EQ(keys(1, 2), 1U);
+  EXPECT_EQ(keys(2, 3), 2U);  // many tracks have the two ends
+  EXPECT_EQ(keys(90, 100), 100U);
+  EXPECT_EQ(keys(50, 100), 50U);  // 12 bytes each, and JSON
+  EXPECT_EQ(keys(56, 100), 100U);
+}
+
 // An arm of two bones, in units of the grid: the second one turns about the end of the first.
 class Arm {
  public:
@@ -94,6 +105,18 @@ TEST(JointMotion, StaysNearTheToleranceWithFewerKeys) {
   EXPECT_EQ(coarse.clips[0][0].translation.keys.size(), 3U);
   EXPECT_EQ(arm.motion(40).clips[0][0].translation.keys.size(), 0U);
   EXPECT_LT(arm.largest_error(coarse), 4);
+}
+
+TEST(JointMotion, HasShortRotationsWhereTheseAreNearEnough) {
+  const Arm arm;
+  const auto lower = [](const JointMotion& motion) { return motion.clips[0][1].rotation; };
+  EXPECT_FALSE(lower(arm.motion(1e-4)).has_short_values);
+  const JointTrack track = lower(arm.motion(1e-2));
+  EXPECT_TRUE(track.has_short_values);
+  for (const float x : track.values) {
+    EXPECT_NEAR(x * 32767, std::round(x * 32767), 1e-2);
+  }
+  EXPECT_LT(arm.largest_error(arm.motion(1e-2)), 1e-2);
 }
 
 }  // namespace

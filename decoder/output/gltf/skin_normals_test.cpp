@@ -39,7 +39,7 @@ std::vector<float> turned(const SkinInfluences& influences, const JointMaps& map
 
 TEST(RestNormals, TurnIntoThoseThatAreWanted) {
   const Bending b;
-  const SkinInfluences influences = written_influences(b.skeleton);
+  const SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   std::vector<std::uint32_t> vertex;  // each twice
   std::vector<float> wanted;
   for (std::uint32_t i = 0; i < 2 * kVertices; ++i) {
@@ -85,7 +85,7 @@ struct Skinned {
   Bending b;
   Surface surface;
   GltfLook look = surface.look();
-  SkinInfluences influences = written_influences(b.skeleton);
+  SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   std::vector<JointMaps> maps = b.maps();
   std::vector<float> rest = best_rest(influences, maps, b.frames);  // as yet
 

@@ -11,7 +11,6 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kWhole = 65535;
 // Against vertices that their joints squeeze flat: what is missing there is not all added.
 constexpr double kDamping = 1e-3;
 
@@ -27,17 +26,18 @@ void set_vector(std::span<float> xyz, std::size_t v, const Vector3d& p) {
 
 }  // namespace
 
-SkinInfluences written_influences(const Skeleton& skeleton) {
+SkinInfluences written_influences(const Skeleton& skeleton, int whole) {
   SkinInfluences written;
+  written.whole = whole;
   for (std::vector<SkeletonInfluence> list : skeleton.influences) {
     std::ranges::stable_sort(list, std::greater<>(), &SkeletonInfluence::weight);
     list.resize(std::min(list.size(), kJointsOfVertex));
     int total = 0;
     for (const SkeletonInfluence& influence : list) total += influence.weight;
-    int left = kWhole;
+    int left = whole;
     std::array<int, kJointsOfVertex> weights{};
     for (std::size_t k = 0; k < list.size(); ++k) {
-      weights[k] = kWhole * list[k].weight / total;
+      weights[k] = whole * list[k].weight / total;
       left -= weights[k];
     }
     weights[0] += left;  // of rounding
@@ -54,9 +54,19 @@ JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const Join
   JointMap map = JointMap::Zero();
   for (std::size_t k = kJointsOfVertex * vertex; k < kJointsOfVertex * (vertex + 1); ++k) {
     if (influences.weights[k] == 0) continue;
-    map += influences.weights[k] * (1.0 / kWhole) * maps[influences.joints[k]];
+    map += influences.weights[k] * (1.0 / influences.whole) * maps[influences.joints[k]];
   }
   return map;
+}
+
+double rms_between(const SkinInfluences& a, const SkinInfluences& b, const JointMaps& maps,
+                   std::span<const float> xyz) {
+  double squares = 0;
+  for (std::size_t v = 0; v < xyz.size() / 3; ++v) {
+    const JointMap apart = map_of(a, v, maps) - map_of(b, v, maps);
+    squares += (apart * vector_at(xyz, v).homogeneous()).squaredNorm();
+  }
+  return std::sqrt(3 * squares / static_cast<double>(xyz.size()));
 }
 
 std::vector<float> best_rest(const SkinInfluences& influences, std::span<const JointMaps> maps,

@@ -16,14 +16,24 @@ namespace rlpc {
 
 inline constexpr std::size_t kJointsOfVertex = 4;  // what all viewers support
 
-// Influences as written: weights in 1/65535, which sum to 65535.
+// The sum of the weights of a vertex, of 8 or of 16 bits.
+inline constexpr int kByteWhole = 255;
+inline constexpr int kShortWhole = 65535;
+
+// Influences as written: weights in 1/whole, which sum to `whole`.
 struct SkinInfluences {
+  int whole = kShortWhole;
   std::vector<std::uint16_t> joints;   // [num_vertices][kJointsOfVertex]
   std::vector<std::uint16_t> weights;  // likewise
 };
 
 // Of more than kJointsOfVertex influences, the largest remain, in proportion.
-SkinInfluences written_influences(const Skeleton& skeleton);
+SkinInfluences written_influences(const Skeleton& skeleton, int whole);
+
+// RMS of how far apart two ways to write influences move the vertices of a frame; maps: from it
+// to another.
+double rms_between(const SkinInfluences& a, const SkinInfluences& b, const JointMaps& maps,
+                   std::span<const float> xyz);
 
 // How the joints map a vertex in a frame.
 JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const JointMaps& maps);

@@ -16,7 +16,7 @@ TEST(WrittenInfluences, AreTheFourLargestInProportion) {
   Skeleton skeleton;
   skeleton.influences = {
       {{7, 128}}, {{0, 1}, {1, 2}}, {{0, 1}, {1, 30}, {2, 20}, {3, 10}, {4, 60}, {5, 7}}};
-  const SkinInfluences written = written_influences(skeleton);
+  const SkinInfluences written = written_influences(skeleton, kShortWhole);
   EXPECT_EQ(written.joints, (std::vector<std::uint16_t>{7, 0, 0, 0, 1, 0, 0, 0, 4, 1, 2, 3}));
   for (std::size_t v = 0; v < 3; ++v) {
     const auto first = written.weights.begin() + static_cast<std::ptrdiff_t>(4 * v);
@@ -26,9 +26,23 @@ TEST(WrittenInfluences, AreTheFourLargestInProportion) {
   EXPECT_NEAR(written.weights[9], 65535.0 * 30 / 120, 1);
 }
 
+TEST(WrittenInfluences, OfEightBitsAreNear) {
+  const Bending b;
+  const SkinInfluences exact = written_influences(b.skeleton, kShortWhole);
+  const SkinInfluences small = written_influences(b.skeleton, kByteWhole);
+  for (std::size_t v = 0; v < kVertices; ++v) {
+    const auto first = small.weights.begin() + static_cast<std::ptrdiff_t>(4 * v);
+    EXPECT_EQ(std::accumulate(first, first + 4, 0), 255) << v;
+  }
+  const double rms = rms_between(exact, small, b.maps_of(kFrames - 1), b.frames[0]);
+  EXPECT_GT(rms, 0);
+  EXPECT_LT(rms, 0.01);
+  EXPECT_EQ(rms_between(exact, exact, b.maps_of(1), b.frames[0]), 0);
+}
+
 TEST(SkinShape, NeedsNoTargetsForWhatBonesMove) {
   const Bending b;
-  const SkinInfluences influences = written_influences(b.skeleton);
+  const SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   const auto rest = best_rest(influences, b.maps(), b.frames);
   const PrincipalShapes shapes =
       principal_shapes(missing_moves(influences, b.maps(), rest, b.frames), 1e-4, 10);
@@ -46,7 +60,7 @@ TEST(SkinShape, AddsTargetsForTheRest) {
                                            0.1 * std::cos(0.9 * t) * std::sin(0.3 * x));
     }
   }
-  const SkinInfluences influences = written_influences(b.skeleton);
+  const SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   const auto maps = b.maps();
   const auto rest = best_rest(influences, maps, b.frames);
   const auto moves = missing_moves(influences, maps, rest, b.frames);
@@ -67,7 +81,7 @@ TEST(FitPlaces, FindsThoseOfOtherFrames) {
   const Bending b;
   std::vector<JointPlaces> places = b.places;
   for (std::size_t f = 20; f < kFrames; ++f) places[f].clear();
-  fit_places(b.skeleton, {}, written_influences(b.skeleton), b.frames, places);
+  fit_places(b.skeleton, {}, written_influences(b.skeleton, kShortWhole), b.frames, places);
   for (std::size_t f = 0; f < kFrames; ++f) {
     ASSERT_EQ(places[f].size(), 2U) << f;
     for (std::size_t j = 0; j < 2; ++j) {
@@ -97,6 +111,20 @@ TEST(PrincipalShapes, HaveBytesAsValues) {
     const Eigen::MatrixXf left = moves - shapes.targets * shapes.weights;
     EXPECT_LT(left.norm() / std::sqrt(30.0F * 30), 0.051F * size);
   }
+}
+
+TEST(PrincipalShapes, LeaveOutVerticesThatHardlyMove) {
+  Eigen::MatrixXf moves(90, 40);
+  for (Eigen::Index f = 0; f < 40; ++f) {
+    for (Eigen::Index i = 0; i < 90; ++i) {
+      moves(i, f) = (i < 15 ? 1.0F : 0.01F) * std::sin(0.3F * static_cast<float>(f)) *
+                    std::cos(static_cast<float>(i));
+    }
+  }
+  const PrincipalShapes shapes = principal_shapes(moves, 0.1, 10);
+  ASSERT_EQ(shapes.targets.cols(), 1);
+  EXPECT_FALSE(shapes.targets.topRows(15).isZero(0));
+  EXPECT_TRUE(shapes.targets.bottomRows(75).isZero(0));
 }
 
 }  // namespace

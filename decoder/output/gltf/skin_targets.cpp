@@ -61,6 +61,8 @@ TargetTrack target_track(const SkinTargets& targets, const Clip& clip, double to
     }
     return true;
   });
+  const std::size_t bytes_of_key = static_cast<std::size_t>(weights.rows()) * sizeof(float);
+  track.keys = keys_to_write(std::move(track.keys), clip.num_frames, bytes_of_key);
   track.weights.resize(weights.rows(), static_cast<Index>(track.keys.size()));
   for (std::size_t i = 0; i < track.keys.size(); ++i) {
     track.weights.col(static_cast<Index>(i)) = weights.col(track.keys[i]);
@@ -119,7 +121,7 @@ void add_weights(GltfAnimation& animation, std::uint32_t node, const SkinTargets
     return shapes.targets.cols() == 0 || shapes.has_short_weights;
   };
   const std::uint32_t output = is_short(targets.places) && is_short(targets.normals)
-                                   ? buffers.add_short_values(values, kWeightUnit)
+                                   ? buffers.add_short_values(values, "SCALAR")
                                    : buffers.add_values(values, "SCALAR");
   animation.add_channel(node, "weights", track.keys, output);
 }

@@ -5,7 +5,7 @@
 namespace rlpc {
 namespace {
 
-constexpr Eigen::Index kFrames = 9;
+constexpr Eigen::Index kFrames = 99;  // the last 90 at rest
 
 // One target of two vertices, with weights of its own.
 PrincipalShapes one_target(const Eigen::RowVectorXf& weights) {
@@ -26,25 +26,25 @@ PrincipalShapes no_target() {
 }
 
 TEST(TargetTrack, LeavesOutKeysThatInterpolationReproduces) {
-  Eigen::RowVectorXf weights(kFrames);
-  weights << 0, 0.1F, 0.2F, 0.3F, 0.4F, 0.31F, 0.2F, 0.1F, 0;
+  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kFrames);
+  weights.head(8) << 0, 0.1F, 0.2F, 0.3F, 0.4F, 0.31F, 0.2F, 0.1F;
   const SkinTargets targets{one_target(weights), no_target()};
   const Clip clip{"", 0, kFrames};
   const TargetTrack exact = target_track(targets, clip, 1e-4);
-  EXPECT_EQ(exact.keys, (std::vector<std::uint32_t>{0, 4, 5, 6, 8}));
+  EXPECT_EQ(exact.keys, (std::vector<std::uint32_t>{0, 4, 5, 6, 8, 98}));
   const std::vector<TargetTrack> tracks{target_track(targets, clip, 0.05)};
-  EXPECT_EQ(tracks[0].keys, (std::vector<std::uint32_t>{0, 4, 8}));
+  EXPECT_EQ(tracks[0].keys, (std::vector<std::uint32_t>{0, 4, 8, 98}));
   const Eigen::MatrixXf shown = shown_weights(targets, tracks, std::vector<Clip>{clip});
   EXPECT_NEAR(shown(0, 5), 0.3, 1e-6);  // what viewers show, not 0.31
   EXPECT_NEAR(shown(0, 4), 0.4, 1e-6);
 }
 
 TEST(TargetTrack, HasKeysForNormals) {
-  Eigen::RowVectorXf weights(kFrames);
-  weights << 0, 0, 0, 0, 0.5F, 0, 0, 0, 0;
+  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kFrames);
+  weights[4] = 0.5F;
   const SkinTargets targets{one_target(Eigen::RowVectorXf::Zero(kFrames)), one_target(weights)};
   const TargetTrack track = target_track(targets, {"", 1, kFrames - 1}, 1e9);
-  EXPECT_EQ(track.keys, (std::vector<std::uint32_t>{0, 2, 3, 4, 7}));
+  EXPECT_EQ(track.keys, (std::vector<std::uint32_t>{0, 2, 3, 4, 97}));
   EXPECT_EQ(track.weights.row(1).maxCoeff(), 0.5F);
 }
 
