@@ -70,13 +70,14 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t p = part != nullptr ? part->values[t] : 0;
     const std::uint32_t m = material != nullptr ? material->values[t] : 0;
+    const bool is_plain = asset_.root().is_null();
     const std::optional<std::uint32_t> number =
-        m < num_materials ? std::optional(m) : std::nullopt;
+        m < num_materials || is_plain ? std::optional(is_plain ? 0 : m) : std::nullopt;
     const auto [place, is_new] = found.try_emplace({p, number}, mesh_.parts.size());
     if (is_new) mesh_.parts.push_back({{}, number});
     mesh_.parts[place->second].triangles.push_back(triangles[t]);
   }
-  if (mesh_.parts.empty()) mesh_.parts.emplace_back();
+  if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
 }
 
 void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
@@ -116,6 +117,11 @@ std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
 
 void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
   const GltfJson& asset = asset_.root();
+  if (asset.is_null()) {  // of OBJ files, say: glTF's own default is metal, seen from the front
+    root["materials"] = GltfJson::array(
+        {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
+    return;
+  }
   for (const char* const key : {"materials", "textures", "samplers", "images"}) {
     if (asset.contains(key)) root[key] = asset[key];
   }

@@ -52,13 +52,22 @@ TEST(GltfLook, HasTheMaterialsOfTheAsset) {
   EXPECT_FALSE(written.primitives[1].contains("material"));  // there is no other
 }
 
-TEST(GltfLook, LeavesTheDefaultMaterialToGltf) {
-  for (const auto& sets : {materials(0, 0), std::vector<AttributeSet>{}}) {
+TEST(GltfLook, IsPlainWithoutAnAsset) {
+  for (const auto& sets : {materials(0, 0), materials(3, 1), std::vector<AttributeSet>{}}) {
     const Written written = write(sets, "");
-    EXPECT_FALSE(written.root.contains("materials"));
+    ASSERT_EQ(written.root["materials"].size(), 1U);
+    EXPECT_EQ(written.root["materials"][0]["doubleSided"], true);
     ASSERT_EQ(written.primitives.size(), 1U);
-    EXPECT_FALSE(written.primitives[0].contains("material"));
+    EXPECT_EQ(written.primitives[0]["material"], 0);
   }
+}
+
+TEST(GltfLook, HasTheDefaultMaterialOfGltfWhereTheAssetSaysSo) {
+  const Written written =
+      write({}, asset_of(R"({"asset":{"version":"2.0"},"materials":[{}]})"));
+  EXPECT_EQ(written.root["materials"], GltfJson::parse("[{}]"));
+  ASSERT_EQ(written.primitives.size(), 1U);
+  EXPECT_EQ(written.primitives[0]["material"], 0);
 }
 
 }  // namespace

@@ -28,10 +28,10 @@ constexpr double kKeyTolerance = 1.0 / 4;
 // tolerated: the rest shape and targets make up for most of it.
 constexpr std::size_t kFramesOfWeights = 32;
 
-// A part of the error that the stream is likely to have. That error is one of rounding, with which
-// that of the skin has little to do, so that half of it adds 12 % where the estimate is right: 7 %
-// at most in files of the default profile, 23 % in one of the High profile. 1/4 adds a third of
-// that, and takes 30 to 80 % more bytes.
+// A part of the error that the stream is likely to have. That error is one of rounding, with
+// which that of the skin has little to do, so that half of it adds 12 % where the estimate is
+// right: 7 % at most in files of the default profile, 23 % in one of the High profile. 1/4 adds
+// a third of that, and takes 30 to 80 % more bytes.
 constexpr double kToleratedPart = 1.0 / 2;
 
 // The error that the stream is likely to have, RMS of a vertex: encoders choose steps so that

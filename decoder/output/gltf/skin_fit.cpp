@@ -68,7 +68,8 @@ class PoseFit {
           const std::vector<float>& rest)
       : members_(num_joints) {
     for (std::uint32_t v = 0; v < rest.size() / 3; ++v) {
-      rest_.emplace_back(rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]);
+      const float* const xyz = &rest[3 * std::size_t{v}];
+      rest_.emplace_back(xyz[0], xyz[1], xyz[2]);
       for (std::size_t k = kJointsOfVertex * v; k < kJointsOfVertex * (v + 1); ++k) {
         if (influences.weights[k] == 0) continue;
         members_[influences.joints[k]].push_back(
