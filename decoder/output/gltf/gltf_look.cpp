@@ -77,7 +77,9 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
     if (is_new) mesh_.parts.push_back({{}, number});
     mesh_.parts[place->second].triangles.push_back(triangles[t]);
   }
-  if (mesh_.parts.empty()) mesh_.parts.push_back({{}, 0});
+  if (!mesh_.parts.empty()) return;
+  const bool has_one = num_materials > 0 || asset_.root().is_null();
+  mesh_.parts.push_back({{}, has_one ? std::optional<std::uint32_t>(0) : std::nullopt});
 }
 
 void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {

@@ -44,7 +44,7 @@ class AssetMaker {
       if (root_.contains(key)) out_[key] = root_[key];
     }
     // What glTF has by default, written down: streams without materials get another.
-    if (!out_.contains("materials")) out_["materials"] = {Json::object()};
+    if (!out_.contains("materials")) out_["materials"] = Json::array({Json::object()});
     if (!textures) {
       for (const char* const key : {"textures", "samplers", "images"}) out_.erase(key);
       if (out_.contains("materials")) remove_textures(out_["materials"]);
