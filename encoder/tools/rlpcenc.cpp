@@ -52,8 +52,8 @@ void print_attributes(const EncodeReport& r) {
     std::printf("  %s: %llu bytes", a.name.c_str(),
                 static_cast<unsigned long long>((a.bits + 7) / 8));
     if (a.is_normal) {
-      std::printf(", %s, largest error %.3g degrees", a.is_smoothing ? "smoothing" : "unit vectors",
-                  a.largest_error);
+      std::printf(", %s, largest error %.3g degrees",
+                  a.is_smoothing ? "smoothing" : "unit vectors", a.largest_error);
     } else if (a.largest_error > 0.0) {
       std::printf(", largest error %.3g", a.largest_error);
     }
