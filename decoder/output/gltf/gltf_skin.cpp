@@ -202,6 +202,8 @@ GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& sour
   SkinTargets targets;
   targets.places = principal_shapes(missing_moves(influences, maps, rest, source.frames),
                                     tolerated_rms, limits.max_targets);
+  // None, but of all frames.
+  targets.normals.weights.resize(0, static_cast<Eigen::Index>(source.frames.size()));
   SkinNormals normals;
   if (look.has_normals()) {
     normals = skin_normals(look, influences, maps, rest, source.frames,
