@@ -7,6 +7,7 @@
 
 #include "common/io/float_position.h"
 #include "common/owned.h"
+#include "decoder/surface/attribute_values.h"
 
 namespace rlpc {
 namespace {
@@ -47,15 +48,6 @@ Int rounded(double value) {
 }
 
 using Vec3d = std::array<double, 3>;
-
-Vec3d unit_vector(const double* sum) {
-  // Scaled by its size first: squares of very small numbers underflow.
-  const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
-  if (!(size > 0)) return {0, 0, 1};
-  const Vec3d n{sum[0] / size, sum[1] / size, sum[2] / size};
-  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  return {n[0] / length, n[1] / length, n[2] / length};
-}
 
 double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -138,7 +130,7 @@ void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
   const auto write_as = [&](const auto& convert) {
     Vec3d normal{};
     write(channel, count, [&](std::size_t v, std::size_t c) {
-      if (c == 0) normal = unit_vector(sums.at(v));
+      if (c == 0) normal = unit_normal(sums.at(v));
       return convert(normal[c]);
     });
   };

@@ -155,11 +155,8 @@ rlpc_status rlpc_decoder_split(rlpc_decoder* decoder, uint32_t* num_drawn) {
     if (!decoder->drawn) {
       if (const auto ok = rlpc::decode_attributes(*decoder); ok != RLPC_OK) return ok;
       const auto triangles = decoder->decoder->triangles();
-      rlpc::Vector<const rlpc::AttributeSet*> sets;
-      for (const rlpc::AttributeSet& set : *decoder->attributes) {
-        if (rlpc::is_drawable(set.header, triangles)) sets.push_back(&set);
-      }
-      decoder->drawn.emplace(std::move(sets), triangles, decoder->decoder->num_vertices());
+      decoder->drawn.emplace(rlpc::drawable_sets(*decoder->attributes, triangles), triangles,
+                             decoder->decoder->num_vertices());
     }
     *num_drawn = decoder->drawn->vertices().num_vertices();
     return RLPC_OK;

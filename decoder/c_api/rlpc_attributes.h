@@ -2,7 +2,7 @@
 // (Annex F), and the vertices to draw with. C99 and C++.
 //
 // A vertex of the stream has one position, but may have several texture coordinates or normals:
-// one for each of its corners. Graphics interfaces want vertices with one value of each.
+// one for each of its corners. Graphics APIs want vertices with one value of each.
 // rlpc_decoder_split makes these, the drawn vertices:
 //
 //   uint32_t num_sets, num_drawn;

@@ -100,6 +100,15 @@ const AttributeSet* find_set(const Vector<AttributeSet>& sets, const char* name)
   return nullptr;
 }
 
+Vec3 unit_normal(const double* sum) {
+  // Scaled by its size first: squares of very small numbers underflow.
+  const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
+  if (!(size > 0.0)) return {0.0, 0.0, 1.0};
+  Vec3 n{sum[0] / size, sum[1] / size, sum[2] / size};
+  make_unit(n);
+  return n;
+}
+
 FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> triangles,
                            std::uint32_t num_vertices)
     : set_(set), triangles_(triangles), count_(num_vertices) {
@@ -235,12 +244,8 @@ std::span<const double> FrameNormals::sums(std::span<const std::int32_t> positio
 void FrameNormals::compute(std::span<const float> xyz, std::span<float> normals) {
   sums(xyz);
   for (std::size_t i = 0; i < sums_.size(); i += 3) {
-    const Vec3 n{sums_[i], sums_[i + 1], sums_[i + 2]};
-    const double length = std::sqrt(dot(n, n));
-    for (std::size_t c = 0; c < 3; ++c) {
-      normals[i + c] =
-          length > 0.0 ? static_cast<float>(n[c] / length) : (c == 2 ? 1.0F : 0.0F);
-    }
+    const Vec3 n = unit_normal(&sums_[i]);
+    for (std::size_t c = 0; c < 3; ++c) normals[i + c] = static_cast<float>(n[c]);
   }
 }
 

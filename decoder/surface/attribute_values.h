@@ -20,6 +20,9 @@ Vector<float> attribute_numbers(const AttributeSet& set);
 // The set of that name; null: none.
 const AttributeSet* find_set(const Vector<AttributeSet>& sets, const char* name);
 
+// Of length 1; (0, 0, 1) if the sum has none, as where triangles have no area.
+std::array<double, 3> unit_normal(const double* sum);
+
 // Computes the normals of frames. The set and the triangles must outlive it.
 class FrameNormals {
  public:

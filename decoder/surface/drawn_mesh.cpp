@@ -10,6 +10,15 @@ bool is_drawable(const AttributeHeader& header, std::span<const Triangle> triang
          (header.domain == AttributeDomain::kCorner && !triangles.empty());
 }
 
+Vector<const AttributeSet*> drawable_sets(const Vector<AttributeSet>& sets,
+                                          std::span<const Triangle> triangles) {
+  Vector<const AttributeSet*> drawable;
+  for (const AttributeSet& set : sets) {
+    if (is_drawable(set.header, triangles)) drawable.push_back(&set);
+  }
+  return drawable;
+}
+
 bool is_normal_set(const AttributeHeader& header) {
   const bool is_direction =
       header.kind == ValueKind::kUnitVectors || header.kind == ValueKind::kSmoothing;

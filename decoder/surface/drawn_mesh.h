@@ -18,6 +18,9 @@ namespace rlpc {
 // Whether vertices can have values of it: not those of triangles, nor of corners if there are
 // no triangles.
 bool is_drawable(const AttributeHeader& header, std::span<const Triangle> triangles);
+// Those sets.
+Vector<const AttributeSet*> drawable_sets(const Vector<AttributeSet>& sets,
+                                          std::span<const Triangle> triangles);
 // Whether normals of any frame follow from it: the set `normal`, of vertices or corners.
 bool is_normal_set(const AttributeHeader& header);
 

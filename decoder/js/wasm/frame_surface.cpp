@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "decoder/surface/attribute_values.h"
+
 namespace rlpc {
 namespace {
 
@@ -77,9 +79,8 @@ void vertex_normals(std::span<const float> coordinates, std::span<const Triangle
 void unit_normals(std::span<const double> sums, std::vector<Vec3f>& normals) {
   normals.resize(sums.size() / 3);
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    Vec3f& n = normals[i];
-    for (std::size_t c = 0; c < 3; ++c) n[c] = static_cast<float>(sums[3 * i + c]);
-    n = unit(n);
+    const auto n = unit_normal(&sums[3 * i]);
+    for (std::size_t c = 0; c < 3; ++c) normals[i][c] = static_cast<float>(n[c]);
   }
 }
 

@@ -90,11 +90,7 @@ bool SeekingDecoder::decode_attributes() {
   }
   sets_ = std::move(*sets);
   const auto triangles = decoder_->triangles();
-  Vector<const AttributeSet*> drawable;
-  for (const AttributeSet& set : *sets_) {
-    if (is_drawable(set.header, triangles)) drawable.push_back(&set);
-  }
-  drawn_.emplace(std::move(drawable), triangles, decoder_->num_vertices());
+  drawn_.emplace(drawable_sets(*sets_, triangles), triangles, decoder_->num_vertices());
   return true;
 }
 
