@@ -152,8 +152,8 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
   }
   if (cutter.drops_attributes()) {
     std::printf(
-        "  attributes are dropped: they are predicted from positions that the cut changes. "
-        "Streams that\n  rlpcenc --component-groups or --layer-groups has made keep them\n");
+        "  attributes are dropped: they are predicted from positions that this cut changes; "
+        "encode with\n  --component-groups or --layer-groups to keep them\n");
   }
   if (!cutter.cuts_any())
     std::printf("  nothing was dropped: no GOF has more than requested\n");

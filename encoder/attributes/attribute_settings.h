@@ -13,8 +13,10 @@ struct AttributeSettings {
   bool dropped = false;  // no attribute unit
   bool exact = false;    // numbers as 32-bit floats, whatever the bits below
   // Bits of a texture coordinate after the point: 12 are 1/4096 of an image.
-  int uv_bits = 12;      // 1 to 16
-  int normal_bits = 8;   // of a coordinate of a unit vector, 2 to 16
+  int uv_bits = 12;  // 1 to 16
+  // Of a coordinate of a unit vector, 2 to 16. At 8, q-spider's normals take 3.8 kB and are off
+  // by 0.33 degrees RMS, 0.6 at most; at 7, 2.9 kB and twice that; at 10, 6.2 kB and a quarter.
+  int normal_bits = 8;
   int number_bits = 12;  // of other numbers, over their range, 1 to 16
   NormalChoice normals = NormalChoice::kAuto;
   // Whether values may be predicted from positions of the first frame. Streams that are to be

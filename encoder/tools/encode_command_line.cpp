@@ -89,7 +89,7 @@ N - 1 greatest depths, --layer-groups N of vertex layers: frames and details
 that rlpcinfo --extract can remove.
 
 --up-axis and --metres-per-unit become upAxis and metersPerUnit of the metadata,
-as USD names them; from glTF they come by themselves: Y and 1. They say what the
+as USD names them; from glTF, Y and 1 are noted anyway. They say what the
 positions of OUT are; --axes turns them.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
@@ -207,9 +207,10 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
       {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
       "Search effort: fast, medium (default), slow")
       ->group(kOutput);
-  app.add_option("--gof", line.gof,
-                 "Maximum frames per group, or `all` (default: 128, of several clips 512, with "
-                 "--profile high 256)")
+  app.add_option(
+         "--gof", line.gof,
+         "Maximum frames per group, or `all` (default: 128; 512 with several clips; 256 "
+         "with --profile high)")
       ->option_text("FRAMES")
       ->group(kOutput);
   app.add_flag("--low-delay", o.settings.low_delay,

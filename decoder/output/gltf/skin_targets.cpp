@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-// How far keys that are left out may turn normals, RMS: half a degree or so.
+// How far keys that are left out may turn normals, RMS: half a degree or so. Half or twice of
+// it change files by 0.01 % (cesium-man) at most.
 constexpr double kNormalTolerance = 0.01;
 
 // RMS of what a weight of 1 moves.

@@ -130,7 +130,7 @@ class AssetMaker {
   }
 
  private:
-  // OBJ files know no culling, and metals only by an extension.
+  // OBJ has no culling, and metalness only as an extension.
   Json json_of(const Mtl& mtl) {
     Json pbr = {{"metallicFactor", mtl.metalness.value_or(0.0)}};
     if (mtl.roughness) pbr["roughnessFactor"] = *mtl.roughness;
