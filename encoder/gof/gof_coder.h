@@ -78,7 +78,12 @@ struct EncodedGof {
 // of the last step is large; it can be released, and is computed again when needed.
 class GofCoder {
  public:
+  // Called with the fraction done, 0 to 1, of choices and first encoding; by any thread.
+  using Progress = std::function<void(double)>;
+
   virtual ~GofCoder() = default;
+  // For work that takes long; before the first call of another member.
+  virtual void set_progress(const Progress& /*progress*/) {}
   // Runs the analysis that encode() starts with, if expected_error() depends on it.
   virtual void analyse(double /*analysis_step*/) {}
   // Estimates the squared error of encode(step) from the last analysis. The ratio of actual to

@@ -14,6 +14,10 @@ GofKindSearch::GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Pre
   coders_.front() = kinds_.front()->make_coder(frames_);
 }
 
+void GofKindSearch::set_progress(const Progress& progress) {
+  coders_.front()->set_progress(progress);
+}
+
 void GofKindSearch::analyse(double analysis_step) { coders_[chosen_]->analyse(analysis_step); }
 
 std::optional<double> GofKindSearch::expected_error(double step) const {

@@ -19,6 +19,8 @@ class GofKindSearch : public GofCoder {
   // kinds: at least one, the most likely first. Keeps references to kinds and frames.
   GofKindSearch(const GofKinds& kinds, const GofFrames& frames, Preset preset);
 
+  // That of the most likely kind.
+  void set_progress(const Progress& progress) override;
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
   bool needs_frames(double step, double analysis_step) const override;

@@ -83,6 +83,15 @@ bool GofBatch::use_own_models() {
   return changed;
 }
 
+void GofBatch::set_done(Gof& gof, double done) {
+  const std::lock_guard lock(counting_);
+  if (!progress_ || done <= gof.done) return;
+  gof.done = done;
+  double sum = 0.0;
+  for (const Gof& any : gofs_) sum += any.done;
+  progress_(sum / static_cast<double>(gofs_.size()));
+}
+
 std::optional<InputError> GofBatch::read(Gof& gof) {
   if (!gof.frames.xyz.empty()) return std::nullopt;
   const std::lock_guard lock(reading_);
@@ -99,12 +108,16 @@ std::optional<InputError> GofBatch::prepare(Gof& gof, double step, double analys
   if (needed || gof.vertices == Vertices::kUndecided) {
     if (auto error = read(gof)) return error;
   }
-  if (!gof.coder) gof.coder = coding_.make_coder(gof.frames, is_last_resort_);
+  if (!gof.coder) {
+    gof.coder = coding_.make_coder(gof.frames, is_last_resort_);
+    gof.coder->set_progress([this, &gof](double done) { set_done(gof, done); });
+  }
   return std::nullopt;
 }
 
-std::optional<InputError> GofBatch::analyse(double analysis_step) {
+std::optional<InputError> GofBatch::analyse(double analysis_step, const Progress& progress) {
   if (!options_.keep_analyses) return std::nullopt;
+  progress_ = progress;
   return for_each_gof(gofs_.size(), [&](std::size_t g) -> std::optional<InputError> {
     Gof& gof = gofs_[g];
     if (auto error = prepare(gof, analysis_step, analysis_step)) return error;
@@ -209,7 +222,6 @@ std::optional<InputError> GofBatch::decide(const std::shared_ptr<const KeptModel
 std::optional<InputError> GofBatch::encode_some(GofSpan spans, double step,
                                                 double analysis_step,
                                                 std::shared_ptr<const KeptModel>& model,
-                                                const std::function<void()>& done,
                                                 Measured& measured) {
   const auto encode_own = [&](std::size_t i) -> std::optional<InputError> {
     Gof& gof = gofs_[spans.first + i];
@@ -217,7 +229,7 @@ std::optional<InputError> GofBatch::encode_some(GofSpan spans, double step,
     auto own = encode(gof, step, analysis_step);
     if (!own) return own.error();
     measured[spans.first + i] = std::move(*own);
-    done();
+    set_done(gof, 1.0);
     return std::nullopt;
   };
   if (auto error = for_each_gof(spans.count, encode_own)) return error;
@@ -241,7 +253,7 @@ std::optional<InputError> GofBatch::encode_some(GofSpan spans, double step,
         encode_with(*models[i], gof, step, std::numeric_limits<double>::infinity());
     if (!with_model) return with_model.error();
     measured[spans.first + i] = std::move(*with_model);
-    done();
+    set_done(gof, 1.0);
     return std::nullopt;
   });
 }
@@ -249,22 +261,17 @@ std::optional<InputError> GofBatch::encode_some(GofSpan spans, double step,
 InputResult<BatchTrial> GofBatch::encode(double step, double analysis_step,
                                          const Progress& progress) {
   Measured measured(gofs_.size());
-  std::mutex counting;
-  std::size_t count = 0;
-  const auto done = [&] {
-    const std::lock_guard lock(counting);
-    ++count;
-    if (progress) progress(static_cast<double>(count) / static_cast<double>(gofs_.size()));
-  };
+  progress_ = progress;
   std::shared_ptr<const KeptModel> model = options_.model;
   const auto num_spans = static_cast<std::uint32_t>(gofs_.size());
   const std::uint32_t together = coding_.has_models() ? options_.together : num_spans;
   for (std::uint32_t first = 0; first < num_spans; first += together) {
     const GofSpan spans{first, std::min(together, num_spans - first)};
-    if (auto error = encode_some(spans, step, analysis_step, model, done, measured)) {
+    if (auto error = encode_some(spans, step, analysis_step, model, measured)) {
       return *error;
     }
   }
+  for (Gof& gof : gofs_) gof.done = 0.0;
   BatchTrial trial;
   MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
   for (std::optional<MeasuredGof>& of_span : measured) {

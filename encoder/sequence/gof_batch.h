@@ -71,15 +71,17 @@ class GofBatch {
   bool uses_earlier_models() const;
   // From now on, each span has a skinned model of its own. False: so it was before.
   bool use_own_models();
+  // Called now and then with the fraction done of the analyses and the encoding that follows;
+  // by any thread, one at a time.
+  using Progress = std::function<void(double)>;
   // Analyses all GOFs if analyses are kept. Errors: those of the source.
-  std::optional<InputError> analyse(double analysis_step);
+  std::optional<InputError> analyse(double analysis_step, const Progress& progress = {});
   // Estimates the squared error of all GOFs at a step from their last analyses; empty if any
   // GOF has no estimate.
   std::function<double(double step)> expected_error() const;
-  // Called after each GOF with the fraction done; by any thread, one at a time.
-  using Progress = std::function<void(double)>;
   // Steps as in GofCoder::encode(). Errors: those of the source.
-  InputResult<BatchTrial> encode(double step, double analysis_step, const Progress& progress);
+  InputResult<BatchTrial> encode(double step, double analysis_step,
+                                 const Progress& progress = {});
 
  private:
   // Whose vertices a span has: not known before its first encoding.
@@ -91,6 +93,7 @@ class GofBatch {
     GofFrames frames;            // empty while they are not needed
     std::unique_ptr<GofCoder> coder;
     Vertices vertices = Vertices::kOwn;
+    double done = 0.0;  // fraction of its analysis and encoding
   };
 
   struct MeasuredGof {
@@ -101,6 +104,7 @@ class GofBatch {
   using Measured = std::vector<std::optional<MeasuredGof>>;  // [span]
   using Models = std::vector<std::shared_ptr<const KeptModel>>;
 
+  void set_done(Gof& gof, double done);
   std::optional<InputError> read(Gof& gof);
   std::optional<InputError> prepare(Gof& gof, double step, double analysis_step);
   InputResult<MeasuredGof> measure(Gof& gof, const EncodedGof& encoded);
@@ -112,13 +116,15 @@ class GofBatch {
   bool is_better(const MeasuredGof& with_model, const MeasuredGof& own) const;
   std::optional<InputError> encode_some(GofSpan spans, double step, double analysis_step,
                                         std::shared_ptr<const KeptModel>& model,
-                                        const std::function<void()>& done, Measured& measured);
+                                        Measured& measured);
 
   const SequenceCoding& coding_;
   FrameSource& source_;
   std::mutex reading_;  // held while a thread reads from the source
   Options options_;
   std::vector<Gof> gofs_;
+  std::mutex counting_;  // held while the fractions done are changed or read
+  Progress progress_;
   bool is_last_resort_ = false;
 };
 

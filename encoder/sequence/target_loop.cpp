@@ -51,21 +51,24 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
                                        std::uint32_t trials_before) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
   if (task.header.profile_idc >= kProfileHigh) search.set_costly();
+  std::uint32_t trials = trials_before;
+  const auto progress_of = [&](std::uint32_t trial) {
+    return [&task, trial](double done) {
+      if (task.progress) task.progress(trial, done);
+    };
+  };
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {
-    if (auto error = batch.analyse(search.analysis_step())) return *error;
+    if (auto error = batch.analyse(search.analysis_step(), progress_of(trials + 1)))
+      return *error;
     if (const auto expected = expected_kg(task, batch)) search.begin_at(expected);
   }
   std::optional<TargetResult> best;
-  std::uint32_t trials = trials_before;
   std::uint64_t bytes = 0;
   while (!search.finished()) {
     ++trials;
-    const auto progress = [&](double done) {
-      if (task.progress) task.progress(trials, done);
-    };
-    auto trial = batch.encode(search.step(), search.analysis_step(), progress);
+    auto trial = batch.encode(search.step(), search.analysis_step(), progress_of(trials));
     if (!trial) return trial.error();
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));

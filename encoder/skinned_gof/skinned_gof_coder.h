@@ -23,6 +23,7 @@ class SkinnedGofCoder : public GofCoder {
         has_followers_(frames.has_followers),
         bones_(context, frames) {}
 
+  void set_progress(const Progress& progress) override { bones_.set_progress(progress); }
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
   std::uint32_t expected_components() const override;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,6 +24,8 @@ class BoneSearch {
   // Keeps references to all arguments.
   BoneSearch(const SkinnedContext& context, const GofFrames& frames);
 
+  // Called after each stage with the fraction done, 0 to 1, of all work on the span.
+  void set_progress(const std::function<void(double)>& progress) { progress_ = progress; }
   // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
   // one that only translates.
   Rig guess_one_bone(double step);
@@ -91,6 +94,7 @@ class BoneSearch {
   double actual_to_expected_ = 1.0;
   bool is_compared_ = false;            // that is known
   std::optional<SkinnedAnalysis> one_;  // of a draft of a single bone
+  std::function<void(double)> progress_ = [](double) {};
 };
 
 }  // namespace rlpc
