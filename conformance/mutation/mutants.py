@@ -206,6 +206,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_CXX_FLAGS "-O0 -DNDEBUG -w -fwrapv -DRLPC_VERSION=\\\\\\"mutant\\\\\\"")
 find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(nlohmann_json REQUIRED)
 file(GLOB_RECURSE sources common/*.cpp decoder/*.cpp)
 list(FILTER sources EXCLUDE REGEX "c_api|/report/|/extract|/fuzz/|rlpcinfo|/one_thread.cpp")
@@ -216,5 +217,6 @@ target_precompile_headers(rlpcdec PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
 # Loading the precompiled header takes longer than most files take without it.
 list(FILTER sources EXCLUDE REGEX "/(rlpcdec|command_line|[a-z]*_verbs?)\\\\.cpp")
 set_source_files_properties(${sources} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
-target_link_libraries(rlpcdec PRIVATE ZLIB::ZLIB CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_link_libraries(rlpcdec PRIVATE
+  ZLIB::ZLIB CLI11::CLI11 Eigen3::Eigen nlohmann_json::nlohmann_json)
 """
