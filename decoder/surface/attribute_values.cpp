@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace rlpc {
@@ -34,8 +35,6 @@ bool make_unit(Vec3& v) {
   for (double& x : v) x /= length;
   return true;
 }
-
-constexpr std::uint32_t kNoCorner = 0xFFFFFFFF;
 
 // F.8.4: the vector of a point.
 std::array<float, 3> unit_vector(std::uint32_t u, std::uint32_t v, std::uint32_t bits) {
@@ -122,9 +121,12 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
     std::copy(numbers.begin(), numbers.end(), sums_.begin());
     return;
   }
+  if (!set.first_positions.empty()) {
+    keep_first();
+    return;
+  }
   faces_.resize(triangles.size());
   find_terms();
-  if (!set.first_positions.empty()) keep_deviations();
 }
 
 void FrameNormals::find_terms() {
@@ -171,73 +173,72 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
   }
 }
 
-// The normal as computed, an edge at a right angle to it, and what is left. False: there are
-// none.
-template <class Coordinate>
-bool FrameNormals::find_axes(std::span<const Coordinate> xyz, std::uint32_t normal,
-                             std::array<Vec3, 3>& axes) const {
-  const std::uint32_t c = corner_of_[normal];
-  if (c == kNoCorner) return false;
-  auto& [n, edge, third] = axes;
-  std::copy_n(&sums_[3 * std::size_t{normal}], 3, n.begin());
-  const Triangle& t = triangles_[c / 3];
-  edge = difference(xyz, t[c % 3], t[(c + 1) % 3]);
-  if (!make_unit(n)) return false;
-  const double along = dot(edge, n);
-  for (std::size_t k = 0; k < 3; ++k) edge[k] -= along * n[k];
-  if (!make_unit(edge)) return false;
-  third = cross(n, edge);
-  return true;
+void FrameNormals::keep_first() {
+  first_ = attribute_numbers(set_);
+  std::copy(first_.begin(), first_.end(), sums_.begin());
+  const std::size_t num_vertices = set_.first_positions.size() / 3;
+  Vector<std::uint32_t> place(num_vertices + 1);  // of the next corner of each vertex
+  for (const Triangle& t : triangles_) {
+    for (const std::uint32_t v : t) ++place[v + 1];
+  }
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  corners_.resize(3 * triangles_.size());
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) corners_[place[vertex_of(c)]++] = c;
 }
 
-void FrameNormals::keep_deviations() {
-  corner_of_.assign(count_, kNoCorner);
-  for (std::uint32_t c = 0; c < 3 * triangles_.size(); ++c) {
-    std::uint32_t& first = corner_of_[of_corner(c)];
-    if (first == kNoCorner) first = c;
+// The surface around a vertex: the edges and areas of its triangles.
+template <class Coordinate>
+LocalTurn FrameNormals::turn_of(std::span<const std::uint32_t> corners,
+                                std::span<const Coordinate> xyz) const {
+  const std::span<const std::int32_t> first = set_.first_positions;
+  LocalTurn turn;
+  for (const std::uint32_t c : corners) {
+    const Triangle& t = triangles_[c / 3];
+    const std::uint32_t v = t[c % 3];
+    const std::uint32_t p = t[(c + 1) % 3];
+    const std::uint32_t q = t[(c + 2) % 3];
+    const std::array<Vec3, 2> before{difference(first, v, p), difference(first, v, q)};
+    const std::array<Vec3, 2> after{difference(xyz, v, p), difference(xyz, v, q)};
+    for (std::size_t k = 0; k < 2; ++k) turn.add_edge(before[k], after[k]);
+    turn.add_area(cross(before[0], before[1]), cross(after[0], after[1]));
   }
-  const std::span<const std::int32_t> xyz = set_.first_positions;
-  add_up(xyz);
-  deviations_.resize(count_);
-  const Vector<float> numbers = attribute_numbers(set_);
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const float* const v = &numbers[3 * std::size_t{i}];
-    const Vec3 given{v[0], v[1], v[2]};
-    std::array<Vec3, 3> axes{};
-    if (find_axes(xyz, i, axes)) {
-      for (std::size_t k = 0; k < 3; ++k) deviations_[i][k] = dot(given, axes[k]);
-    } else {
-      deviations_[i] = given;
-      corner_of_[i] = kNoCorner;
-    }
-  }
+  turn.find();
+  return turn;
 }
 
 template <class Coordinate>
-void FrameNormals::turn_deviations(std::span<const Coordinate> xyz) {
-  for (std::uint32_t i = 0; i < deviations_.size(); ++i) {
-    const Vec3& d = deviations_[i];
-    std::array<Vec3, 3> axes{};
-    double* const sum = &sums_[3 * std::size_t{i}];
-    if (find_axes(xyz, i, axes)) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        sum[k] = d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k];
-      }
-    } else if (corner_of_[i] == kNoCorner) {
-      std::copy(d.begin(), d.end(), sum);
+void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
+  const std::span<const std::uint32_t> all = corners_;
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin;
+    while (end < all.size() && vertex_of(all[end]) == vertex_of(all[begin])) ++end;
+    const auto corners = all.subspan(begin, end - begin);
+    const LocalTurn turn = turn_of(corners, xyz);
+    for (const std::uint32_t c : corners) {
+      const std::size_t i = 3 * std::size_t{of_corner(c)};
+      const Vec3 normal = turn.turned({first_[i], first_[i + 1], first_[i + 2]});
+      std::copy(normal.begin(), normal.end(), &sums_[i]);
     }
+    begin = end;
+  }
+}
+
+template <class Coordinate>
+void FrameNormals::find_sums(std::span<const Coordinate> xyz) {
+  if (!first_.empty()) {
+    turn_first(xyz);
+  } else if (!faces_.empty()) {
+    add_up(xyz);
   }
 }
 
 std::span<const double> FrameNormals::sums(std::span<const float> xyz) {
-  if (!faces_.empty()) add_up(xyz);
-  turn_deviations(xyz);
+  find_sums(xyz);
   return sums_;
 }
 
 std::span<const double> FrameNormals::sums(std::span<const std::int32_t> positions) {
-  if (!faces_.empty()) add_up(positions);
-  turn_deviations(positions);
+  find_sums(positions);
   return sums_;
 }
 

@@ -9,6 +9,7 @@
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
 #include "common/owned.h"
+#include "decoder/surface/local_turn.h"
 
 namespace rlpc {
 
@@ -33,42 +34,44 @@ class FrameNormals {
   std::uint32_t count() const { return count_; }
   // Index of the normal at corner 3 * t + k.
   std::uint32_t of_corner(std::size_t corner) const {
-    return set_.value_of_corner.empty() ? triangles_[corner / 3][corner % 3]
-                                        : set_.value_of_corner[corner];
+    return set_.value_of_corner.empty() ? vertex_of(corner) : set_.value_of_corner[corner];
   }
   // [count()][3], of any length, from the vertices of a frame, in units of the caller or of the
   // grid; valid until the next call, which allocates nothing. Time: in proportion to the
   // corners. Unit vectors of the stream, which are those of the first frame, turn with the
-  // surface in others if the set has faces; without, they are given as they are.
+  // surface around their vertex in others if the set has its positions; without, they are given
+  // as they are.
   std::span<const double> sums(std::span<const float> xyz);
   std::span<const double> sums(std::span<const std::int32_t> positions);
   // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3].
   void compute(std::span<const float> xyz, std::span<float> normals);
 
  private:
-  using Vec3 = std::array<double, 3>;
-
   template <class Coordinate>
   void add_up(std::span<const Coordinate> xyz);
-  template <class Coordinate>
-  bool find_axes(std::span<const Coordinate> xyz, std::uint32_t normal,
-                 std::array<Vec3, 3>& axes) const;
   void find_terms();
-  void keep_deviations();
+  void keep_first();
+  std::uint32_t vertex_of(std::size_t corner) const {
+    return triangles_[corner / 3][corner % 3];
+  }
   template <class Coordinate>
-  void turn_deviations(std::span<const Coordinate> xyz);
+  LocalTurn turn_of(std::span<const std::uint32_t> corners,
+                    std::span<const Coordinate> xyz) const;
+  template <class Coordinate>
+  void turn_first(std::span<const Coordinate> xyz);
+  template <class Coordinate>
+  void find_sums(std::span<const Coordinate> xyz);
 
   const AttributeSet& set_;
   std::span<const Triangle> triangles_;
   std::uint32_t count_ = 0;
   // Each face once at each of its normals, unless angles are the weights.
   Vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // normal, face
-  Vector<Vec3> faces_;
+  Vector<std::array<double, 3>> faces_;
   Vector<double> sums_;
-  // Of unit vectors with faces: a corner at each normal, and the vector of the first frame on
-  // the axes that the surface has there.
-  Vector<std::uint32_t> corner_of_;
-  Vector<Vec3> deviations_;
+  // Of unit vectors that turn: those of the first frame, and all corners, by vertex.
+  Vector<float> first_;
+  Vector<std::uint32_t> corners_;
 };
 
 }  // namespace rlpc

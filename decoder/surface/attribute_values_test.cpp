@@ -93,7 +93,7 @@ TEST(FrameNormals, WithoutASurfaceThereIsStillANormal) {
   AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
   FrameNormals collapses(set, kSquare, 4);
   const std::vector<float> nothing(12, 5.0F);
-  expect_near(normal_at(collapses, nothing, 1), {0.0, 0.0, 1.0});
+  expect_near(normal_at(collapses, nothing, 1), {1.0, 0.0, 0.0});
   set.first_positions.assign(12, 5);
   FrameNormals begins_so(set, kSquare, 4);
   expect_near(normal_at(begins_so, turned(0.5), 1), {1.0, 0.0, 0.0});

@@ -1,0 +1,137 @@
+#include "decoder/surface/local_turn.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace rlpc {
+namespace {
+
+using Vec3 = LocalTurn::Vec3;
+using Vec4 = std::array<double, 4>;
+using Matrix4 = std::array<Vec4, 4>;
+
+// Relative to what it would be for a rotation that is certain.
+constexpr double kUncertain = 1e-12;
+
+double square_of(const Vec3& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+// Horn's matrix, of the products of vectors. Its trace is 0.
+Matrix4 horn_matrix(const std::array<Vec3, 3>& s) {
+  const double x = s[1][2] - s[2][1];
+  const double y = s[2][0] - s[0][2];
+  const double z = s[0][1] - s[1][0];
+  const double xy = s[0][1] + s[1][0];
+  const double yz = s[1][2] + s[2][1];
+  const double zx = s[2][0] + s[0][2];
+  return {{{s[0][0] + s[1][1] + s[2][2], x, y, z},
+           {x, s[0][0] - s[1][1] - s[2][2], xy, zx},
+           {y, xy, s[1][1] - s[0][0] - s[2][2], yz},
+           {z, zx, yz, s[2][2] - s[0][0] - s[1][1]}}};
+}
+
+// Of the matrix without a row and a column, with its sign.
+double cofactor(const Matrix4& m, std::size_t row, std::size_t column) {
+  std::array<Vec3, 3> rest{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      rest[i][j] = m[i + (i >= row ? 1 : 0)][j + (j >= column ? 1 : 0)];
+    }
+  }
+  const double determinant = rest[0][0] * (rest[1][1] * rest[2][2] - rest[1][2] * rest[2][1]) -
+                             rest[0][1] * (rest[1][0] * rest[2][2] - rest[1][2] * rest[2][0]) +
+                             rest[0][2] * (rest[1][0] * rest[2][1] - rest[1][1] * rest[2][0]);
+  return (row + column) % 2 == 0 ? determinant : -determinant;
+}
+
+// The largest root of the characteristic polynomial x^4 + c2 x^2 + c1 x + c0, from a bound of
+// it.
+double largest_eigenvalue(const Matrix4& m, double bound) {
+  constexpr int kSteps = 50;            // fixed: more than a double root takes
+  constexpr double kSmallStep = 1e-13;  // fixed: of the bound; further ones are rounding
+  double c2 = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) c2 -= 0.5 * m[i][j] * m[i][j];
+  }
+  double c1 = 0.0;
+  double c0 = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    c1 -= cofactor(m, i, i);
+    c0 += m[0][i] * cofactor(m, 0, i);
+  }
+  double x = bound;
+  for (int i = 0; i < kSteps; ++i) {
+    const double value = ((x * x + c2) * x + c1) * x + c0;
+    const double slope = (4 * x * x + 2 * c2) * x + c1;
+    if (!(slope > 0.0)) break;
+    const double next = x - value / slope;
+    const bool is_last = !(x - next > kSmallStep * bound);
+    x = next;
+    if (is_last) break;
+  }
+  return x;
+}
+
+}  // namespace
+
+void LocalTurn::add_edge(const Vec3& before, const Vec3& after) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) products_[i][j] += before[i] * after[j];
+  }
+  squares_before_ += square_of(before);
+  squares_after_ += square_of(after);
+}
+
+void LocalTurn::add_area(const Vec3& before, const Vec3& after) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    area_before_[i] += before[i];
+    area_after_[i] += after[i];
+  }
+}
+
+void LocalTurn::find() {
+  const double root_before = std::sqrt(std::sqrt(square_of(area_before_)));
+  const double root_after = std::sqrt(std::sqrt(square_of(area_after_)));
+  if (root_before > 0.0 && root_after > 0.0) {
+    for (double& x : area_before_) x /= root_before;
+    for (double& x : area_after_) x /= root_after;
+    add_edge(area_before_, area_after_);
+  }
+  // By Cauchy and Schwarz; reached where vectors are turned and scaled.
+  const double bound = std::sqrt(squares_before_ * squares_after_);
+  if (!(bound > 0.0)) return;
+  for (Vec3& row : products_) {
+    for (double& x : row) x /= bound;
+  }
+  Matrix4 m = horn_matrix(products_);
+  const double largest = largest_eigenvalue(m, 1.0);
+  for (std::size_t i = 0; i < 4; ++i) m[i][i] -= largest;
+  // The cofactors are products of the parts of the quaternion, times a common factor.
+  std::size_t best = 0;
+  Vec4 diagonal{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    diagonal[i] = std::abs(cofactor(m, i, i));
+    if (diagonal[i] > diagonal[best]) best = i;
+  }
+  if (!(diagonal[best] > kUncertain)) return;
+  Vec4 q{};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    q[i] = cofactor(m, best, i);
+    squares += q[i] * q[i];
+  }
+  const auto [w, x, y, z] = q;
+  const double two = 2.0 / squares;
+  rotation_ = {{{1 - two * (y * y + z * z), two * (x * y - w * z), two * (z * x + w * y)},
+                {two * (x * y + w * z), 1 - two * (z * z + x * x), two * (y * z - w * x)},
+                {two * (z * x - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)}}};
+}
+
+LocalTurn::Vec3 LocalTurn::turned(const Vec3& vector) const {
+  Vec3 sum{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) sum[i] += rotation_[i][j] * vector[j];
+  }
+  return sum;
+}
+
+}  // namespace rlpc
