@@ -62,8 +62,12 @@ constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
   }
   return all;
 }
-inline constexpr std::array<TriangulationList, kMaxRing + 1> kTriangulations =
-    triangulate_all();
-static_assert(kTriangulations[6].size == 14 && kTriangulations[7].size == 42);
+static_assert(triangulate_all()[6].size == 14 && triangulate_all()[7].size == 42);
+
+// Made when they are first needed: as a constant, they are 13 kB of a decoder.
+inline const std::array<TriangulationList, kMaxRing + 1>& triangulations() {
+  static const std::array<TriangulationList, kMaxRing + 1> all = triangulate_all();
+  return all;
+}
 
 }  // namespace rlpc

@@ -298,7 +298,7 @@ const Triangulation* LayerMaker::choose_triangulation(const Ring& ring, EdgeSet 
   }
   const Triangulation* best = nullptr;
   std::int32_t least = kForbidden;
-  const TriangulationList& all = kTriangulations[ring.size];
+  const TriangulationList& all = triangulations()[ring.size];
   for (std::size_t t = 0; t < all.size; ++t) {
     const Triangulation& triangulation = all.items[t];
     if ((triangulation.edges & barred) != 0) continue;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <utility>
 
 namespace rlpc {
@@ -133,7 +132,7 @@ void FrameNormals::find_terms() {
   if (set_.header.weight == SmoothingWeight::kAngle) return;
   terms_.reserve(3 * triangles_.size());
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
-    terms_.emplace_back(of_corner(c), set_.face_of_triangle[c / 3]);
+    terms_.push_back({of_corner(c), set_.face_of_triangle[c / 3]});
   }
   std::sort(terms_.begin(), terms_.end());
   terms_.erase(std::unique(terms_.begin(), terms_.end()), terms_.end());
@@ -176,14 +175,8 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
 void FrameNormals::keep_first() {
   first_ = attribute_numbers(set_);
   std::copy(first_.begin(), first_.end(), sums_.begin());
-  const std::size_t num_vertices = set_.first_positions.size() / 3;
-  Vector<std::uint32_t> place(num_vertices + 1);  // of the next corner of each vertex
-  for (const Triangle& t : triangles_) {
-    for (const std::uint32_t v : t) ++place[v + 1];
-  }
-  std::partial_sum(place.begin(), place.end(), place.begin());
-  corners_.resize(3 * triangles_.size());
-  for (std::uint32_t c = 0; c < corners_.size(); ++c) corners_[place[vertex_of(c)]++] = c;
+  corners_ = CornersOfVertices(triangles_,
+                               static_cast<std::uint32_t>(set_.first_positions.size() / 3));
 }
 
 // The surface around a vertex: the edges and areas of its triangles.
@@ -208,18 +201,14 @@ LocalTurn FrameNormals::turn_of(std::span<const std::uint32_t> corners,
 
 template <class Coordinate>
 void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
-  const std::span<const std::uint32_t> all = corners_;
-  for (std::size_t begin = 0; begin < all.size();) {
-    std::size_t end = begin;
-    while (end < all.size() && vertex_of(all[end]) == vertex_of(all[begin])) ++end;
-    const auto corners = all.subspan(begin, end - begin);
+  for (std::uint32_t v = 0; v + 1 < corners_.begin.size(); ++v) {
+    const std::span<const std::uint32_t> corners = corners_.of(v);
     const LocalTurn turn = turn_of(corners, xyz);
     for (const std::uint32_t c : corners) {
       const std::size_t i = 3 * std::size_t{of_corner(c)};
       const Vec3 normal = turn.turned({first_[i], first_[i + 1], first_[i + 2]});
       std::copy(normal.begin(), normal.end(), &sums_[i]);
     }
-    begin = end;
   }
 }
 

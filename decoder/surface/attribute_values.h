@@ -4,11 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
 #include "common/owned.h"
+#include "decoder/surface/corners_of_vertices.h"
 #include "decoder/surface/local_turn.h"
 
 namespace rlpc {
@@ -34,7 +34,8 @@ class FrameNormals {
   std::uint32_t count() const { return count_; }
   // Index of the normal at corner 3 * t + k.
   std::uint32_t of_corner(std::size_t corner) const {
-    return set_.value_of_corner.empty() ? vertex_of(corner) : set_.value_of_corner[corner];
+    return set_.value_of_corner.empty() ? triangles_[corner / 3][corner % 3]
+                                        : set_.value_of_corner[corner];
   }
   // [count()][3], of any length, from the vertices of a frame, in units of the caller or of the
   // grid; valid until the next call, which allocates nothing. Time: in proportion to the
@@ -51,9 +52,6 @@ class FrameNormals {
   void add_up(std::span<const Coordinate> xyz);
   void find_terms();
   void keep_first();
-  std::uint32_t vertex_of(std::size_t corner) const {
-    return triangles_[corner / 3][corner % 3];
-  }
   template <class Coordinate>
   LocalTurn turn_of(std::span<const std::uint32_t> corners,
                     std::span<const Coordinate> xyz) const;
@@ -66,12 +64,12 @@ class FrameNormals {
   std::span<const Triangle> triangles_;
   std::uint32_t count_ = 0;
   // Each face once at each of its normals, unless angles are the weights.
-  Vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // normal, face
+  Vector<std::array<std::uint32_t, 2>> terms_;  // normal, face
   Vector<std::array<double, 3>> faces_;
   Vector<double> sums_;
-  // Of unit vectors that turn: those of the first frame, and all corners, by vertex.
+  // Of unit vectors that turn: those of the first frame, and the corners around which they do.
   Vector<float> first_;
-  Vector<std::uint32_t> corners_;
+  CornersOfVertices corners_;
 };
 
 }  // namespace rlpc

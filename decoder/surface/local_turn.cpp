@@ -105,25 +105,21 @@ void LocalTurn::find() {
   Matrix4 m = horn_matrix(products_);
   const double largest = largest_eigenvalue(m, 1.0);
   for (std::size_t i = 0; i < 4; ++i) m[i][i] -= largest;
-  // The cofactors are products of the parts of the quaternion, times a common factor.
-  std::size_t best = 0;
-  Vec4 diagonal{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    diagonal[i] = std::abs(cofactor(m, i, i));
-    if (diagonal[i] > diagonal[best]) best = i;
-  }
-  if (!(diagonal[best] > kUncertain)) return;
-  Vec4 q{};
+  // The cofactors are the products of the parts of the quaternion, times their sum of squares.
+  Matrix4 a{};
   double squares = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
-    q[i] = cofactor(m, best, i);
-    squares += q[i] * q[i];
+    for (std::size_t j = 0; j < 4; ++j) a[i][j] = cofactor(m, i, j);
+    squares += a[i][i];
   }
-  const auto [w, x, y, z] = q;
-  const double two = 2.0 / squares;
-  rotation_ = {{{1 - two * (y * y + z * z), two * (x * y - w * z), two * (z * x + w * y)},
-                {two * (x * y + w * z), 1 - two * (z * z + x * x), two * (y * z - w * x)},
-                {two * (z * x - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)}}};
+  if (!(std::abs(squares) > kUncertain)) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    rotation_[i][i] = (a[0][0] + a[i + 1][i + 1] - a[j + 1][j + 1] - a[k + 1][k + 1]) / squares;
+    rotation_[i][j] = 2.0 * (a[i + 1][j + 1] - a[0][k + 1]) / squares;
+    rotation_[j][i] = 2.0 * (a[i + 1][j + 1] + a[0][k + 1]) / squares;
+  }
 }
 
 LocalTurn::Vec3 LocalTurn::turned(const Vec3& vector) const {

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <numeric>
 
+#include "decoder/surface/corners_of_vertices.h"
+
 namespace rlpc {
 namespace {
 
@@ -43,26 +45,6 @@ Indices values_of_corners(const AttributeSet& set, std::span<const Triangle> tri
   return values;
 }
 
-// The corners of each vertex: corners[begin[v]] to corners[begin[v + 1] - 1].
-struct CornersOfVertices {
-  Indices begin;
-  Indices corners;
-};
-
-CornersOfVertices corners_of_vertices(std::span<const Triangle> triangles,
-                                      std::uint32_t num_vertices) {
-  CornersOfVertices all{Indices(std::size_t{num_vertices} + 1), Indices(3 * triangles.size())};
-  for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) ++all.begin[v + 1];
-  }
-  std::partial_sum(all.begin.begin(), all.begin.end(), all.begin.begin());
-  Indices next(all.begin.begin(), all.begin.end() - 1);
-  for (std::uint32_t c = 0; c < all.corners.size(); ++c) {
-    all.corners[next[triangles[c / 3][c % 3]]++] = c;
-  }
-  return all;
-}
-
 }  // namespace
 
 SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t num_vertices,
@@ -77,13 +59,12 @@ SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t 
     }
     return 0;
   };
-  CornersOfVertices all = corners_of_vertices(triangles, num_vertices);
+  CornersOfVertices all(triangles, num_vertices);
   SplitVertices split;
   split.value_of_vertex.resize(sets.size());
   split.triangles.assign(triangles.begin(), triangles.end());
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
-    const auto corners =
-        std::span(all.corners).subspan(all.begin[v], all.begin[v + 1] - all.begin[v]);
+    const std::span<std::uint32_t> corners = all.of(v);
     std::sort(corners.begin(), corners.end(), [&](std::uint32_t c, std::uint32_t d) {
       const int order = compare(c, d);
       return order == 0 ? c < d : order < 0;

@@ -30,7 +30,7 @@ constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
 // MotionWalk( v, i ), by the sizes of ring and near vertices.
 using Walks =
     std::array<std::array<std::array<std::int32_t, kMaxMotions>, kMaxNear + 1>, kMaxRing + 1>;
-constexpr Walks kWalks = [] {
+Walks make_walks() {
   Walks walks{};
   for (std::size_t n = 0; n <= kMaxRing; ++n) {
     for (std::size_t m = 0; m <= kMaxNear; ++m) {
@@ -40,7 +40,12 @@ constexpr Walks kWalks = [] {
     }
   }
   return walks;
-}();
+}
+// Made when they are first needed: as a constant, they are 10 kB of a decoder.
+const Walks& all_walks() {
+  static const Walks walks = make_walks();
+  return walks;
+}
 
 template <std::int64_t kCount>
 std::int64_t mean_of(std::int64_t sum) {
@@ -256,7 +261,7 @@ FilterState FrameRecon::filter(const Learned& learned, std::uint32_t v) const {
   state.stride = padded(state.size);
   state.weight = &learned.filters[first_[v]];
   state.spread = state.weight + state.stride;
-  state.walk = kWalks[mesh_.ring(v).size()][near_[v].size()].data();
+  state.walk = all_walks()[mesh_.ring(v).size()][near_[v].size()].data();
   return state;
 }
 
