@@ -7,6 +7,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("comparison", "figures")]
+import codec_table  # noqa: E402
 import inputs  # noqa: E402
 import measure  # noqa: E402
 import plots  # noqa: E402
@@ -71,17 +72,12 @@ def published_points(name, points, colour):
     return plots.Series(name, list(points), colour, "none", "square")
 
 
-def find_sequences(words):
-    """The bundled elephant; bundled animations by name; or pairs of files (scripts/compare)."""
+def find_inputs(words):
+    """The bundled elephant; bundled animations by name; or anything that rlpcenc reads."""
     bundled = ROOT / "streams" / "inputs"
-    paths = [str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file() and
-             not pathlib.Path(word).exists() else word for word in words or ["elephant"]]
-    found = inputs.find(paths)
-    for one in found:
-        if not one.is_pair:
-            raise measure.Failure(f"{one.path}: expected a mesh (.obj) and a point cache (.pc2); "
-                                  "rlpcdec writes both")
-    return [measure.open_sequence(one.path, one.points) for one in found]
+    return inputs.find(
+        str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file() and
+        not pathlib.Path(word).exists() else word for word in words or ["elephant"])
 
 
 def main(paper, description, reproduction):
@@ -94,9 +90,11 @@ def main(paper, description, reproduction):
     parser.add_argument("sequences", nargs="*")
     options = parser.parse_args()
     try:
-        sequences = find_sequences(options.sequences)
+        root = options.folder or ROOT / "build" / "reproduce" / paper
+        sequences = inputs.open_all(find_inputs(options.sequences),
+                                    codec_table.Toolbox(options.bin.resolve()), root / "inputs")
         for sequence in sequences:
-            folder = options.folder or ROOT / "build" / "reproduce" / paper
+            folder = root
             if options.folder is None or len(sequences) > 1:
                 folder = folder / sequence.name
             folder.mkdir(parents=True, exist_ok=True)

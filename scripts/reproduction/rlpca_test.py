@@ -5,7 +5,7 @@ import csv
 import math
 import unittest
 
-from reproduction_testing import Reproduced, main, runs
+from reproduction_testing import INPUTS, Reproduced, main, runs
 import rlpca_claims as claims
 import rlpca_paths as paths
 import rlpca_published as published
@@ -128,6 +128,11 @@ class SmallRun(Reproduced):
         self.assertTrue(all("-" not in row for row in cow))
         self.expect_pages(["curves", "clusters", "frames", "frames_settings", "paths_world",
                            "paths_local"])
+
+    def test_other_formats(self):
+        said = self.reproduce("--quick", INPUTS / "tulip.glb").stdout
+        self.assertRegex(said, r"High takes -\d+ % to -\d+ % bits against ORLPCA")
+        self.assertIn("tulip", (self.out / "report.md").read_text(encoding="utf-8"))
 
     def test_failures(self):
         lone = self.folder / "lone.obj"
