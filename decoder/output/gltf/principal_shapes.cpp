@@ -3,6 +3,7 @@
 #include "decoder/output/gltf/principal_shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -106,15 +107,62 @@ void thin_out(Eigen::Ref<Eigen::VectorXf> column, double length) {
   }
 }
 
-}  // namespace
+// The size of a file with the targets so far.
+class Budget {
+ public:
+  // price: null: only the number of targets counts.
+  Budget(const TargetPrice* price, const MatrixXf& moves, bool has_short_weights)
+      : price_(price),
+        num_vertices_(static_cast<double>(moves.rows()) / 3),
+        num_frames_(static_cast<double>(moves.cols())),
+        weights_(num_frames_ * (has_short_weights ? 2 : 4)) {
+    if (price_ == nullptr) return;
+    bytes_ = price_->file_bytes;
+    of_target_ = kVertexBytes * price_->written_vertices * num_vertices_ + weights_;
+  }
 
-PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
-  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
-  return principal_shapes(std::move(moves), rms, max_targets, unit_of(farthest));
-}
+  // What is made small, the first number first: by what squares exceed those of the other
+  // errors; bytes times errors, squared, or without a price, minus the number of targets.
+  // count: of further targets; left: squares of what they leave.
+  std::array<double, 2> loss(Index count, double left) const {
+    if (price_ == nullptr) return {0, -static_cast<double>(count)};
+    const double bytes = bytes_ + static_cast<double>(count) * of_target_;
+    const double other = price_->other_rms * price_->other_rms;
+    const double own = left / (num_vertices_ * num_frames_);
+    return {std::max(0.0, own - other), bytes * bytes * (other + own)};
+  }
 
-PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
-                                 float unit) {
+  // Further ones are taken to be like these.
+  void add(const MatrixXf& targets) {
+    if (price_ == nullptr) return;
+    const auto count = static_cast<double>(targets.cols());
+    double bytes = count * weights_;
+    for (Index k = 0; k < targets.cols(); ++k) {
+      double moved = 0;
+      for (Index i = 0; i < targets.rows(); i += 3) {
+        if (!targets.col(k).segment<3>(i).isZero(0)) ++moved;
+      }
+      bytes += price_->written_vertices *
+               std::min(kVertexBytes * num_vertices_, kSparseVertexBytes * moved);
+    }
+    bytes_ += bytes;
+    of_target_ = bytes / count;
+  }
+
+ private:
+  static constexpr double kVertexBytes = 4;        // three, and one to fill up
+  static constexpr double kSparseVertexBytes = 5;  // with an index of 16 bits
+
+  const TargetPrice* price_;
+  double num_vertices_;
+  double num_frames_;
+  double weights_;  // of a target, bytes
+  double bytes_ = 0;
+  double of_target_ = 0;
+};
+
+PrincipalShapes shapes_of(MatrixXf moves, double rms, std::size_t max_targets, float unit,
+                          const TargetPrice* price) {
   const double places =
       static_cast<double>(moves.rows()) / 3 * static_cast<double>(moves.cols());
   const double wanted = rms * rms * places;
@@ -123,25 +171,34 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
   shapes.weights.resize(0, moves.cols());
   shapes.unit = unit;
   shapes.has_short_weights = rms > 2 * 127 * unit * kWeightUnit;
+  Budget budget(price, moves, shapes.has_short_weights);
   double left = moves.cast<double>().squaredNorm();
   const auto most = static_cast<Index>(max_targets);
   while (left > wanted && shapes.targets.cols() < most) {
     MatrixXf block = principal_columns(moves, 61 * shapes.targets.cols());
-    Index count = 0;
-    const Index room = std::min(block.cols(), most - shapes.targets.cols());
-    while (count < room && round_to_bytes(block.col(count), unit)) ++count;
-    if (count == 0) break;
-    // The fewest of the block that are enough.
-    block.conservativeResize(Eigen::NoChange, count);
+    Index room = 0;
+    const Index columns = std::min(block.cols(), most - shapes.targets.cols());
+    while (room < columns && round_to_bytes(block.col(room), unit)) ++room;
+    // The fewest of the block that are enough, or as many as are worth it.
+    block.conservativeResize(Eigen::NoChange, room);
     const MatrixXd squares = products_of(block, block);
     const MatrixXd products = products_of(block, moves);
     MatrixXd weights;
-    for (Index k = 1; k <= count; ++k) {
-      weights = squares.topLeftCorner(k, k).ldlt().solve(products.topRows(k));
-      const double gain = weights.cwiseProduct(products.topRows(k)).sum();
-      if (k < count && left - gain > wanted) continue;
-      count = k;
+    Index count = 0;
+    Index tried = 0;
+    std::array<double, 2> least = budget.loss(0, left);
+    for (double rest = left; tried < room && rest > wanted;) {
+      ++tried;
+      const auto some = products.topRows(tried);
+      const MatrixXd of_some = squares.topLeftCorner(tried, tried).ldlt().solve(some);
+      rest = left - of_some.cwiseProduct(some).sum();
+      const auto loss = budget.loss(tried, rest);
+      if (!(loss < least)) continue;
+      least = loss;
+      count = tried;
+      weights = of_some;
     }
+    if (count == 0) break;
     block.conservativeResize(Eigen::NoChange, count);
     for (Index k = 0; k < count; ++k) {
       thin_out(block.col(k), kThinned * rms / rms_of(weights.row(k)));
@@ -156,13 +213,33 @@ PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_tar
     const double before = left;
     left = moves.cast<double>().squaredNorm();
     if (!(left < before)) break;
+    budget.add(block);
     const Index first = shapes.targets.cols();
     shapes.targets.conservativeResize(Eigen::NoChange, first + count);
     shapes.targets.rightCols(count) = block;
     shapes.weights.conservativeResize(first + count, Eigen::NoChange);
     shapes.weights.bottomRows(count) = rounded;
+    if (count < tried) break;
   }
   return shapes;
+}
+
+}  // namespace
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
+  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
+  return shapes_of(std::move(moves), rms, max_targets, unit_of(farthest), nullptr);
+}
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
+                                 float unit) {
+  return shapes_of(std::move(moves), rms, max_targets, unit, nullptr);
+}
+
+PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
+                                 const TargetPrice& price) {
+  const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
+  return shapes_of(std::move(moves), rms, max_targets, unit_of(farthest), &price);
 }
 
 }  // namespace rlpc

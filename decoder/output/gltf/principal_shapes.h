@@ -17,9 +17,21 @@ struct PrincipalShapes {
   bool has_short_weights = false;
 };
 
+// What targets are worth: what they leave is no more than the errors that they do not lower,
+// and from there on, there are as many as make the product of the size of the file and the RMS
+// of all errors of a vertex smallest.
+struct TargetPrice {
+  double file_bytes = 0;        // without targets
+  double written_vertices = 1;  // for each vertex
+  double other_rms = 0;         // of errors that targets leave as they are
+};
+
 // About as few targets as possible with which the RMS of what remains of the moves of a vertex
 // is at most `rms`; no more than max_targets. moves: [3 * num_vertices][frame].
 PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets);
+// No more than are worth their price.
+PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets,
+                                 const TargetPrice& price);
 // With that unit.
 PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets,
                                  float unit);

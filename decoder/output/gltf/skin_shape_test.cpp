@@ -113,6 +113,33 @@ TEST(PrincipalShapes, HaveBytesAsValues) {
   }
 }
 
+// Of a few to many motions, each smaller than the one before.
+TEST(PrincipalShapes, EndWhereFurtherOnesAreNotWorthTheirBytes) {
+  std::mt19937 random(20);
+  std::normal_distribution<float> normal;
+  constexpr Eigen::Index kMotions = 30;
+  Eigen::MatrixXf shapes(900, kMotions);
+  Eigen::MatrixXf weights(kMotions, 60);
+  for (float& x : shapes.reshaped()) x = normal(random);
+  for (float& x : weights.reshaped()) x = normal(random);
+  for (Eigen::Index k = 0; k < kMotions; ++k)
+    shapes.col(k) *= std::pow(0.8F, static_cast<float>(k));
+  const Eigen::MatrixXf moves = shapes * weights;
+  const auto priced = [&](double file_bytes, double other_rms) {
+    const PrincipalShapes found =
+        principal_shapes(moves, 0.25 * other_rms, 100, {file_bytes, 1, other_rms});
+    const Eigen::MatrixXf left = moves - found.targets * found.weights;
+    EXPECT_LT(left.norm() / std::sqrt(300.0F * 60), 1.01 * other_rms);
+    return found.targets.cols();
+  };
+  const Eigen::Index all = principal_shapes(moves, 0.25, 100).targets.cols();
+  const Eigen::Index in_large_file = priced(1e7, 1);
+  const Eigen::Index in_small_file = priced(1e4, 1);
+  EXPECT_LE(in_large_file, all);
+  EXPECT_LT(in_small_file, in_large_file);
+  EXPECT_GT(priced(1e4, 0.3), in_small_file);
+}
+
 TEST(PrincipalShapes, LeaveOutVerticesThatHardlyMove) {
   Eigen::MatrixXf moves(90, 40);
   for (Eigen::Index f = 0; f < 40; ++f) {
