@@ -19,7 +19,8 @@ std::string member(const char* name, std::int64_t value) {
 }
 
 // The header as JSON, with the names of the syntax elements.
-std::string describe(const Decoder& decoder) {
+std::string describe(SeekingDecoder& seeking) {
+  const Decoder& decoder = seeking.decoder();
   const SequenceHeader& h = decoder.header();
   const auto& origin = h.grid.origin;
   std::string text = "{";
@@ -28,7 +29,7 @@ std::string describe(const Decoder& decoder) {
            {"level_idc", h.level_idc},
            {"num_vertices", decoder.num_vertices()},
            {"num_triangles", static_cast<std::int64_t>(decoder.triangles().size())},
-           {"num_frames", decoder.num_frames().value_or(1)},
+           {"num_frames", seeking.num_frames()},
            {"position_bits", h.position_bits},
            {"frame_rate_numerator", h.frame_rate.numerator},
            {"frame_rate_denominator", h.frame_rate.denominator},
@@ -78,7 +79,7 @@ Stream* stream_new(double num_bytes, double max_memory_bytes, std::uint32_t coar
 RLPC_EXPORT(stream_open) bool stream_open(Stream* stream) { return stream->decoder.open(); }
 
 RLPC_EXPORT(stream_describe) const char* stream_describe(Stream* stream) {
-  stream->text = rlpc::describe(stream->decoder.decoder());
+  stream->text = rlpc::describe(stream->decoder);
   return stream->text.c_str();
 }
 

@@ -43,6 +43,17 @@ bool SeekingDecoder::find_index() {
   return true;
 }
 
+std::uint32_t SeekingDecoder::num_frames() {
+  std::uint32_t frames = decoder_->num_frames().value_or(0);
+  if (frames > 0) return frames;
+  while (frames < kMaxFrames) {
+    const auto gof = decoder_->gof_of(frames);
+    if (!gof) break;
+    frames = gof->first_frame + gof->num_frames;
+  }
+  return std::max(frames, std::uint32_t{1});
+}
+
 bool SeekingDecoder::decode_with(std::optional<Decoder>& decoder, std::uint32_t frame) {
   if (failed_ || decoder->position() != frame) {
     if (const auto ok = decoder->seek(frame); !ok) {
@@ -72,7 +83,9 @@ bool SeekingDecoder::decode(std::uint32_t frame) {
 bool SeekingDecoder::finish() {
   // Bytes were missing in the last call.
   if (failed_ && !decode_with(decoder_, frame_)) return false;
-  const auto more = decoder_->next_frame(positions_);
+  // An open-ended stream may have more frames than its end says.
+  auto more = decoder_->next_frame(positions_);
+  while (more && *more) more = decoder_->next_frame(positions_);
   if (!more) error_ = more.error();
   failed_ = !more;
   return !failed_;

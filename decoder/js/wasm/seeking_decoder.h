@@ -44,6 +44,9 @@ class SeekingDecoder {
 
   // Valid after open().
   const Decoder& decoder() const { return *decoder_; }
+  // Of an open-ended stream that has been cut off, the frames of all GOFs that are whole, or 1.
+  // It may read: bytes that are missing count as cut off.
+  std::uint32_t num_frames();
   // Offsets of GOF and skinned model units in the GOF index, and of what comes after the last
   // of their access units, ascending; empty if the stream has no index.
   std::span<const std::uint64_t> landmarks() const { return landmarks_; }

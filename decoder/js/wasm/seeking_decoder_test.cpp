@@ -216,6 +216,19 @@ TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
   EXPECT_LT(loaded.blocks.size() * Loaded::kBlock, bytes.size());
 }
 
+TEST(SeekingDecoder, CountsTheFramesOfAStreamThatWasCutOff) {
+  const Bytes whole =
+      contents(fs::path(RLPC_STREAMS) / "v1.2" / "accept" / "FRM" / "FRM-0030a.rlpc");
+  const auto count = [&](std::size_t size) {
+    const Bytes bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    SeekingDecoder decoder([&] { return memory_source(bytes); }, {});
+    return decoder.open() ? decoder.num_frames() : 0;
+  };
+  EXPECT_EQ(count(whole.size()), 5U);  // in GOFs of 3 and 2
+  EXPECT_EQ(count(whole.size() - 1), 3U);
+  EXPECT_EQ(count(whole.size() / 3), 1U);
+}
+
 TEST(SeekingDecoder, DeliversAFrameThatDoesNotMatchItsHash) {
   const fs::path folder = fs::path(RLPC_STREAMS) / "v1.0";
   Loaded loaded{contents(folder / "reject" / "HSH" / "HSH-0001x1.rlpc"), {}, 0, 0};
