@@ -48,20 +48,21 @@ void release_owned(void* place, std::size_t size, std::size_t alignment) noexcep
 
 template <class T>
 struct OwnedAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): of the standard
   OwnedAllocator() = default;
   template <class U>
   OwnedAllocator(const OwnedAllocator<U>&) {}  // NOLINT(google-explicit-constructor): converts
   T* allocate(std::size_t count) {
-    if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) return too_many();
-    return static_cast<T*>(allocate_owned(count * sizeof(T), alignof(T)));
+    if (count > static_cast<std::size_t>(-1) / 2 / kSize) return too_many();
+    return static_cast<T*>(allocate_owned(count * kSize, alignof(T)));
   }
   void deallocate(T* place, std::size_t count) noexcept {
-    release_owned(place, count * sizeof(T), alignof(T));
+    release_owned(place, count * kSize, alignof(T));
   }
   bool operator==(const OwnedAllocator&) const { return true; }
 
  private:
+  static constexpr std::size_t kSize = sizeof(T);  // NOLINT(bugprone-sizeof-expression)
   static T* too_many() {
     return static_cast<T*>(allocate_owned(static_cast<std::size_t>(-1) / 2, alignof(T)));
   }

@@ -26,7 +26,7 @@ Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& op
   // A trace follows the order of the stream.
   wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
   const std::uint32_t others = std::max(1U, num_threads_ - 1);
-  prefetch_bytes_ = options.limits.max_memory_bytes / (2 * others);
+  prefetch_bytes_ = options.limits.max_memory_bytes / (std::uint64_t{2} * others);
 }
 
 Result<bool> Decoder::Impl::open() {

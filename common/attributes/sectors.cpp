@@ -22,6 +22,85 @@ ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
   return {std::move(first), std::move(corners)};
 }
 
+// A list for each sector; sectors come in any order, one after the other.
+class ListsOfSectors {
+ public:
+  explicit ListsOfSectors(std::uint32_t num_sectors)
+      : first_(num_sectors), size_(num_sectors) {}
+
+  void begin(std::uint32_t x) { first_[x] = static_cast<std::uint32_t>(items_.size()); }
+  void add(std::uint32_t x, std::uint32_t item) {
+    items_.push_back(item);
+    ++size_[x];
+  }
+  std::span<const std::uint32_t> of(std::uint32_t x) const {
+    return std::span(items_).subspan(first_[x], size_[x]);
+  }
+  ListOfLists<std::uint32_t> in_order_of_sectors() const {
+    Vector<std::uint32_t> first{0};
+    first.reserve(first_.size() + 1);
+    Vector<std::uint32_t> items;
+    items.reserve(items_.size());
+    for (std::uint32_t x = 0; x < first_.size(); ++x) {
+      const auto of_sector = of(x);
+      items.insert(items.end(), of_sector.begin(), of_sector.end());
+      first.push_back(static_cast<std::uint32_t>(items.size()));
+    }
+    return {std::move(first), std::move(items)};
+  }
+
+ private:
+  Vector<std::uint32_t> first_;
+  Vector<std::uint8_t> size_;
+  Vector<std::uint32_t> items_;
+};
+
+// Sectors that complete triangles make come early, those of two or more first.
+class SectorQueues {
+ public:
+  explicit SectorQueues(const Sectors& sectors)
+      : sectors_(sectors),
+        is_placed_(sectors.count(), false),
+        num_known_(sectors.of_corner.size() / 3, 0),
+        degree_(sectors.count(), 0) {}
+
+  bool is_placed(std::uint32_t x) const { return is_placed_[x]; }
+  // One that has not been placed; there must be one.
+  std::uint32_t next() {
+    for (std::size_t d = kMostCounted; d > 0; --d) {
+      std::size_t& head = heads_[d - 1];
+      while (head < queues_[d - 1].size()) {
+        const std::uint32_t y = queues_[d - 1][head++];
+        if (!is_placed_[y]) return y;
+      }
+    }
+    while (is_placed_[lowest_]) ++lowest_;
+    return lowest_;
+  }
+  void place(std::uint32_t x) {
+    is_placed_[x] = true;
+    for (const std::uint32_t c : sectors_.corners[x]) {
+      const std::uint32_t t = c / 3;
+      if (++num_known_[t] != 2) continue;
+      for (std::uint32_t k = 3 * t; k < 3 * t + 3; ++k) {
+        const std::uint32_t y = sectors_.of_corner[k];
+        if (!is_placed_[y] && degree_[y] < kMostCounted) queues_[degree_[y]++].push_back(y);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostCounted = 2;
+
+  const Sectors& sectors_;
+  Vector<bool> is_placed_;
+  Vector<std::uint8_t> num_known_;  // corners of each triangle
+  Vector<std::uint8_t> degree_;     // triangles with two known corners, at most kMostCounted
+  std::array<Vector<std::uint32_t>, kMostCounted> queues_;
+  std::array<std::size_t, kMostCounted> heads_{};
+  std::uint32_t lowest_ = 0;
+};
+
 }  // namespace
 
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
@@ -62,94 +141,44 @@ Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle
 }
 
 SectorOrder::SectorOrder(const Sectors& sectors) {
-  constexpr std::size_t kMostCounted = 2;  // complete triangles that make a sector come earlier
   const std::uint32_t count = sectors.count();
-  Vector<bool> is_placed(count, false);
-  Vector<std::uint8_t> num_known(sectors.of_corner.size() / 3, 0);
-  Vector<std::uint8_t> degree(count, 0);
-  std::array<Vector<std::uint32_t>, kMostCounted> queues;
-  std::array<std::size_t, kMostCounted> heads{};
-  Vector<std::uint32_t> first_triangle(count);
-  Vector<std::uint32_t> first_ring(count);
-  Vector<std::uint8_t> num_triangles(count, 0);
-  Vector<std::uint8_t> ring_size(count, 0);
-  Vector<std::uint32_t> triangles_in_order;
-  Vector<std::uint32_t> rings_in_order;
+  SectorQueues queues(sectors);
+  ListsOfSectors triangle_lists(count);
+  ListsOfSectors rings(count);
   order.reserve(count);
   neighbour.assign(count, kNoSector);
   class_of.assign(count, 0);
-
-  const auto find_predictors = [&](std::uint32_t x) {
-    first_triangle[x] = static_cast<std::uint32_t>(triangles_in_order.size());
-    first_ring[x] = static_cast<std::uint32_t>(rings_in_order.size());
+  while (order.size() < count) {
+    const std::uint32_t x = queues.next();
+    triangle_lists.begin(x);
+    rings.begin(x);
     const auto add_to_ring = [&](std::uint32_t y) {
-      if (!is_placed[y] || ring_size[x] == kMaxSectorRing) return;
-      const auto so_far = std::span(rings_in_order).subspan(first_ring[x]);
-      if (std::find(so_far.begin(), so_far.end(), y) != so_far.end()) return;
-      rings_in_order.push_back(y);
-      ++ring_size[x];
+      const auto so_far = rings.of(x);
+      if (!queues.is_placed(y) || so_far.size() == kMaxSectorRing) return;
+      if (std::find(so_far.begin(), so_far.end(), y) == so_far.end()) rings.add(x, y);
     };
     for (const std::uint32_t c : sectors.corners[x]) {
       const std::uint32_t a = sectors.of_corner[next_corner(c)];
       const std::uint32_t b = sectors.of_corner[previous_corner(c)];
-      if (is_placed[a] && is_placed[b] && num_triangles[x] < kMaxSectorTriangles) {
-        triangles_in_order.push_back(c);
-        ++num_triangles[x];
+      if (queues.is_placed(a) && queues.is_placed(b) &&
+          triangle_lists.of(x).size() < kMaxSectorTriangles) {
+        triangle_lists.add(x, c);
       }
       add_to_ring(a);
       add_to_ring(b);
     }
-    if (ring_size[x] > 0) {
-      class_of[x] = static_cast<std::uint8_t>(1 + std::min<int>(num_triangles[x], 2));
-      neighbour[x] = rings_in_order[first_ring[x]];
+    if (!rings.of(x).empty()) {
+      class_of[x] =
+          static_cast<std::uint8_t>(1 + std::min<std::size_t>(triangle_lists.of(x).size(), 2));
+      neighbour[x] = rings.of(x).front();
     } else if (!order.empty()) {
       neighbour[x] = order.back();
     }
-  };
-
-  std::uint32_t lowest = 0;
-  while (order.size() < count) {
-    std::uint32_t x = kNoSector;
-    for (std::size_t d = kMostCounted; d > 0 && x == kNoSector; --d) {
-      std::size_t& head = heads[d - 1];
-      while (x == kNoSector && head < queues[d - 1].size()) {
-        const std::uint32_t y = queues[d - 1][head++];
-        if (!is_placed[y]) x = y;
-      }
-    }
-    if (x == kNoSector) {
-      while (is_placed[lowest]) ++lowest;
-      x = lowest;
-    }
-    find_predictors(x);
-    is_placed[x] = true;
+    queues.place(x);
     order.push_back(x);
-    for (const std::uint32_t c : sectors.corners[x]) {
-      const std::uint32_t t = c / 3;
-      if (++num_known[t] != 2) continue;
-      for (std::uint32_t k = 3 * t; k < 3 * t + 3; ++k) {
-        const std::uint32_t y = sectors.of_corner[k];
-        if (!is_placed[y] && degree[y] < kMostCounted) queues[degree[y]++].push_back(y);
-      }
-    }
   }
-
-  // From the order of coding to that of sectors.
-  const auto regroup = [&](const Vector<std::uint32_t>& from, const Vector<std::uint8_t>& sizes,
-                           const Vector<std::uint32_t>& items) {
-    Vector<std::uint32_t> first{0};
-    first.reserve(count + std::size_t{1});
-    Vector<std::uint32_t> sorted;
-    sorted.reserve(items.size());
-    for (std::uint32_t x = 0; x < count; ++x) {
-      const auto of_sector = std::span(items).subspan(from[x], sizes[x]);
-      sorted.insert(sorted.end(), of_sector.begin(), of_sector.end());
-      first.push_back(static_cast<std::uint32_t>(sorted.size()));
-    }
-    return ListOfLists<std::uint32_t>(std::move(first), std::move(sorted));
-  };
-  triangles = regroup(first_triangle, num_triangles, triangles_in_order);
-  ring = regroup(first_ring, ring_size, rings_in_order);
+  triangles = triangle_lists.in_order_of_sectors();
+  ring = rings.in_order_of_sectors();
 }
 
 }  // namespace rlpc

@@ -12,6 +12,8 @@ namespace {
 
 constinit thread_local const Owner* owner_of_thread = nullptr;
 
+constexpr std::size_t kOwnerBytes = sizeof(const Owner*);  // NOLINT(bugprone-sizeof-expression)
+
 // The owner is stored before the block.
 std::size_t bytes_before(std::size_t alignment) {
   return std::max(alignment, alignof(std::max_align_t));
@@ -34,7 +36,7 @@ void* allocate_owned(std::size_t size, std::size_t alignment) {
     start = owner->allocate(owner->user, size + before, before);
     if (start == nullptr) throw std::bad_alloc();
   }
-  std::memcpy(start, &owner, sizeof owner);
+  std::memcpy(start, &owner, kOwnerBytes);
   return static_cast<std::byte*>(start) + before;
 }
 
@@ -43,7 +45,7 @@ void release_owned(void* place, std::size_t size, std::size_t alignment) noexcep
   const std::size_t before = bytes_before(alignment);
   void* const start = static_cast<std::byte*>(place) - before;
   const Owner* owner = nullptr;
-  std::memcpy(&owner, start, sizeof owner);
+  std::memcpy(&owner, start, kOwnerBytes);
   if (owner == nullptr) {
     ::operator delete (start, std::align_val_t{before});
   } else {

@@ -66,8 +66,8 @@ static_assert(triangulate_all()[6].size == 14 && triangulate_all()[7].size == 42
 
 // Made when they are first needed: as a constant, they are 13 kB of a decoder.
 inline const std::array<TriangulationList, kMaxRing + 1>& triangulations() {
-  static const std::array<TriangulationList, kMaxRing + 1> all = triangulate_all();
-  return all;
+  static const std::array<TriangulationList, kMaxRing + 1> kAll = triangulate_all();
+  return kAll;
 }
 
 }  // namespace rlpc

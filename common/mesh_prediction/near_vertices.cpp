@@ -24,7 +24,7 @@ constexpr std::size_t kFewCandidates = 4;
 constexpr std::size_t kBaseWindow = 256;
 
 struct NearList {
-  std::array<std::uint32_t, kMaxNear> vertices;
+  std::array<std::uint32_t, kMaxNear> vertices{};
   std::size_t size = 0;
 };
 

@@ -161,7 +161,7 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
     return "unknown option " + word +
            (similar.empty() ? "" : "; did you mean " + similar + "?");
   }
-  const std::string of_caches = point_cache_text(app);
+  std::string of_caches = point_cache_text(app);
   if (!of_caches.empty()) return of_caches;
   const bool has_points = app.get_option_no_throw("--points") != nullptr;
   return "unexpected argument" + std::string(words.size() == 1 ? " " : "s ") +

@@ -56,7 +56,8 @@ Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temp
       level.max_learning_vertices / temporal_layers, level.max_gof_values / frames);
   size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);
   if (size.vertices < 3 * kAround) return {};
-  size.repeats = static_cast<std::uint32_t>(level.max_gof_factors / (3 * size.vertices));
+  size.repeats =
+      static_cast<std::uint32_t>(level.max_gof_factors / (std::uint64_t{3} * size.vertices));
   return size;
 }
 

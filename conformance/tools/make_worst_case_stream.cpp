@@ -95,7 +95,8 @@ class StreamMaker {
       writer.start_frame(place, order[place]);
       if (place == 0) {
         writer.start_group(0);
-        writer.write_positions(mesh.rest_order(), noise_.residuals(3 * plan_.size.vertices),
+        writer.write_positions(mesh.rest_order(),
+                               noise_.residuals(std::size_t{3} * plan_.size.vertices),
                                std::vector<Counterpart>(plan_.size.vertices));
         writer.end_group();
         unit(UnitType::kFrame, writer.finish_unit(0));

@@ -15,9 +15,9 @@ namespace rlpc {
 RestSettings parse_rest_settings(BitReader& r, bool exact);
 
 // rest_residuals( v ) of all vertices, in their order: residuals, [num_vertices][3], and
-// counterparts, [num_vertices], or empty if there are none. Errors are left in the section.
+// choices of counterparts, [num_vertices], or empty if there are none. Errors are left in the
+// section.
 void parse_rest_residuals(SectionReader& section, const RestOrder& order,
-                          std::span<std::int32_t> residuals,
-                          std::span<Counterpart> counterparts);
+                          std::span<std::int32_t> residuals, std::span<Counterpart> choices);
 
 }  // namespace rlpc

@@ -29,7 +29,7 @@ std::uint64_t memory_of(const ClusterGof& gof, const SequenceHeader& header) {
 std::uint64_t memory_of(const SkinnedGof& gof, const SequenceHeader& header) {
   const std::uint64_t factors = gof.trajectories.size();
   const std::uint64_t of_tracks =
-      memory_of_tracks(gof.num_frames * 3 * (factors + 4 * gof.bones.size())) +
+      memory_of_tracks(std::uint64_t{3} * gof.num_frames * (factors + 4 * gof.bones.size())) +
       memory_of_trajectories(factors);
   const std::uint64_t of_factors = memory_of_spatial(header.num_vertices, factors);
   if (gof.model) return of_tracks + of_factors;

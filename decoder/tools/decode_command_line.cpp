@@ -244,7 +244,8 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
 
 }  // namespace
 
-void add_decode_options(CLI::App& app, DecodeCommand& o) {
+void add_decode_options(CLI::App& app, DecodeCommand& command) {
+  DecodeCommand& o = command;
   const Outputs outputs = add_outputs(app, o);
   add_format_options(app, o, outputs);
   add_gltf_options(app, o, outputs);

@@ -72,7 +72,7 @@ class AttributeEncoder {
   void find_seams(Draft& draft) const;
   void find_sectors(Draft& draft) const;
   CodedAttributeSet code_normals(Draft draft, AttributeReport& report);
-  CodedAttributeSet code_values(Draft draft, AttributeReport& report);
+  CodedAttributeSet code_values(const Draft& draft, AttributeReport& report);
   CodedAttributeSet best_of(const Draft& draft,
                             std::span<const AttributePrediction> predictions) const;
   template <class NormalAt>
@@ -259,7 +259,7 @@ CodedAttributeSet AttributeEncoder::best_of(
   return *best;
 }
 
-CodedAttributeSet AttributeEncoder::code_values(Draft draft, AttributeReport& report) {
+CodedAttributeSet AttributeEncoder::code_values(const Draft& draft, AttributeReport& report) {
   report.values = draft.sectors.count();
   report.largest_error = largest_error(draft.source, draft.quantised);
   std::vector<AttributePrediction> predictions(kWithoutPositions.begin(),
@@ -344,7 +344,11 @@ void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeS
   if (num_diagonals == 0) return;
   const bool is_likely = settings_.from_positions && num_unlikely < num_diagonals;
   set.header.diagonals = is_likely ? Diagonals::kLikely : Diagonals::kFlagged;
-  set.diagonal_flags = is_likely ? std::move(unlikely) : smoothing.is_diagonal;
+  if (is_likely) {
+    set.diagonal_flags = std::move(unlikely);
+  } else {
+    set.diagonal_flags = smoothing.is_diagonal;
+  }
 }
 
 CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& report) {
@@ -421,7 +425,7 @@ CodedAttributeSet AttributeEncoder::code(const SourceAttribute& source,
   if (draft.quantised.header.kind == ValueKind::kUnitVectors) {
     return code_normals(std::move(draft), report);
   }
-  return code_values(std::move(draft), report);
+  return code_values(draft, report);
 }
 
 EncodedAttributes AttributeEncoder::encode() {

@@ -192,7 +192,13 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
   }
 }
 
-void add_output_options(CLI::App& app, EncodeCommandLine& line) {
+// What other options exclude.
+struct OutputOptions {
+  CLI::Option* dry_run;
+  CLI::Option* keep_order;
+};
+
+OutputOptions add_output_options(CLI::App& app, EncodeCommandLine& line) {
   EncodeOptions& o = line.options;
   auto* output =
       app.add_option("-o,--output", o.output, "Stream to write; - for standard output")
@@ -213,18 +219,22 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
          "with --profile high)")
       ->option_text("FRAMES")
       ->group(kOutput);
-  app.add_flag("--low-delay", o.settings.low_delay,
-               "Encode each frame as it arrives, also from standard input; larger files "
-               "(High profile)")
-      ->excludes(dry_run)
-      ->group(kMore);
   auto* keep_order =
       app.add_flag("--keep-order", o.settings.keep_order, "Store the vertex order of INPUT")
           ->group(kOutput);
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(kOutput);
   app.add_flag("-v,--verbose", o.verbose, "Also report the encoder's choices")->group(kOutput);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kOutput);
+  return {dry_run, keep_order};
+}
 
+void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOptions& output) {
+  EncodeOptions& o = line.options;
+  app.add_flag("--low-delay", o.settings.low_delay,
+               "Encode each frame as it arrives, also from standard input; larger files "
+               "(High profile)")
+      ->excludes(output.dry_run)
+      ->group(kMore);
   app.add_option("--box", line.box,
                  "With --low-delay: bounds of all frames, smallest x,y,z and largest (default: "
                  "from INPUT; 8 times the size of the first frame if it is a pipe)")
@@ -235,8 +245,8 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
   app.add_option("--order-map", o.order_map,
                  "Write, per decoded vertex, its index in INPUT (glTF: after welding)")
       ->option_text("FILE")
-      ->excludes(dry_run)
-      ->excludes(keep_order)
+      ->excludes(output.dry_run)
+      ->excludes(output.keep_order)
       ->group(kMore);
   add_choice<HashMode>(
       app, "--hash", o.settings.hash_mode,
@@ -284,7 +294,8 @@ void add_output_options(CLI::App& app, EncodeCommandLine& line) {
 void add_encode_options(CLI::App& app, EncodeCommandLine& line) {
   add_input_options(app, line);
   add_quality_options(app, line);
-  add_output_options(app, line);
+  const OutputOptions output = add_output_options(app, line);
+  add_more_options(app, line, output);
   add_method_options(app, line);
   add_help(app,
            {"INPUT [--points CACHE] -o OUT.rlpc [OPTIONS]",

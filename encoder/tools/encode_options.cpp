@@ -102,7 +102,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   const bool asked =
       !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;
   if (s.baseline.qu > 0 && !asked) s.target = {Target::kNone, 0.0};
-  if (const auto wrong = read_clips(line)) return wrong;
+  if (auto wrong = read_clips(line)) return wrong;
   if (const auto error = check_settings(s)) return error->message;
   return std::nullopt;
 }

@@ -28,7 +28,7 @@ class CornerGeometry {
   template <std::size_t N>
   std::array<Vec3l, N> differences(std::uint32_t from,
                                    const std::array<std::uint32_t, N>& to) const {
-    std::array<Vec3l, N> all;
+    std::array<Vec3l, N> all{};
     std::int64_t largest = 1;
     for (std::size_t i = 0; i < N; ++i) {
       all[i] = difference(from, to[i]);

@@ -43,8 +43,8 @@ Walks make_walks() {
 }
 // Made when they are first needed: as a constant, they are 10 kB of a decoder.
 const Walks& all_walks() {
-  static const Walks walks = make_walks();
-  return walks;
+  static const Walks kWalks = make_walks();
+  return kWalks;
 }
 
 template <std::int64_t kCount>

@@ -222,7 +222,7 @@ GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& sour
   SkinTargets targets;
   const TargetPrice price{
       bytes_without_targets(look, motion, rest, influences, spans, frame_rate),
-      static_cast<double>(look.mesh().vertex.size()) / static_cast<double>(rest.size() / 3),
+      3 * static_cast<double>(look.mesh().vertex.size()) / static_cast<double>(rest.size()),
       skin.stream_rms};
   targets.places = principal_shapes(missing_moves(influences, maps, rest, source.frames),
                                     tolerated_rms, limits.max_targets, price);

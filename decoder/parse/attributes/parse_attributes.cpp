@@ -226,15 +226,16 @@ std::uint64_t memory_of_set(const AttributeHeader& header, std::uint32_t num_ver
   constexpr std::uint64_t kPerCorner = 40;  // sectors, their order, predictors and rings
   constexpr std::uint64_t kPerValue = 64;   // of one sector: order, prediction
   const std::uint64_t corners = 3 * num_triangles;
+  const std::uint64_t components = header.num_components;
   switch (header.domain) {
     case AttributeDomain::kTriangle:
-      return 4 * header.num_components * num_triangles;
+      return 4 * components * num_triangles;
     case AttributeDomain::kVertex:
-      return kPerCorner * corners + (kPerValue + 8 * header.num_components) * num_vertices;
+      return kPerCorner * corners + (kPerValue + 8 * components) * num_vertices;
     case AttributeDomain::kCorner:
       break;
   }
-  return (kPerCorner + kPerValue + 8 * header.num_components) * corners;
+  return (kPerCorner + kPerValue + 8 * components) * corners;
 }
 
 CodedAttributes parse_headers(BitReader& r) {

@@ -291,7 +291,7 @@ class Pc2Stream final : public FrameStream {
 
   InputResult<bool> next_frame(std::span<float> xyz) override {
     bytes_.resize(4 * xyz.size());
-    const auto read = frames_.read(bytes_);
+    auto read = frames_.read(bytes_);
     if (!read || !*read) return read;
     for (std::size_t i = 0; i < xyz.size(); ++i) xyz[i] = load_f32(bytes_, 4 * i);
     return true;
