@@ -215,8 +215,8 @@ class ObjAttributes(AttributesTest):
         # A file that rlpcdec has not written stays.
         self.path("d.mtl").write_text("newmtl mine\n")
         for output in ("d.obj", "d.pc2", "d%d.obj"):
-            self.fails(4, "d.mtl: already exists, not written by rlpcdec", "rlpcdec", self.path("a.rlpc"),
-                       "-o", self.path(output))
+            self.fails(4, "d.mtl: already exists, and is not known to be written by rlpcdec",
+                       "rlpcdec", self.path("a.rlpc"), "-o", self.path(output))
             self.assertEqual(self.path("d.mtl").read_text(), "newmtl mine\n")
 
     def test_material_files_elsewhere_are_not_read(self):

@@ -12,8 +12,8 @@ std::optional<OutputError> check_companion(const std::string& path, std::string_
   std::ifstream file(path);
   file.read(found.data(), static_cast<std::streamsize>(found.size()));
   if (file.gcount() == 0 || found == begin) return std::nullopt;
-  return OutputError{path + ": already exists, not written by rlpcdec; " + what +
-                     " would replace it. Choose another name, or remove it"};
+  return OutputError{path + ": already exists, and is not known to be written by rlpcdec; " +
+                     what + " would replace it. Choose another name, or remove it"};
 }
 
 OutputResult<CompanionFiles> CompanionFiles::create(const std::string& folder,
