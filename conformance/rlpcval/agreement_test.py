@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""rlpcval and rlpcdec agree on random legal streams with slices, and on damaged copies.
+"""rlpcval and rlpcdec agree on random legal streams with slices, and on damaged copies; rlpcdec and
+the suite on where streams break which rule.
 
     agreement_test.py --bin BUILD/bin [unittest arguments, such as Agreement]
 """
@@ -86,6 +87,15 @@ class Agreement(ToolsTest):
             if path.stem.endswith("-0"):
                 self.assertEqual(stream["verdict"], "conforming", path.name)
         self.assertGreater(len(rules), num_rules)
+
+    def test_first_rule_and_its_place_of_the_suite(self):
+        places = sorted((ROOT / "streams").glob("v1.*/reject/*/*.json"))
+        numbered = [(place, fields) for place in places
+                    if "bit" in (fields := json.loads(place.read_text(encoding="utf-8")))]
+        self.assertGreater(len(numbered), 300)
+        for place, fields in numbered:
+            self.assertEqual(self.verdict_of_decoder(place.with_suffix(".rlpc")),
+                             (fields["rule"], fields["bit"]), place.name)
 
     def test_first_rule_and_its_place_of_main_streams(self):
         self.check("main", 10)

@@ -37,15 +37,15 @@ class ExplicitPattern {
       check(entry.reference[0] < entry.offset && entry.reference[1] > entry.offset,
             "pattern_reference", at);
     }
-    at = r_.bit_pos();
+    depth_pos_ = r_.bit_pos();
     entry.depth = r_.u(3, "pattern_depth");
     for (const std::uint32_t offset : entry.reference) {
-      check(entry.depth >= depth_at_[offset].value_or(0), "pattern_depth", at);
+      check(entry.depth >= depth_at_[offset].value_or(0), "pattern_depth", depth_pos_);
     }
     if (!r_.error()) depth_at_[entry.offset] = entry.depth;
     return entry;
   }
-  void finish() { check(depth_at_[period_] == 0U, "pattern_depth", r_.bit_pos()); }
+  void finish() { check(depth_at_[period_] == 0U, "pattern_depth", depth_pos_); }
 
  private:
   void check(bool is_legal, const char* element, std::uint64_t at) {
@@ -54,6 +54,7 @@ class ExplicitPattern {
 
   BitReader& r_;
   std::uint32_t period_;
+  std::uint64_t depth_pos_ = 0;                                // of the last pattern_depth
   std::array<std::optional<std::uint32_t>, 1 << 6> depth_at_;  // DepthAtOffset; none: not yet
 };
 

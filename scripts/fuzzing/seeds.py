@@ -21,7 +21,7 @@ SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA, CLIP_TABLE]
 # Settings that give different streams of a small animation.
 BASELINE = ["--profile", "baseline"]
 SETTINGS = [
-    ["--kg", "1", "--keep-order", "--hash", "frame", "--clip", "Run:0-1", "--clip", "B:0"],
+    ["--kg", "1", "--keep-order", "--hash", "frame", "--clip", "Run:0-0", "--clip", "B:0"],
     [*BASELINE, "--kg", "1", "--metadata", "METADATA", "--keep-order"],
     [*BASELINE, "--kg", "0.3", "--gof", "4", "--hash", "frame"],
     [*BASELINE, "--max-error", "0.01", "--frame", "world", "--gof", "3", "--hash", "none"],
