@@ -97,6 +97,19 @@ class Agreement(ToolsTest):
             self.assertEqual(self.verdict_of_decoder(place.with_suffix(".rlpc")),
                              (fields["rule"], fields["bit"]), place.name)
 
+    def test_streams_cut_off_behind_frames_with_wrong_hashes(self):
+        places = [p for p in sorted((ROOT / "streams").glob("v1.*/reject/*/*.json"))
+                  if json.loads(p.read_text(encoding="utf-8"))["rules"] == ["R-HSH-02"]]
+        self.assertGreater(len(places), 3)
+        for place in places:
+            stream = place.with_suffix(".rlpc").read_bytes()
+            cut = self.path(place.stem + ".rlpc")
+            units = units_of(stream)
+            cut.write_bytes(stream_of(stream, units[:-1]))
+            findings = run("rlpcval", "--json", cut).json()["streams"][0]["findings"]
+            first = [(f["id"], f["bit"]) for f in findings if f["stops_decoder"]]
+            self.assertEqual(first, [self.verdict_of_decoder(cut)], place.name)
+
     def test_first_rule_and_its_place_of_main_streams(self):
         self.check("main", 10)
 

@@ -46,6 +46,8 @@ void StreamValidator::walk() {
     if (options_.progress) {
       options_.progress(static_cast<double>(offset) / static_cast<double>(units_.size()));
     }
+    // A decoder decodes the last GOF before it looks for what is missing.
+    if (offset >= units_.size()) end_slices();
     findings_.in_unit(std::nullopt);
     findings_.suspect(false);
     // Bytes after the end have been reported; they are examined only if they are units.
