@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "common/attributes/sectors.h"
+
 namespace rlpc {
 namespace {
 
@@ -175,8 +177,8 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
 void FrameNormals::keep_first() {
   first_ = attribute_numbers(set_);
   std::copy(first_.begin(), first_.end(), sums_.begin());
-  corners_ = CornersOfVertices(triangles_,
-                               static_cast<std::uint32_t>(set_.first_positions.size() / 3));
+  const auto num_vertices = static_cast<std::uint32_t>(set_.first_positions.size() / 3);
+  corners_ = sectors_of_vertices(num_vertices, triangles_).corners;
 }
 
 // The surface around a vertex: the edges and areas of its triangles.
@@ -201,8 +203,8 @@ LocalTurn FrameNormals::turn_of(std::span<const std::uint32_t> corners,
 
 template <class Coordinate>
 void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
-  for (std::uint32_t v = 0; v + 1 < corners_.begin.size(); ++v) {
-    const std::span<const std::uint32_t> corners = corners_.of(v);
+  for (std::size_t v = 0; v < corners_.size(); ++v) {
+    const std::span<const std::uint32_t> corners = corners_[v];
     const LocalTurn turn = turn_of(corners, xyz);
     for (const std::uint32_t c : corners) {
       const std::size_t i = 3 * std::size_t{of_corner(c)};

@@ -7,8 +7,8 @@
 
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
+#include "common/mesh/topology.h"
 #include "common/owned.h"
-#include "decoder/surface/corners_of_vertices.h"
 #include "decoder/surface/local_turn.h"
 
 namespace rlpc {
@@ -69,7 +69,7 @@ class FrameNormals {
   Vector<double> sums_;
   // Of unit vectors that turn: those of the first frame, and the corners around which they do.
   Vector<float> first_;
-  CornersOfVertices corners_;
+  ListOfLists<std::uint32_t> corners_;  // of each vertex
 };
 
 }  // namespace rlpc

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "decoder/surface/corners_of_vertices.h"
+#include "common/attributes/sectors.h"
 
 namespace rlpc {
 namespace {
@@ -59,12 +59,13 @@ SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t 
     }
     return 0;
   };
-  CornersOfVertices all(triangles, num_vertices);
+  const ListOfLists<std::uint32_t> all = sectors_of_vertices(num_vertices, triangles).corners;
+  Indices corners;
   SplitVertices split;
   split.value_of_vertex.resize(sets.size());
   split.triangles.assign(triangles.begin(), triangles.end());
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
-    const std::span<std::uint32_t> corners = all.of(v);
+    corners.assign(all[v].begin(), all[v].end());
     std::sort(corners.begin(), corners.end(), [&](std::uint32_t c, std::uint32_t d) {
       const int order = compare(c, d);
       return order == 0 ? c < d : order < 0;

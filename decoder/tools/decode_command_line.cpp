@@ -44,13 +44,13 @@ Cluster GOFs have no slices: they are decoded whole.
 
 In a .glb file, each clip is an animation. --as skin makes the bones of the
 stream, or its clusters, joints of a skin; what these leave becomes morph
-targets: as many as it takes to differ from the stream by no more than its own
-error, which rlpcdec estimates from its quantiser steps; and down to half of
-that, as long as each makes the product of the bytes and the error of the file,
-that of the stream included, smaller. It reports the difference. A vertex keeps
-its four largest influences. Where groups of frames have bones of their own,
-those of most frames are fitted to the others. A stream whose frames are
-predicted from frames has no bones.
+targets: enough for the file to differ from the stream by no more than the
+stream's own error, which rlpcdec estimates from its quantiser steps; and more,
+down to half of that, while each lowers the size of the file times its error
+(the stream's included). rlpcdec reports the difference. A vertex keeps its four
+largest influences. Where groups of frames have bones of their own, those of
+most frames are fitted to the others. A stream whose frames are predicted from
+frames has no bones.
 --as auto writes a morph target for each frame instead where there are no bones;
 and, as long as these are at most the 2,000 that viewers hold, where they take
 fewer bytes, or where bones would leave more than the stream's own error: N

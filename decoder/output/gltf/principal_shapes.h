@@ -17,9 +17,8 @@ struct PrincipalShapes {
   bool has_short_weights = false;
 };
 
-// What targets are worth: what they leave is no more than the errors that they do not lower,
-// and from there on, there are as many as make the product of the size of the file and the RMS
-// of all errors of a vertex smallest.
+// When to stop: once the targets leave no more than other_rms, where the size of the file times
+// the RMS of all errors of a vertex is smallest.
 struct TargetPrice {
   double file_bytes = 0;        // without targets
   double written_vertices = 1;  // for each vertex
