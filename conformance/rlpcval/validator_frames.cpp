@@ -102,8 +102,8 @@ bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   (void)r.u(1, "frame_hash_flag");
   SliceCounts counts;
   const std::int64_t distance = r.ue("max_earlier_distance");
-  counts.max_earlier = static_cast<std::uint32_t>(distance);
-  const std::uint64_t kept = 3 * std::uint64_t{header.num_vertices} * counts.max_earlier;
+  const std::uint64_t kept =
+      3 * std::uint64_t{header.num_vertices} * static_cast<std::uint64_t>(distance);
   good &= r.require(
       kept <= level.max_gof_factors, "R-LVL-05",
       level_allows(header.level_idc, level.max_gof_factors, " coordinates of earlier frames"));
@@ -134,18 +134,10 @@ bool check_frame_header(ElementReader& r, const SliceCounts& counts) {
   good &= r.require(layers < counts.layer_groups, "R-FRM-02",
                     "the GOF has " + std::to_string(counts.layer_groups) + " layer groups");
   if (counts.layer_groups == 1) {
-    const std::int64_t frames = r.ue("unit_frames_minus1") + 1;
-    good &= r.require(frames <= counts.frames, "R-FRM-09", at_most(counts.frames - 1));
-    // Whether these frames can share the unit, and what follows, parsing checks.
-    if (frames > 1) return good && r.readable();
+    good &= r.require(r.ue("unit_frames_minus1") < std::int64_t{counts.frames}, "R-FRM-09",
+                      at_most(counts.frames - 1));
   }
-  const bool may_be_earlier = counts.max_earlier > 0 && layers == 0 && frame > 0;
-  if (may_be_earlier && r.u(1, "earlier_flag") != 0) {
-    // Parsing checks the rest of R-FRM-08.
-    good &= r.require(r.ue("earlier_distance_minus1") < std::int64_t{counts.max_earlier},
-                      "R-FRM-08", at_most(counts.max_earlier - 1));
-    (void)r.u(1, "repeat_flag");
-  }
+  // Whether these frames can follow, and what depends on it, parsing checks.
   return good && r.readable();
 }
 

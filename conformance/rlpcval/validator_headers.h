@@ -30,9 +30,8 @@ struct SliceCounts {
   std::uint32_t component_groups = 0;  // and the influences, which are not factors
   std::uint32_t layer_groups = 1;
   std::uint32_t temporal_layers = 1;
-  std::uint32_t frames = 0;       // of a GOF of frames; 0: there are slice units
-  bool open_end = false;          // of the stream
-  std::uint32_t max_earlier = 0;  // max_earlier_distance of a GOF of frames
+  std::uint32_t frames = 0;  // of a GOF of frames; 0: there are slice units
+  bool open_end = false;     // of the stream
 };
 
 struct GofHeaderCheck {
