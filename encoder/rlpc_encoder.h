@@ -180,8 +180,8 @@ struct EncoderSettings {
   // error or lossless, and is not searched for.
   bool low_delay = false;
   FrameTools frames;  // must be left at its defaults unless profile is kHigh
-  // Maximum frames per GOF; 0: 128; 512 in the Main profile with several clips (fewer for large
-  // meshes), or 256 in the High profile; kWholeSequence: one GOF.
+  // Maximum frames per GOF; 0: 128; 4096 in the Main profile with several clips (fewer for
+  // large meshes), or 256 in the High profile; kWholeSequence: one GOF.
   std::uint32_t gof_frames = 0;
   bool keep_order = false;  // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;

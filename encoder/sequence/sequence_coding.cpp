@@ -25,6 +25,16 @@ constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
 // trajectories for each frame.
 constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
 
+// Frames that can be coded at once.
+std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
+                               std::uint64_t bytes_of_position) {
+  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 24;  // fixed: memory
+  constexpr std::uint64_t kPart = 2;  // fixed: they take at most half of the limit
+  const std::uint64_t positions =
+      std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
+  return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
+}
+
 // The triangles of the input by the indices of decoded vertices.
 std::vector<Triangle> renumber(std::span<const Triangle> triangles,
                                const std::vector<std::uint32_t>& input_vertex) {
@@ -43,22 +53,17 @@ std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_ver
   if (settings.gof_frames > 0) return settings.gof_frames;
   if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
   if (settings.profile != Profile::kMain || settings.clips.size() < 2) return kDefaultGofFrames;
-  // Within level 1, unless 128 are beyond it anyway.
-  const std::uint64_t most = kLevels[0].max_gof_values / num_vertices;
   return static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(most, kDefaultGofFrames, kClipFrames));
+      std::clamp<std::uint64_t>(frames_in_memory(settings, num_vertices, kBytesOfPosition),
+                                kDefaultGofFrames, kClipFrames));
 }
 
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
-  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 24;  // fixed: memory
-  constexpr std::uint64_t kPart = 2;  // fixed: a span takes at most half of the limit
   const std::uint32_t longest = longest_gof(settings, header.num_vertices);
   if (settings.profile != Profile::kHigh) return longest;
   const auto frames = [&](std::uint64_t bytes_of_position) {
-    const std::uint64_t positions =
-        std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
     return std::max<std::uint64_t>(
-        longest, std::min<std::uint64_t>(positions / header.num_vertices, kMaxFrames));
+        longest, frames_in_memory(settings, header.num_vertices, bytes_of_position));
   };
   const std::uint64_t alone = frames(kBytesOfPosition);
   // With several spans, there are two skinned models besides: one in force and a new one.

@@ -29,10 +29,10 @@ inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a see
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
 // Several clips of one character: each GOF of the Main profile repeats its shape. kB with GOFs
-// of at most 128 / 256 / 512 / 1024 frames, without attributes, at a KG error of 0.1 %: knight
-// 537 / 358 / 275 / 220, robot 42 / 33 / 25 / 21, q-trex 33 / 29 / 24 / 24, q-spider
-// 30 / 22 / 22 / 22, morph-stress 15 / 9 / 7 / 4.
-inline constexpr std::uint32_t kClipFrames = kLevels[0].max_gof_frames;  // fixed: level 1
+// of at most 512 / 1024 / 4096 frames, with attributes, at a KG error of 0.1 %: knight 302 /
+// 247 / 184, robot 29 / 25 / 25, morph-stress 179 / 177 / 177. A first seek into the knight's
+// 2818 frames as one GOF takes 60 ms more than into 512; in GOFs of 128, it takes 563 kB.
+inline constexpr std::uint32_t kClipFrames = kLevels[2].max_gof_frames;  // fixed: level 3
 
 // Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices);

@@ -213,10 +213,9 @@ OutputOptions add_output_options(CLI::App& app, EncodeCommandLine& line) {
       {{"fast", Preset::kFast}, {"medium", Preset::kMedium}, {"slow", Preset::kSlow}},
       "Search effort: fast, medium (default), slow")
       ->group(kOutput);
-  app.add_option(
-         "--gof", line.gof,
-         "Maximum frames per group, or `all` (default: 128; 512 with several clips; 256 "
-         "with --profile high)")
+  app.add_option("--gof", line.gof,
+                 "Maximum frames per group, or `all` (default: 128; 4096 with several clips; "
+                 "256 with --profile high)")
       ->option_text("FRAMES")
       ->group(kOutput);
   auto* keep_order =
