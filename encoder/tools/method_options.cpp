@@ -13,7 +13,8 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
                  "Leave images out of the materials")
       ->group(group);
   app.add_option("--uv-bits", a.uv_bits,
-                 "Texture coordinates in steps of 1/2^N of an image (default: 12)")
+                 "Texture coordinates in steps of 1/2^N of an image (default: 12); coarser "
+                 "where they repeat a small one")
       ->check(CLI::Range(1, 16))
       ->option_text("N")
       ->group(group);

@@ -27,6 +27,7 @@
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
+#include "encoder/input/texels.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/dry_run.h"
 #include "encoder/sequence/target/quality.h"
@@ -379,7 +380,10 @@ int run(EncodeOptions& o) {
     if (!o.quiet) complain(name + ": " + note);
   }
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
-  if (!o.settings.attributes.dropped) o.settings.asset = (*source)->asset();
+  if (!o.settings.attributes.dropped) {
+    o.settings.asset = (*source)->asset();
+    o.settings.attributes.texels_of_uv = texels_of_uv(o.settings.asset);
+  }
   if (o.dry_run) return run_dry(o, **source);
   const std::size_t told = (*source)->notes().size();
   auto report = encode_to_files(o, **source);

@@ -1,0 +1,138 @@
+#include "encoder/input/texels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+#include "common/io/binary_numbers.h"
+
+namespace rlpc {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostSets = 256;  // fixed: memory
+
+std::uint32_t u16_be(std::string_view bytes, std::size_t at) {
+  return static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[at]) << 8 |
+                                    static_cast<std::uint8_t>(bytes[at + 1]));
+}
+
+double longer_side_of_png(std::string_view image) {
+  constexpr std::size_t kWidth = 16;  // of the IHDR chunk, which comes first
+  constexpr std::size_t kHeight = 20;
+  if (image.size() < kHeight + 4) return kUnknown;
+  return std::max(load_u32_be(image, kWidth), load_u32_be(image, kHeight));
+}
+
+// The first frame header: marker, length, precision, height, width.
+double longer_side_of_jpeg(std::string_view image) {
+  std::size_t at = 2;
+  while (at + 9 <= image.size() && image[at] == '\xFF') {
+    const auto marker = static_cast<std::uint8_t>(image[at + 1]);
+    const bool is_table = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
+    if (marker >= 0xC0 && marker <= 0xCF && !is_table) {
+      return std::max(u16_be(image, at + 5), u16_be(image, at + 7));
+    }
+    at += marker == 0xFF ? 1 : 2 + u16_be(image, at + 2);
+  }
+  return kUnknown;
+}
+
+double longer_side(std::string_view image) {
+  if (image.starts_with("\x89PNG")) return longer_side_of_png(image);
+  if (image.starts_with("\xFF\xD8\xFF")) return longer_side_of_jpeg(image);
+  return kUnknown;
+}
+
+// An asset is not validated: a member that is no such number counts as absent.
+std::optional<std::size_t> number(const Json& object, const char* name) {
+  if (!object.is_object() || !object.contains(name)) return std::nullopt;
+  if (!object[name].is_number_unsigned()) return std::nullopt;
+  return object[name].get<std::size_t>();
+}
+
+const Json& element(const Json& root, const char* name, std::optional<std::size_t> index) {
+  static const Json kNone;
+  if (!index || !root.contains(name) || !root[name].is_array()) return kNone;
+  return *index < root[name].size() ? root[name][*index] : kNone;
+}
+
+class TexelFinder {
+ public:
+  TexelFinder(const Json& root, std::string_view binary) : root_(root), binary_(binary) {}
+
+  // Members whose names end in "Texture" say which texture, and which set addresses it.
+  void find(const Json& value) {
+    if (!value.is_structured()) return;
+    for (const auto& [name, member] : value.items()) {
+      if (value.is_object() && name.ends_with("Texture")) add(member);
+      find(member);
+    }
+  }
+  std::vector<double> texels;
+
+ private:
+  void add(const Json& info) {
+    std::size_t set = number(info, "texCoord").value_or(0);
+    double scale = 1.0;
+    if (info.is_object() && info.contains("extensions")) {
+      const Json& extensions = info["extensions"];
+      if (extensions.is_object() && extensions.contains("KHR_texture_transform")) {
+        const Json& transform = extensions["KHR_texture_transform"];
+        set = number(transform, "texCoord").value_or(set);
+        scale = scale_of(transform);
+      }
+    }
+    if (set >= kMostSets) return;
+    if (texels.size() <= set) texels.resize(set + 1, 0.0);
+    texels[set] = std::max(texels[set],
+                           scale * side_of(element(root_, "textures", number(info, "index"))));
+  }
+
+  static double scale_of(const Json& transform) {
+    double largest = 1.0;
+    if (!transform.is_object() || !transform.contains("scale")) return largest;
+    for (const Json& scale : transform["scale"]) {
+      if (scale.is_number()) largest = std::max(largest, std::abs(scale.get<double>()));
+    }
+    return largest;
+  }
+
+  double side_of(const Json& texture) const {
+    // Extensions can name another image.
+    if (!texture.is_object() || texture.contains("extensions")) return kUnknown;
+    const Json& image = element(root_, "images", number(texture, "source"));
+    const Json& view = element(root_, "bufferViews", number(image, "bufferView"));
+    const std::size_t offset = number(view, "byteOffset").value_or(0);
+    const std::size_t size = number(view, "byteLength").value_or(0);
+    if (offset > binary_.size() || size > binary_.size() - offset) return kUnknown;
+    return longer_side(binary_.substr(offset, size));
+  }
+
+  const Json& root_;
+  std::string_view binary_;
+};
+
+}  // namespace
+
+std::vector<double> texels_of_uv(std::string_view asset) {
+  constexpr std::size_t kText = 20;      // behind the headers of the file and its first chunk
+  constexpr std::size_t kTextSize = 12;  // where it is
+  constexpr std::size_t kChunkHeader = 8;
+  if (asset.size() < kText) return {};
+  const std::string_view text = asset.substr(kText, load_u32(asset, kTextSize));
+  const std::size_t binary = std::min(asset.size(), kText + text.size() + kChunkHeader);
+  const Json root = Json::parse(text, nullptr, false);
+  if (!root.is_object() || !root.contains("materials")) return {};
+  TexelFinder finder(root, asset.substr(binary));
+  finder.find(root["materials"]);
+  return finder.texels;
+}
+
+}  // namespace rlpc
