@@ -55,16 +55,10 @@ FramePattern random_frame_pattern(const Below& below) {
   return pattern;
 }
 
-// Any legal settings, residuals of any size, and layer groups and frames that are absent from
-// some frame on.
-inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
-                                 std::uint32_t num_frames) {
-  // The high bits of Knuth's linear congruential generator.
-  const auto random = [&seed] {
-    seed = seed * 6364136223846793005U + 1442695040888963407U;
-    return static_cast<std::uint32_t>(seed >> 32);
-  };
-  const auto below = [&](std::uint32_t n) { return random() % n; };
+// Any legal settings of a GOF of frames. below(n): as above.
+template <class Below>
+FrameGof random_frame_settings(const CodedMesh& mesh, std::uint32_t num_frames,
+                               const Below& below) {
   FrameGof gof;
   gof.kind = GofKind::kFrames;
   gof.num_frames = num_frames;
@@ -102,6 +96,20 @@ inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
       gof.patch_of_vertex.push_back(static_cast<std::uint16_t>(below(gof.num_patches)));
     }
   }
+  return gof;
+}
+
+// Any legal settings, residuals of any size, and layer groups and frames that are absent from
+// some frame on.
+inline FrameGof random_frame_gof(std::uint64_t seed, const CodedMesh& mesh,
+                                 std::uint32_t num_frames) {
+  // The high bits of Knuth's linear congruential generator.
+  const auto random = [&seed] {
+    seed = seed * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::uint32_t>(seed >> 32);
+  };
+  const auto below = [&](std::uint32_t n) { return random() % n; };
+  FrameGof gof = random_frame_settings(mesh, num_frames, below);
   auto frames = std::make_shared<std::vector<CodedFrame>>(num_frames);
   std::vector<std::uint32_t> most(gof.pattern.temporal_layers,
                                   static_cast<std::uint32_t>(gof.layer_group_size.size()));

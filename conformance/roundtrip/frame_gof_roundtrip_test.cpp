@@ -166,7 +166,8 @@ class CodedFrames : public FrameGofs, public testing::WithParamInterface<unsigne
     std::vector<double> xyz;
     for (std::uint32_t f = 0; f < kFrames; ++f) {
       for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
-        const double along = v / 9;
+        const std::uint32_t ring = v / 9;
+        const double along = ring;
         const double around = 0.7 * (v % 9);
         const double bend = 0.02 * f * along;
         xyz.push_back(300 * std::cos(around) + 90 * along * bend);

@@ -30,9 +30,9 @@ Sheets sheets(std::uint32_t count, bool some_are_lines) {
   for (std::uint32_t f = 0; f < 4; ++f) {
     for (std::uint32_t v = 0; v < count * kOfSheet; ++v) {
       const std::uint32_t sheet = v / kOfSheet;
+      const std::uint32_t row = v % kOfSheet / kColumns;
       const double x = 10.0 * (v % kColumns);
-      const double y =
-          some_are_lines && sheet % 2 == 1 ? 0.0 : 10.0 * (v % kOfSheet / kColumns);
+      const double y = some_are_lines && sheet % 2 == 1 ? 0.0 : 10.0 * row;
       scene.frames.xyz.insert(scene.frames.xyz.end(),
                               {x + 1000.0 * sheet, y + 37.0 * (2 * sheet % 3) * f, 11.0 * f});
     }
@@ -73,8 +73,9 @@ TEST(PartitionClusters, HaveSeedTrianglesNearTheCentreOrDistantVertices) {
                           kPositionBits);
   const Seed triangle = maker.clusters(1).seeds.at(0);
   for (const std::uint32_t v : triangle) {
+    const std::uint32_t row = v / kColumns;
     EXPECT_NEAR(v % kColumns, 5.5, 2.6);
-    EXPECT_NEAR(v / kColumns, 5.5, 2.6);
+    EXPECT_NEAR(row, 5.5, 2.6);
   }
   const Seed distant = maker.spread_clusters(1).seeds.at(0);
   EXPECT_GE(distance2(scene.frames.at(0, distant[0]), scene.frames.at(0, distant[1])),

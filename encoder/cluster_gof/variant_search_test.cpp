@@ -42,7 +42,8 @@ struct Sheet {
     for (std::uint32_t f = 0; f < kFrames; ++f) {
       for (std::uint32_t v = 0; v < header.num_vertices; ++v) {
         const double x = v % kSide;
-        const double y = v / kSide;
+        const std::uint32_t row = v / kSide;
+        const double y = row;
         const double jolt = f > 9 && x > 4 ? 2000.0 : 0.0;
         frames.xyz.insert(frames.xyz.end(), {100.0 * x * x + 20.0 * y, 700.0 * y,
                                              900.0 * std::sin(0.5 * f + 0.4 * x) * y + jolt});

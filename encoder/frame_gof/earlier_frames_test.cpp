@@ -15,6 +15,7 @@ TEST(EarlierFrames, AreEqualOnTheGrid) {
 
 std::vector<std::uint32_t> equal(const std::vector<EarlierFrame>& frames) {
   std::vector<std::uint32_t> distances;
+  distances.reserve(frames.size());
   for (const EarlierFrame& frame : frames) {
     distances.push_back(frame.is_equal ? frame.distance : 0);
   }

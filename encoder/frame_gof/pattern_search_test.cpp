@@ -38,10 +38,11 @@ class PatternSearch : public testing::Test {
     GofFrames frames{header_.num_vertices, num_frames, {}};
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
+        const std::uint32_t ring = v / kSides;
         const double around = 2.0 * std::acos(-1.0) / kSides * (v % kSides);
         frames.xyz.push_back(3000 * std::cos(around) + shift(f, v, 0));
         frames.xyz.push_back(3000 * std::sin(around) + shift(f, v, 1));
-        frames.xyz.push_back(1500.0 * (v / kSides) + shift(f, v, 2));
+        frames.xyz.push_back(1500.0 * ring + shift(f, v, 2));
       }
     }
     return frames;

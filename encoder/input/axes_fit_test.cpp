@@ -104,7 +104,7 @@ TEST(AxesFit, TakesARestPoseThatIsTurnedAboutTheVerticalForMotion) {
 TEST(AxesFit, DependsOnNeitherPlaceNorSize) {
   Pose mesh = turned("x,z,-y", body());
   for (std::size_t i = 0; i < mesh.size(); ++i)
-    mesh[i] = 100.0F * mesh[i] + (i % 3 == 1 ? 500 : 0);
+    mesh[i] = 100.0F * mesh[i] + (i % 3 == 1 ? 500.0F : 0.0F);
   EXPECT_EQ(found(mesh, bending(0.0F, 0.5F)), "x,z,-y");
 }
 

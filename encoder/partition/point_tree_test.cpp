@@ -29,6 +29,7 @@ void expect_nearest(const std::vector<Point3>& points, std::size_t count) {
   for (std::uint32_t of = 0; of < points.size(); ++of) {
     const std::vector<std::uint32_t> found = tree.nearest(of, count);
     std::vector<double> distances;
+    distances.reserve(found.size());
     for (const std::uint32_t p : found) {
       distances.push_back(squared_distance(points[p], points[of]));
     }

@@ -31,9 +31,7 @@ Result<CodedAttributes> parse(const Bytes& payload, const MemoryLimit& memory = 
 }
 
 std::vector<std::int32_t> as_signed(const std::vector<std::uint32_t>& values) {
-  std::vector<std::int32_t> result;
-  for (const std::uint32_t value : values) result.push_back(static_cast<std::int32_t>(value));
-  return result;
+  return {values.begin(), values.end()};
 }
 
 TEST(ParseAttributes, GivesHeaders) {
