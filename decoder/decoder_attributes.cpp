@@ -34,15 +34,16 @@ Result<Vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
 Result<Vector<std::int32_t>> Decoder::Impl::first_frame() {
   const ThreadPool::Use use(threads_);
   const SliceCut cut = stream_.access_units().cut();
-  const std::uint32_t position = position_;
-  leave_gof();
+  if (gof_ && gof_->has_frame(0) && !cut.cuts()) {
+    Vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
+    gof_->gof.recon->frame(0, positions);
+    return positions;
+  }
+  const StreamReader::Place here = stream_.place();
   stream_.access_units().set_cut({});
   auto positions = decode_first_frame();
   stream_.access_units().set_cut(cut);
-  // At the end, the last frame has been decoded.
-  const std::uint32_t last = num_frames().value_or(kMaxFrames) - 1;
-  if (auto ok = seek(std::min(position, last)); !ok && positions) return ok.error();
-  position_ = position;
+  stream_.return_to(here);
   return positions;
 }
 

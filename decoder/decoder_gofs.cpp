@@ -162,8 +162,7 @@ Result<bool> Decoder::Impl::prefetch(std::uint32_t frame) {
   }
   if (max_cached_bytes_ == 0) return true;
   const ThreadPool::Use use(threads_);
-  const std::uint64_t offset = stream_.offset();
-  const std::uint32_t next_frame = stream_.next_first_frame();
+  const StreamReader::Place here = stream_.place();
   stream_.go_to(place->offset, place->first_frame);
   if (const auto unit = stream_.units().header_at(place->offset)) {
     if (auto gof = read_gof(*unit)) {
@@ -172,7 +171,7 @@ Result<bool> Decoder::Impl::prefetch(std::uint32_t frame) {
       count_cached_bytes();
     }
   }
-  stream_.go_to(offset, next_frame);
+  stream_.return_to(here);
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,21 +42,48 @@ class CountedSource final : public ByteSource {
   std::uint64_t& num_bytes_;
 };
 
+// With normals, which are predicted from the first frame.
+MemoryFrames tube_with_normals() {
+  MemoryFrames plain = bending_tube(6, 26);
+  FrameSource::Shape shape;
+  shape.frame_rate = plain.frame_rate();
+  shape.triangles.assign(plain.triangles().begin(), plain.triangles().end());
+  std::vector<std::vector<float>> frames(plain.num_frames());
+  for (std::uint32_t f = 0; f < plain.num_frames(); ++f) {
+    frames[f].resize(3 * std::size_t{plain.num_vertices()});
+    EXPECT_FALSE(plain.read_frame(f, frames[f]));
+  }
+  SourceAttribute& normal = shape.attributes.sets.emplace_back();
+  normal.name = "normal";
+  normal.domain = AttributeDomain::kVertex;
+  normal.kind = SourceAttribute::Kind::kNormals;
+  normal.num_components = 3;
+  for (std::uint32_t v = 0; v < plain.num_vertices(); ++v) {
+    const double turn = 1.2566 * (v % 5) + 0.1 * std::sin(3.0 * v);
+    normal.values.push_back(0.0F);
+    normal.values.push_back(static_cast<float>(std::cos(turn)));
+    normal.values.push_back(static_cast<float>(std::sin(turn)));
+  }
+  return {std::move(shape), std::move(frames)};
+}
+
 StreamBytes main_stream() {
-  MemoryFrames source = bending_tube(6, 26);
+  MemoryFrames source = tube_with_normals();
   EncoderSettings settings;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 8;
+  settings.attributes.normals = NormalChoice::kExact;
   return encode_to_memory(source, settings);
 }
 
 StreamBytes stream_of_frames(const std::optional<FramePattern>& pattern, FrameWeights weights) {
-  MemoryFrames source = bending_tube(6, 26);
+  MemoryFrames source = tube_with_normals();
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
   settings.kinds = KindChoice::kFrames;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 8;
+  settings.attributes.normals = NormalChoice::kExact;
   settings.frames.pattern = pattern;
   settings.frames.weights = weights;
   settings.hash_mode = HashMode::kFrame;
@@ -221,6 +249,68 @@ TEST_P(RandomAccess, GoesOnAfterDamage) {
     EXPECT_FALSE(decoder->frame(0, frame));
     ASSERT_NO_FATAL_FAILURE(expect_frame(*decoder, last()));
   }
+}
+
+TEST_P(RandomAccess, AttributesLeaveTheDecoderWhereItIs) {
+  auto wanted = open({})->attributes();
+  ASSERT_TRUE(wanted);
+  if (wanted->empty()) GTEST_SKIP() << "it has none";
+  for (const std::uint64_t cached : {std::uint64_t{0}, kAmple}) {
+    for (const std::uint32_t before : {0U, 1U, 7U, 8U, 9U, last(), last() + 1}) {
+      DecoderOptions options;
+      options.max_cached_bytes = cached;
+      auto decoder = open(options);
+      Frame frame(3 * std::size_t{decoder->num_vertices()});
+      for (std::uint32_t f = 0; f < std::min(before, last() + 1); ++f) {
+        ASSERT_TRUE(*decoder->next_frame(frame));
+      }
+      if (before > last()) {
+        ASSERT_FALSE(*decoder->next_frame(frame));
+      }
+      const auto sets = decoder->attributes();
+      ASSERT_TRUE(sets);
+      EXPECT_EQ((*sets)[0].values, (*wanted)[0].values);
+      EXPECT_EQ(decoder->position(), std::min(before, last() + 1));
+      for (std::uint32_t f = before; f <= last(); ++f) {
+        ASSERT_TRUE(*decoder->next_frame(frame)) << before;
+        ASSERT_EQ(frame, frames_[f]) << before;
+      }
+      ASSERT_FALSE(*decoder->next_frame(frame)) << before;
+    }
+  }
+}
+
+TEST_P(RandomAccess, AttributesNeedTheFirstGofAlone) {
+  if (!open({})->has_attributes()) GTEST_SKIP() << "it has none";
+  std::vector<UnitPlace> gofs;
+  for (const UnitPlace& unit : units_of(stream_)) {
+    if (unit.type == UnitType::kGof) gofs.push_back(unit);
+  }
+  stream_[gofs[1].crc()] ^= 1;
+  auto decoder = open({});
+  Frame frame(3 * std::size_t{decoder->num_vertices()});
+  const std::uint32_t second = (*decoder->gofs())[1].first_frame;
+  for (std::uint32_t f = 0; f < second; ++f) ASSERT_TRUE(*decoder->next_frame(frame));
+  EXPECT_TRUE(decoder->attributes());
+  EXPECT_FALSE(decoder->next_frame(frame));
+  EXPECT_TRUE(decoder->attributes());
+  EXPECT_FALSE(decoder->next_frame(frame)) << "still";
+  stream_[gofs[1].crc()] ^= 1;
+  stream_[gofs[0].crc()] ^= 1;
+  EXPECT_FALSE(open({})->attributes());
+}
+
+TEST_P(RandomAccess, PrefetchingAtTheEndLeavesItThere) {
+  DecoderOptions options;
+  options.max_cached_bytes = kAmple;
+  auto decoder = open(options);
+  Frame frame(3 * std::size_t{decoder->num_vertices()});
+  while (*decoder->next_frame(frame)) {
+  }
+  ASSERT_TRUE(decoder->prefetch(0));
+  const auto more = decoder->next_frame(frame);
+  ASSERT_TRUE(more);
+  EXPECT_FALSE(*more);
 }
 
 TEST_P(RandomAccess, KeptGofsGiveWayToTheLimit) {

@@ -316,13 +316,15 @@ Result<bool> StreamReader::seek(std::uint32_t frame) {
 }
 
 Result<GofPlace> StreamReader::locate(std::uint32_t frame) {
-  const std::uint64_t offset = offset_;
-  const std::uint32_t first_frame = frames_parsed_;
-  const bool ended = ended_;
+  const Place here = place();
   const auto gof = pass_gofs_to(frame);
-  go_to(offset, first_frame);
-  ended_ = ended;
+  return_to(here);
   return gof;
+}
+
+void StreamReader::return_to(const Place& place) {
+  go_to(place.offset, place.next_first_frame);
+  ended_ = place.ended;
 }
 
 void StreamReader::go_to(std::uint64_t offset, std::uint32_t first_frame) {

@@ -77,6 +77,14 @@ class StreamReader {
   Result<bool> seek(std::uint32_t frame);
   // Finds that GOF, and leaves the stream where it is.
   Result<GofPlace> locate(std::uint32_t frame);
+  // Between two units.
+  struct Place {
+    std::uint64_t offset = 0;
+    std::uint32_t next_first_frame = 0;
+    bool ended = false;
+  };
+  Place place() const { return {offset_, frames_parsed_, ended_}; }
+  void return_to(const Place& place);
   // Goes to a place between units, after frames of which first_frame is the next.
   void go_to(std::uint64_t offset, std::uint32_t first_frame);
 
