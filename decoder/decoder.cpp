@@ -176,7 +176,7 @@ Result<std::uint32_t> Decoder::Impl::parse_rest() {
 
 Result<Decoder> Decoder::open(std::unique_ptr<ByteSource> source,
                               const DecoderOptions& options) {
-  assert(options.coarse_layers > 0);
+  assert(options.coarse_layers > 0 && options.cut.max_temporal_layers > 0);
   DecoderOptions for_rest = options;
   std::uint64_t& left = for_rest.limits.max_memory_bytes;
   left -= std::min(left, source->memory_bytes());

@@ -665,6 +665,12 @@ static void test_coarse_meshes(const buffer* stream) {
         RLPC_BAD_ARGUMENT);
   CHECK_TEXT(rlpc_decoder_error_text(none), "coarse_layers: 0 is not in the range");
   rlpc_decoder_close(none);
+  options.coarse_layers = 1;
+  options.max_temporal_layers = 0;
+  CHECK(rlpc_decoder_open_memory(stream->bytes, stream->size, &options, &none) ==
+        RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(none), "max_temporal_layers: 0 is not in the range");
+  rlpc_decoder_close(none);
 }
 
 static void test_texts(void) {

@@ -150,6 +150,11 @@ static void test_positions(void) {
   output.int16_scale[2] = 1e-9;
   CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_OK);
   CHECK(small[0] == 4 && small[3] == 8 && small[7] == 2 && small[11] == 32767);
+  output.int16_offset[0] = NAN;
+  CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_BAD_ARGUMENT);
+  output.int16_offset[0] = 0;
+  output.int16_scale[1] = INFINITY;
+  CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_BAD_ARGUMENT);
 }
 
 static void test_normals(void) {
@@ -233,7 +238,8 @@ static void test_descriptions(void) {
     CHECK(fabsf(least[c] - expected[c]) < 2e-4F && fabsf(most[c] - expected[3 + c]) < 2e-4F);
   }
   CHECK(rlpc_decoder_next(decoder, &output) == RLPC_END);
-  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_OK);
+  for (int c = 0; c < 3; ++c) CHECK(fabsf(least[c] - expected[c]) < 2e-4F);
 
   rlpc_gof gofs[FRAMES];
   uint32_t num_gofs = 0;

@@ -73,7 +73,7 @@ rlpc_status give_indices(rlpc_decoder& handle, std::span<const Triangle> triangl
     return bad("16 bits cannot hold the indices of more than 65536 vertices");
   }
   const std::size_t wanted = 3 * triangles.size() * buffer.index_bytes;
-  if (buffer.indices == nullptr) return bad("the buffer is null");
+  if (buffer.indices == nullptr && wanted > 0) return bad("the buffer is null");
   if (buffer.num_bytes != wanted) {
     return bad("the buffer has " + std::to_string(buffer.num_bytes) + " bytes, not " +
                std::to_string(wanted));

@@ -57,9 +57,9 @@ typedef struct rlpc_attribute {
 struct rlpc_decoder;
 
 // Decodes the attributes, once. num_sets: how many sets there are; 0: the stream has none. Any
-// error is that of the attributes alone. Time: that of the first frame of the stream, and of a
-// few passes over all triangles; the next frame stays. Memory: all values, until the handle is
-// closed.
+// error is that of the attributes alone. Time: that of parsing the first GOF, unless it is in
+// use, and of some passes over all triangles; the next frame stays. Memory: all values, until
+// the handle is closed.
 RLPC_API rlpc_status rlpc_decoder_attributes(struct rlpc_decoder* decoder, uint32_t* num_sets);
 // The functions below are of the sets that rlpc_decoder_attributes has decoded; before it,
 // there are none. set: below num_sets, otherwise RLPC_BAD_ARGUMENT.

@@ -110,9 +110,11 @@ rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
           RLPC_BAD_ARGUMENT, "threads: " + std::to_string(options.threads) +
                                  " is not in the range of 1 to " + std::to_string(kMaxThreads));
     }
-    if (options.coarse_layers < 1) {
+    for (const auto& [name, value] : {std::pair{"coarse_layers", options.coarse_layers},
+                                      {"max_temporal_layers", options.max_temporal_layers}}) {
+      if (value > 0) continue;
       return handle->error.break_handle(
-          RLPC_BAD_ARGUMENT, "coarse_layers: 0 is not in the range of 1 to RLPC_ALL");
+          RLPC_BAD_ARGUMENT, std::string(name) + ": 0 is not in the range of 1 to RLPC_ALL");
     }
     if (kHasNoOwners && handle->owner.allocate != nullptr) {
       return handle->error.break_handle(
@@ -311,10 +313,10 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
     const std::size_t wanted = 3 * std::size_t{decoder->decoder->num_vertices()};
     if (!rlpc::check_buffer(*decoder, xyz, num_values, wanted)) return RLPC_BAD_ARGUMENT;
     decoder->positions.resize(wanted);
-    decoder->has_frame = false;
     const rlpc_status status = rlpc::next(*decoder, decoder->positions);
+    // At the end, the last frame stays.
+    if (status != RLPC_END) decoder->has_frame = status == RLPC_OK;
     if (status != RLPC_OK) return status;
-    decoder->has_frame = true;
     for (std::size_t i = 0; i < wanted; ++i) {
       xyz[i] = rlpc::float_position(header.grid, i % 3, decoder->positions[i]);
     }

@@ -26,8 +26,8 @@
 // frame allocates temporary buffers, the others nothing; more with several threads, or after a
 // seek. It comes from the callbacks of rlpc_decode_options.allocator, or from C++ operator new;
 // whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
-// starting threads, and for the text of an error, and zlib for metadata. If memory runs out,
-// calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
+// starting threads, and for the text of an error, and zlib for metadata and assets. If memory
+// runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
 // everything.
 #pragma once
 
@@ -148,7 +148,8 @@ RLPC_API void rlpc_decode_options_init(rlpc_decode_options* options, size_t stru
 // Size of a handle, for rlpc_decode_options.place.
 RLPC_API size_t rlpc_decoder_bytes(void);
 
-// Opens a stream and reads up to its first GOF. options may be null. On failure, *decoder is
+// Opens a stream and reads up to its first GOF, once through the asset for its CRC. options may
+// be null. On failure, *decoder is
 // still a handle, for its error text, and must be closed; it is null only if an argument is
 // null or invalid, or if there is no memory for a handle.
 //
@@ -165,8 +166,8 @@ RLPC_API rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
                                               rlpc_decoder** decoder);
 RLPC_API void rlpc_decoder_close(rlpc_decoder* decoder);  // may be null
 
-// The error of the last failed call; "" if none failed. Valid until the next call on the
-// handle.
+// The error of the last failed call; "" if none failed, or a frame or GOF has been found since.
+// Valid until the next call on the handle.
 RLPC_API const char* rlpc_decoder_error_text(const rlpc_decoder* decoder);
 
 // struct_size: sizeof *info.
@@ -224,13 +225,15 @@ RLPC_API rlpc_status rlpc_decoder_prefetch(rlpc_decoder* decoder, uint32_t frame
 // The box of the last frame that _frame, _next or _next_floats decoded, in the units of the
 // encoder's input. Reads all vertices; allocates nothing. RLPC_BAD_ARGUMENT if there is none.
 RLPC_API rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float most[3]);
-// The memory that is needed now. struct_size: sizeof *memory.
+// The memory that decoding frames needs now, estimated for the worst contents: usually several
+// times what is allocated. Without attributes, drawn vertices and the asset, which are as large
+// as what their functions give. struct_size: sizeof *memory.
 RLPC_API rlpc_status rlpc_decoder_memory(rlpc_decoder* decoder, rlpc_memory* memory,
                                          size_t struct_size);
 
 // Decodes the next frame: x, y and z of each vertex. num_values: 3 * num_vertices. RLPC_END
 // after the last frame, once the rest of the stream has been checked. Stream errors are sticky
-// until rlpc_decoder_seek succeeds.
+// until rlpc_decoder_seek or _frame succeeds.
 //
 // _positions: exact, in grid units, the same from every decoder. _floats: in the units of the
 // encoder's input.

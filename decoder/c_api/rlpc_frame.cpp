@@ -1,6 +1,7 @@
 // Frames in any order and form, and what concerns them (decoder/c_api/rlpc_decode.h).
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -52,8 +53,12 @@ rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) 
                       "normal_weight: there is no " + std::to_string(output.normal_weight));
   }
   for (const double scale : output.int16_scale) {
-    if (!(scale >= 0))
-      return bad_output(handle, "int16_scale: expected a positive number, or 0");
+    if (!(scale >= 0 && std::isfinite(scale)))
+      return bad_output(handle, "int16_scale: expected a positive finite number, or 0");
+  }
+  for (const double offset : output.int16_offset) {
+    if (!std::isfinite(offset))
+      return bad_output(handle, "int16_offset: expected a finite number");
   }
   if (output.split != 0 && !handle.drawn) {
     return bad_output(handle, "split: call rlpc_decoder_split first");
@@ -89,9 +94,11 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
   if (const auto status = check_output(handle, output); status != RLPC_OK) return status;
   const SequenceHeader& header = handle.decoder->header();
   handle.positions.resize(3 * std::size_t{handle.decoder->num_vertices()});
-  handle.has_frame = false;
   const Result<bool> more = decode(std::span(handle.positions));
-  if (!more) return fail(handle, more.error());
+  if (!more) {
+    handle.has_frame = false;
+    return fail(handle, more.error());
+  }
   handle.error.clear();
   if (!*more) return RLPC_END;
   handle.has_frame = true;

@@ -23,7 +23,7 @@ extern "C" {
 typedef enum rlpc_format {
   RLPC_INT32 = 1,  // positions: grid units, exact
   RLPC_FLOAT = 2,  // 32 bits, in the units of the encoder's input
-  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest, to infinity beyond 65504
+  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest, to infinity from 65520 on
   RLPC_INT16 = 4,  // positions: see int16_scale; normals: 32767 times the vector
   RLPC_INT8 = 5,   // normals: 127 times the vector
 } rlpc_format;
@@ -49,13 +49,14 @@ typedef struct rlpc_frame_output {
   rlpc_channel normals;
   uint32_t normal_weight;  // rlpc_normal_weight
   // RLPC_INT16 positions: coordinate = value * scale + offset for each axis, rounded to the
-  // nearest value, and to the outermost one beyond. 0 and 0, the default: those that cover
-  // range_min to range_max of rlpc_stream_info; rlpc_decoder_int16_scale tells them.
+  // nearest value, and to the outermost one beyond. A scale of 0, the default: scale and offset
+  // that cover range_min to range_max of rlpc_stream_info; rlpc_decoder_int16_scale tells them.
   double int16_scale[3];
   double int16_offset[3];
   // 1: a value for each drawn vertex (rlpc_attributes.h); normals are then those of the set
-  // `normal`, with its smoothing and weights, if the stream has one. 0: for each vertex of the
-  // stream.
+  // `normal`, with its smoothing and weights, whatever normal_weight is, if the stream has one:
+  // stored ones turn with the edges around their vertex, which takes several times as long. 0:
+  // for each vertex of the stream.
   uint32_t split;
 } rlpc_frame_output;
 // NOLINTEND(readability-identifier-naming)
