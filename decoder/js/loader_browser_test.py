@@ -253,6 +253,26 @@ class Loader(InScene):
             self.assertEqual((told[0], told[1], len(told[2])), (0, True, 1))
             self.assertIn(text, told[2][0])
 
+    def test_units_with_a_wrong_crc_leave_a_plain_mesh(self):
+        stream, at, damaged = bytearray((self.folder / "box.rlpc").read_bytes()), 10, 0
+        while at < len(stream):
+            size = 5 + int.from_bytes(stream[at + 1:at + 5], "big")
+            if stream[at] in (0x83, 0x88, 0x89, 0x8A):  # metadata, attributes, asset, clips
+                stream[at + size] ^= 1
+                damaged += 1
+            at += size + 4
+        self.assertGreater(damaged, 1)
+        (self.folder / "crc.rlpc").write_bytes(stream)
+        told = self.run_script("""
+            const mesh = await show('crc.rlpc');
+            const strict = await RlpcDecoder.open('crc.rlpc', { skipDamagedUnits: false })
+              .catch((error) => error);
+            return [mesh.frame, mesh.material.isMeshStandardMaterial, warnings.splice(0),
+                    mesh.decoder.info.damagedUnits, strict.rule];""")
+        self.assertEqual((told[0], told[1], told[3], told[4]), (0, True, damaged, "R-UNT-03"))
+        self.assertEqual(told[2], ["RLPCLoader: attributes, materials, clips or metadata are "
+                                   "damaged, and left out"])
+
     def test_an_asset_that_is_no_glb(self):
         told = self.run_script("""
             const { constructor: RLPCMesh } = await show('box.rlpc');

@@ -34,7 +34,7 @@ export class RlpcDecoder {
 
   static async open(source, options = {}) {
     const { signal, onProgress, maxMemory = kUsualMemory, coarseLayers = 0, verifyHashes = true,
-      worker, wasm } = options;
+      skipDamagedUnits = true, worker, wasm } = options;
     const shared = source instanceof RlpcDecoder ? source : undefined;
     const described = shared ? undefined : describeSource(source, { ...options, maxMemory });
     if (!Number.isInteger(coarseLayers) || coarseLayers < 0) {
@@ -51,7 +51,7 @@ export class RlpcDecoder {
     try {
       decoder.#describe(await link.request({
         type: "open", module, source: described, shared: shared?.#stream, stream: decoder.#stream,
-        options: { maxMemory, coarseLayers, verifyHashes },
+        options: { maxMemory, coarseLayers, verifyHashes, skipDamagedUnits },
       }, { signal }));
     } catch (error) {
       decoder.close();
@@ -75,6 +75,7 @@ export class RlpcDecoder {
       bytes: size,
       hasAttributes: Boolean(header.has_attributes),
       hasAsset: Boolean(header.has_asset),
+      damagedUnits: header.num_damaged_units,
     });
     this.gridOrigin = header.grid_origin;
     this.gridStep = 2 ** header.grid_log2_step;

@@ -34,6 +34,9 @@ export interface StreamInfo {
   readonly hasAttributes: boolean;
   /** Whether there is an asset(). */
   readonly hasAsset: boolean;
+  /** How many units before the first frame (attributes, the asset, clips, metadata) are damaged,
+   * and count as absent. */
+  readonly damagedUnits: number;
 }
 
 /** Whose values they are. */
@@ -92,6 +95,9 @@ export interface OpenOptions {
   maxMemory?: number;
   /** Whether frames are compared with the hashes of the stream; usually true. */
   verifyHashes?: boolean;
+  /** Whether attributes, assets, clips and metadata that are damaged count as absent
+   * (`info.damagedUnits`); usually true. Otherwise, they are errors of open(). */
+  skipDamagedUnits?: boolean;
   /** Called whenever bytes have come from a server. */
   onProgress?: (progress: Progress) => void;
   /** Rejects open() with an AbortError. */

@@ -25,7 +25,8 @@ export function usualMaterial({ vertexColors = false, flatShading = false } = {}
  * or they have an error. isFlat: in glTF, meshes without normals are. */
 export async function loadLook(decoder,
   { attributes = true, textures = true, material, gltfLoader }) {
-  const { hasAttributes, hasAsset } = decoder.info;
+  const { hasAttributes, hasAsset, damagedUnits } = decoder.info;
+  if (damagedUnits > 0) warn("attributes, materials, clips or metadata are damaged, and left out");
   if (!attributes || !hasAttributes && !hasAsset || decoder.coarseVertices) return undefined;
   const wantsMaterials = hasAsset && !material;
   try {

@@ -65,10 +65,11 @@ function outOfMemory() {
 
 /** Frames of one stream, in any order. Arrays that it returns are copies. */
 class WasmStream {
-  constructor(decoder, size, { maxMemory, coarseLayers, verifyHashes }) {
+  constructor(decoder, size, { maxMemory, coarseLayers, verifyHashes, skipDamagedUnits }) {
     this.decoder = decoder;
     this.exports = decoder.exports;
-    this.stream = this.exports.stream_new(size, maxMemory, coarseLayers, verifyHashes);
+    this.stream = this.exports.stream_new(size, maxMemory, coarseLayers, verifyHashes,
+      skipDamagedUnits);
   }
 
   /** Offset of the last read. */

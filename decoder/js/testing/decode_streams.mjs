@@ -17,7 +17,7 @@ async function decode(path) {
   let decoder;
   try {
     const start = performance.now();
-    decoder = await RlpcDecoder.open(readFileSync(path));
+    decoder = await RlpcDecoder.open(readFileSync(path), { skipDamagedUnits: false });
     result.vertices = decoder.info.vertices;
     result.triangles = createHash("sha256").update(decoder.indices).digest("hex");
     for (; result.frames < decoder.info.frames; ++result.frames) {

@@ -37,7 +37,8 @@ std::string describe(SeekingDecoder& seeking) {
            {"num_layers", decoder.num_layers()},
            {"num_clips", static_cast<std::int64_t>(decoder.clips().size())},
            {"has_attributes", decoder.has_attributes() ? 1 : 0},
-           {"has_asset", decoder.has_asset() ? 1 : 0}}) {
+           {"has_asset", decoder.has_asset() ? 1 : 0},
+           {"num_damaged_units", static_cast<std::int64_t>(decoder.damaged_units().size())}}) {
     text += member(name, value) + ",";
   }
   return text + "\"grid_origin\":[" + std::to_string(origin[0]) + "," +
@@ -64,8 +65,9 @@ using rlpc::Stream;
 // coarse_layers: 0 for the whole mesh.
 RLPC_EXPORT(stream_new)
 Stream* stream_new(double num_bytes, double max_memory_bytes, std::uint32_t coarse_layers,
-                   bool verify_hashes) {
+                   bool verify_hashes, bool skip_damaged_units) {
   rlpc::DecoderOptions options;
+  options.skip_damaged_units = skip_damaged_units;
   options.limits.max_memory_bytes = static_cast<std::uint64_t>(max_memory_bytes);
   options.verify_hashes = verify_hashes;
   if (coarse_layers > 0) options.coarse_layers = coarse_layers;
