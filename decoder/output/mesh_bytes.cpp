@@ -66,8 +66,12 @@ std::string frame_rate_text(FrameRate frame_rate) {
   return std::to_string(frame_rate.numerator) + "/" + std::to_string(frame_rate.denominator);
 }
 
+const AttributeSet* find_uv(const SinkOptions& options, std::uint32_t set) {
+  return find_values(options, ("uv" + std::to_string(set)).c_str(), 2, 2);
+}
+
 MeshAttributes::MeshAttributes(const SinkOptions& options)
-    : uv(find_values(options, "uv0", 2, 2)),
+    : uv(find_uv(options, 0)),
       normal(find_values(options, "normal", 0, 3)),
       colour(find_values(options, "colour0", 3, 4)),
       material(find_indices(options, "material")),

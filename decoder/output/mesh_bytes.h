@@ -37,6 +37,9 @@ struct MeshAttributes {
   std::vector<float> colour_numbers() const;
 };
 
+// The texture coordinates of a set uv0, uv1, ...; null: there are none.
+const AttributeSet* find_uv(const SinkOptions& options, std::uint32_t set);
+
 // The normals of each frame, if the stream has any.
 class MeshNormals {
  public:

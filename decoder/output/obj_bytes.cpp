@@ -1,5 +1,9 @@
 #include "decoder/output/obj_bytes.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "common/io/float_position.h"
 
 namespace rlpc {
@@ -14,24 +18,44 @@ ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
     colours_ = attributes_.colour_numbers();
     colour_width_ = number_components(colour->header);
   }
-  append_uv();
   append_faces(ObjMaterials(options));
 }
 
-void ObjBytes::append_uv() {
-  if (attributes_.uv == nullptr) return;
-  const std::vector<float> uv = attributes_.uv_numbers();
-  for (std::size_t i = 0; i < uv.size(); i += 2) {
+const ObjBytes::UvList* ObjBytes::uv_of(const ObjMaterials& materials, std::size_t triangle) {
+  const std::uint32_t material =
+      attributes_.material == nullptr ? 0 : attributes_.material->values[triangle];
+  const auto [place, is_new] = uv_list_of_material_.try_emplace(material);
+  if (is_new) place->second = add_uv(materials.texture(material));
+  return place->second ? &uv_lists_[*place->second] : nullptr;
+}
+
+std::optional<std::size_t> ObjBytes::add_uv(const ObjTexture& texture) {
+  const auto known = std::find_if(uv_lists_.begin(), uv_lists_.end(),
+                                  [&](const UvList& list) { return list.texture == texture; });
+  if (known != uv_lists_.end()) return static_cast<std::size_t>(known - uv_lists_.begin());
+  const AttributeSet* const set = find_uv(options_, texture.set);
+  if (set == nullptr) return std::nullopt;
+  uv_lists_.push_back({texture, set, num_uv_ + 1});
+  const std::vector<float> uv = attribute_numbers(*set);
+  for (std::size_t i = 0; i + 1 < uv.size(); i += 2) {
+    std::array<float, 2> place{};
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto& row = texture.rows[c];
+      const auto x = static_cast<float>(row[0] * uv[i] + row[1] * uv[i + 1] + row[2]);
+      place[c] = c == 0 ? x : 1.0F - x;
+      if (!std::isfinite(place[c])) place[c] = 0.0F;
+    }
     header_ += "vt ";
-    append_number(header_, uv[i]);
+    append_number(header_, place[0]);
     header_ += ' ';
-    append_number(header_, uv[i + 1]);
+    append_number(header_, place[1]);
     header_ += '\n';
   }
+  num_uv_ += uv.size() / 2;
+  return uv_lists_.size() - 1;
 }
 
 void ObjBytes::append_faces(const ObjMaterials& materials) {
-  const AttributeSet* const uv = attributes_.uv;
   const auto number_of = [](const AttributeSet* set, std::size_t triangle) {
     return set->values[triangle];
   };
@@ -47,6 +71,7 @@ void ObjBytes::append_faces(const ObjMaterials& materials) {
     if (changes(attributes_.material, t)) {
       faces_ += "usemtl " + materials.material_name(number_of(attributes_.material, t)) + "\n";
     }
+    const UvList* const uv = uv_of(materials, t);
     faces_ += 'f';
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = options_.triangles[t][k];
@@ -55,8 +80,8 @@ void ObjBytes::append_faces(const ObjMaterials& materials) {
       append_number(faces_, std::uint64_t{v} + 1);
       if (uv != nullptr) {
         faces_ += '/';
-        const std::uint32_t value = uv->value_of_corner.empty() ? v : uv->value_of_corner[c];
-        append_number(faces_, std::uint64_t{value} + 1);
+        const auto& value_of_corner = uv->set->value_of_corner;
+        append_number(faces_, uv->first + (value_of_corner.empty() ? v : value_of_corner[c]));
       }
       if (!normals_.exist()) continue;
       faces_ += uv != nullptr ? "/" : "//";

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,7 +19,16 @@ class ObjBytes : public MeshBytes {
   const std::string& frame(std::span<const std::int32_t> positions) override;
 
  private:
-  void append_uv();
+  // Texture coordinates of some materials.
+  struct UvList {
+    ObjTexture texture;
+    const AttributeSet* set = nullptr;
+    std::uint64_t first = 0;  // number of its first `vt`, counted from 1
+  };
+  // Of a triangle. Null: it has none.
+  const UvList* uv_of(const ObjMaterials& materials, std::size_t triangle);
+  // The index of their list.
+  std::optional<std::size_t> add_uv(const ObjTexture& texture);
   void append_faces(const ObjMaterials& materials);
   void append_vertices();
   void append_normals();
@@ -29,6 +40,9 @@ class ObjBytes : public MeshBytes {
   std::size_t colour_width_ = 0;
   std::vector<float> xyz_;
   std::string header_;  // with texture coordinates
+  std::vector<UvList> uv_lists_;
+  std::map<std::uint32_t, std::optional<std::size_t>> uv_list_of_material_;
+  std::uint64_t num_uv_ = 0;
   std::string faces_;
   std::string bytes_;
 };

@@ -1,6 +1,8 @@
 #include "decoder/output/obj_materials.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -44,6 +46,38 @@ void append_factor(std::string& mtl, const char* key, const GltfJson* number) {
   mtl += std::string(key) + " ";
   append_number(mtl, number->get<float>());
   mtl += '\n';
+}
+
+double number_of(const GltfJson* number, double otherwise) {
+  return number != nullptr && number->is_number() ? number->get<double>() : otherwise;
+}
+
+std::array<double, 2> pair_of(const GltfJson* list, double otherwise) {
+  if (list == nullptr || !list->is_array() || list->size() != 2) return {otherwise, otherwise};
+  return {number_of(&(*list)[0], otherwise), number_of(&(*list)[1], otherwise)};
+}
+
+std::uint32_t set_of(const GltfJson* info, std::uint32_t otherwise) {
+  const GltfJson* const set = member(info, "texCoord");
+  constexpr std::uint64_t kMost = 0xFFFFFFFF;
+  if (set == nullptr || !set->is_number_unsigned() || set->get<std::uint64_t>() > kMost) {
+    return otherwise;
+  }
+  return set->get<std::uint32_t>();
+}
+
+ObjTexture texture_of(const GltfJson* info) {
+  const GltfJson* const transform = member(member(info, "extensions"), "KHR_texture_transform");
+  const std::array<double, 2> offset = pair_of(member(transform, "offset"), 0.0);
+  const std::array<double, 2> scale = pair_of(member(transform, "scale"), 1.0);
+  const double angle = number_of(member(transform, "rotation"), 0.0);
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  ObjTexture texture;
+  texture.set = set_of(transform, set_of(info, 0));
+  texture.rows = {{{cosine * scale[0], sine * scale[1], offset[0]},
+                   {-sine * scale[0], cosine * scale[1], offset[1]}}};
+  return texture;
 }
 
 std::string extension_of(const std::string& bytes) {
@@ -117,6 +151,18 @@ std::string ObjMaterials::material_name(std::uint32_t number) const {
 
 std::string ObjMaterials::part_name(std::uint32_t number) const {
   return word_of(asset_.name_of("nodes", number), "part_", number);
+}
+
+ObjTexture ObjMaterials::texture(std::uint32_t number) const {
+  const GltfJson* const all = member(&asset_.root(), "materials");
+  const GltfJson* const material =
+      all != nullptr && number < all->size() ? &(*all)[number] : nullptr;
+  for (const GltfJson* const info :
+       {member(member(material, "pbrMetallicRoughness"), "baseColorTexture"),
+        member(material, "emissiveTexture"), member(material, "normalTexture")}) {
+    if (info != nullptr) return texture_of(info);
+  }
+  return texture_of(nullptr);
 }
 
 // glTF's metallic-roughness model, in the words that readers of OBJ have for it.

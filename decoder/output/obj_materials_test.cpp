@@ -73,6 +73,39 @@ TEST(ObjMaterials, ComeFromTheAssetOfTheStream) {
       << obj;
 }
 
+AttributeSet coordinates(const std::string& name, std::uint32_t first) {
+  AttributeSet set;
+  set.header.name = String(name.begin(), name.end());
+  set.header.domain = AttributeDomain::kVertex;
+  set.header.num_components = 2;
+  set.header.value_bits = 8;
+  set.header.scale = ValueScale::kGrid;
+  set.header.log2_step = -2;
+  set.values = {first, 0, first + 1, 0, first, 2};
+  return set;
+}
+
+TEST(ObjMaterials, FacesHaveTheCoordinatesOfTheirImage) {
+  SinkOptions options = mesh_with(with_views(R"("materials":[
+    {"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}}},
+    {"emissiveTexture":{"index":0,"extensions":{"KHR_texture_transform":
+      {"texCoord":1,"offset":[0.5,0.25],"scale":[2,1],"rotation":0}}}},
+    {},{},{},{"normalTexture":{"index":0,"texCoord":7}}],
+    "textures":[{"source":0}],"images":[{"bufferView":0}])",
+                                             R"({"buffer":0,"byteOffset":0,"byteLength":16})"));
+  options.attributes.push_back(coordinates("uv0", 0));
+  options.attributes.push_back(coordinates("uv1", 2));
+  const std::string obj =
+      make_mesh_bytes(SinkFormat::kObj, options, "")->frame(std::vector<std::int32_t>(9));
+  // Triangles of materials 1 (moved), 0, and 5, whose set is not there.
+  EXPECT_NE(obj.find("vt 1.5 0.75\nvt 2 0.75\nvt 1.5 0.25\nvt 0.5 1\nvt 0.75 1\nvt 0.5 0.5\n"),
+            std::string::npos)
+      << obj;
+  EXPECT_NE(obj.find("f 1/1 2/2 3/3\n"), std::string::npos);
+  EXPECT_NE(obj.find("f 1/4 2/5 3/6\n"), std::string::npos);
+  EXPECT_NE(obj.find("f 1 2 3\n"), std::string::npos);
+}
+
 TEST(ObjMaterials, WithoutNumbersTheFirstIsThatOfAllTriangles) {
   SinkOptions options =
       mesh_with(with_views(kMaterials, R"({"buffer":0,"byteOffset":0,"byteLength":16})"));

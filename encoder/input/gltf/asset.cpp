@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "encoder/input/glb_asset.h"
@@ -14,15 +15,25 @@ using Json = nlohmann::json;
 
 constexpr const char* kKept[] = {"materials", "textures", "samplers", "images"};
 
-// Removes every reference to a texture: members whose names end in "Texture".
-void remove_textures(Json& value) {
+// Removes references to textures, members whose names end in "Texture", if they are unwanted.
+template <class IsUnwanted>
+void remove_textures(Json& value, const IsUnwanted& is_unwanted) {
   if (value.is_object()) {
     for (auto it = value.begin(); it != value.end();) {
-      it = it.key().ends_with("Texture") ? value.erase(it) : std::next(it);
+      const bool is_texture = it.key().ends_with("Texture");
+      it = is_texture && is_unwanted(*it) ? value.erase(it) : std::next(it);
     }
   }
   if (!value.is_structured()) return;
-  for (Json& member : value) remove_textures(member);
+  for (Json& member : value) remove_textures(member, is_unwanted);
+}
+
+// The whole number that an object has below a limit.
+std::optional<std::size_t> index_of(const Json& object, const char* name, std::size_t limit) {
+  if (!object.is_object() || !object.contains(name)) return std::nullopt;
+  const Json& index = object[name];
+  if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= limit) return std::nullopt;
+  return index.get<std::size_t>();
 }
 
 // Names of extensions that occur in the document.
@@ -44,12 +55,16 @@ class AssetMaker {
       if (root_.contains(key)) out_[key] = root_[key];
     }
     // What glTF has by default, written down: streams without materials get another.
-    if (!out_.contains("materials")) out_["materials"] = Json::array({Json::object()});
+    if (!out_.contains("materials")) out_["materials"] = Json::array();
+    if (out_["materials"].size() == model_.num_materials && has_plain_parts()) {
+      out_["materials"].push_back(Json::object());
+    }
     if (!textures) {
       for (const char* const key : {"textures", "samplers", "images"}) out_.erase(key);
-      if (out_.contains("materials")) remove_textures(out_["materials"]);
-    } else if (out_.contains("images")) {
-      add_images();
+      remove_textures(out_["materials"], [](const Json&) { return true; });
+    } else {
+      if (out_.contains("images")) add_images();
+      check_textures();
     }
     add_parts();
     GltfAsset asset;
@@ -64,6 +79,7 @@ class AssetMaker {
     for (std::size_t i = 0; i < images.size(); ++i) {
       Json& image = images[i];
       auto bytes = read_image(image, "images[" + std::to_string(i) + "]");
+      is_carried_.push_back(bytes.has_value());
       if (!bytes) continue;
       if (!memory_.take("images", 2 * bytes->size())) return;
       image.erase("uri");
@@ -74,7 +90,63 @@ class AssetMaker {
     }
   }
 
-  // None: it is left as it is, and a note says why.
+  // Whether a primitive has no material.
+  bool has_plain_parts() const {
+    return model_.num_materials == 0 ||
+           std::any_of(model_.instances.begin(), model_.instances.end(),
+                       [](const GltfModel::Instance& i) { return !i.material; });
+  }
+
+  // Leaves out images that could not be read, and textures that are none.
+  void check_textures() {
+    constexpr std::size_t kNone = SIZE_MAX;
+    std::vector<std::size_t> places;  // of images that stay
+    Json images = Json::array();
+    for (std::size_t i = 0; i < is_carried_.size(); ++i) {
+      places.push_back(is_carried_[i] ? images.size() : kNone);
+      if (is_carried_[i]) images.push_back(std::move(out_["images"][i]));
+    }
+    out_.erase("images");
+    if (!images.empty()) out_["images"] = std::move(images);
+    // True if there is an image.
+    const auto renumber = [&](Json& object) {
+      const auto source = index_of(object, "source", places.size());
+      if (!source || places[*source] == kNone) {
+        if (object.is_object()) object.erase("source");
+        return false;
+      }
+      object["source"] = places[*source];
+      return true;
+    };
+    const std::size_t count = out_.contains("textures") ? out_["textures"].size() : 0;
+    std::vector<bool> has_image(count, false);
+    for (std::size_t t = 0; t < count; ++t) {
+      Json& texture = out_["textures"][t];
+      has_image[t] = renumber(texture);
+      if (!texture.is_object() || !texture.contains("extensions")) continue;
+      Json& extensions = texture["extensions"];
+      if (!extensions.is_object()) continue;
+      for (auto it = extensions.begin(); it != extensions.end();) {
+        const bool is_there = !it->is_object() || !it->contains("source") || renumber(*it);
+        has_image[t] = has_image[t] || is_there;
+        it = is_there ? std::next(it) : extensions.erase(it);
+      }
+      if (extensions.empty()) texture.erase("extensions");
+    }
+    std::size_t unknown = 0;
+    remove_textures(out_["materials"], [&](const Json& info) {
+      const auto texture = index_of(info, "index", count);
+      if (!texture) ++unknown;
+      return !texture || !has_image[*texture];
+    });
+    if (unknown > 0) {
+      notes_.push_back("materials: left out " + std::to_string(unknown) +
+                       (unknown == 1 ? " texture" : " textures") +
+                       " that the file does not have (it has " + std::to_string(count) + ")");
+    }
+  }
+
+  // None: a note says why.
   std::optional<std::string> read_image(const Json& image, const std::string& place) {
     GltfErrors errors(file_.file.path());
     const GltfValue value(image, errors);
@@ -116,7 +188,13 @@ class AssetMaker {
       }
     }
     if (!errors) return bytes;
-    notes_.push_back("texture " + place + " is not carried: " + errors.first().message);
+    // An image with a URI is read as a buffer.
+    std::string why = errors.first().message;
+    constexpr std::string_view kBuffer = "buffers[0].uri";
+    if (const auto at = why.find(kBuffer); value["uri"].exists() && at != std::string::npos) {
+      why.replace(at, kBuffer.size(), place + ".uri");
+    }
+    notes_.push_back("texture " + place + " is not carried: " + why);
     return std::nullopt;
   }
 
@@ -168,6 +246,7 @@ class AssetMaker {
   GltfMemory& memory_;
   GlbAsset made_;
   Json& out_ = made_.root;
+  std::vector<bool> is_carried_;  // [image]
   std::vector<std::string> notes_;
   std::vector<std::string> files_;
 };
