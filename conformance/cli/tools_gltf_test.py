@@ -95,7 +95,7 @@ class GltfInput(ToolsTest):
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1)
         for words in ("dropped 2 point or line primitives", "dropped 8 degenerate triangles",
                       "merged 53 duplicate vertices (172 left); --no-weld keeps them apart",
-                      "dropped: skeleton\n"):
+                      "dropped: skeleton (not its motion)\n"):
             self.assertIn(f"{TULIP}: {words}", result.err)
         result = self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--kg", 1, "--no-weld",
                          "--json")

@@ -12,6 +12,7 @@
 #include "common/io/messages.h"
 #include "encoder/input/formats/material_files.h"
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/formats/mtl_map.h"
 #include "encoder/input/glb_asset.h"
 #include "encoder/input/input_file.h"
 
@@ -28,9 +29,9 @@ struct Mtl {
   std::optional<double> opacity;
   std::optional<double> roughness;
   std::optional<double> metalness;
-  std::string base_image;
-  std::string emission_image;
-  std::string normal_image;
+  MtlMap base_image;
+  MtlMap emission_image;
+  MtlMap normal_image;
 };
 
 std::optional<double> number_of(TextWords& words) {
@@ -57,13 +58,6 @@ std::optional<Colour> colour_of(TextWords& words) {
   return Colour{*red, green.value_or(*red), blue.value_or(*red)};
 }
 
-// After the options. (Names with blanks are not distinguished from options.)
-std::string image_of(TextWords& words) {
-  std::string_view name;
-  for (std::string_view word = words.next(); !word.empty(); word = words.next()) name = word;
-  return std::string(name);
-}
-
 void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
   if (keyword == "Kd") {
     material.base = colour_of(words);
@@ -82,11 +76,11 @@ void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
     const auto exponent = number_of(words);
     if (exponent) material.roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));
   } else if (keyword == "map_Kd") {
-    material.base_image = image_of(words);
+    material.base_image = read_mtl_map(words);
   } else if (keyword == "map_Ke") {
-    material.emission_image = image_of(words);
+    material.emission_image = read_mtl_map(words);
   } else if (keyword == "norm") {
-    material.normal_image = image_of(words);
+    material.normal_image = read_mtl_map(words);
   }
 }
 
@@ -159,11 +153,20 @@ class AssetMaker {
   }
 
   // Null: there is no such image.
-  Json texture(const std::string& name) {
-    if (name.empty() || !textures_) return nullptr;
-    const auto [place, is_new] = textures_of_names_.try_emplace(name, nullptr);
-    if (is_new) place->second = add_texture(name);
-    return place->second;
+  Json texture(const MtlMap& map) {
+    if (map.name.empty() || !textures_) return nullptr;
+    const auto [place, is_new] = textures_of_names_.try_emplace(map.name, nullptr);
+    if (is_new) place->second = add_texture(map.name);
+    Json info = place->second;
+    if (info.is_null() || (map.scale == MtlMap().scale && map.offset == MtlMap().offset)) {
+      return info;
+    }
+    constexpr const char* kTransform = "KHR_texture_transform";
+    // There, v points down.
+    info["extensions"][kTransform] = {
+        {"scale", map.scale}, {"offset", {map.offset[0], 1.0 - map.scale[1] - map.offset[1]}}};
+    asset_.root["extensionsUsed"] = {kTransform};
+    return info;
   }
 
   Json add_texture(const std::string& name) {

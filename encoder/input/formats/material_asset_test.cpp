@@ -90,6 +90,22 @@ TEST_F(MaterialAssetTest, ImagesAreCarriedOnce) {
       false);
 }
 
+TEST_F(MaterialAssetTest, OptionsOfImagesBecomeATransform) {
+  write("maps/my skin.png", kPng);
+  const Json root = json_of(make({"a", "b"},
+                                 "newmtl a\nmap_Kd -s 2 4 1 -o 0.5 0.25 maps/my skin.png\n"
+                                 "newmtl b\nmap_Kd maps/my skin.png\n")
+                                .glb);
+  const Json& a = root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  // (u, 1 - v) is at (2 u + 0.5, 1 - (4 v + 0.25)).
+  EXPECT_EQ(a["extensions"]["KHR_texture_transform"],
+            Json::parse(R"({"scale": [2.0, 4.0], "offset": [0.5, -3.25]})"));
+  EXPECT_EQ(root["extensionsUsed"], Json({"KHR_texture_transform"}));
+  EXPECT_EQ(root["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"],
+            Json({{"index", 0}}));
+  EXPECT_EQ(root["images"].size(), 1U);
+}
+
 TEST_F(MaterialAssetTest, ImagesThatCannotBeCarriedAreNamed) {
   write("skin.tga", "TRUEVISION");
   write("large.png", kPng + std::string(100, 'x'));

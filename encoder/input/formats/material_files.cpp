@@ -9,6 +9,7 @@
 #include "common/io/messages.h"
 #include "encoder/input/formats/material_asset.h"
 #include "encoder/input/formats/mesh_text.h"
+#include "encoder/input/formats/mtl_map.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {
@@ -28,9 +29,7 @@ bool is_kept_texture(std::string_view mtl, std::string_view name) {
   for (TextWords words(mtl); !words.at_end(); words.next_line()) {
     const std::string_view keyword = words.next();
     if (keyword != "map_Kd" && keyword != "map_Ke" && keyword != "norm") continue;
-    std::string_view last;
-    for (std::string_view word = words.next(); !word.empty(); word = words.next()) last = word;
-    if (last == name) return true;
+    if (read_mtl_map(words).name == name) return true;
   }
   return false;
 }
@@ -102,16 +101,14 @@ void make_asset(const std::string& path, bool textures, std::uint64_t max_memory
 
 std::vector<std::string> textures_of(std::string_view mtl) {
   std::vector<std::string> textures;
-  std::set<std::string_view> known;
+  std::set<std::string> known;
   for (TextWords words(mtl); !words.at_end(); words.next_line()) {
     const std::string_view keyword = words.next();
     const bool is_map = keyword.starts_with("map_") || keyword == "bump" || keyword == "disp" ||
                         keyword == "decal" || keyword == "refl" || keyword == "norm";
     if (!is_map) continue;
-    // Options come before the name.
-    std::string_view name;
-    for (std::string_view word = words.next(); !word.empty(); word = words.next()) name = word;
-    if (!name.empty() && known.insert(name).second) textures.emplace_back(name);
+    const std::string name = read_mtl_map(words).name;
+    if (!name.empty() && known.insert(name).second) textures.push_back(name);
   }
   return textures;
 }

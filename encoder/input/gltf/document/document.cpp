@@ -56,7 +56,7 @@ std::vector<std::string> dropped(const GltfValue& root) {
   }
   // Viewers compute them from normals and texture coordinates; those of one pose are of no use.
   if (has_tangents) found.emplace_back("tangents");
-  const std::pair<const char*, const char*> arrays[] = {{"skins", "skeleton"},
+  const std::pair<const char*, const char*> arrays[] = {{"skins", "skeleton (not its motion)"},
                                                         {"cameras", "cameras"}};
   for (const auto& [name, what] : arrays) {
     if (root[name].size() > 0) found.emplace_back(what);
