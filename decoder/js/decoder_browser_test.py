@@ -308,6 +308,14 @@ class Decoder(InScene):
         print(f"a frame of a stream of {stream.stat().st_size} bytes, 3 GOFs without an index: "
               f"{sent[1]} bytes, its coarse mesh {sent[0]}")
 
+    def test_what_is_no_stream(self):
+        for name, start, hint in (("a.glb", b"glTF", "it looks like glTF"),
+                                  ("a.html", b"<!doctype html>", "it looks like a page"),
+                                  ("a.bin", b"bytes", "not an RLPC stream (rule R-STR-01)")):
+            (self.folder / name).write_bytes(start + bytes(100))
+            error = self.error_of(f"await RlpcDecoder.open('{name}');")
+            self.assertIn(hint, error["message"])
+
     def test_a_damaged_stream(self):
         data = bytearray(self.stream.read_bytes())
         data[len(data) // 2] ^= 0x10

@@ -253,6 +253,18 @@ class Loader(InScene):
             self.assertEqual((told[0], told[1], len(told[2])), (0, True, 1))
             self.assertIn(text, told[2][0])
 
+    def test_a_seek_that_waits_for_its_frame(self):
+        self.assertEqual(self.run_script("""
+            const mesh = await show('walk.rlpc');
+            const shown = [];
+            for (const seconds of [1, 0.5, 0.5, 0]) {
+              await mesh.seek(seconds);
+              shown.push(mesh.frame);
+            }
+            const late = mesh.seek(1.2).then(() => 'shown', (error) => error.name);
+            mesh.dispose();
+            return [...shown, await late];"""), [30, 15, 15, 0, "AbortError"])
+
     def test_units_with_a_wrong_crc_leave_a_plain_mesh(self):
         stream, at, damaged = bytearray((self.folder / "box.rlpc").read_bytes()), 10, 0
         while at < len(stream):

@@ -52,12 +52,26 @@ class OpenStream {
     const { source } = this;
     if (source.size === undefined) await source.open(signal);
     this.decoder = wasm.stream(source.ranges, source.size, this.options);
-    await this.complete(() => this.decoder.open(), signal);
+    try {
+      await this.complete(() => this.decoder.open(), signal);
+    } catch (error) {
+      if (error.rule === "R-STR-01") error.message += this.guess();
+      throw error;
+    }
     // A server that sends the stream from its start to its end sends the index last.
     if (!source.whole) await this.findIndex(signal);
     this.header = await this.complete(() => this.decoder.describe(), signal);
     this.look = new WasmAttributes(this.decoder, this.header);
     return this.describe();
+  }
+
+  /** What a stream may be that is none. */
+  guess() {
+    const start = new Uint8Array(4);
+    if (!this.source.ranges.copy(0, start)) return "";
+    const text = String.fromCharCode(...start);
+    if (text === "glTF") return "; it looks like glTF: rlpcenc makes a stream of it";
+    return text.startsWith("<") ? "; it looks like a page: is the address right?" : "";
   }
 
   async findIndex(signal) {

@@ -18,6 +18,7 @@ export class Playback {
     this.loop = "repeat";
     this.playing = false;
     this.finished = () => {}; // called at the end of a range that is played once
+    this.arrived = () => {}; // called when a frame, or its error, is there
     this.waiting = 0; // requests without a reply
     this.ready = new Map(); // by step: { index, frame }
     this.setRange(0, frames);
@@ -66,6 +67,11 @@ export class Playback {
     }
     if (count === 1) place = 0;
     return this.first + (this.speed < 0 ? count - 1 - place : place);
+  }
+
+  /** Whether tick() need not wait for the frame to be shown. */
+  get isReady() {
+    return this.isShown || this.ready.has(this.current);
   }
 
   get isAtEnd() {
@@ -136,6 +142,7 @@ export class Playback {
     }
     --this.waiting;
     this.ready.set(step, { index, frame });
+    this.arrived();
     this.pump();
   }
 

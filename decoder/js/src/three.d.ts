@@ -52,8 +52,11 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   readonly playing: boolean;
   /** Index of the frame that is shown. */
   readonly frame: number;
-  /** Seconds from the start of the clip; can be set. */
+  /** Seconds from the start of the clip; can be set. The frame is shown by the first update() after
+   * it has been decoded. */
   time: number;
+  /** Sets `time`, and resolves once its frame is shown. Rejects with an AbortError after dispose(). */
+  seek(seconds: number): Promise<void>;
   /** Seconds that the clip takes at speed 1. */
   readonly duration: number;
   /** Usually 1; below 0, it plays backwards. */

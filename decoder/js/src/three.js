@@ -4,6 +4,7 @@ import {
   LoopRepeat, Mesh, Sphere, Vector3,
 } from "three";
 
+import { aborted } from "./error.js";
 import { Playback, RlpcDecoder } from "./index.js";
 import { dispose, dress, loadLook, setAttributes, usualMaterial } from "./three_look.js";
 
@@ -21,6 +22,7 @@ export class RLPCMesh extends Mesh {
   #ownTextures;
   #loop = LoopRepeat;
   #clip = null;
+  #isDisposed = false;
 
   /** Its first frame is there, with attributes, materials and textures. */
   static async create(decoder, options = {}) {
@@ -103,6 +105,18 @@ export class RLPCMesh extends Mesh {
   set time(seconds) {
     const { first, frameRate } = this.#playback;
     this.#playback.seek(first + Math.floor(seconds * frameRate + 1e-6));
+  }
+
+  /** Sets time, and resolves once its frame is shown. */
+  async seek(seconds) {
+    this.time = seconds;
+    while (!this.#playback.isReady) {
+      await new Promise((arrived) => {
+        this.#playback.arrived = arrived;
+      });
+      if (this.#isDisposed) throw aborted("the mesh has been disposed of");
+    }
+    this.update(0);
   }
 
   get duration() {
@@ -201,8 +215,10 @@ export class RLPCMesh extends Mesh {
   }
 
   dispose() {
+    this.#isDisposed = true;
     this.#playback.pause();
     this.#playback.cancel();
+    this.#playback.arrived();
     this.#decoder.close();
     this.geometry.dispose();
     if (!this.#ownMaterial) return;
