@@ -37,6 +37,12 @@ class Clips(ToolsTest):
         self.fails(64, ["expected one of `Walk`"], "rlpcdec", self.path("b.rlpc"), "-o",
                    self.path("b.pc2"), "--clip", "Run")
 
+        self.fails(64, ["--clip", "the name is empty"], "rlpcdec", self.path("b.rlpc"), "-o",
+                   self.path("b.pc2"), "--clip", "")
+        self.encode(self.path("c.rlpc"), "--kg", 2, "--clip", "A:0-9", "--clip", "A:20-29")
+        self.fails(64, ["several clips are called `A`; use --frames 0-9 or 20-29"], "rlpcdec",
+                   self.path("c.rlpc"), "-o", self.path("b.pc2"), "--clip", "A")
+
     def test_a_clip_may_end_after_an_open_ended_stream(self):
         stream = ROOT / "streams" / "v1.2" / "accept" / "CLP" / "CLP-0004a.rlpc"
         self.fails(64, ["`all` ends with frame 16777215, but the stream with frame 2"], "rlpcdec",

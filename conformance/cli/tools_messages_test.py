@@ -80,7 +80,7 @@ class Messages(ToolsTest):
                        "--preset", "fast").err
         self.assertIn("merged 53 duplicate vertices (172 left)", said)
         dropped = re.search(r"dropped: (.*)", said).group(1).split(", ")
-        self.assertIn("skeleton", dropped)
+        self.assertIn("skeleton (not its motion)", dropped)
         self.assertNotIn("UVs", dropped)  # it has none
 
     def test_points_are_advised_for_meshes_only(self):

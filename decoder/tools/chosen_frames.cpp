@@ -32,6 +32,14 @@ Result<FrameSpan, std::string> choose_frames(const std::string& frames, const st
   const auto found =
       std::find_if(clips.begin(), clips.end(), [&](const Clip& c) { return c.name == clip; });
   if (found == clips.end()) return no_such_clip(clip, clips);
+  const auto other =
+      std::find_if(found + 1, clips.end(), [&](const Clip& c) { return c.name == clip; });
+  if (other != clips.end()) {
+    return "--clip: several clips are called `" + printable(clip) + "`; use --frames " +
+           std::to_string(found->first_frame) + "-" + std::to_string(found->last_frame()) +
+           " or " + std::to_string(other->first_frame) + "-" +
+           std::to_string(other->last_frame());
+  }
   // The clips of an open-ended stream are written before its last frame is known.
   if (found->last_frame() >= num_frames) {
     return "--clip: `" + clip + "` ends with frame " + std::to_string(found->last_frame()) +

@@ -119,6 +119,9 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_option("--clip", o.clip, "This part only; rlpcinfo lists them")
+      ->check([](const std::string& name) {
+        return name.empty() ? std::string("the name is empty; rlpcinfo lists the clips") : "";
+      })
       ->option_text("NAME")
       ->excludes("--frames")
       ->excludes(outputs.page)

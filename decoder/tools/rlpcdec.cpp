@@ -88,7 +88,7 @@ std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
     return ", hashes of " + std::to_string(frames.compared) +
            " of them agree; the others have none";
   }
-  return o.is_part() ? ", not verified: no hash covers these frames alone"
+  return o.is_part() ? ", not verified: no hash covers these frames alone (rlpcenc --hash frame)"
                      : ", which have no hashes";
 }
 

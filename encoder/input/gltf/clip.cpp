@@ -150,7 +150,7 @@ std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
   const auto count = static_cast<std::uint32_t>(document.animations.size());
   if (name.empty())
     return count > 0 ? std::vector<std::uint32_t>{0} : std::vector<std::uint32_t>{};
-  if (name == "all" && count > 0) {
+  if (name == "all") {
     std::vector<std::uint32_t> all(count);
     std::iota(all.begin(), all.end(), 0U);
     return all;
