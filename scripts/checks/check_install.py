@@ -16,7 +16,9 @@ import tempfile
 
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
 CLIP = CONSUMER.parents[2] / "streams" / "inputs" / "elephant.obj"
-TEXTURED = CONSUMER.parents[2] / "streams" / "v1.2" / "accept" / "ATT" / "ATT-0001a.rlpc"
+ACCEPT = CONSUMER.parents[2] / "streams" / "v1.2" / "accept"
+TEXTURED = ACCEPT / "ATT" / "ATT-0001a.rlpc"
+WITH_ASSET = ACCEPT / "AST" / "AST-0001a.rlpc"
 PC2_HEADER_BYTES = 32
 QUICKSTART = CONSUMER.parents[1] / "quickstart"
 TARGET = "installed_files"
@@ -29,7 +31,8 @@ PROGRAMS = {
     **{f"decode_cpp11_{library}": ("decode_cpp11.cpp", library, "c++11") for library in LIBRARIES},
     "encode_c_rlpc": ("encode.c", "rlpc", "c99"),
     "encode_c_rlpc_static": ("encode.c", "rlpc_static", "c99"),
-    "draw": ("draw.c", "rlpcdec", "c99"), "memory": ("memory.c", "rlpcdec", "c99"),
+    "draw": ("draw.c", "rlpcdec", "c99"), "inspect": ("inspect.c", "rlpcdec", "c99"),
+    "memory": ("memory.c", "rlpcdec", "c99"),
     "play": ("play.c", "rlpcdec", "c11"), "vertices": ("vertices.c", "rlpcdec", "c99"),
     "decode_cpp": ("decode.cpp", "rlpc-decoder", "c++20"),
     "encode_cpp": ("encode.cpp", "rlpc-encoder", "c++20")}
@@ -117,6 +120,10 @@ def try_examples(folder, clip, work):
     vertices = int(clip.shape[0])
     triangles = len(clip.triangles.read_bytes()) // 12
     require(out.stat().st_size == 6 * triangles + 10 * vertices, "vertices: the wrong size")
+    told = run(folder / "inspect", TEXTURED, out, stdout=subprocess.PIPE, text=True).stdout
+    require("\nuv0: " in told and "GOFs, the first with" in told, f"inspect prints {told}")
+    run(folder / "inspect", WITH_ASSET, out, stdout=subprocess.DEVNULL)
+    require(out.read_bytes().startswith(b"glTF"), "inspect writes no GLB")
     mesh = run(folder / "draw", TEXTURED, "0", stdout=subprocess.PIPE, text=True).stdout
     count = {word: len(re.findall(rf"^{word} ", mesh, re.MULTILINE))
              for word in ("v", "vn", "vt", "f")}
