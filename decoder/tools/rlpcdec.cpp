@@ -88,8 +88,9 @@ std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
     return ", hashes of " + std::to_string(frames.compared) +
            " of them agree; the others have none";
   }
-  return o.is_part() ? ", not verified: no hash covers these frames alone (rlpcenc --hash frame)"
-                     : ", which have no hashes";
+  return o.is_part()
+             ? ", not verified: no hash covers these frames alone (rlpcenc --hash frame)"
+             : ", which have no hashes";
 }
 
 bool is_coarse(const Options& o) { return o.decoder.coarse_layers != rlpc::SliceCut::kAll; }

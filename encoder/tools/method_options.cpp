@@ -12,12 +12,11 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   add_off_switch(app, "--no-textures", line.options.input.textures,
                  "Leave images out of the materials")
       ->group(group);
-  app.add_option("--uv-bits", a.uv_bits,
-                 "Texture coordinates in steps of 1/2^N of an image (default: 12); coarser "
-                 "where they repeat a small one")
-      ->check(CLI::Range(1, 16))
-      ->option_text("N")
-      ->group(group);
+  auto* const uv_bits =
+      app.add_option("--uv-bits", a.uv_bits,
+                     "Texture coordinates in steps of 1/2^N of an image (default: 12); coarser "
+                     "where they repeat a small one");
+  uv_bits->check(CLI::Range(1, 16))->option_text("N")->group(group);
   add_choice<NormalChoice>(app, "--normals", a.normals,
                            {{"auto", NormalChoice::kAuto},
                             {"smoothing", NormalChoice::kSmoothing},
@@ -26,14 +25,15 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
                            "frame), exact (those of the first frame), auto (smoothing if it "
                            "comes near those of INPUT, default)")
       ->group(group);
-  app.add_option(
-         "--normal-bits", a.normal_bits,
-         "With exact normals: bits of each of their two coordinates (default: 8, up to 0.6 "
-         "degrees off)")
-      ->check(CLI::Range(2, 16))
-      ->option_text("N")
+  auto* const normal_bits = app.add_option(
+      "--normal-bits", a.normal_bits,
+      "With exact normals: bits of each of their two coordinates (default: 8, up to 0.6 "
+      "degrees off)");
+  normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
+  app.add_flag("--exact-attributes", a.exact, "32-bit floats, without loss")
+      ->excludes(uv_bits)
+      ->excludes(normal_bits)
       ->group(group);
-  app.add_flag("--exact-attributes", a.exact, "32-bit floats, without loss")->group(group);
 }
 
 void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
