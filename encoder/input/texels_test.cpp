@@ -24,7 +24,7 @@ std::string big_endian(std::uint32_t value, int bytes) {
 
 std::string png(std::uint32_t width, std::uint32_t height) {
   return "\x89PNG\r\n\x1A\n" + big_endian(13, 4) + "IHDR" + big_endian(width, 4) +
-         big_endian(height, 4) + big_endian(0, 5);
+         big_endian(height, 4) + std::string(5, '\0');
 }
 
 // With an APP0 segment and a Huffman table before the frame header.
