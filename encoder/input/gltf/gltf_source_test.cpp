@@ -269,10 +269,12 @@ TEST_F(GltfSourceTest, ListsWhatItDrops) {
   builder.json["cameras"] = Json::array({Json::object()});
   builder.json["skins"] = Json::parse(R"([{"joints": [0]}])");
   builder.json["extensions"]["KHR_lights_punctual"] = Json::object();
+  builder.json["extensions"]["KHR_materials_variants"] = Json::object();
   builder.json["nodes"][0]["name"] = "Hips";
   EXPECT_EQ(open(builder)->notes(),
             (std::vector<std::string>{
-                "dropped: tangents, skeleton (not its motion), cameras, lights"}));
+                "dropped: tangents, skeleton (not its motion), cameras, lights, "
+                "variants of materials"}));
 }
 
 TEST_F(GltfSourceTest, RefusesEmptyMeshes) {

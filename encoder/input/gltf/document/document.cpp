@@ -61,7 +61,10 @@ std::vector<std::string> dropped(const GltfValue& root) {
   for (const auto& [name, what] : arrays) {
     if (root[name].size() > 0) found.emplace_back(what);
   }
-  if (root["extensions"]["KHR_lights_punctual"].exists()) found.emplace_back("lights");
+  const GltfValue extensions = root["extensions"];
+  if (extensions["KHR_lights_punctual"].exists()) found.emplace_back("lights");
+  if (extensions["KHR_materials_variants"].exists())
+    found.emplace_back("variants of materials");
   return found;
 }
 
