@@ -261,9 +261,11 @@ class Loader(InScene):
               await mesh.seek(seconds);
               shown.push(mesh.frame);
             }
+            await Promise.all([mesh.seek(0.2), mesh.seek(0.3)]);
+            shown.push(mesh.frame);
             const late = mesh.seek(1.2).then(() => 'shown', (error) => error.name);
             mesh.dispose();
-            return [...shown, await late];"""), [30, 15, 15, 0, "AbortError"])
+            return [...shown, await late];"""), [30, 15, 15, 0, 9, "AbortError"])
 
     def test_units_with_a_wrong_crc_leave_a_plain_mesh(self):
         stream, at, damaged = bytearray((self.folder / "box.rlpc").read_bytes()), 10, 0

@@ -23,6 +23,7 @@ export class RLPCMesh extends Mesh {
   #loop = LoopRepeat;
   #clip = null;
   #isDisposed = false;
+  #waiting = []; // seeks, each until a frame arrives
 
   /** Its first frame is there, with attributes, materials and textures. */
   static async create(decoder, options = {}) {
@@ -70,6 +71,7 @@ export class RLPCMesh extends Mesh {
       discard: (frame) => this.#recycle(frame),
       failed: (error, index) => this.dispatchEvent({ type: "error", error, index }),
     });
+    this.#playback.arrived = () => this.#arrived();
     this.#playback.finished = () => this.dispatchEvent({ type: "finished", clip: this.#clip });
   }
 
@@ -107,16 +109,20 @@ export class RLPCMesh extends Mesh {
     this.#playback.seek(first + Math.floor(seconds * frameRate + 1e-6));
   }
 
-  /** Sets time, and resolves once its frame is shown. */
+  /** Sets time, and resolves once its frame is shown, or that of a later seek. */
   async seek(seconds) {
     this.time = seconds;
-    while (!this.#playback.isReady) {
-      await new Promise((arrived) => {
-        this.#playback.arrived = arrived;
+    while (!this.#isDisposed && !this.#playback.isReady) {
+      await new Promise((resolve) => {
+        this.#waiting.push(resolve);
       });
-      if (this.#isDisposed) throw aborted("the mesh has been disposed of");
     }
+    if (this.#isDisposed) throw aborted("the mesh has been disposed of");
     this.update(0);
+  }
+
+  #arrived() {
+    for (const resolve of this.#waiting.splice(0)) resolve();
   }
 
   get duration() {
@@ -218,7 +224,7 @@ export class RLPCMesh extends Mesh {
     this.#isDisposed = true;
     this.#playback.pause();
     this.#playback.cancel();
-    this.#playback.arrived();
+    this.#arrived();
     this.#decoder.close();
     this.geometry.dispose();
     if (!this.#ownMaterial) return;
