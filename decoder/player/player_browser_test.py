@@ -368,10 +368,15 @@ class Browser(InBrowser):
 
     def test_damaged_attributes_and_assets_are_told_and_left_out(self):
         suite = STREAMS / "v1.2" / "either"
-        for name, text in (("ATT/ATT-0001x2", r"attributes cannot be decoded: .*R-ATT-03"),
-                           ("AST/AST-0001x1", r"materials cannot be read: .*R-AST-01"),
-                           ("AST/AST-0001x2", r"materials cannot be read: .*no GLB")):
-            stream = suite / f"{name}.rlpc"
+        lost = self.folder / "lost.rlpc"
+        whole = (STREAMS / "v1.2" / "accept" / "AST" / "AST-0001a.rlpc").read_bytes()
+        lost.write_bytes(whole.replace(b"glTF", b"GLTF"))
+        self.assertNotEqual(lost.read_bytes(), whole)
+        for stream, text in (
+                (suite / "ATT/ATT-0001x2.rlpc", r"attributes cannot be decoded: .*R-ATT-03"),
+                (suite / "AST/AST-0001x1.rlpc", r"materials cannot be read: .*R-AST-01"),
+                (suite / "AST/AST-0001x2.rlpc", r"materials cannot be read: .*no GLB"),
+                (lost, r"are damaged, and left out")):
             self.browser.open("about:blank")
             self.browser.open(PLAYER.as_uri())
             self.browser.wait_for("document.body?.dataset.state === 'empty'")

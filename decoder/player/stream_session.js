@@ -60,8 +60,10 @@ export class StreamSession {
    * isFlat } for the viewer, without a look if there is none; problems are what cannot be shown. */
   async mesh() {
     const { decoder } = this;
-    const { vertices, hasAttributes, hasAsset } = decoder.info;
-    const plain = { numVertices: vertices, triangles: decoder.indices, problems: [] };
+    const { vertices, hasAttributes, hasAsset, damagedUnits } = decoder.info;
+    const lost = damagedUnits === 0 ? []
+      : ["Attributes, materials, clips or metadata are damaged, and left out"];
+    const plain = { numVertices: vertices, triangles: decoder.indices, problems: lost };
     if (!hasAttributes && !hasAsset) return plain;
     try {
       const [drawn, sets, told] =
@@ -70,11 +72,13 @@ export class StreamSession {
       this.drawn = drawn;
       const { indices, groups } =
         byMaterial(drawn.indices, sets.get("material"), materials.length);
-      return { numVertices: drawn.vertices.length, triangles: indices, problems, materials,
+      return { numVertices: drawn.vertices.length, triangles: indices, materials,
+        problems: [...lost, ...problems],
         isFlat: materials.length > 0 && !hasNormals(sets), look: lookOf(drawn, groups) };
     } catch (error) {
       if (error.kind === "closed") throw error;
-      return { ...plain, problems: [`The attributes cannot be decoded: ${error.message}`] };
+      return { ...plain,
+        problems: [...lost, `The attributes cannot be decoded: ${error.message}`] };
     }
   }
 
