@@ -39,7 +39,14 @@ std::string GlbAsset::glb(Json asset) {
   return file;
 }
 
-std::string type_of_image(const std::string& bytes) {
+std::optional<std::size_t> index_of(const Json& object, const char* name, std::size_t limit) {
+  if (!object.is_object() || !object.contains(name)) return std::nullopt;
+  const Json& index = object[name];
+  if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= limit) return std::nullopt;
+  return index.get<std::size_t>();
+}
+
+std::string type_of_image(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return "image/png";
   if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
   if (bytes.starts_with("\xABKTX 20")) return "image/ktx2";

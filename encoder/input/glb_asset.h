@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace rlpc {
 
@@ -24,6 +26,10 @@ class GlbAsset {
 };
 
 // "image/png" and others of glTF and its extensions; empty: of another type.
-std::string type_of_image(const std::string& bytes);
+std::string type_of_image(std::string_view bytes);
+
+// The member of an object that is a whole number below a limit; none: it is not, or not there.
+std::optional<std::size_t> index_of(const nlohmann::json& object, const char* name,
+                                    std::size_t limit);
 
 }  // namespace rlpc

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
+#include <string>
 
 #include "common/io/binary_numbers.h"
+#include "encoder/input/glb_asset.h"
 
 namespace rlpc {
 namespace {
@@ -45,22 +45,17 @@ double longer_side_of_jpeg(std::string_view image) {
 }
 
 double longer_side(std::string_view image) {
-  if (image.starts_with("\x89PNG")) return longer_side_of_png(image);
-  if (image.starts_with("\xFF\xD8\xFF")) return longer_side_of_jpeg(image);
-  return kUnknown;
+  const std::string type = type_of_image(image);
+  if (type == "image/png") return longer_side_of_png(image);
+  return type == "image/jpeg" ? longer_side_of_jpeg(image) : kUnknown;
 }
 
-// An asset is not validated: a member that is no such number counts as absent.
-std::optional<std::size_t> number(const Json& object, const char* name) {
-  if (!object.is_object() || !object.contains(name)) return std::nullopt;
-  if (!object[name].is_number_unsigned()) return std::nullopt;
-  return object[name].get<std::size_t>();
-}
-
-const Json& element(const Json& root, const char* name, std::optional<std::size_t> index) {
+// The element of a list that a member of an object names; null: there is none.
+const Json& element(const Json& root, const char* list, const Json& object, const char* name) {
   static const Json kNone;
-  if (!index || !root.contains(name) || !root[name].is_array()) return kNone;
-  return *index < root[name].size() ? root[name][*index] : kNone;
+  if (!root.contains(list) || !root[list].is_array()) return kNone;
+  const auto index = index_of(object, name, root[list].size());
+  return index ? root[list][*index] : kNone;
 }
 
 class TexelFinder {
@@ -79,20 +74,20 @@ class TexelFinder {
 
  private:
   void add(const Json& info) {
-    std::size_t set = number(info, "texCoord").value_or(0);
+    std::size_t set = index_of(info, "texCoord", SIZE_MAX).value_or(0);
     double scale = 1.0;
     if (info.is_object() && info.contains("extensions")) {
       const Json& extensions = info["extensions"];
       if (extensions.is_object() && extensions.contains("KHR_texture_transform")) {
         const Json& transform = extensions["KHR_texture_transform"];
-        set = number(transform, "texCoord").value_or(set);
+        set = index_of(transform, "texCoord", SIZE_MAX).value_or(set);
         scale = scale_of(transform);
       }
     }
     if (set >= kMostSets) return;
     if (texels.size() <= set) texels.resize(set + 1, 0.0);
-    texels[set] = std::max(texels[set],
-                           scale * side_of(element(root_, "textures", number(info, "index"))));
+    texels[set] =
+        std::max(texels[set], scale * side_of(element(root_, "textures", info, "index")));
   }
 
   static double scale_of(const Json& transform) {
@@ -107,10 +102,10 @@ class TexelFinder {
   double side_of(const Json& texture) const {
     // Extensions can name another image.
     if (!texture.is_object() || texture.contains("extensions")) return kUnknown;
-    const Json& image = element(root_, "images", number(texture, "source"));
-    const Json& view = element(root_, "bufferViews", number(image, "bufferView"));
-    const std::size_t offset = number(view, "byteOffset").value_or(0);
-    const std::size_t size = number(view, "byteLength").value_or(0);
+    const Json& image = element(root_, "images", texture, "source");
+    const Json& view = element(root_, "bufferViews", image, "bufferView");
+    const std::size_t offset = index_of(view, "byteOffset", binary_.size()).value_or(0);
+    const std::size_t size = index_of(view, "byteLength", binary_.size() + 1).value_or(0);
     if (offset > binary_.size() || size > binary_.size() - offset) return kUnknown;
     return longer_side(binary_.substr(offset, size));
   }

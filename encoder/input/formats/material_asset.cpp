@@ -34,18 +34,10 @@ struct Mtl {
   MtlMap normal_image;
 };
 
-std::optional<double> number_of(TextWords& words) {
-  const std::string word(words.next());
-  char* end = nullptr;
-  const double value = std::strtod(word.c_str(), &end);
-  if (word.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 double within_unit(double x) { return std::clamp(x, 0.0, 1.0); }
 
 std::optional<double> factor_of(TextWords& words) {
-  const auto value = number_of(words);
+  const auto value = parse_number(words.next());
   return value ? std::optional(within_unit(*value)) : std::nullopt;
 }
 
@@ -73,7 +65,7 @@ void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
     material.metalness = factor_of(words);
   } else if (keyword == "Ns" && !material.roughness) {
     // Of a Blinn-Phong highlight that is as wide.
-    const auto exponent = number_of(words);
+    const auto exponent = parse_number(words.next());
     if (exponent) material.roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));
   } else if (keyword == "map_Kd") {
     material.base_image = read_mtl_map(words);

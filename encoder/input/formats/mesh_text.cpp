@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <system_error>
 
 namespace rlpc {
@@ -106,6 +107,14 @@ float parse_coordinate(std::string_view word, std::optional<std::string>& proble
   } else if (!std::isfinite(value)) {
     problem = quoted(word) + " is not finite; every coordinate must be";
   }
+  return value;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  const std::string text(word);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

@@ -47,6 +47,9 @@ std::string quoted(std::string_view word);
 // Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
 
+// All of `word` as a finite number; none: it is not one.
+std::optional<double> parse_number(std::string_view word);
+
 // The shortest text that parse_coordinate() reads as the same number.
 std::string shortest_text(float x);
 

@@ -1,21 +1,11 @@
 #include "encoder/input/formats/mtl_map.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 namespace rlpc {
 namespace {
-
-std::optional<double> number(std::string_view word) {
-  const std::string text(word);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 // Words behind an option; none: it is none.
 std::optional<std::size_t> count_of_option(std::string_view word) {
@@ -46,7 +36,7 @@ MtlMap read_mtl_map(TextWords& words) {
     // One to three numbers; the name comes last.
     ++at;
     for (std::size_t c = 0; c < 3 && at + 1 < all.size(); ++c, ++at) {
-      const auto value = number(all[at]);
+      const auto value = parse_number(all[at]);
       if (!value) break;
       if (c < 2 && option == "-s") map.scale[c] = *value;
       if (c < 2 && option == "-o") map.offset[c] = *value;

@@ -28,14 +28,6 @@ void remove_textures(Json& value, const IsUnwanted& is_unwanted) {
   for (Json& member : value) remove_textures(member, is_unwanted);
 }
 
-// The whole number that an object has below a limit.
-std::optional<std::size_t> index_of(const Json& object, const char* name, std::size_t limit) {
-  if (!object.is_object() || !object.contains(name)) return std::nullopt;
-  const Json& index = object[name];
-  if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= limit) return std::nullopt;
-  return index.get<std::size_t>();
-}
-
 // Names of extensions that occur in the document.
 void find_extensions(const Json& value, std::vector<std::string>& found) {
   if (!value.is_structured()) return;
@@ -97,7 +89,7 @@ class AssetMaker {
                        [](const GltfModel::Instance& i) { return !i.material; });
   }
 
-  // Leaves out images that could not be read, and textures that are none.
+  // Leaves out images that could not be read, and textures without one.
   void check_textures() {
     constexpr std::size_t kNone = SIZE_MAX;
     std::vector<std::size_t> places;  // of images that stay
