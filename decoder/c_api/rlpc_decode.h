@@ -148,10 +148,9 @@ RLPC_API void rlpc_decode_options_init(rlpc_decode_options* options, size_t stru
 // Size of a handle, for rlpc_decode_options.place.
 RLPC_API size_t rlpc_decoder_bytes(void);
 
-// Opens a stream and reads up to its first GOF, once through the asset for its CRC. options may
-// be null. On failure, *decoder is
-// still a handle, for its error text, and must be closed; it is null only if an argument is
-// null or invalid, or if there is no memory for a handle.
+// Opens a stream and reads up to its first GOF, the asset included, for its CRC. options may be
+// null. On failure, *decoder is still a handle, for its error text, and must be closed; it is
+// null only if an argument is null or invalid, or if there is no memory for a handle.
 //
 // _memory: the bytes must stay valid and unchanged until the handle is closed.
 RLPC_API rlpc_status rlpc_decoder_open_memory(const void* bytes, size_t num_bytes,
@@ -166,8 +165,8 @@ RLPC_API rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
                                               rlpc_decoder** decoder);
 RLPC_API void rlpc_decoder_close(rlpc_decoder* decoder);  // may be null
 
-// The error of the last failed call; "" if none failed, or a frame or GOF has been found since.
-// Valid until the next call on the handle.
+// The error of the last failed call; "" if none failed, or a call that decodes or seeks has
+// succeeded since. Valid until the next call on the handle.
 RLPC_API const char* rlpc_decoder_error_text(const rlpc_decoder* decoder);
 
 // struct_size: sizeof *info.
