@@ -60,6 +60,7 @@ class GltfInput(ToolsTest):
     def test_animations_are_chosen(self):
         cases = {(): 61, ("--animation", "Sway"): 61, ("--animation", "Visit"): 46,
                  ("--animation", "1"): 46, ("--animation", "all"): 107,
+                 ("--animation", "Visit", "--animation", "Sway"): 107,
                  ("--animation", "Visit", "--fps", "10"): 16, ("--fps", "25"): 51,
                  ("--fps", "30000/1001"): 60}
         for options, count in cases.items():
@@ -80,6 +81,8 @@ class GltfInput(ToolsTest):
         cases = [(TULIP, [], [sway]), (TULIP, ["--animation", "Visit"], [visit]),
                  (TULIP, ["--animation", 1], [visit]),
                  (TULIP, ["--animation", "all"], [sway, {**visit, "first_frame": 61}]),
+                 (TULIP, ["--animation", "Visit", "--animation", "Sway"],
+                  [visit, {**sway, "first_frame": 46}]),
                  (TULIP, ["--clip", "Bees:3-9"],
                   [{"name": "Bees", "first_frame": 3, "num_frames": 7}]),
                  (self.path("sway.gltf"), ["--animation", "all"], [sway]),
@@ -142,7 +145,8 @@ class GltfInput(ToolsTest):
             self.assert_near(a, b)
 
     def test_rlpccmp_reads_it_as_rlpcenc_does(self):
-        for options in ([], ["--animation", "Visit"], ["--animation", "all", "--fps", 12],
+        for options in ([], ["--animation", "Visit"],
+                        ["--animation", "Visit", "--animation", 0], ["--animation", "all", "--fps", 12],
                         ["--no-weld"]):
             self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--order-map", self.path("map"),
                     "--kg", 0.5, "--preset", "fast", "--quiet", *options)

@@ -234,9 +234,11 @@ void add_convert(CLI::App& app, Options& o) {
   app.add_option("--points", o.source.points, "Point cache with the frames")
       ->option_text("FILE")
       ->group(kMain);
-  app.add_option("--animation", o.source.animation,
-                 "If the input is glTF: name, index or `all`")
+  app.add_option("--animation", o.source.animations,
+                 "If the input is glTF: name, index or `all`; may be repeated")
       ->option_text("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(kMain);
   app.add_option("--fps", o.frame_rate, "Frame rate of glTF files")
       ->option_text("RATE")

@@ -138,12 +138,17 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(output);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(output);
 
-  app.add_option("--animation-a,--animation", o.a.animation,
-                 "If A is a glTF file: name, index from 0, or `all` (default: first)")
+  app.add_option(
+         "--animation-a,--animation", o.a.animations,
+         "If A is a glTF file: name, index from 0, or `all`; may be repeated (default: first)")
       ->option_text("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(more);
-  app.add_option("--animation-b", o.b.animation, "The same for B")
+  app.add_option("--animation-b", o.b.animations, "The same for B")
       ->option_text("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(more);
   app.add_option("--axes-a,--axes", o.axes, "As rlpcenc --axes, for A")
       ->option_text("X,Y,Z")

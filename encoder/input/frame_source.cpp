@@ -136,7 +136,7 @@ std::optional<InputError> check_gltf_options(const InputOptions& options) {
                       extensions_text({InputFormat::Holds::kMesh}) + ") of " +
                       name_of_input(options.points)};
   }
-  if ((options.animation.empty() && options.weld) || has_clips(options)) return std::nullopt;
+  if ((options.animations.empty() && options.weld) || has_clips(options)) return std::nullopt;
   return InputError{name_of_input(options.path) +
                     (options.weld
                          ? ": --animation is for .glb and .gltf files"

@@ -125,7 +125,8 @@ struct InputOptions {
   std::string path;
   std::string points;  // empty: none
   std::optional<FrameRate> frame_rate;
-  std::string animation{};     // glTF only: name, index from 0, or "all"; empty: the first
+  // glTF only, in this order: names, indices from 0, or "all"; none: the first.
+  std::vector<std::string> animations{};
   bool weld = true;            // glTF only: merge vertices that coincide in every frame
   bool textures = true;        // glTF and OBJ: include images in the asset
   std::optional<Axes> axes{};  // to turn positions to

@@ -155,9 +155,11 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
                  "New x, y and z in axes of INPUT: x,z,-y turns Z-up to Y-up, x,-z,y back")
       ->option_text("X,Y,Z")
       ->group(kMoreInput);
-  app.add_option("--animation", line.options.input.animation,
-                 "glTF: name, index from 0, or `all` in sequence (default: first)")
+  app.add_option("--animation", line.options.input.animations,
+                 "glTF: name, index from 0, or `all`; may be repeated (default: first)")
       ->option_text("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(kInput);
   add_off_switch(app, "--no-weld", line.options.input.weld,
                  "glTF: keep vertices that coincide in every frame apart")

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const rlpc::MemoryFile file({data + 1, size - 1});
   rlpc::InputOptions options;
   options.path = file.path();
-  options.animation = (data[0] & 1) != 0 ? "all" : "";
+  if ((data[0] & 1) != 0) options.animations = {"all"};
   options.weld = (data[0] & 2) != 0;
   options.frame_rate = rlpc::FrameRate{1 + data[0] / 4U, 1};
   rlpc::GltfLimits limits;

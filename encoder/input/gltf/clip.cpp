@@ -145,11 +145,12 @@ std::string gltf_animation_names(const GltfDocument& document) {
   return text + (document.animations.size() > kMost ? ", ..." : "");
 }
 
-std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
-                                             const std::string& name, GltfErrors& errors) {
+namespace {
+
+// Those that one name selects; none with an error.
+std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std::string& name,
+                                         GltfErrors& errors) {
   const auto count = static_cast<std::uint32_t>(document.animations.size());
-  if (name.empty())
-    return count > 0 ? std::vector<std::uint32_t>{0} : std::vector<std::uint32_t>{};
   if (name == "all") {
     std::vector<std::uint32_t> all(count);
     std::iota(all.begin(), all.end(), 0U);
@@ -176,6 +177,28 @@ std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                              : "expected all, an index below " + to_string(count) +
                                    ", or one of " + gltf_animation_names(document)));
   return {};
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
+                                             std::span<const std::string> names,
+                                             GltfErrors& errors) {
+  std::vector<std::uint32_t> chosen;
+  if (names.empty() && !document.animations.empty()) chosen.push_back(0);
+  std::vector<bool> is_chosen(document.animations.size());
+  for (const std::string& name : names) {
+    for (const std::uint32_t i : animations_of(document, name, errors)) {
+      if (is_chosen[i]) {
+        errors.add("animations", gltf_quoted(document.animations[i].name) +
+                                     " is chosen twice; name each animation once");
+        return {};
+      }
+      is_chosen[i] = true;
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
 }
 
 GltfClip read_gltf_clip(const GltfDocument& document, std::uint32_t animation,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,11 @@ struct GltfClip {
 // The first animation names, quoted, for messages.
 std::string gltf_animation_names(const GltfDocument& document);
 
-// The animations that `name` selects: a name, an index from 0, "all", or "" for the first if
-// any.
+// The animations that `names` select, in their order: names, indices from 0, or "all"; the
+// first, if any, without names. None twice.
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
-                                             const std::string& name, GltfErrors& errors);
+                                             std::span<const std::string> names,
+                                             GltfErrors& errors);
 
 // Reads an animation; complete only if there are no errors.
 GltfClip read_gltf_clip(const GltfDocument& document, std::uint32_t animation,

@@ -36,9 +36,9 @@ class GltfFilesTest : public testing::Test {
 
   // Opens the document, by default without welding.
   std::unique_ptr<FrameSource> open(const GltfBuilder& builder,
-                                    const std::string& animation = "", bool weld = false,
-                                    FrameRate rate = {}) const {
-    auto source = open_gltf({put("a.glb", builder.glb()), "", rate, animation, weld});
+                                    const std::vector<std::string>& animations = {},
+                                    bool weld = false, FrameRate rate = {}) const {
+    auto source = open_gltf({put("a.glb", builder.glb()), "", rate, animations, weld});
     EXPECT_TRUE(source) << source.error().message;
     return source ? std::move(*source) : nullptr;
   }
@@ -56,9 +56,10 @@ class GltfFilesTest : public testing::Test {
   }
 
   // The error of opening, otherwise that of the first bad frame, otherwise "".
-  static std::string error_of_file(const std::string& path, const std::string& animation = "",
+  static std::string error_of_file(const std::string& path,
+                                   const std::vector<std::string>& animations = {},
                                    const GltfLimits& limits = {}) {
-    const auto source = open_gltf({path, "", {}, animation, true}, limits);
+    const auto source = open_gltf({path, "", {}, animations, true}, limits);
     if (!source) return source.error().message;
     std::vector<float> xyz(3 * std::size_t{(*source)->num_vertices()});
     for (std::uint32_t f = 0; f < (*source)->num_frames(); ++f) {
@@ -66,9 +67,10 @@ class GltfFilesTest : public testing::Test {
     }
     return "";
   }
-  std::string error_of(const GltfBuilder& builder, const std::string& animation = "",
+  std::string error_of(const GltfBuilder& builder,
+                       const std::vector<std::string>& animations = {},
                        const GltfLimits& limits = {}) const {
-    return error_of_file(put("a.glb", builder.glb()), animation, limits);
+    return error_of_file(put("a.glb", builder.glb()), animations, limits);
   }
   static void expect_text(const std::string& error, const std::string& part) {
     EXPECT_NE(error.find(part), std::string::npos) << part << "\n" << error;

@@ -60,7 +60,7 @@ TEST_P(GltfBakes, AgreeInEveryFrame) {
   const std::filesystem::path file = folder / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no test data: " << file;
   const Bake bake(std::filesystem::path(file).replace_extension(".expected.pc2").string());
-  const auto source = open_frame_source({file.string(), "", {}, GetParam().animation, false});
+  const auto source = open_frame_source({file.string(), "", {}, {GetParam().animation}, false});
   ASSERT_TRUE(source) << source.error().message;
   ASSERT_EQ((*source)->num_vertices(), bake.num_vertices());
   ASSERT_EQ((*source)->num_frames(), bake.num_frames());

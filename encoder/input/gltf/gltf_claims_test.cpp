@@ -76,7 +76,7 @@ TEST_F(GltfClaimsTest, SurvivesAnyReplacedValue) {
     for (const Json& other : others) {
       GltfBuilder bad = good;
       bad.json[place] = other;
-      const std::string error = error_of(bad, "all", limits);
+      const std::string error = error_of(bad, {"all"}, limits);
       EXPECT_TRUE(error.empty() || error.starts_with((folder_ / "a.glb: ").string()))
           << place.to_string() << " " << other << "\n"
           << error;
@@ -107,12 +107,12 @@ TEST_F(GltfClaimsTest, ClaimsWithoutBytes) {
   for (int n = 0; n < 9; ++n) builder.add_root({{"mesh", 0}});
   GltfLimits limits;
   limits.max_vertices = 30;
-  EXPECT_EQ(error_of(builder, "", limits), "");
+  EXPECT_EQ(error_of(builder, {}, limits), "");
   limits.max_vertices = 29;
-  expect_text(error_of(builder, "", limits), "found 3 vertices more, expected at most 29");
+  expect_text(error_of(builder, {}, limits), "found 3 vertices more, expected at most 29");
   limits = {};
   limits.max_triangles = 9;
-  expect_text(error_of(builder, "", limits), "found more triangles, expected at most 9");
+  expect_text(error_of(builder, {}, limits), "found more triangles, expected at most 9");
   // The same bytes are used repeatedly.
   builder = one_triangle();
   for (int t = 0; t < 99; ++t) {
@@ -121,14 +121,14 @@ TEST_F(GltfClaimsTest, ClaimsWithoutBytes) {
   limits = {};
   limits.spare_values = 0;
   builder.json["asset"]["extras"] = std::string(2000, 'x');
-  EXPECT_EQ(error_of(builder, "", limits), "");
+  EXPECT_EQ(error_of(builder, {}, limits), "");
   builder.json["accessors"][0]["count"] = 3;
   std::vector<float> many(9000);
   builder.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
       builder.add("VEC3", many);
   for (Json& target : builder.json["meshes"][0]["primitives"][0]["targets"])
     target["POSITION"] = 1;
-  expect_text(error_of(builder, "", limits),
+  expect_text(error_of(builder, {}, limits),
               "accessors[1].count: found 3000, expected at most");
 }
 
@@ -186,9 +186,9 @@ TEST_F(GltfClaimsTest, HugeTimes) {
   expect_text(error_of(last(600000)), "choose one animation, or a lower --fps");
   GltfLimits limits;
   limits.max_positions = 183;
-  EXPECT_EQ(error_of(builder, "", limits), "");
+  EXPECT_EQ(error_of(builder, {}, limits), "");
   limits.max_positions = 182;
-  expect_text(error_of(builder, "", limits), "than the 60 that are expected at most");
+  expect_text(error_of(builder, {}, limits), "than the 60 that are expected at most");
 }
 
 }  // namespace

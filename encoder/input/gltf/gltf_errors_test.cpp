@@ -254,11 +254,14 @@ TEST_F(GltfErrorsTest, InvalidAnimations) {
   builder.json["animations"][0]["samplers"][0]["input"] = 3;
   expect_error(builder, "accessors[3].componentType: found 5123, expected 5126");
   expect_text(
-      error_of(good, "Run"),
+      error_of(good, {"Run"}),
       "animations: no \"Run\" there; expected all, an index below 1, or one of \"Move\"");
-  expect_text(error_of(good, "1"), "no \"1\" there");
-  expect_text(error_of(one_triangle(), "0"), "no \"0\" there; the file has none");
-  EXPECT_EQ(error_of(one_triangle(), "all"), "");
+  expect_text(error_of(good, {"1"}), "no \"1\" there");
+  for (const std::string again : {"Move", "0", "all"}) {
+    expect_text(error_of(good, {"Move", again}), "animations: \"Move\" is chosen twice");
+  }
+  expect_text(error_of(one_triangle(), {"0"}), "no \"0\" there; the file has none");
+  EXPECT_EQ(error_of(one_triangle(), {"all"}), "");
 }
 
 TEST_F(GltfErrorsTest, InvalidMeshes) {

@@ -74,7 +74,7 @@ TEST_F(GltfPrimitiveTest, AnimatesWeightsWithEveryInterpolation) {
     if (how == "CUBICSPLINE") values = {9, 9, 0, 8, 0, 0, 0, 0, 1, 8, 9, 9};
     const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
     builder.add_channel(0, "weights", input, builder.add("SCALAR", values), how.c_str());
-    const std::vector<float> xyz = frame_of(*open(builder, "", false, {4, 1}), 1);
+    const std::vector<float> xyz = frame_of(*open(builder, {}, false, {4, 1}), 1);
     EXPECT_FLOAT_EQ(xyz[4], 4 * weight) << how;
     EXPECT_FLOAT_EQ(xyz[5], 8) << how;
   }
@@ -210,7 +210,7 @@ TEST_F(GltfPrimitiveTest, AnimatesJointsOutsideTheScene) {
   const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
   const std::size_t output = builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 0, 8});
   builder.add_channel(1, "translation", input, output, "LINEAR");
-  EXPECT_EQ(frame_of(*open(builder, "", false, {2, 1}), 1),
+  EXPECT_EQ(frame_of(*open(builder, {}, false, {2, 1}), 1),
             (std::vector<float>{1, 0, 4, 2, 0, 4, 1, 1, 4}));
 }
 

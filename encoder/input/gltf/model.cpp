@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "encoder/input/gltf/asset.h"
@@ -23,13 +24,13 @@ class ModelReader {
         buffers_(std::move(document_.buffers), file, errors),
         values_(document_.accessors, buffers_, limits.spare_values, memory, errors) {}
 
-  GltfModel read(const std::string& animation) {
+  GltfModel read(std::span<const std::string> animations) {
     model_.scene = read_gltf_scene(document_, errors_);
     if (errors_) return {};
     for (const std::string& extension : document_.extensions_left_out) {
       model_.notes.push_back(extension + " is ignored: the animation may show more or less");
     }
-    const std::vector<std::uint32_t> chosen = choose_animations(document_, animation, errors_);
+    const std::vector<std::uint32_t> chosen = choose_animations(document_, animations, errors_);
     if (errors_) return {};
     if (!document_.dropped.empty()) {
       std::string list;
@@ -37,10 +38,10 @@ class ModelReader {
         list += (list.empty() ? "" : ", ") + what;
       model_.notes.push_back("dropped: " + list);
     }
-    if (animation.empty() && document_.animations.size() > 1) {
+    if (animations.empty() && document_.animations.size() > 1) {
       model_.notes.push_back("reading the first of " + to_string(document_.animations.size()) +
                              " animations (" + gltf_animation_names(document_) +
-                             "); --animation chooses another");
+                             "); --animation chooses others");
     }
     for (const std::uint32_t number : chosen) {
       model_.clips.push_back(read_gltf_clip(document_, number, values_, errors_));
@@ -182,7 +183,7 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
   if (errors) return errors.first();
   const auto frame_rate = frame_rate_of(*file->json);
   GltfModel model =
-      ModelReader(std::move(document), *file, limits, memory, errors).read(options.animation);
+      ModelReader(std::move(document), *file, limits, memory, errors).read(options.animations);
   if (errors) return errors.first();
   GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);
   if (errors) return errors.first();
