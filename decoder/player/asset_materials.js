@@ -1,5 +1,5 @@
-// Base colours and their textures, from the asset of a stream: a GLB without geometry. It is from
-// anybody: what does not fit is left out, and nothing is fetched.
+// Colours, emission and their textures, and normal maps, from the asset of a stream: a GLB without
+// geometry. It is from anybody: what does not fit is left out, and nothing is fetched.
 
 const kMagic = 0x46546c67; // "glTF"
 const kJsonChunk = 0x4e4f534a;
@@ -74,18 +74,31 @@ export async function readMaterials(bytes) {
     }
     return pictures.get(number);
   };
-  const read = async ({ pbrMetallicRoughness: { baseColorFactor, baseColorTexture } = {},
-    alphaMode, alphaCutoff, doubleSided = false }) => {
-    const { index, texCoord, extensions } = baseColorTexture ?? {};
+  const textureOf = async ({ index, texCoord, extensions } = {}) => {
     const transform = extensions?.KHR_texture_transform;
     const { source, sampler, extensions: others } = textures[index] ?? {};
     const image = source ?? others?.EXT_texture_webp?.source;
     return {
-      base: numbers(baseColorFactor, 4, kWhite),
       picture: index === undefined ? undefined : await pictureAt(image),
       sampler: samplers[sampler] ?? {},
       uv: `uv${transform?.texCoord ?? texCoord ?? 0}`,
       rows: rowsOf(transform),
+    };
+  };
+  const read = async ({ pbrMetallicRoughness: { baseColorFactor, baseColorTexture } = {},
+    normalTexture, emissiveFactor, emissiveTexture, alphaMode, alphaCutoff, doubleSided = false,
+    extensions }) => {
+    const [strength] = numbers([extensions?.KHR_materials_emissive_strength?.emissiveStrength], 1,
+      [1]);
+    return {
+      base: numbers(baseColorFactor, 4, kWhite),
+      emission: numbers(emissiveFactor, 3, [0, 0, 0]).map((value) => value * strength),
+      normalScale: numbers([normalTexture?.scale], 1, [1])[0],
+      textures: {
+        base: await textureOf(baseColorTexture),
+        normal: await textureOf(normalTexture),
+        emission: await textureOf(emissiveTexture),
+      },
       blends: alphaMode === "BLEND",
       doubleSided,
       cutoff: alphaMode === "MASK" ? alphaCutoff ?? 0.5 : 0,

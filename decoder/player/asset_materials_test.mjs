@@ -39,11 +39,32 @@ test("TexturesFactorsAndOpacity", async () => {
   const { materials, problems } = await readMaterials(glb(kTextured));
   assert.deepEqual(problems, []);
   const [textured, cut, clear] = materials;
-  assert.deepEqual([...textured.picture.bytes], [2, 3]);
-  assert.deepEqual([textured.uv, textured.sampler.wrapS], ["uv1", 33071]);
+  const { picture, uv, sampler } = textured.textures.base;
+  assert.deepEqual([...picture.bytes], [2, 3]);
+  assert.deepEqual([uv, sampler.wrapS], ["uv1", 33071]);
   assert.deepEqual(textured.base, [1, 1, 1, 1]);
-  assert.deepEqual([cut.base, cut.cutoff, cut.picture], [[0.5, 0, 1, 0.25], 0.5, undefined]);
+  assert.deepEqual([cut.base, cut.cutoff], [[0.5, 0, 1, 0.25], 0.5]);
+  assert.equal(cut.textures.base.picture, undefined);
   assert.deepEqual([clear.blends, clear.cutoff], [true, 0]);
+});
+
+test("EmissionAndNormalMaps", async () => {
+  const texture = { index: 0, texCoord: 2 };
+  const { materials, problems } = await readMaterials(glb({ ...kTextured, materials: [
+    { emissiveFactor: [0.5, 1, 0], emissiveTexture: texture,
+      extensions: { KHR_materials_emissive_strength: { emissiveStrength: 4 } } },
+    { normalTexture: { ...texture, scale: 0.5 } },
+    { emissiveFactor: ["1", 2], normalTexture: { index: 9, scale: "2" } }] }));
+  const [glows, bumpy, wrong] = materials;
+  assert.deepEqual([glows.emission, glows.normalScale], [[2, 4, 0], 1]);
+  assert.equal(glows.textures.emission.uv, "uv2");
+  assert.deepEqual([...glows.textures.emission.picture.bytes], [2, 3]);
+  assert.deepEqual([bumpy.emission, bumpy.normalScale], [[0, 0, 0], 0.5]);
+  assert.equal(bumpy.textures.normal.picture, glows.textures.emission.picture);
+  assert.equal(bumpy.textures.emission.picture, undefined);
+  assert.deepEqual([wrong.emission, wrong.normalScale], [[0, 0, 0], 1]);
+  assert.equal(wrong.textures.normal.picture, undefined);
+  assert.equal(problems.length, 1);
 });
 
 test("TextureCoordinatesAreTransformed", async () => {
@@ -51,7 +72,7 @@ test("TextureCoordinatesAreTransformed", async () => {
   const texture = { index: 0, extensions: { KHR_texture_transform: transform } };
   const { materials } = await readMaterials(glb({ ...kTextured,
     materials: [{ pbrMetallicRoughness: { baseColorTexture: texture } }] }));
-  const { rows, uv } = materials[0];
+  const { rows, uv } = materials[0].textures.base;
   assert.equal(uv, "uv3");
   const expected = [[0, 4, 0.25], [-2, 0, 0]];
   rows.flat().forEach((value, i) => assert.ok(Math.abs(value - expected.flat()[i]) < 1e-12));
@@ -60,7 +81,7 @@ test("TextureCoordinatesAreTransformed", async () => {
 test("LargeTexturesAreScaledDown", async () => {
   const { materials } = await readMaterials(glb({ ...kTextured,
     images: [{ bufferView: 0, mimeType: "image/large" }] }));
-  assert.ok(materials[0].picture.isScaled);
+  assert.ok(materials[0].textures.base.picture.isScaled);
 });
 
 test("PicturesThatAreNotThereAreLeftOut", async () => {
@@ -68,7 +89,7 @@ test("PicturesThatAreNotThereAreLeftOut", async () => {
     { uri: "data:image/png;base64,?" }]) {
     const { materials, problems } = await readMaterials(glb({ ...kTextured, images: [image] }));
     assert.equal(materials.length, 3);
-    assert.equal(materials[0].picture, undefined);
+    assert.equal(materials[0].textures.base.picture, undefined);
     assert.equal(problems.length, 1);
   }
 });

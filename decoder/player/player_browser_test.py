@@ -332,6 +332,27 @@ class Browser(InBrowser):
         self.wait_for_frame(0)
         self.assertEqual({*map(self.hue, self.front())}, {"green"})
 
+    def test_normal_maps(self):
+        # The key light comes from above, and from the right of the face that is seen.
+        up, down, right, left = (128, 218, 218), (128, 38, 218), (218, 128, 218), (38, 128, 218)
+        self.open(self.encode_box("bumps", rows=((up, down), (right, left)),
+                                  material={"normalTexture": {"index": 0}}), "frame=0")
+        self.wait_for_frame(0)
+        self.browser.screenshot(self.folder / "bumps.png")
+        light = [sum(colour) for colour in self.front()]
+        self.assertGreater(light[0], 1.2 * light[1])
+        self.assertGreater(light[2], 1.2 * light[3])
+        self.browser.press("t")
+        self.assertLess(max(map(sum, self.front())), 1.02 * min(map(sum, self.front())))
+
+    def test_emission(self):
+        dark = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+                "emissiveFactor": [1, 0.2, 0.2], "emissiveTexture": {"index": 0}}
+        self.open(self.encode_box("glow", material=dark), "frame=0")
+        self.wait_for_frame(0)
+        hues = [self.hue(colour) for colour in self.front()]
+        self.assertEqual(hues, ["red", "green", "blue", "red"])
+
     def test_a_stream_without_attributes_takes_the_place_of_a_textured_one(self):
         self.open(self.encode_box("box"), "frame=0")
         self.wait_for_frame(0)

@@ -105,10 +105,10 @@ class InFolder(unittest.TestCase):
         return stream
 
     @classmethod
-    def encode_box(cls, name, colour=None):
+    def encode_box(cls, name, *look, **more):
         """The box of textured_box.py, as name.glb and name.rlpc; the path of the latter."""
         glb = cls.folder / f"{name}.glb"
-        glb.write_bytes(textured_box.box(colour))
+        glb.write_bytes(textured_box.box(*look, **more))
         stream = glb.with_suffix(".rlpc")
         done = run("rlpcenc", "-q", glb, "-o", stream, "--preset", "fast")
         if done.returncode != 0:

@@ -51,8 +51,9 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def box(colour=None):
-    """The bytes of the GLB. colour: of all vertices, instead of the texture."""
+def box(colour=None, rows=ROWS, material=None):
+    """The bytes of the GLB. colour: of all vertices, instead of the texture. rows: of the texture.
+    material: members of that of all faces but the last, instead of the base colour."""
     buffer = Buffer()
     position, normal, uv, indices = [], [], [], []
     for towards, right, up in FACES:
@@ -75,14 +76,14 @@ def box(colour=None):
                   for number, part in enumerate((indices[:30], indices[30:]))]
     times = buffer.floats([[f / 30] for f in range(FRAMES)], "SCALAR")
     weights = buffer.floats([[f / FRAMES] for f in range(FRAMES)], "SCALAR")
-    image = buffer.view(png(ROWS))
+    image = buffer.view(png(rows))
     plain = {"metallicFactor": 0, "roughnessFactor": 1}
     texture = {} if colour else {"baseColorTexture": {"index": 0}}
     root = {
         "asset": {"version": "2.0"},
         "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": primitives, "weights": [0]}],
-        "materials": [{"pbrMetallicRoughness": {**plain, **texture}},
+        "materials": [material or {"pbrMetallicRoughness": {**plain, **texture}},
                       {"pbrMetallicRoughness": {**plain, "baseColorFactor": MAGENTA}}],
         "animations": [{"samplers": [{"input": times, "output": weights}], "channels": [
             {"sampler": 0, "target": {"node": 0, "path": "weights"}}]}],

@@ -1,10 +1,14 @@
-// Base colours and textures of the parts of a mesh, for the surface shader.
+// Colours and textures of the parts of a mesh, for the surface shader.
 
-export const kPictureUnit = 1; // of textures; the shadow has the first
+/** The units of textures by what they hold; the shadow has the first. */
+export const kUnits = { base: 1, normal: 2, emission: 3 };
+const kUploadUnit = kUnits.base;
+
+const kNoTexture = { sampler: {}, uv: "uv0", rows: [[1, 0, 0], [0, 1, 0]] };
 
 /** Where no material tells another. */
-const kPlain =
-  { base: [0.491, 0.451, 0.392, 1], rows: [[1, 0, 0], [0, 1, 0]], uv: "uv0", cutoff: 0 };
+const kPlain = { base: [0.491, 0.451, 0.392, 1], emission: [0, 0, 0], normalScale: 1, cutoff: 0,
+  textures: { base: kNoTexture, normal: kNoTexture, emission: kNoTexture } };
 
 function haveSame(sampler, other) {
   return Object.keys({ ...sampler, ...other }).every((key) => sampler[key] === other[key]);
@@ -14,38 +18,51 @@ export class Materials {
   constructor(gl) {
     this.gl = gl;
     const pixels = Uint8Array.of(255, 255, 255, 255);
-    this.white = this.texture({ width: 1, height: 1, pixels }, {});
+    this.white = this.upload({ width: 1, height: 1, pixels }, {}, gl.RGBA8);
     this.list = [];
+    this.uploaded = []; // { texture, picture, sampler, format }
   }
 
-  /** materials: { base, picture, sampler, uv, rows, blends, doubleSided, cutoff }; pictures are
-   * images or undefined, samplers as in glTF, rows those of a matrix for texture coordinates. */
+  /** materials: { base, emission, normalScale, textures: { base, normal, emission }, blends,
+   * doubleSided, cutoff }. Textures: { picture, sampler, uv, rows }; pictures are images or
+   * undefined, samplers as in glTF, rows those of a matrix for texture coordinates. */
   set(materials) {
     this.clear();
-    for (const material of materials) {
-      const { picture, sampler } = material;
-      const same = this.list.find((other) =>
-        other.picture === picture && haveSame(sampler, other.sampler));
-      const texture = picture && (same?.texture ?? this.texture(picture, sampler));
-      this.list.push({ ...material, texture });
+    this.list = materials;
+    for (const { textures } of materials) {
+      for (const [use, texture] of Object.entries(textures)) this.textureOf(use, texture);
     }
   }
 
   clear() {
-    for (const { texture } of this.list) this.gl.deleteTexture(texture ?? null);
+    for (const { texture } of this.uploaded) this.gl.deleteTexture(texture);
+    this.uploaded = [];
     this.list = [];
   }
 
-  texture(picture, { magFilter, minFilter, wrapS, wrapT }) {
+  /** What the card has of a picture, which it gets once for each sampler and kind of numbers. */
+  textureOf(use, { picture, sampler }) {
+    if (!picture) return this.white;
+    const format = use === "normal" ? this.gl.RGBA8 : this.gl.SRGB8_ALPHA8;
+    let found = this.uploaded.find((other) => other.picture === picture &&
+      other.format === format && haveSame(sampler, other.sampler));
+    if (!found) {
+      found = { picture, sampler, format, texture: this.upload(picture, sampler, format) };
+      this.uploaded.push(found);
+    }
+    return found.texture;
+  }
+
+  upload(picture, { magFilter, minFilter, wrapS, wrapT }, format) {
     const { gl } = this;
     const texture = gl.createTexture();
-    gl.activeTexture(gl.TEXTURE0 + kPictureUnit);
+    gl.activeTexture(gl.TEXTURE0 + kUploadUnit);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     if (picture.pixels) {
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.SRGB8_ALPHA8, picture.width, picture.height, 0, gl.RGBA,
+      gl.texImage2D(gl.TEXTURE_2D, 0, format, picture.width, picture.height, 0, gl.RGBA,
         gl.UNSIGNED_BYTE, picture.pixels);
     } else {
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+      gl.texImage2D(gl.TEXTURE_2D, 0, format, gl.RGBA, gl.UNSIGNED_BYTE, picture);
     }
     gl.generateMipmap(gl.TEXTURE_2D);
     for (const [name, value] of [["MAG_FILTER", magFilter ?? gl.LINEAR],
@@ -62,10 +79,12 @@ export class Materials {
     return this.list[number] ?? (hasTints ? { ...kPlain, base: [1, 1, 1, 1] } : kPlain);
   }
 
-  bind({ texture }) {
+  bind({ textures }) {
     const { gl } = this;
-    gl.activeTexture(gl.TEXTURE0 + kPictureUnit);
-    gl.bindTexture(gl.TEXTURE_2D, texture ?? this.white);
+    for (const [use, unit] of Object.entries(kUnits)) {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, this.textureOf(use, textures[use]));
+    }
     gl.activeTexture(gl.TEXTURE0);
   }
 }

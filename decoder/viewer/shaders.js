@@ -47,12 +47,18 @@ const kToneMap = `
 
 export const kSurface = {
   vertex: `${kVersion}
-  in vec3 position; in vec3 normal; in float deviation; in vec2 uv; in vec4 tint;
-  uniform mat4 model; uniform mat4 camera; uniform mat4 light; uniform vec3 row0; uniform vec3 row1;
-  out vec3 world; out vec3 turned; out vec4 lightPlace; out float distant;
-  out vec2 at; out vec4 tinted;
+  in vec3 position; in vec3 normal; in float deviation; in vec4 tint;
+  in vec2 uv; in vec2 normalUv; in vec2 emissionUv;
+  uniform mat4 model; uniform mat4 camera; uniform mat4 light;
+  uniform vec3 row0; uniform vec3 row1; uniform vec3 normalRow0; uniform vec3 normalRow1;
+  uniform vec3 emissionRow0; uniform vec3 emissionRow1;
+  out vec3 world; out vec3 turned; out vec4 lightPlace; out float distant; out vec4 tinted;
+  out vec2 at; out vec2 normalAt; out vec2 emissionAt;
   void main() {
     at = vec2(dot(row0, vec3(uv, 1.0)), dot(row1, vec3(uv, 1.0)));
+    normalAt = vec2(dot(normalRow0, vec3(normalUv, 1.0)), dot(normalRow1, vec3(normalUv, 1.0)));
+    emissionAt = vec2(dot(emissionRow0, vec3(emissionUv, 1.0)),
+                      dot(emissionRow1, vec3(emissionUv, 1.0)));
     tinted = tint;
     vec4 place = model * vec4(position, 1.0);
     world = place.xyz;
@@ -63,14 +69,30 @@ export const kSurface = {
     gl_PointSize = 4.0;
   }`,
   fragment: `${kVersion}
-  in vec3 world; in vec3 turned; in vec4 lightPlace; in float distant; in vec2 at; in vec4 tinted;
-  uniform sampler2D picture; uniform vec4 base; uniform float cutoff; uniform bool blends;
+  in vec3 world; in vec3 turned; in vec4 lightPlace; in float distant; in vec4 tinted;
+  in vec2 at; in vec2 normalAt; in vec2 emissionAt;
+  uniform sampler2D basePicture; uniform sampler2D normalPicture; uniform sampler2D emissionPicture;
+  uniform vec4 base; uniform vec3 emission; uniform float normalScale; uniform bool hasNormalMap;
+  uniform float cutoff; uniform bool blends;
   uniform vec3 eye; uniform vec3 keyDirection; uniform vec3 rimDirection;
   uniform bool flatShading; uniform bool isPoint; uniform float deviationScale;
   out vec4 colour;
   ${kRampColour} ${kLit} ${kToneMap}
+  // A normal map moves n, which faces the eye, along the texture coordinates; +y is up in the image.
+  vec3 bent(vec3 n) {
+    vec3 x = dFdx(world), y = dFdy(world);
+    vec2 s = dFdx(normalAt), t = dFdy(normalAt);
+    vec3 acrossY = cross(y, n), acrossX = cross(n, x);
+    vec3 right = acrossY * s.x + acrossX * t.x;
+    vec3 down = acrossY * s.y + acrossX * t.y;
+    float size = max(dot(right, right), dot(down, down));
+    if (size == 0.0) return n;
+    vec3 map = 2.0 * texture(normalPicture, normalAt).xyz - 1.0;
+    map.xy *= normalScale * inversesqrt(size) * (gl_FrontFacing ? 1.0 : -1.0);
+    return normalize(right * map.x - down * map.y + n * map.z);
+  }
   void main() {
-    vec4 own = base * tinted * texture(picture, at);
+    vec4 own = base * tinted * texture(basePicture, at);
     if (own.a < cutoff) discard;
     vec3 towards = normalize(eye - world);
     vec3 n = gl_FrontFacing ? turned : -turned;
@@ -79,7 +101,10 @@ export const kSurface = {
       if (dot(n, towards) < 0.0) n = -n;
     }
     n = isPoint ? towards : normalize(n);
-    vec3 albedo = deviationScale > 0.0 ? rampColour(distant / deviationScale) : own.rgb;
+    if (hasNormalMap) n = bent(n);
+    bool showsDistance = deviationScale > 0.0;
+    vec3 albedo = showsDistance ? rampColour(distant / deviationScale) : own.rgb;
+    vec3 glow = showsDistance ? vec3(0.0) : emission * texture(emissionPicture, emissionAt).rgb;
     vec4 biased = vec4(lightPlace.xyz - vec3(0.0, 0.0, 0.004), 1.0);
     float key = max(dot(n, keyDirection), 0.0);
     if (key > 0.0) key *= lit(biased);
@@ -88,7 +113,7 @@ export const kSurface = {
     vec3 light = sky + 0.99 * key * vec3(1.0, 0.87, 0.70) + 0.5 * rim * vec3(0.35, 0.55, 1.0);
     float shine = pow(max(dot(n, normalize(towards + keyDirection)), 0.0), 24.0);
     float opacity = blends ? own.a : 1.0;
-    colour = vec4(toneMapped(albedo * light + 0.03 * shine * key) * opacity, opacity);
+    colour = vec4(toneMapped(albedo * light + glow + 0.03 * shine * key) * opacity, opacity);
   }`,
 };
 

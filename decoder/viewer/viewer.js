@@ -1,6 +1,6 @@
 // Draws an animated mesh on a floor, in light, with WebGL 2 and nothing else.
 import { Camera } from "./camera.js";
-import { Materials, kPictureUnit } from "./materials.js";
+import { Materials, kUnits } from "./materials.js";
 import { multiply, orthographic, viewAxes, viewMatrix } from "./matrices.js";
 import { kDepth, kEdges, kFloor, kSurface } from "./shaders.js";
 
@@ -9,7 +9,8 @@ export { kRampCss } from "./shaders.js";
 
 const kShadowPixels = 2048;
 const kMostShadowTriangles = 2e6; // beyond, a second drawing for the shadow costs too much
-const kAttributes = ["position", "normal", "deviation", "uv", "tint"];
+const kAttributes =
+  ["position", "normal", "deviation", "tint", "uv", "normalUv", "emissionUv"];
 const kKey = viewAxes(0.755, 0.876); // axes of the lights; the last is where they come from
 const kRim = viewAxes(-2.455, 0.38);
 
@@ -71,7 +72,9 @@ export class Viewer {
     this.makeFloor();
     this.materials = new Materials(gl);
     this.programs.surface.use({});
-    gl.uniform1i(gl.getUniformLocation(this.programs.surface.program, "picture"), kPictureUnit);
+    for (const [use, unit] of Object.entries(kUnits)) {
+      gl.uniform1i(gl.getUniformLocation(this.programs.surface.program, `${use}Picture`), unit);
+    }
     this.vertices = gl.createVertexArray();
     this.buffers = new Map(); // by name, of the mesh
     this.flat = false;
@@ -313,12 +316,20 @@ export class Viewer {
     for (const { start = 0, count = this.numCorners, material } of parts) {
       const chosen = this.materials.at(material, !this.plain && Boolean(look?.tints));
       if (Boolean(chosen.blends) !== blends) continue;
-      const { base, rows, uv, cutoff } = chosen;
-      this.programs.surface.use({ base, row0: rows[0], row1: rows[1], cutoff, blends });
+      const { base, emission, normalScale, cutoff, textures } = chosen;
+      const [row0, row1] = textures.base.rows;
+      const [normalRow0, normalRow1] = textures.normal.rows;
+      const [emissionRow0, emissionRow1] = textures.emission.rows;
+      const hasNormalMap = Boolean(textures.normal.picture);
+      this.programs.surface.use({ base, emission, normalScale, cutoff, blends, hasNormalMap, row0,
+        row1, normalRow0, normalRow1, emissionRow0, emissionRow1 });
       this.materials.bind(chosen);
       if (blends && !chosen.doubleSided) gl.enable(gl.CULL_FACE);
       else gl.disable(gl.CULL_FACE);
-      this.point("uv", this.buffers.has(uv) ? 2 : undefined, uv);
+      for (const [name, { uv }] of [["uv", textures.base], ["normalUv", textures.normal],
+        ["emissionUv", textures.emission]]) {
+        this.point(name, this.buffers.has(uv) ? 2 : undefined, uv);
+      }
       if (this.numCorners > 0) {
         gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.get("triangles"));
         gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * start);
