@@ -15,31 +15,32 @@ namespace {
 const std::filesystem::path kSource = RLPC_SOURCE_DIR;
 
 // If it is there.
-void add(std::vector<Animation>& to, const std::filesystem::path& folder, const char* name) {
+void add(std::vector<BenchAnimation>& to, const std::filesystem::path& folder,
+         const char* name) {
   const std::filesystem::path stem = folder / name;
-  const Animation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
+  const BenchAnimation a{name, stem.string() + ".obj", stem.string() + ".pc2"};
   if (std::filesystem::exists(a.mesh) && std::filesystem::exists(a.points)) to.push_back(a);
 }
 
-void add_bundled(std::vector<Animation>& to, const char* name) {
+void add_bundled(std::vector<BenchAnimation>& to, const char* name) {
   add(to, kSource / "streams" / "inputs", name);
 }
 
-void add_handed_out(std::vector<Animation>& to, const char* name) {
+void add_handed_out(std::vector<BenchAnimation>& to, const char* name) {
   add(to, kSource.parent_path() / "shared" / "data" / "sequences", name);
 }
 
 }  // namespace
 
-std::vector<Animation> animations() {
-  std::vector<Animation> found;
+std::vector<BenchAnimation> animations() {
+  std::vector<BenchAnimation> found;
   for (const char* name : {"elephant", "curtain", "robot_arm"}) add_bundled(found, name);
   for (const char* name : {"cow", "samba"}) add_handed_out(found, name);
   return found;
 }
 
-std::vector<Animation> latency_animations() {
-  std::vector<Animation> found;
+std::vector<BenchAnimation> latency_animations() {
+  std::vector<BenchAnimation> found;
   add_bundled(found, "curtain");
   for (const char* name : {"cow", "samba", "knight"}) add_handed_out(found, name);
   return found;
@@ -50,7 +51,7 @@ void stop(const std::string& message) {
   std::exit(1);
 }
 
-Bytes encode(const Animation& animation, const EncoderSettings& settings) {
+Bytes encode(const BenchAnimation& animation, const EncoderSettings& settings) {
   auto source = open_frame_source({animation.mesh, animation.points, {}});
   if (!source) stop(source.error().message);
   Bytes stream;

@@ -12,22 +12,22 @@ namespace rlpc::bench {
 
 using Bytes = std::vector<std::uint8_t>;
 
-struct Animation {
+struct BenchAnimation {
   std::string name;
   std::string mesh;
   std::string points;
 };
 
 // The bundled ones and, if present beside the project, two from the literature.
-std::vector<Animation> animations();
+std::vector<BenchAnimation> animations();
 
 // Those with long GOFs to wait for: some of them, and if present one of a game character.
-std::vector<Animation> latency_animations();
+std::vector<BenchAnimation> latency_animations();
 
 // Prints the message and ends the program.
 [[noreturn]] void stop(const std::string& message);
 
-Bytes encode(const Animation& animation, const EncoderSettings& settings);
+Bytes encode(const BenchAnimation& animation, const EncoderSettings& settings);
 
 Decoder open_decoder(const Bytes& stream, bool verify_hashes, std::uint32_t threads);
 

@@ -22,7 +22,7 @@ struct Frames {
 };
 
 // Frames are read once for all benchmarks.
-const Frames& frames_of(const Animation& animation) {
+const Frames& frames_of(const BenchAnimation& animation) {
   static std::map<std::string, Frames> all;
   const auto [at, is_new] = all.try_emplace(animation.name);
   Frames& frames = at->second;
@@ -83,7 +83,7 @@ void add_counters(benchmark::State& state, const Frames& frames, std::size_t byt
 
 }  // namespace
 
-void register_frames(const Animation& animation) {
+void register_frames(const BenchAnimation& animation) {
   const auto add = [&](const std::string& name, auto&& function) {
     benchmark::RegisterBenchmark((name + "/" + animation.name).c_str(), function)
         ->Unit(benchmark::kMillisecond)

@@ -5,6 +5,6 @@
 
 namespace rlpc::bench {
 
-void register_frames(const Animation& animation);
+void register_frames(const BenchAnimation& animation);
 
 }  // namespace rlpc::bench

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kAllFactors = 1024;
 
 // Streams are encoded once for all benchmarks.
-const Bytes& stream_of(const Animation& animation, double kg, std::uint32_t factors) {
+const Bytes& stream_of(const BenchAnimation& animation, double kg, std::uint32_t factors) {
   static std::map<std::tuple<std::string, double, std::uint32_t>, Bytes> streams;
   const auto [at, is_new] = streams.try_emplace({animation.name, kg, factors});
   if (is_new) {
@@ -81,7 +81,7 @@ void bench_seek(benchmark::State& state, const Bytes& stream) {
 
 }  // namespace
 
-void register_high(const Animation& animation) {
+void register_high(const BenchAnimation& animation) {
   const auto add = [&](const std::string& name, auto&& function) {
     return benchmark::RegisterBenchmark((name + "/" + animation.name).c_str(), function)
         ->Unit(benchmark::kMillisecond)

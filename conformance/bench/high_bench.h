@@ -5,6 +5,6 @@
 
 namespace rlpc::bench {
 
-void register_high(const Animation& animation);
+void register_high(const BenchAnimation& animation);
 
 }  // namespace rlpc::bench

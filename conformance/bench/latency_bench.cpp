@@ -53,7 +53,7 @@ std::vector<std::uint32_t> alternating(Decoder& decoder) {
 }
 
 // Streams are encoded once for all orders.
-const Bytes& stream_of(const Animation& animation, Profile profile) {
+const Bytes& stream_of(const BenchAnimation& animation, Profile profile) {
   static std::map<std::pair<std::string, Profile>, Bytes> all;
   const auto [at, is_new] = all.try_emplace({animation.name, profile});
   if (!is_new) return at->second;
@@ -96,7 +96,7 @@ void measure(benchmark::State& state, const Bytes& stream, Order order, std::uin
 
 }  // namespace
 
-void register_latency(const Animation& animation) {
+void register_latency(const BenchAnimation& animation) {
   constexpr std::pair<const char*, Order> kOrders[] = {{"forward", forward},
                                                        {"backward", backward},
                                                        {"random", random},

@@ -5,6 +5,6 @@
 
 namespace rlpc::bench {
 
-void register_latency(const Animation& animation);
+void register_latency(const BenchAnimation& animation);
 
 }  // namespace rlpc::bench

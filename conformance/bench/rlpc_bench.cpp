@@ -33,8 +33,8 @@
 
 namespace {
 
-using rlpc::bench::Animation;
 using rlpc::bench::animations;
+using rlpc::bench::BenchAnimation;
 using rlpc::bench::Bytes;
 using rlpc::bench::decode;
 using rlpc::bench::encode;
@@ -135,7 +135,8 @@ void add_counters(benchmark::State& state, std::uint64_t vertex_frames, std::siz
   state.counters["peak_MB"] = launcher().peak_megabytes(command);
 }
 
-void bench_decode(benchmark::State& state, const Animation& animation, double kg, bool hashes) {
+void bench_decode(benchmark::State& state, const BenchAnimation& animation, double kg,
+                  bool hashes) {
   rlpc::EncoderSettings settings;
   settings.target = {rlpc::Target::kKg, kg};
   const Bytes stream = encode(animation, settings);
@@ -154,7 +155,7 @@ void bench_decode(benchmark::State& state, const Animation& animation, double kg
 }
 
 // `options`: options of rlpcenc that are equivalent to `settings`.
-void bench_encode(benchmark::State& state, const Animation& animation,
+void bench_encode(benchmark::State& state, const BenchAnimation& animation,
                   const rlpc::EncoderSettings& settings, const std::string& options) {
   Bytes stream;
   for (auto _ : state) stream = encode(animation, settings);
@@ -199,7 +200,7 @@ void register_sums() {
   }
 }
 
-void register_all(const Animation& a) {
+void register_all(const BenchAnimation& a) {
   const auto add = [&](const std::string& what, auto&& function) {
     benchmark::RegisterBenchmark((what + "/" + a.name).c_str(), function)
         ->Unit(benchmark::kMillisecond)
@@ -244,12 +245,12 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 64;
   register_sums();
-  for (const Animation& animation : animations()) {
+  for (const BenchAnimation& animation : animations()) {
     register_all(animation);
     rlpc::bench::register_high(animation);
     rlpc::bench::register_frames(animation);
   }
-  for (const Animation& animation : rlpc::bench::latency_animations()) {
+  for (const BenchAnimation& animation : rlpc::bench::latency_animations()) {
     rlpc::bench::register_latency(animation);
   }
   benchmark::RunSpecifiedBenchmarks();

@@ -204,9 +204,9 @@ bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
 }
 
 // 6.13.1 tracks_of_gof( )
-bool check_tracks(ElementReader& r, const KeptModels& models, GofHeaderCheck& gof) {
+bool check_tracks(ElementReader& r, const SeenModels& models, GofHeaderCheck& gof) {
   const auto model_idx = static_cast<std::size_t>(r.u(3, "model_idx"));
-  const KeptModel& kept = models[model_idx];
+  const SeenModel& kept = models[model_idx];
   if (!r.supported(
           kept.model || kept.lost, "R-MOD-01",
           "the stream has no skinned model " + std::to_string(model_idx) + " up to here")) {
@@ -253,7 +253,7 @@ std::optional<GofKind> check_kind(ElementReader& r, const SequenceHeader& header
 // 6.5 gof( )
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers, const KeptModels& models) {
+                                std::uint32_t num_layers, const SeenModels& models) {
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
   gof.kind = check_kind(r, header);

@@ -47,7 +47,7 @@ struct GofHeaderCheck {
 // of the mesh, for skinned GOFs; 0 if not known. models: those kept.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers, const KeptModels& models);
+                                std::uint32_t num_layers, const SeenModels& models);
 
 struct ModelHeaderCheck {
   std::optional<std::uint32_t> model_idx;  // if it could be read

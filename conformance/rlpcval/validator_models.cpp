@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-ModelSlots slots_of(const KeptModels& models) {
+ModelSlots slots_of(const SeenModels& models) {
   ModelSlots slots;
   for (std::size_t m = 0; m < models.size(); ++m) slots.of_idx[m] = models[m].model;
   return slots;
@@ -44,7 +44,7 @@ void StreamValidator::model(const UnitHeader& unit, const Payload& payload) {
   if (header.model_idx) {
     index_.models.back().model_idx = *header.model_idx;
     release(models_[*header.model_idx]);
-    KeptModel& kept = models_[*header.model_idx];
+    SeenModel& kept = models_[*header.model_idx];
     kept = {};
     if (recons_) recons_->erase_unused();
     kept.lost = true;  // until it has been read
@@ -68,7 +68,7 @@ void StreamValidator::model(const UnitHeader& unit, const Payload& payload) {
 // 8.16.1 DecodeModel( )
 void StreamValidator::end_model() {
   if (!model_.parser) return;
-  KeptModel& kept = models_[*model_.model_idx];
+  SeenModel& kept = models_[*model_.model_idx];
   kept.model = model_.parser->finish().model;
   kept.lost = false;
   kept.suspect = model_.suspect;
@@ -84,7 +84,7 @@ void StreamValidator::end_model() {
 
 void StreamValidator::use_model(const SkinnedGof& gof) {
   if (!gof.model) return;
-  KeptModel& kept = models_[gof.model_idx];
+  SeenModel& kept = models_[gof.model_idx];
   kept.is_used = true;
   for (std::size_t l = 0; l < std::min(kept.moves.size(), gof.trajectories.size()); ++l) {
     if (!is_still(gof.trajectories[l])) kept.moves[l] = true;
@@ -92,14 +92,14 @@ void StreamValidator::use_model(const SkinnedGof& gof) {
 }
 
 void StreamValidator::doubt_models() {
-  for (KeptModel& kept : models_) {
+  for (SeenModel& kept : models_) {
     kept.lost = true;
     kept.suspect = true;
   }
 }
 
 // Only where all GOFs could be read: the others may have used it.
-void StreamValidator::release(const KeptModel& kept) {
+void StreamValidator::release(const SeenModel& kept) {
   if (!kept.model || findings_.failures() > 0 || !report_.complete) return;
   findings_.in_unit(kept.place);
   if (!kept.is_used) {
@@ -115,7 +115,7 @@ void StreamValidator::release(const KeptModel& kept) {
 }
 
 void StreamValidator::end_models() {
-  for (const KeptModel& kept : models_) release(kept);
+  for (const SeenModel& kept : models_) release(kept);
 }
 
 }  // namespace rlpc

@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-struct KeptModel {
+struct SeenModel {
   std::shared_ptr<const SkinnedModel> model;  // null: none that could be read
   bool lost = false;                          // there is, or may be, one that could not be read
   bool suspect = false;
@@ -21,8 +21,8 @@ struct KeptModel {
   bool is_used = false;       // by a GOF so far
   std::vector<bool> moves;    // [trajectories] not still in all these GOFs
 };
-using KeptModels = std::array<KeptModel, kMaxModels>;  // by model_idx
+using SeenModels = std::array<SeenModel, kMaxModels>;  // by model_idx
 
-ModelSlots slots_of(const KeptModels& models);
+ModelSlots slots_of(const SeenModels& models);
 
 }  // namespace rlpc

@@ -91,7 +91,7 @@ class StreamValidator {
   // Units were lost: models may have been replaced.
   void doubt_models();
   // Warns of what no GOF used, of a model that is replaced or at the end of the stream.
-  void release(const KeptModel& kept);
+  void release(const SeenModel& kept);
   void end_models();
 
   // validator_summary.cpp: findings that need the whole stream.
@@ -162,7 +162,7 @@ class StreamValidator {
     std::uint64_t bit_pos = 0;               // of its payload
   };
   CurrentModel model_;
-  KeptModels models_;
+  SeenModels models_;
   std::optional<ModelRecons> recons_;
   std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
   bool frames_suspect_ = false;

@@ -15,7 +15,7 @@ std::array<float, 3> to_floats(Vec3 p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-std::string obj_text(const Animation& animation) {
+std::string obj_text(const MadeAnimation& animation) {
   std::string text =
       "# " + animation.name + ": first frame; all frames are in " + animation.name + ".pc2\n";
   text += "# frame_rate 30/1\n";
@@ -36,7 +36,7 @@ std::string obj_text(const Animation& animation) {
   return text;
 }
 
-std::string pc2_bytes(const Animation& animation) {
+std::string pc2_bytes(const MadeAnimation& animation) {
   std::string bytes("POINTCACHE2\0", 12);
   append_u32(bytes, 1);
   append_u32(bytes, static_cast<std::uint32_t>(animation.frames[0].size()));
@@ -59,7 +59,7 @@ bool write_file(const std::string& path, const std::string& bytes) {
 }
 
 int run(const std::string& folder) {
-  for (const Animation& animation : {make_elephant(), make_curtain(), make_robot()}) {
+  for (const MadeAnimation& animation : {make_elephant(), make_curtain(), make_robot()}) {
     const std::string path = folder + "/" + animation.name;
     if (!write_file(path + ".obj", obj_text(animation))) return 1;
     if (!write_file(path + ".pc2", pc2_bytes(animation))) return 1;

@@ -48,14 +48,14 @@ Motion translation(Vec3 offset);
 Motion rotation(Vec3 centre, Vec3 axis, double turns);
 Motion operator*(const Motion& second, const Motion& first);
 
-struct Animation {
+struct MadeAnimation {
   std::string name;
   std::vector<Triangle> triangles;
   std::vector<std::vector<Vec3>> frames;  // 30 per second
 };
 
-Animation make_elephant();  // skinned: one closed surface
-Animation make_curtain();   // simulated cloth: one boundary
-Animation make_robot();     // rigid parts: closed components, one of them a ring
+MadeAnimation make_elephant();  // skinned: one closed surface
+MadeAnimation make_curtain();   // simulated cloth: one boundary
+MadeAnimation make_robot();     // rigid parts: closed components, one of them a ring
 
 }  // namespace rlpc::inputs

@@ -143,9 +143,9 @@ class Cloth {
 
 }  // namespace
 
-Animation make_curtain() {
+MadeAnimation make_curtain() {
   Cloth cloth;
-  Animation animation;
+  MadeAnimation animation;
   animation.name = "curtain";
   animation.triangles = Cloth::triangles();
   for (int f = 0; f < kFrames; ++f) {

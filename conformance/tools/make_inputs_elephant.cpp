@@ -293,13 +293,13 @@ std::vector<Motion> pose(const std::vector<Bone>& bones, double time) {
 
 }  // namespace
 
-Animation make_elephant() {
+MadeAnimation make_elephant() {
   constexpr int kFrames = 60;
   constexpr double kCycleFrames = 30;
   const QuadMesh mesh = subdivide(make_cage());
   const std::vector<Bone> bones = elephant_bones();
   const auto weights = skin_weights(mesh.vertices, bones);
-  Animation animation;
+  MadeAnimation animation;
   animation.name = "elephant";
   for (const Quad& q : mesh.quads) {
     animation.triangles.push_back({q[0], q[1], q[2]});

@@ -185,10 +185,10 @@ std::array<Motion, kLinks> link_motions(double frame) {
 
 }  // namespace
 
-Animation make_robot() {
+MadeAnimation make_robot() {
   constexpr int kFrames = 75;
   const std::vector<Part> parts = robot_parts();
-  Animation animation;
+  MadeAnimation animation;
   animation.name = "robot_arm";
   std::uint32_t first = 0;
   for (const Part& part : parts) {

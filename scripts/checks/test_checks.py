@@ -15,6 +15,7 @@ import check_labels  # noqa: E402
 import check_pages  # noqa: E402
 import check_rules  # noqa: E402
 import check_stability  # noqa: E402
+import check_types  # noqa: E402
 import cpp_source  # noqa: E402
 
 
@@ -111,6 +112,20 @@ class HeadersFirst(TreeTest):
 
     def test_a_tree_without_any_is_not_the_project(self):
         self.assert_one(check_headers_first.check, {"common/a.h": ""}, "no header")
+
+
+class Types(TreeTest):
+    def test_one_header_defines_a_type(self):
+        good = {"decoder/a.h": "struct A {\n  int x;\n};\nclass B;\nenum class C : int { kD };\n",
+                "encoder/b.h": "class A;\n// class A {};\nclass B : public A {\n};\n",
+                "encoder/b.cpp": "class A::Impl {\n};\n"}
+        self.assert_clean(check_types.check, good)
+        for again in ("struct B {\n};\n", "class C final : public B {};\n",
+                      "enum class A : int {};\n"):
+            self.assert_one(check_types.check, {**good, "common/b.h": again}, "is defined in", "too")
+
+    def test_a_tree_without_any_is_not_the_project(self):
+        self.assert_one(check_types.check, {"common/a.h": "int a();\n"}, "no header")
 
 
 class Labels(unittest.TestCase):

@@ -33,8 +33,8 @@ Vec3f unit(const Vec3f& n) {
 
 }  // namespace
 
-Extent extent_of(std::span<const std::int32_t> positions) {
-  Extent extent;
+FrameExtent extent_of(std::span<const std::int32_t> positions) {
+  FrameExtent extent;
   for (std::size_t c = 0; c < 3; ++c) {
     std::int32_t least = positions[c];
     std::int32_t most = positions[c];
@@ -48,7 +48,7 @@ Extent extent_of(std::span<const std::int32_t> positions) {
   return extent;
 }
 
-void centred_coordinates(std::span<const std::int32_t> positions, const Extent& extent,
+void centred_coordinates(std::span<const std::int32_t> positions, const FrameExtent& extent,
                          int position_bits, std::span<float> coordinates) {
   const double scale = std::ldexp(1.0, 1 - position_bits);
   std::array<double, 3> middle{};

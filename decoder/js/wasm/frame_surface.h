@@ -11,17 +11,17 @@
 namespace rlpc {
 
 // The smallest box of the grid that holds all vertices.
-struct Extent {
+struct FrameExtent {
   std::array<std::int32_t, 3> least{};
   std::array<std::int32_t, 3> most{};
 };
 // positions: [num_vertices][3], of at least one vertex.
-Extent extent_of(std::span<const std::int32_t> positions);
+FrameExtent extent_of(std::span<const std::int32_t> positions);
 
 // Coordinates relative to the centre of the extent, which is 2 / 2^position_bits times as large
 // as the grid: they are between -1 and 1, and the 24 bits of a float resolve the mesh, not its
 // distance from the origin. positions and coordinates have the same size.
-void centred_coordinates(std::span<const std::int32_t> positions, const Extent& extent,
+void centred_coordinates(std::span<const std::int32_t> positions, const FrameExtent& extent,
                          int position_bits, std::span<float> coordinates);
 
 using Vec3f = std::array<float, 3>;

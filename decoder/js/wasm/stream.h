@@ -27,7 +27,7 @@ struct Stream {
   std::vector<float> coordinates;
   std::vector<Vec3f> normals;
   std::vector<std::array<std::uint32_t, 2>> edges;
-  Extent extent;
+  FrameExtent extent;
   Vector<float> numbers;
   std::vector<Vec3f> set_normals;
 };

@@ -82,7 +82,7 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   mesh_.parts.push_back({{}, has_one ? std::optional<std::uint32_t>(0) : std::nullopt});
 }
 
-void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
+void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
   for (const Values& values : values_) {
     attributes[values.semantic] = values.semantic.starts_with("TEXCOORD")
                                       ? buffers.add_texture_coordinates(values.numbers)
@@ -91,7 +91,7 @@ void GltfLook::add_values(GltfJson& attributes, GltfBuffers& buffers) const {
 }
 
 // Images of the same view share it here, too.
-void GltfLook::add_images(GltfJson& images, GltfBuffers& buffers) const {
+void GltfLook::add_images(GltfJson& images, GlbBuffers& buffers) const {
   std::map<std::uint64_t, std::uint32_t> added;
   for (GltfJson& image : images) {
     const auto view = asset_.view_of(image);
@@ -117,7 +117,7 @@ std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
   return normals;
 }
 
-void GltfLook::add_materials(GltfJson& root, GltfBuffers& buffers) const {
+void GltfLook::add_materials(GltfJson& root, GlbBuffers& buffers) const {
   const GltfJson& asset = asset_.root();
   if (asset.is_null()) {  // of OBJ files, say: glTF's own default is metal, seen from the front
     root["materials"] = GltfJson::array(

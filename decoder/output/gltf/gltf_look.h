@@ -8,8 +8,8 @@
 
 #include "common/attributes/attribute_set.h"
 #include "common/mesh/mesh.h"
-#include "decoder/output/gltf/gltf_buffers.h"
-#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/glb_buffers.h"
+#include "decoder/output/gltf/glb_mesh.h"
 #include "decoder/surface/drawn_mesh.h"
 
 namespace rlpc {
@@ -23,14 +23,14 @@ class GltfLook {
 
   // Vertices are split where their values differ; there is a part for each material and part of
   // the stream.
-  const GltfMesh& mesh() const { return mesh_; }
+  const GlbMesh& mesh() const { return mesh_; }
   // Adds texture coordinates and colours to the attributes of the primitives.
-  void add_values(GltfJson& attributes, GltfBuffers& buffers) const;
+  void add_values(GltfJson& attributes, GlbBuffers& buffers) const;
   bool has_normals() const { return drawn_->has_normals(); }
   // Of output vertices, if has_normals(). xyz: of the vertices of the stream.
   std::vector<float> normals(std::span<const float> xyz) const;
   // Sets materials, textures and what they need.
-  void add_materials(GltfJson& root, GltfBuffers& buffers) const;
+  void add_materials(GltfJson& root, GlbBuffers& buffers) const;
   // Why the asset was left out; empty: it was not.
   const std::string& problem() const { return asset_.problem(); }
 
@@ -41,12 +41,12 @@ class GltfLook {
     std::vector<float> numbers;  // of output vertices
   };
 
-  void add_images(GltfJson& images, GltfBuffers& buffers) const;
+  void add_images(GltfJson& images, GlbBuffers& buffers) const;
   void make_parts(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles);
 
   StreamAsset asset_;
   std::unique_ptr<DrawnMesh> drawn_;
-  GltfMesh mesh_;
+  GlbMesh mesh_;
   std::vector<Values> values_;
 };
 

@@ -35,7 +35,7 @@ struct Written {
 Written write(const std::vector<AttributeSet>& sets, const std::string& asset) {
   const GltfLook look(sets, kTriangles, 4, asset);
   EXPECT_EQ(look.problem(), "");
-  GltfBuffers buffers;
+  GlbBuffers buffers;
   Written written;
   look.add_materials(written.root, buffers);
   written.primitives =

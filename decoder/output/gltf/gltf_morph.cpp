@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "decoder/output/gltf/gltf_animation.h"
+#include "decoder/output/gltf/glb_animation.h"
 
 namespace rlpc {
 namespace {
@@ -24,7 +24,7 @@ std::optional<std::vector<float>> exact_moves(std::span<const float> from,
 }  // namespace
 
 void GltfMorph::add_frame(std::span<const float> xyz) {
-  GltfBuffers& buffers = document_.buffers;
+  GlbBuffers& buffers = document_.buffers;
   std::vector<float> places = of_output_vertices(mesh_, xyz, 3);
   if (num_frames_ == 0) {
     base_ = std::move(places);
@@ -82,7 +82,7 @@ std::uint32_t GltfMorph::weights_of(const Clip& clip) {
 }
 
 bool GltfMorph::finish(std::span<const Clip> spans, FrameRate frame_rate) {
-  GltfBuffers& buffers = document_.buffers;
+  GlbBuffers& buffers = document_.buffers;
   std::uint64_t most_weights = 0;
   for (const Clip& clip : spans) {
     most_weights += std::uint64_t{clip.num_frames} * (targets_.size() + 1);
@@ -110,7 +110,7 @@ bool GltfMorph::finish(std::span<const Clip> spans, FrameRate frame_rate) {
   if (num_frames_ == 1) return true;
   GltfJson animations = GltfJson::array();
   for (const Clip& clip : spans) {
-    GltfAnimation animation(buffers, clip, frame_rate);
+    GlbAnimation animation(buffers, clip, frame_rate);
     animation.add_channel(0, "weights", animation.all_frames(), weights_of(clip));
     animations.push_back(animation.json());
   }

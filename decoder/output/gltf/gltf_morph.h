@@ -9,16 +9,16 @@
 
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/glb_document.h"
+#include "decoder/output/gltf/glb_mesh.h"
 #include "decoder/output/gltf/gltf_look.h"
-#include "decoder/output/gltf/gltf_mesh.h"
 
 namespace rlpc {
 
 class GltfMorph {
  public:
   // Both must outlive it.
-  GltfMorph(GltfDocument& document, const GltfLook& look)
+  GltfMorph(GlbDocument& document, const GltfLook& look)
       : document_(document), look_(look), mesh_(look.mesh()) {}
 
   // xyz of the vertices of the stream.
@@ -39,9 +39,9 @@ class GltfMorph {
   std::uint32_t minus_base_target();
   std::uint32_t weights_of(const Clip& clip);
 
-  GltfDocument& document_;
+  GlbDocument& document_;
   const GltfLook& look_;
-  const GltfMesh& mesh_;
+  const GlbMesh& mesh_;
   GltfJson targets_ = GltfJson::array();
   std::vector<Weight> weights_;  // those that are 1, ascending
   std::vector<float> base_;      // frame 0, of output vertices

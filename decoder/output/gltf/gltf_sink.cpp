@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/io/float_position.h"
-#include "decoder/output/gltf/gltf_animation.h"
+#include "decoder/output/gltf/glb_animation.h"
 
 namespace rlpc {
 
@@ -35,7 +35,7 @@ class GltfMorphSink final : public GltfSink {
     return failure(document_);
   }
 
-  GltfDocument document_;
+  GlbDocument document_;
   GltfMorph morph_;
 };
 
@@ -75,14 +75,14 @@ void GltfSink::warn_of_targets(std::size_t num_targets, const char* remedy) {
          remedy);
 }
 
-std::optional<OutputError> GltfSink::finish_morph(GltfDocument& document, GltfMorph& morph) {
+std::optional<OutputError> GltfSink::finish_morph(GlbDocument& document, GltfMorph& morph) {
   assert(written_ == options_.num_frames);
   if (!morph.finish(spans_, options_.frame_rate)) return too_large_for_glb(file_.path());
   warn_of_targets(morph.num_targets(), "fewer frames (--frames, --clip), or bones (--as skin)");
   return write(document);
 }
 
-std::optional<OutputError> GltfSink::write(GltfDocument& document) {
+std::optional<OutputError> GltfSink::write(GlbDocument& document) {
   if (auto error = failure(document)) return error;
   return write_glb(document, file_);
 }

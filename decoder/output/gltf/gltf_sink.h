@@ -12,7 +12,7 @@
 #include "common/io/output_file.h"
 #include "common/mesh/clip.h"
 #include "decoder/output/frame_sink.h"
-#include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/glb_document.h"
 #include "decoder/output/gltf/gltf_look.h"
 #include "decoder/output/gltf/gltf_morph.h"
 
@@ -37,11 +37,11 @@ class GltfSink : public FrameSink {
   void remark(const std::string& text) { remarks_.push_back(name() + ": " + text); }
   // Warns of more than viewers can hold.
   void warn_of_targets(std::size_t num_targets, const char* remedy);
-  std::optional<OutputError> failure(const GltfDocument& document) const {
+  std::optional<OutputError> failure(const GlbDocument& document) const {
     return failure_of(document, file_.path(), options_.limit);
   }
-  std::optional<OutputError> finish_morph(GltfDocument& document, GltfMorph& morph);
-  std::optional<OutputError> write(GltfDocument& document);
+  std::optional<OutputError> finish_morph(GlbDocument& document, GltfMorph& morph);
+  std::optional<OutputError> write(GlbDocument& document);
 
   const SinkOptions& options() const { return options_; }
   const GltfLook& look() const { return look_; }

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "decoder/output/gltf/glb_skin.h"
 #include "decoder/output/gltf/gltf_sink.h"
-#include "decoder/output/gltf/gltf_skin.h"
 
 namespace rlpc {
 
@@ -105,8 +105,8 @@ class GltfSkinSink final : public GltfSink {
       return finish_as_morph();
     }
     poses_.take(source_);
-    GltfDocument document(options().frame_rate);
-    const GltfSkin skin =
+    GlbDocument document(options().frame_rate);
+    const GlbSkin skin =
         add_skin(document, look(), source_, spans(), options().frame_rate, limits());
     const std::string means =
         plural(skin.num_joints, "bone") + " and " + plural(skin.num_targets, "morph target");
@@ -157,7 +157,7 @@ class GltfSkinSink final : public GltfSink {
 
   // Whether to write a morph target for each frame instead of bones. Never more of them than
   // viewers hold, however few bytes these take.
-  bool frames_are_better(const GltfDocument& document, const GltfSkin& skin) const {
+  bool frames_are_better(const GlbDocument& document, const GlbSkin& skin) const {
     if (num_moving_ > kMostTargetsShown) return false;
     const double times = static_cast<double>(morph_bytes_) /
                          static_cast<double>(document.buffers.chunk().size());
@@ -179,7 +179,7 @@ class GltfSkinSink final : public GltfSink {
   }
 
   std::optional<OutputError> finish_as_morph() {
-    GltfDocument document(options().frame_rate);
+    GlbDocument document(options().frame_rate);
     GltfMorph morph(document, look());
     for (std::vector<float>& xyz : source_.frames) {
       morph.add_frame(xyz);

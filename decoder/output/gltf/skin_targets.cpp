@@ -29,7 +29,7 @@ Eigen::MatrixXf stacked(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
 }
 
 void add_targets(GltfJson& targets, const PrincipalShapes& shapes, const char* path,
-                 const GltfMesh* expand, GltfBuffers& buffers) {
+                 const GlbMesh* expand, GlbBuffers& buffers) {
   for (Index k = 0; k < shapes.targets.cols(); ++k) {
     std::vector<std::int8_t> bytes;
     for (const float x : shapes.targets.col(k)) {
@@ -91,7 +91,7 @@ Eigen::MatrixXf shown_weights(const SkinTargets& targets, std::span<const Target
   return shown;
 }
 
-GltfJson targets_of(const SkinTargets& targets, const GltfMesh& mesh, GltfBuffers& buffers) {
+GltfJson targets_of(const SkinTargets& targets, const GlbMesh& mesh, GlbBuffers& buffers) {
   GltfJson json = GltfJson::array();
   add_targets(json, targets.places, "POSITION", &mesh, buffers);
   if (targets.normals.targets.cols() == 0) return json;
@@ -114,8 +114,8 @@ GltfJson first_weights(const SkinTargets& targets) {
   return json;
 }
 
-void add_weights(GltfAnimation& animation, std::uint32_t node, const SkinTargets& targets,
-                 const TargetTrack& track, GltfBuffers& buffers) {
+void add_weights(GlbAnimation& animation, std::uint32_t node, const SkinTargets& targets,
+                 const TargetTrack& track, GlbBuffers& buffers) {
   const auto values =
       std::span(track.weights.data(), static_cast<std::size_t>(track.weights.size()));
   const auto is_short = [](const PrincipalShapes& shapes) {

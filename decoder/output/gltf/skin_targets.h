@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/mesh/clip.h"
-#include "decoder/output/gltf/gltf_animation.h"
-#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/glb_animation.h"
+#include "decoder/output/gltf/glb_mesh.h"
 #include "decoder/output/gltf/principal_shapes.h"
 
 namespace rlpc {
@@ -40,10 +40,10 @@ Eigen::MatrixXf shown_weights(const SkinTargets& targets, std::span<const Target
                               std::span<const Clip> spans);
 
 // The targets of a primitive.
-GltfJson targets_of(const SkinTargets& targets, const GltfMesh& mesh, GltfBuffers& buffers);
+GltfJson targets_of(const SkinTargets& targets, const GlbMesh& mesh, GlbBuffers& buffers);
 // Their weights in frame 0.
 GltfJson first_weights(const SkinTargets& targets);
-void add_weights(GltfAnimation& animation, std::uint32_t node, const SkinTargets& targets,
-                 const TargetTrack& track, GltfBuffers& buffers);
+void add_weights(GlbAnimation& animation, std::uint32_t node, const SkinTargets& targets,
+                 const TargetTrack& track, GlbBuffers& buffers);
 
 }  // namespace rlpc

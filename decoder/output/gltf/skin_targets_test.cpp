@@ -50,8 +50,8 @@ TEST(TargetTrack, HasKeysForNormals) {
 
 TEST(SkinTargets, MovePositionsOrNormals) {
   const Eigen::RowVectorXf weights = Eigen::RowVectorXf::Constant(kFrames, 0.5F);
-  const GltfMesh mesh = plain_mesh(2, {});
-  GltfBuffers buffers;
+  const GlbMesh mesh = plain_mesh(2, {});
+  GlbBuffers buffers;
   const GltfJson places = targets_of({one_target(weights), no_target()}, mesh, buffers);
   ASSERT_EQ(places.size(), 1U);
   EXPECT_FALSE(places[0].contains("NORMAL"));

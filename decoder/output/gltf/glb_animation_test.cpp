@@ -1,4 +1,4 @@
-#include "decoder/output/gltf/gltf_animation.h"
+#include "decoder/output/gltf/glb_animation.h"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +20,10 @@ TEST(AnimationSpans, HaveWhatIsBetweenClips) {
                                                                 {"frames 109-109", 9, 1}}));
 }
 
-TEST(GltfAnimation, SharesTheTimesOfItsChannels) {
-  GltfBuffers buffers;
+TEST(GlbAnimation, SharesTheTimesOfItsChannels) {
+  GlbBuffers buffers;
   const Clip clip{"Run", 5, 4};
-  GltfAnimation animation(buffers, clip, {2, 1});
+  GlbAnimation animation(buffers, clip, {2, 1});
   const std::vector<std::uint32_t> ends{0, 3};
   animation.add_channel(2, "translation", std::vector<std::uint32_t>{0}, 9);
   EXPECT_FALSE(animation.spans_clip());

@@ -1,4 +1,4 @@
-#include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/glb_document.h"
 
 #include <cerrno>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-GltfDocument::GltfDocument(FrameRate frame_rate) {
+GlbDocument::GlbDocument(FrameRate frame_rate) {
   root["asset"] = {{"version", "2.0"},
                    {"generator", "rlpcdec"},
                    {"extras", {{"frame_rate", frame_rate_text(frame_rate)}}}};
@@ -21,7 +21,7 @@ OutputError too_large_for_glb(const std::string& path) {
                      "(--frames), or a point cache"};
 }
 
-std::optional<OutputError> failure_of(const GltfDocument& document, const std::string& path,
+std::optional<OutputError> failure_of(const GlbDocument& document, const std::string& path,
                                       const std::shared_ptr<OutputLimit>& limit) {
   const std::uint64_t size = document.buffers.chunk().size();
   if (limit != nullptr && size > limit->left) return limit->exceeded(path);
@@ -32,7 +32,7 @@ std::optional<OutputError> failure_of(const GltfDocument& document, const std::s
   return std::nullopt;
 }
 
-std::optional<OutputError> write_glb(GltfDocument& document, OutputFile& file) {
+std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file) {
   BinaryChunk& chunk = document.buffers.chunk();
   document.root["accessors"] = document.buffers.accessors();
   document.root["bufferViews"] = document.buffers.views();

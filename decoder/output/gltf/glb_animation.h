@@ -8,7 +8,7 @@
 
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
-#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/glb_buffers.h"
 
 namespace rlpc {
 
@@ -19,10 +19,10 @@ std::vector<Clip> animation_spans(std::span<const Clip> clips, std::uint32_t num
                                   std::uint32_t first_number);
 
 // Makes one animation: samplers, and the channels that they feed.
-class GltfAnimation {
+class GlbAnimation {
  public:
   // Frames [0, num_frames) of the clip.
-  GltfAnimation(GltfBuffers& buffers, const Clip& clip, FrameRate frame_rate)
+  GlbAnimation(GlbBuffers& buffers, const Clip& clip, FrameRate frame_rate)
       : buffers_(buffers), clip_(clip), frame_rate_(frame_rate) {}
 
   const Clip& clip() const { return clip_; }
@@ -44,7 +44,7 @@ class GltfAnimation {
     std::uint32_t accessor;
   };
 
-  GltfBuffers& buffers_;
+  GlbBuffers& buffers_;
   const Clip& clip_;
   FrameRate frame_rate_;
   std::vector<Times> times_;  // of all samplers so far

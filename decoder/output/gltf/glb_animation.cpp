@@ -1,4 +1,4 @@
-#include "decoder/output/gltf/gltf_animation.h"
+#include "decoder/output/gltf/glb_animation.h"
 
 #include <algorithm>
 #include <numeric>
@@ -28,13 +28,13 @@ std::vector<Clip> animation_spans(std::span<const Clip> clips, std::uint32_t num
   return spans;
 }
 
-std::vector<std::uint32_t> GltfAnimation::all_frames() const {
+std::vector<std::uint32_t> GlbAnimation::all_frames() const {
   std::vector<std::uint32_t> keys(clip_.num_frames);
   std::iota(keys.begin(), keys.end(), 0U);
   return keys;
 }
 
-std::uint32_t GltfAnimation::times_of(std::span<const std::uint32_t> keys) {
+std::uint32_t GlbAnimation::times_of(std::span<const std::uint32_t> keys) {
   for (const Times& known : times_) {
     if (std::ranges::equal(known.keys, keys)) return known.accessor;
   }
@@ -44,20 +44,20 @@ std::uint32_t GltfAnimation::times_of(std::span<const std::uint32_t> keys) {
   return times_.back().accessor;
 }
 
-void GltfAnimation::add_channel(std::uint32_t node, const char* path,
-                                std::span<const std::uint32_t> keys, std::uint32_t output) {
+void GlbAnimation::add_channel(std::uint32_t node, const char* path,
+                               std::span<const std::uint32_t> keys, std::uint32_t output) {
   channels_.push_back(
       {{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
   samplers_.push_back({{"input", times_of(keys)}, {"output", output}});  // LINEAR
 }
 
-bool GltfAnimation::spans_clip() const {
+bool GlbAnimation::spans_clip() const {
   return std::ranges::any_of(times_, [&](const Times& times) {
     return times.keys.front() == 0 && times.keys.back() + 1 == clip_.num_frames;
   });
 }
 
-GltfJson GltfAnimation::json() {
+GltfJson GlbAnimation::json() {
   GltfJson animation;
   if (!clip_.name.empty()) animation["name"] = clip_.name;
   animation["channels"] = std::move(channels_);

@@ -41,7 +41,7 @@ class BinaryChunk {
 inline constexpr float kShortUnit = 1.0F / 32767;
 
 // Each add_*() appends values to the chunk and returns the index of their accessor.
-class GltfBuffers {
+class GlbBuffers {
  public:
   // xyz of each vertex.
   std::uint32_t add_vectors(std::span<const float> xyz);

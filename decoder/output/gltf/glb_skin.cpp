@@ -1,11 +1,11 @@
-#include "decoder/output/gltf/gltf_skin.h"
+#include "decoder/output/gltf/glb_skin.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "decoder/output/gltf/gltf_animation.h"
+#include "decoder/output/gltf/glb_animation.h"
 #include "decoder/output/gltf/skin_fit.h"
 #include "decoder/output/gltf/skin_normals.h"
 #include "decoder/output/gltf/skin_targets.h"
@@ -120,7 +120,7 @@ GltfJson nodes_of(const JointMotion& motion) {
   return nodes;
 }
 
-GltfJson skin_of(const JointMotion& motion, GltfBuffers& buffers) {
+GltfJson skin_of(const JointMotion& motion, GlbBuffers& buffers) {
   std::vector<float> inverse_bind;
   GltfJson joints = GltfJson::array();
   for (std::size_t j = 0; j < motion.nodes.size(); ++j) {
@@ -135,8 +135,8 @@ GltfJson skin_of(const JointMotion& motion, GltfBuffers& buffers) {
 
 GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
                       std::span<const JointMotion::OfClip> joints, const SkinTargets& targets,
-                      const TargetTrack& weights, GltfBuffers& buffers) {
-  GltfAnimation animation(buffers, clip, frame_rate);
+                      const TargetTrack& weights, GlbBuffers& buffers) {
+  GlbAnimation animation(buffers, clip, frame_rate);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const auto node = static_cast<std::uint32_t>(j + kFirstJoint);
     if (const JointTrack& track = joints[j].rotation; !track.keys.empty()) {
@@ -165,8 +165,8 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
 // The attributes and morph targets of the mesh.
 GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const float> rest,
                  const SkinInfluences& influences, std::span<const float> normals,
-                 const SkinTargets& targets, GltfBuffers& buffers) {
-  const GltfMesh& mesh = look.mesh();
+                 const SkinTargets& targets, GlbBuffers& buffers) {
+  const GlbMesh& mesh = look.mesh();
   const auto joints =
       of_output_vertices<std::uint16_t>(mesh, influences.joints, kJointsOfVertex);
   const auto weights =
@@ -187,7 +187,7 @@ GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const f
 double bytes_without_targets(const GltfLook& look, const JointMotion& motion,
                              std::span<const float> rest, const SkinInfluences& influences,
                              std::span<const Clip> spans, FrameRate frame_rate) {
-  GltfDocument document(frame_rate);
+  GlbDocument document(frame_rate);
   const std::vector<float> normals(look.has_normals() ? 3 * look.mesh().vertex.size() : 0);
   GltfJson& root = document.root;
   look.add_materials(root, document.buffers);
@@ -204,11 +204,11 @@ double bytes_without_targets(const GltfLook& look, const JointMotion& motion,
 
 }  // namespace
 
-GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
-                  std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits) {
-  GltfBuffers& buffers = document.buffers;
+GlbSkin add_skin(GlbDocument& document, const GltfLook& look, SkinSource& source,
+                 std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits) {
+  GlbBuffers& buffers = document.buffers;
   const Skeleton& skeleton = *source.skeleton;
-  GltfSkin skin;
+  GlbSkin skin;
   skin.num_joints = skeleton.bones.size();
   skin.stream_rms = likely_rms(source);
   const double tolerated_rms = skin.stream_rms * kToleratedPart;

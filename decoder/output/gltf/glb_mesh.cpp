@@ -1,4 +1,4 @@
-#include "decoder/output/gltf/gltf_mesh.h"
+#include "decoder/output/gltf/glb_mesh.h"
 
 #include <numeric>
 #include <utility>
@@ -11,18 +11,18 @@ constexpr int kTriangles = 4;
 
 }  // namespace
 
-GltfMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles) {
-  GltfMesh mesh;
+GlbMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles) {
+  GlbMesh mesh;
   mesh.vertex.resize(num_vertices);
   std::iota(mesh.vertex.begin(), mesh.vertex.end(), 0U);
   mesh.parts.push_back({std::move(triangles), std::nullopt});
   return mesh;
 }
 
-GltfJson primitives_of(const GltfMesh& mesh, const GltfJson& attributes,
-                       const GltfJson& targets, GltfBuffers& buffers) {
+GltfJson primitives_of(const GlbMesh& mesh, const GltfJson& attributes, const GltfJson& targets,
+                       GlbBuffers& buffers) {
   GltfJson primitives = GltfJson::array();
-  for (const GltfMesh::Part& part : mesh.parts) {
+  for (const GlbMesh::Part& part : mesh.parts) {
     GltfJson primitive = {{"attributes", attributes},
                           {"mode", part.triangles.empty() ? kPoints : kTriangles}};
     if (!part.triangles.empty()) {

@@ -10,14 +10,14 @@
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/skeleton.h"
-#include "decoder/output/gltf/gltf_document.h"
+#include "decoder/output/gltf/glb_document.h"
 #include "decoder/output/gltf/gltf_look.h"
 #include "decoder/output/gltf/skin_joints.h"
 #include "decoder/output/gltf/skin_shape.h"
 
 namespace rlpc {
 
-struct GltfSkin {
+struct GlbSkin {
   std::size_t num_joints = 0;
   std::size_t num_targets = 0;  // of positions and of normals
   SkinError error;              // against the frames
@@ -41,7 +41,7 @@ struct SkinLimits {
 
 // Fills the document. source: places that are not known are fitted. spans: of
 // animation_spans().
-GltfSkin add_skin(GltfDocument& document, const GltfLook& look, SkinSource& source,
-                  std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits);
+GlbSkin add_skin(GlbDocument& document, const GltfLook& look, SkinSource& source,
+                 std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits);
 
 }  // namespace rlpc

@@ -8,27 +8,27 @@
 
 #include "common/io/output_file.h"
 #include "decoder/output/frame_sink.h"
-#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/glb_buffers.h"
 
 namespace rlpc {
 
 inline constexpr std::uint64_t kMaxGltfBytes = std::numeric_limits<std::uint32_t>::max();
 
-struct GltfDocument {
-  explicit GltfDocument(FrameRate frame_rate);
+struct GlbDocument {
+  explicit GlbDocument(FrameRate frame_rate);
 
   GltfJson root;  // without accessors, bufferViews and buffers
-  GltfBuffers buffers;
+  GlbBuffers buffers;
 };
 
 OutputError too_large_for_glb(const std::string& path);
 
 // Why the document cannot be written, as far as it has been made; none: nothing speaks against
 // it. limit: null for none.
-std::optional<OutputError> failure_of(const GltfDocument& document, const std::string& path,
+std::optional<OutputError> failure_of(const GlbDocument& document, const std::string& path,
                                       const std::shared_ptr<OutputLimit>& limit);
 
 // Writes the document and completes the file.
-std::optional<OutputError> write_glb(GltfDocument& document, OutputFile& file);
+std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file);
 
 }  // namespace rlpc

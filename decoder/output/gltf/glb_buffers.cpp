@@ -1,4 +1,4 @@
-#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/glb_buffers.h"
 
 #include <algorithm>
 #include <array>
@@ -96,7 +96,7 @@ bool BinaryChunk::append(std::string_view bytes) {
 }
 
 // `target`: bufferView.target; 0: none.
-std::uint32_t GltfBuffers::add_view(std::string_view bytes, int target) {
+std::uint32_t GlbBuffers::add_view(std::string_view bytes, int target) {
   GltfJson view = {{"buffer", 0}, {"byteOffset", chunk_.size()}, {"byteLength", bytes.size()}};
   if (target != 0) view["target"] = target;
   if (!failure_ && !chunk_.append(bytes)) failure_ = errno;
@@ -105,18 +105,18 @@ std::uint32_t GltfBuffers::add_view(std::string_view bytes, int target) {
   return static_cast<std::uint32_t>(views_.size() - 1);
 }
 
-std::uint32_t GltfBuffers::add_floats(std::span<const float> values, int target) {
+std::uint32_t GlbBuffers::add_floats(std::span<const float> values, int target) {
   return add_view(bytes_of_floats(values), target);
 }
 
-std::uint32_t GltfBuffers::add_accessor(GltfJson accessor) {
+std::uint32_t GlbBuffers::add_accessor(GltfJson accessor) {
   accessors_.push_back(std::move(accessor));
   return static_cast<std::uint32_t>(accessors_.size() - 1);
 }
 
 // The sparse part of an accessor that is zero except for `values` at `places`.
-GltfJson GltfBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
-                             std::string_view values) {
+GltfJson GlbBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
+                            std::string_view values) {
   const bool is_short = count <= kMaxShortVertices;
   std::string bytes;
   for (const std::uint32_t place : places) append_unsigned(bytes, place, is_short ? 2 : 4);
@@ -128,26 +128,26 @@ GltfJson GltfBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint
       {"values", {{"bufferView", add_view(values, 0)}}}};
 }
 
-std::uint32_t GltfBuffers::add_vectors(std::span<const float> xyz) {
+std::uint32_t GlbBuffers::add_vectors(std::span<const float> xyz) {
   GltfJson accessor = accessor_of(kFloat, xyz.size() / 3, "VEC3");
   accessor["bufferView"] = add_floats(xyz, kVertexTarget);
   set_bounds<float>(accessor, xyz);
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_normals(std::span<const float> xyz) {
+std::uint32_t GlbBuffers::add_normals(std::span<const float> xyz) {
   return add_vertex_values(xyz, 3);
 }
 
-std::uint32_t GltfBuffers::add_vertex_values(std::span<const float> values,
-                                             std::uint32_t width) {
+std::uint32_t GlbBuffers::add_vertex_values(std::span<const float> values,
+                                            std::uint32_t width) {
   const std::string type = "VEC" + std::to_string(width);
   GltfJson accessor = accessor_of(kFloat, values.size() / width, type.c_str());
   accessor["bufferView"] = add_floats(values, kVertexTarget);
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_texture_coordinates(std::span<const float> uv) {
+std::uint32_t GlbBuffers::add_texture_coordinates(std::span<const float> uv) {
   const auto is_outside = [](float x) { return !(x >= 0 && x <= 1); };
   if (std::ranges::any_of(uv, is_outside)) return add_vertex_values(uv, 2);
   std::string bytes;
@@ -160,7 +160,7 @@ std::uint32_t GltfBuffers::add_texture_coordinates(std::span<const float> uv) {
   return add_accessor(std::move(accessor));
 }
 
-std::optional<std::uint32_t> GltfBuffers::add_moves(std::span<const float> moves) {
+std::optional<std::uint32_t> GlbBuffers::add_moves(std::span<const float> moves) {
   const std::uint64_t count = moves.size() / 3;
   std::vector<std::uint32_t> moving;
   std::vector<float> values;
@@ -178,8 +178,8 @@ std::optional<std::uint32_t> GltfBuffers::add_moves(std::span<const float> moves
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_byte_vectors(std::span<const std::int8_t> xyz,
-                                            bool in_parts_of_127) {
+std::uint32_t GlbBuffers::add_byte_vectors(std::span<const std::int8_t> xyz,
+                                           bool in_parts_of_127) {
   const std::uint64_t count = xyz.size() / 3;
   std::vector<std::uint32_t> places;
   std::string values;
@@ -206,15 +206,15 @@ std::uint32_t GltfBuffers::add_byte_vectors(std::span<const std::int8_t> xyz,
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_zero_vectors(std::uint32_t count) {
+std::uint32_t GlbBuffers::add_zero_vectors(std::uint32_t count) {
   GltfJson accessor = accessor_of(kFloat, count, "VEC3");
   accessor["min"] = {0, 0, 0};
   accessor["max"] = {0, 0, 0};
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_indices(const std::vector<Triangle>& triangles,
-                                       std::uint32_t num_vertices) {
+std::uint32_t GlbBuffers::add_indices(const std::vector<Triangle>& triangles,
+                                      std::uint32_t num_vertices) {
   const bool is_short = num_vertices <= kMaxShortVertices;
   std::string bytes;
   for (const Triangle& t : triangles) {
@@ -226,8 +226,8 @@ std::uint32_t GltfBuffers::add_indices(const std::vector<Triangle>& triangles,
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_joints(std::span<const std::uint16_t> joints,
-                                      std::uint32_t num_joints) {
+std::uint32_t GlbBuffers::add_joints(std::span<const std::uint16_t> joints,
+                                     std::uint32_t num_joints) {
   const bool is_byte = num_joints <= kMaxByteJoints;
   std::string bytes;
   for (const std::uint16_t joint : joints) append_unsigned(bytes, joint, is_byte ? 1 : 2);
@@ -237,8 +237,7 @@ std::uint32_t GltfBuffers::add_joints(std::span<const std::uint16_t> joints,
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_joint_weights(std::span<const std::uint16_t> weights,
-                                             int whole) {
+std::uint32_t GlbBuffers::add_joint_weights(std::span<const std::uint16_t> weights, int whole) {
   const bool is_byte = whole <= 255;
   std::string bytes;
   for (const std::uint16_t weight : weights) append_unsigned(bytes, weight, is_byte ? 1 : 2);
@@ -250,7 +249,7 @@ std::uint32_t GltfBuffers::add_joint_weights(std::span<const std::uint16_t> weig
 }
 
 // The values of animations follow each other in one view, each at a multiple of 4.
-std::uint32_t GltfBuffers::add_packed(GltfJson accessor, std::string bytes) {
+std::uint32_t GlbBuffers::add_packed(GltfJson accessor, std::string bytes) {
   bytes.resize((bytes.size() + 3) / 4 * 4);
   if (packed_view_) {
     GltfJson& length = views_[*packed_view_]["byteLength"];
@@ -266,32 +265,32 @@ std::uint32_t GltfBuffers::add_packed(GltfJson accessor, std::string bytes) {
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_times(std::span<const float> times) {
+std::uint32_t GlbBuffers::add_times(std::span<const float> times) {
   GltfJson accessor = accessor_of(kFloat, times.size(), "SCALAR");
   accessor["min"] = {times.front()};
   accessor["max"] = {times.back()};
   return add_packed(std::move(accessor), bytes_of_floats(times));
 }
 
-std::uint32_t GltfBuffers::add_values(std::span<const float> values, const char* type) {
+std::uint32_t GlbBuffers::add_values(std::span<const float> values, const char* type) {
   return add_packed(accessor_of(kFloat, values.size() / width_of(type), type),
                     bytes_of_floats(values));
 }
 
-std::uint32_t GltfBuffers::add_short_values(std::span<const float> values, const char* type) {
+std::uint32_t GlbBuffers::add_short_values(std::span<const float> values, const char* type) {
   GltfJson accessor = accessor_of(kShort, values.size() / width_of(type), type);
   accessor["normalized"] = true;
   return add_packed(std::move(accessor), bytes_of_shorts(values));
 }
 
-std::uint32_t GltfBuffers::add_matrices(std::span<const float> values) {
+std::uint32_t GlbBuffers::add_matrices(std::span<const float> values) {
   GltfJson accessor = accessor_of(kFloat, values.size() / 16, "MAT4");
   accessor["bufferView"] = add_floats(values, 0);
   return add_accessor(std::move(accessor));
 }
 
-std::uint32_t GltfBuffers::add_ones(const std::vector<std::uint32_t>& places,
-                                    std::uint64_t count) {
+std::uint32_t GlbBuffers::add_ones(const std::vector<std::uint32_t>& places,
+                                   std::uint64_t count) {
   GltfJson accessor = accessor_of(kFloat, count, "SCALAR");
   if (is_sparse(places.size(), count, 4, 4)) {
     accessor["sparse"] =

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
-#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/glb_buffers.h"
 
 namespace rlpc {
 
 // A mesh in glTF has one list of vertices for all attributes. Where an attribute differs
 // between the triangles at a vertex of the stream, that vertex is there several times.
-struct GltfMesh {
+struct GlbMesh {
   struct Part {                             // a primitive
     std::vector<Triangle> triangles;        // of output vertices; none: the vertices as points
     std::optional<std::uint32_t> material;  // none: the default one of glTF
@@ -25,11 +25,11 @@ struct GltfMesh {
 };
 
 // Each vertex once, all triangles in one part.
-GltfMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles);
+GlbMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles);
 
 // Values of the vertices of the stream, `width` each, for the output vertices.
 template <class T>
-std::vector<T> of_output_vertices(const GltfMesh& mesh, std::span<const T> values,
+std::vector<T> of_output_vertices(const GlbMesh& mesh, std::span<const T> values,
                                   std::size_t width) {
   std::vector<T> expanded;
   expanded.reserve(mesh.vertex.size() * width);
@@ -42,7 +42,7 @@ std::vector<T> of_output_vertices(const GltfMesh& mesh, std::span<const T> value
 
 // The primitives of the mesh. attributes: accessors by name; targets: of morph targets, the
 // same.
-GltfJson primitives_of(const GltfMesh& mesh, const GltfJson& attributes,
-                       const GltfJson& targets, GltfBuffers& buffers);
+GltfJson primitives_of(const GlbMesh& mesh, const GltfJson& attributes, const GltfJson& targets,
+                       GlbBuffers& buffers);
 
 }  // namespace rlpc

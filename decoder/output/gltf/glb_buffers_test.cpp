@@ -1,14 +1,14 @@
-#include "decoder/output/gltf/gltf_buffers.h"
+#include "decoder/output/gltf/glb_buffers.h"
 
 #include <gtest/gtest.h>
 
 namespace rlpc {
 namespace {
 
-GltfJson last_accessor(const GltfBuffers& buffers) { return buffers.accessors().back(); }
+GltfJson last_accessor(const GlbBuffers& buffers) { return buffers.accessors().back(); }
 
-TEST(GltfBuffers, MakesByteVectorsSparseWhereThatIsSmaller) {
-  GltfBuffers buffers;
+TEST(GlbBuffers, MakesByteVectorsSparseWhereThatIsSmaller) {
+  GlbBuffers buffers;
   std::vector<std::int8_t> xyz(3 * 300);
   for (std::size_t v = 0; v < 100; ++v) xyz[3 * v + 1] = static_cast<std::int8_t>(v + 1);
   buffers.add_byte_vectors(xyz, true);
@@ -24,8 +24,8 @@ TEST(GltfBuffers, MakesByteVectorsSparseWhereThatIsSmaller) {
   EXPECT_TRUE(last_accessor(buffers).contains("bufferView"));
 }
 
-TEST(GltfBuffers, RoundsTextureCoordinatesWithinTheImage) {
-  GltfBuffers buffers;
+TEST(GlbBuffers, RoundsTextureCoordinatesWithinTheImage) {
+  GlbBuffers buffers;
   buffers.add_texture_coordinates(std::vector<float>{0, 1, 0.5F, 0.25F});
   EXPECT_EQ(last_accessor(buffers)["componentType"], 5123);
   EXPECT_EQ(last_accessor(buffers)["normalized"], true);
@@ -36,8 +36,8 @@ TEST(GltfBuffers, RoundsTextureCoordinatesWithinTheImage) {
   EXPECT_EQ(last_accessor(buffers)["componentType"], 5126);
 }
 
-TEST(GltfBuffers, PacksValuesOfAnimationsIntoOneView) {
-  GltfBuffers buffers;
+TEST(GlbBuffers, PacksValuesOfAnimationsIntoOneView) {
+  GlbBuffers buffers;
   buffers.add_times(std::vector<float>{0, 1, 2});
   buffers.add_short_values(std::vector<float>{1, -1, 0.5F}, "SCALAR");
   buffers.add_values(std::vector<float>{1, 2, 3}, "VEC3");
